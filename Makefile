@@ -1,0 +1,86 @@
+# Every task of the project, one command each: `make help` lists them.
+#
+# Set-up happens by itself, once, and again where what it depends on has changed: each step leaves a
+# stamp in .venv. Python is read from src as it stands; a change in core/ builds the core anew.
+
+PYTHON ?= python3
+
+VENV := .venv
+RUN := $(VENV)/bin/python
+# For CMake, which is to find its own program, Python and nanobind in .venv.
+WITH_VENV := PATH="$(CURDIR)/$(VENV)/bin:$$PATH" VIRTUAL_ENV="$(CURDIR)/$(VENV)"
+
+EXAMPLE := examples/request_grant
+CHECK_EXAMPLE := check $(EXAMPLE)/spec.stl $(EXAMPLE)/*.csv
+CXX_SOURCES = $(shell find core tests/cpp benchmarks -name '*.cpp')
+CXX_FILES = $(CXX_SOURCES) $(shell find core tests/cpp benchmarks -name '*.hpp')
+
+.DEFAULT_GOAL := help
+.DELETE_ON_ERROR:
+.PHONY: help run test test-python test-cpp test-install lint format bench clean
+
+help: ## list the tasks
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-13s %s\n", $$1, $$2 }' Makefile
+
+# `check` says 1 where a requirement is violated, as two of the four recordings do; 2 is an error.
+run: $(VENV)/.core ## check the four recordings of the paper's Fig. 4: specification in, robustness and verdict out
+	$(VENV)/bin/rtamt $(CHECK_EXAMPLE) || [ $$? -eq 1 ]
+
+test: test-python test-cpp test-install ## everything that can be tested
+
+test-python: $(VENV)/.core $(VENV)/.group-test ## Python: laws, units, messages, doctests
+	$(RUN) -m pytest
+
+test-cpp: $(VENV)/.group-build ## C++: the core alone, under the address and undefined-behaviour sanitizers
+	$(WITH_VENV) cmake --preset asan
+	$(WITH_VENV) cmake --build --preset asan
+	$(WITH_VENV) ctest --preset asan --no-tests=error
+
+test-install: $(VENV)/.made ## `pip install .` in an empty environment, used from outside the checkout
+	rm -rf build/install
+	$(RUN) -m venv build/install
+	build/install/bin/python -m pip install --quiet .
+	cd build && install/bin/python -c "import rtamt.engine._core, sys; sys.exit('/src/' in rtamt.__file__)"
+	build/install/bin/rtamt $(CHECK_EXAMPLE) --quiet || [ $$? -eq 1 ]
+
+lint: $(VENV)/.core $(VENV)/.group-test $(VENV)/.group-lint ## ruff, mypy, import contracts, clang-format, clang-tidy
+	$(RUN) -m ruff check
+	$(RUN) -m ruff format --check
+	$(RUN) -m mypy
+	$(VENV)/bin/lint-imports
+	$(VENV)/bin/clang-format --dry-run --Werror $(CXX_FILES)
+	$(WITH_VENV) cmake --preset tidy --log-level=WARNING
+	printf '%s\n' $(CXX_SOURCES) | xargs -P "$$(nproc)" -n 1 $(VENV)/bin/clang-tidy -p build/tidy --quiet
+
+format: $(VENV)/.group-lint ## format Python and C++
+	$(RUN) -m ruff check --select I --fix
+	$(RUN) -m ruff format
+	$(VENV)/bin/clang-format -i $(CXX_FILES)
+
+bench: $(VENV)/.core ## what a sample costs, beside the figures to reach
+	$(RUN) benchmarks/run.py
+
+clean: ## remove all that was made here, .venv too
+	rm -rf $(VENV) build dist
+	find . \( -name __pycache__ -o -name .hypothesis -o -name '.*_cache' \) -type d -prune -exec rm -rf {} +
+
+# ---- set-up: .made (an environment) -> .group-NAME (a group of pyproject.toml) -> .core (rtamt itself)
+
+$(VENV)/.made: tools/make-venv
+	tools/make-venv "$(PYTHON)" $(VENV)
+	@touch $@
+
+$(VENV)/.group-%: pyproject.toml $(VENV)/.made
+	$(RUN) -m pip install --quiet --group $*
+	@touch $@
+
+# Written only when it differs: an editable install knows each module by its name.
+MODULES := find src -name '*.py' | sort
+$(VENV)/.modules: $(VENV)/.made FORCE
+	@$(MODULES) | cmp -s - $@ || $(MODULES) > $@
+FORCE:
+
+$(VENV)/.core: pyproject.toml CMakeLists.txt $(shell find core -type f) $(VENV)/.modules $(VENV)/.group-build
+	$(WITH_VENV) $(RUN) -m pip install --quiet --no-build-isolation --config-settings=build-dir=build/editable --editable .
+	$(RUN) -c "import rtamt.engine._core"
+	@touch $@
