@@ -1,0 +1,144 @@
+"""Every exception that the library raises on purpose, and nothing else.
+
+::
+
+    StlError                     base of all
+    ├── SpecificationError       the text of a requirement is wrong: .text, .span
+    │   ├── ParseError           it cannot be read
+    │   ├── NameInFormulaError   it uses a name nobody declared
+    │   └── BoundError           an interval cannot be used as it stands
+    ├── TraceError               the data is wrong: .variable, .index, .time
+    ├── EvaluationError          the data makes a sub-formula undefined (0/0, sqrt(-1), inf - inf)
+    ├── UsageError               a call, option or setting that does not exist or does not fit
+    └── RTAMTException           raised by the paper's API; str() begins "RTAMT Exception: "
+        └── STLParseException    the same, for text
+
+A message is one sentence: what is wrong, where, how to mend it. Errors about text also carry
+the line and a caret under the place.
+"""
+
+from __future__ import annotations
+
+from difflib import get_close_matches
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from rtamt.language.formula import Span
+
+#: Characters of a long line that are shown on each side of a place.
+_SHOWN = 60
+
+
+class StlError(Exception):
+    """Base of every exception raised on purpose by this library."""
+
+
+class SpecificationError(StlError):
+    """A requirement's text is wrong.
+
+    ``message`` is the sentence alone; ``str()`` adds line, column and a caret where the text is known.
+    """
+
+    def __init__(self, message: str, text: str | None = None, span: Span | None = None) -> None:
+        super().__init__(message, text, span)
+        self.message = message
+        self.text = text
+        self.span = span
+
+    def __str__(self) -> str:
+        if self.text is None or self.span is None:
+            return self.message
+        return f"{self.message}\n{caret(self.text, self.span)}"
+
+    def located(self, text: str | None, span: Span | None) -> SpecificationError:
+        """Return this error with a place in ``text``; a place that is already known stays."""
+        if self.text is not None and self.span is not None:
+            return self
+        return type(self)(self.message, text, self.span or span)
+
+
+class ParseError(SpecificationError):
+    """The text is not a formula or specification file."""
+
+
+class NameInFormulaError(SpecificationError):
+    """A name in the text was never declared."""
+
+
+class BoundError(SpecificationError):
+    """An interval is reversed, negative, no multiple of the period, or unbounded where it may not be."""
+
+
+class TraceError(StlError):
+    """The data cannot be used: the message names the variable, the index and the time."""
+
+    def __init__(
+        self,
+        message: str,
+        *,
+        variable: str | None = None,
+        index: int | None = None,
+        time: float | None = None,
+    ) -> None:
+        super().__init__(message)
+        self.variable = variable
+        self.index = index
+        self.time = time
+
+
+class EvaluationError(StlError):
+    """A sub-formula has no value at an instant: the message names both."""
+
+
+class UsageError(StlError):
+    """A call or setting that does not exist or does not fit."""
+
+
+class RTAMTException(StlError):  # noqa: N818 - the name is the paper's API
+    """Raised by the classes of the paper's API."""
+
+    def __str__(self) -> str:
+        return f"RTAMT Exception: {super().__str__()}"
+
+
+class STLParseException(RTAMTException):
+    """Raised by the paper's API for text that cannot be read."""
+
+
+def caret(text: str, span: Span) -> str:
+    """Return the line of ``text`` in which ``span`` starts, with carets under the span.
+
+    >>> from rtamt.language.formula import Span
+    >>> print(caret("a >= ) b", Span(5, 6)))
+      line 1, column 6:
+        a >= ) b
+             ^
+    """
+    start = min(span.start, len(text))
+    line_start = text.rfind("\n", 0, start) + 1
+    line_end = text.find("\n", start)
+    if line_end < 0:
+        line_end = len(text)
+    number = text.count("\n", 0, start) + 1
+    # A machine may have written a line of a million characters: show what lies around the place.
+    shown_from = max(line_start, start - _SHOWN) if start - line_start > _SHOWN + 10 else line_start
+    shown_to = min(line_end, start + _SHOWN) if line_end - start > _SHOWN + 10 else line_end
+    before = "... " if shown_from > line_start else ""
+    after = " ..." if shown_to < line_end else ""
+    line = before + text[shown_from:shown_to] + after
+    # Tabs keep their width, so that the caret stands under the character it means.
+    pad = "".join("\t" if c == "\t" else " " for c in before + text[shown_from:start])
+    width = max(1, min(span.end, shown_to) - start)
+    return f"  line {number}, column {start - line_start + 1}:\n    {line}\n    {pad}{'^' * width}"
+
+
+def did_you_mean(name: str, known: Iterable[str]) -> str:
+    """Return ``"; did you mean 'x'?"`` for the nearest known name, else an empty string.
+
+    >>> did_you_mean("gmt", ["req", "gnt"])
+    "; did you mean 'gnt'?"
+    """
+    close = get_close_matches(name, list(known), n=1)
+    return f"; did you mean '{close[0]}'?" if close else ""

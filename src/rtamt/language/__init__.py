@@ -1,0 +1,1 @@
+"""Text to formula and back; knows nothing of signals."""

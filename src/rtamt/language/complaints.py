@@ -1,0 +1,82 @@
+"""What to say where a formula cannot go on: one sentence and the place, for each way to be wrong."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rtamt.errors import did_you_mean
+from rtamt.language.lexer import is_word
+from rtamt.language.operators import Fixity
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from rtamt.language.formula import Span
+    from rtamt.language.lexer import Token
+    from rtamt.language.operators import Language
+
+    Complaint = tuple[str, Span]
+    Tokens = Sequence[Token]
+
+
+def no_operand(tokens: Tokens, at: int) -> Complaint:
+    """Say that something else stands where an operand must."""
+    token = tokens[at]
+    bad = _bad_character(token)
+    if bad is not None:
+        return bad
+    if at == 0:
+        message = "the text is empty" if token.kind == "end" else f"expected a formula, got {token}"
+        return message, token.span
+    return f"expected an operand after {tokens[at - 1]}, got {token}", token.span
+
+
+def no_operator(language: Language, tokens: Tokens, at: int, expected: str = "the end") -> Complaint:
+    """Say that something else stands where an operator (or ``expected``) must."""
+    token, before = tokens[at], tokens[at - 1]
+    bad = _bad_character(token)
+    if bad is not None:
+        return bad
+    if token.text == "=":
+        return "'=' gives a name to a formula; to compare write '=='", token.span
+    if token.text in (")", "]"):
+        opening = {")": "(", "]": "["}[token.text]
+        return f"expected an operator or {expected}, got {token}, which no '{opening}' opens", token.span
+    if token.text == "[":
+        return f"expected an operator or {expected}, got '['; intervals follow temporal operators", token.span
+    if token.text == "(" and before.kind == "name":
+        functions = [s for op in language if op.fixity is Fixity.FUNCTION for s in op.spellings]
+        words = [s for op in language for s in op.spellings if is_word(s) and op.fixity is not Fixity.ATOM]
+        hint = did_you_mean(before.text, words) or f"; functions are {', '.join(functions)}"
+        return f"'{before.text}' is not a function{hint}", before.span
+    if token.kind in ("name", "number", "quoted") or token.text == "(" or language.opening(token.text):
+        hint, meant = _misspelled(language, before, token)
+        return f"expected an operator between {before} and {token}{hint}", meant.span
+    return f"expected an operator or {expected}, got {token}", token.span
+
+
+def no_close(language: Language, tokens: Tokens, at: int, opening: Token, expected: str = "')'") -> Complaint:
+    """Say that a parenthesis is not closed: at its opening if the text ends, else at what stands there."""
+    if tokens[at].kind == "end":
+        return "this '(' is never closed", opening.span
+    return no_operator(language, tokens, at, expected)
+
+
+def _bad_character(token: Token) -> Complaint | None:
+    if token.kind == "unknown":
+        return f"unexpected character {token}", token.span
+    if token.kind == "unclosed":
+        what = "comment" if token.text == "/*" else "quoted name"
+        return f"this {what} is never closed", token.span
+    return None
+
+
+def _misspelled(language: Language, before: Token, token: Token) -> tuple[str, Token]:
+    """Return a guess at the operator that was meant, and where: ``x adn y``, ``alway x``."""
+    infix = [s for op in language for s in op.spellings if language.infix(s) is op and len(s) > 2]
+    prefix = [s for op in language for s in op.spellings if op.fixity is Fixity.PREFIX and len(s) > 2]
+    for suspect, words in ((token, infix), (before, prefix)):
+        hint = did_you_mean(suspect.text.lower(), words) if suspect.kind == "name" else ""
+        if hint:
+            return hint, suspect
+    return "", token

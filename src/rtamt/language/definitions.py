@@ -1,0 +1,326 @@
+"""What every operator means in discrete time, one pure function an operator: the judge of every engine.
+
+Arrays hold the value at samples 0 … n-1, float64, never NaN on the way in; every function returns a
+new array of n values. ``x`` stands for φ (or a number), ``y`` for ψ. ``a`` and ``b`` are the bounds of
+the interval in whole samples, ``b=None`` where there is no upper one. T is the set of samples; every
+window is cut to it, and over an empty set the supremum is -inf and the infimum +inf.
+
+Arithmetic is IEEE double and makes inf or NaN where C does, silently: telling the user is the
+evaluator's task. The functions of the mathematical library are called one element at a time, because
+numpy's vectorised ones round differently from the C library that the core calls.
+
+Slow on purpose: each is the formula of the definition (the paper's Definition 2) and nothing more.
+
+>>> import numpy as np
+>>> from rtamt.language.definitions import once
+>>> once(np.array([1.0, 3.0, 2.0, 0.0]), 1, 2)
+array([-inf,   1.,   3.,   3.])
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, TypeAlias
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numpy.typing import NDArray
+
+    Array: TypeAlias = NDArray[np.float64]
+
+inf = math.inf
+
+# ---- atoms --------------------------------------------------------------------------------------
+
+
+def true(n: int) -> Array:
+    """+inf everywhere."""
+    return np.full(n, inf)
+
+
+def false(n: int) -> Array:
+    """-inf everywhere."""
+    return np.full(n, -inf)
+
+
+# ---- numbers ------------------------------------------------------------------------------------
+
+
+def _each(function: Callable[..., float], *operands: Array) -> Array:
+    """Apply a function of floats at every sample."""
+    samples = zip(*(x.tolist() for x in operands), strict=True)
+    return np.array([function(*values) for values in samples], float)
+
+
+def _exp(x: float) -> float:
+    try:
+        return math.exp(x)
+    except OverflowError:
+        return inf
+
+
+def _ln(x: float) -> float:
+    if x > 0:
+        return math.log(x)
+    return -inf if x == 0 else math.nan
+
+
+def _pow(x: float, y: float) -> float:
+    try:
+        return math.pow(x, y)
+    except (OverflowError, ValueError) as error:
+        # Python refuses where C answers: with inf at a pole or an overflow, with NaN outside the domain.
+        if x != 0 and isinstance(error, ValueError):
+            return math.nan
+        # (An infinite exponent comes here from Python 3.10 alone, whose pow refuses 0 to the -inf.)
+        odd = math.isfinite(y) and math.fmod(y, 2.0) in (1.0, -1.0)
+        return math.copysign(inf, x) if odd else inf
+
+
+def abs_(x: Array) -> Array:
+    """``|x|``."""
+    return np.abs(x)
+
+
+def sqrt(x: Array) -> Array:
+    """``sqrt(x)``: the square root; NaN below zero."""
+    with np.errstate(all="ignore"):
+        return np.sqrt(x)
+
+
+def exp(x: Array) -> Array:
+    """``exp(x)``: e to the x; +inf where that is too large."""
+    return _each(_exp, x)
+
+
+def ln(x: Array) -> Array:
+    """``ln(x)``: the natural logarithm; -inf at zero and NaN below."""
+    return _each(_ln, x)
+
+
+def log(x: Array, base: Array) -> Array:
+    """``log(x, base)``: ln(x) / ln(base)."""
+    return div(ln(x), ln(base))
+
+
+def pow_(x: Array, y: Array) -> Array:
+    """``pow(x, y)``: x to the y, as in C."""
+    return _each(_pow, x, y)
+
+
+def neg(x: Array) -> Array:
+    """-x: minus, and ``not φ``."""
+    return -x
+
+
+def add(x: Array, y: Array) -> Array:
+    """``x + y``."""
+    with np.errstate(all="ignore"):
+        return x + y
+
+
+def sub(x: Array, y: Array) -> Array:
+    """``x - y``."""
+    with np.errstate(all="ignore"):
+        return x - y
+
+
+def mul(x: Array, y: Array) -> Array:
+    """``x · y``."""
+    with np.errstate(all="ignore"):
+        return x * y
+
+
+def div(x: Array, y: Array) -> Array:
+    """``x / y``: ±inf for a division by zero, NaN for 0/0."""
+    with np.errstate(all="ignore"):
+        return x / y
+
+
+# ---- predicates ---------------------------------------------------------------------------------
+
+
+def ge(x: Array, y: Array) -> Array:
+    """``x >= y`` and ``x > y``: x - y."""
+    return sub(x, y)
+
+
+def le(x: Array, y: Array) -> Array:
+    """``x <= y`` and ``x < y``: y - x."""
+    return sub(y, x)
+
+
+def eq(x: Array, y: Array) -> Array:
+    """``x == y``: -|x - y|."""
+    return -np.abs(sub(x, y))
+
+
+def ne(x: Array, y: Array) -> Array:
+    """``x != y``: |x - y|."""
+    return np.abs(sub(x, y))
+
+
+def holds_gt(x: Array, y: Array) -> Array:
+    """+inf where x > y, else -inf."""
+    return np.where(x > y, inf, -inf)
+
+
+def holds_ge(x: Array, y: Array) -> Array:
+    """+inf where x ≥ y, else -inf."""
+    return np.where(x >= y, inf, -inf)
+
+
+def holds_eq(x: Array, y: Array) -> Array:
+    """+inf where x = y, else -inf."""
+    return np.where(x == y, inf, -inf)
+
+
+# ---- Boolean ------------------------------------------------------------------------------------
+
+
+def _smaller(x: Array, y: Array) -> Array:
+    # Written out, because numpy leaves open which of 0.0 and -0.0 is the smaller, and 1/x tells them apart.
+    return np.where(x < y, x, y)
+
+
+def _larger(x: Array, y: Array) -> Array:
+    return np.where(x > y, x, y)
+
+
+def and_(x: Array, y: Array) -> Array:
+    """``φ and ψ``: min(φ, ψ)."""
+    return _smaller(x, y)
+
+
+def or_(x: Array, y: Array) -> Array:
+    """``φ or ψ``: max(φ, ψ)."""
+    return _larger(x, y)
+
+
+def implies(x: Array, y: Array) -> Array:
+    """``φ -> ψ``: max(-φ, ψ)."""
+    return _larger(-x, y)
+
+
+def iff(x: Array, y: Array) -> Array:
+    """``φ <-> ψ``: min(max(-φ, ψ), max(φ, -ψ))."""
+    return _smaller(_larger(-x, y), _larger(x, -y))
+
+
+def xor(x: Array, y: Array) -> Array:
+    """``φ xor ψ``: -min(max(-φ, ψ), max(φ, -ψ))."""
+    return -_smaller(_larger(-x, y), _larger(x, -y))
+
+
+# ---- windows ------------------------------------------------------------------------------------
+
+
+def _ahead(t: int, a: int, b: int | None, n: int) -> range:
+    """[t+a, t+b] ∩ T."""
+    return range(t + a, n if b is None else min(t + b + 1, n))
+
+
+def _behind(t: int, a: int, b: int | None) -> range:
+    """[t-b, t-a] ∩ T, for t in T."""
+    return range(0 if b is None else max(t - b, 0), t - a + 1)
+
+
+def _sup(x: Array, window: range) -> float:
+    return float(x[window.start : window.stop].max(initial=-inf)) if window else -inf
+
+
+def _inf(x: Array, window: range) -> float:
+    return float(x[window.start : window.stop].min(initial=inf)) if window else inf
+
+
+def eventually(x: Array, a: int, b: int | None) -> Array:
+    """``eventually[a,b] φ``: sup of φ over [t+a, t+b] ∩ T."""
+    return np.array([_sup(x, _ahead(t, a, b, len(x))) for t in range(len(x))], float)
+
+
+def always(x: Array, a: int, b: int | None) -> Array:
+    """``always[a,b] φ``: inf of φ over [t+a, t+b] ∩ T."""
+    return np.array([_inf(x, _ahead(t, a, b, len(x))) for t in range(len(x))], float)
+
+
+def once(x: Array, a: int, b: int | None) -> Array:
+    """``once[a,b] φ``: sup of φ over [t-b, t-a] ∩ T."""
+    return np.array([_sup(x, _behind(t, a, b)) for t in range(len(x))], float)
+
+
+def historically(x: Array, a: int, b: int | None) -> Array:
+    """``historically[a,b] φ``: inf of φ over [t-b, t-a] ∩ T."""
+    return np.array([_inf(x, _behind(t, a, b)) for t in range(len(x))], float)
+
+
+# ---- one sample away ----------------------------------------------------------------------------
+
+
+def prev(x: Array) -> Array:
+    """``prev φ``: φ(t-1); weak: +inf at the first sample."""
+    return np.array([x[t - 1] if t > 0 else inf for t in range(len(x))], float)
+
+
+def s_prev(x: Array) -> Array:
+    """``s_prev φ``: φ(t-1); strong: -inf at the first sample."""
+    return np.array([x[t - 1] if t > 0 else -inf for t in range(len(x))], float)
+
+
+def next_(x: Array) -> Array:
+    """``next φ``: φ(t+1); weak: +inf at the last sample."""
+    return np.array([x[t + 1] if t + 1 < len(x) else inf for t in range(len(x))], float)
+
+
+def s_next(x: Array) -> Array:
+    """``s_next φ``: φ(t+1); strong: -inf at the last sample."""
+    return np.array([x[t + 1] if t + 1 < len(x) else -inf for t in range(len(x))], float)
+
+
+def rise(x: Array) -> Array:
+    """``rise φ``: prev(not φ) and φ, hence φ at the first sample."""
+    return np.array([min(-x[t - 1] if t > 0 else inf, x[t]) for t in range(len(x))], float)
+
+
+def fall(x: Array) -> Array:
+    """``fall φ``: prev φ and not φ, hence -φ at the first sample."""
+    return np.array([min(x[t - 1] if t > 0 else inf, -x[t]) for t in range(len(x))], float)
+
+
+# ---- two operands in time -----------------------------------------------------------------------
+
+
+def _reached(steps: range, window: range, x: list[float], y: list[float]) -> float:
+    """Sup over t' in ``window`` of min(ψ(t'), inf of φ over the steps that come before t')."""
+    best, held = -inf, inf
+    for u in steps:
+        if u in window:
+            best = max(best, min(y[u], held))
+        held = min(held, x[u])
+    return best
+
+
+def until(x: Array, y: Array, a: int, b: int | None) -> Array:
+    """``φ until[a,b] ψ``: sup over t' ∈ [t+a, t+b] ∩ T of min(ψ(t'), inf of φ over [t, t'))."""
+    n, xs, ys = len(x), x.tolist(), y.tolist()
+    return np.array([_reached(_ahead(t, 0, b, n), _ahead(t, a, b, n), xs, ys) for t in range(n)], float)
+
+
+def since(x: Array, y: Array, a: int, b: int | None) -> Array:
+    """``φ since[a,b] ψ``: sup over t' ∈ [t-b, t-a] ∩ T of min(ψ(t'), inf of φ over (t', t])."""
+    n, xs, ys = len(x), x.tolist(), y.tolist()
+    # The steps run from t backwards: those before t' are (t', t].
+    return np.array([_reached(_behind(t, 0, b)[::-1], _behind(t, a, b), xs, ys) for t in range(n)], float)
+
+
+def precedes(x: Array, y: Array, a: int, b: int) -> Array:
+    """``φ precedes[a,b] ψ``: sup over t' ∈ [t-b+a, t] ∩ T of min(ψ(t'), inf of φ over [t-b, t') ∩ T)."""
+    n, xs, ys = len(x), x.tolist(), y.tolist()
+    return np.array([_reached(_behind(t, 0, b), _behind(t, 0, b - a), xs, ys) for t in range(n)], float)
+
+
+def unless(x: Array, y: Array, a: int, b: int | None) -> Array:
+    """``φ unless[a,b] ψ``: max(always[0,b] φ, φ until[a,b] ψ)."""
+    return _larger(always(x, 0, b), until(x, y, a, b))

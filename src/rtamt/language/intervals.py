@@ -1,0 +1,128 @@
+"""The interval after a temporal operator: exact bounds, their units, and all that can be wrong with them."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from math import isinf
+from typing import TYPE_CHECKING
+
+from rtamt.errors import BoundError, NameInFormulaError, did_you_mean
+from rtamt.language.formula import Interval, Span
+from rtamt.language.grammar import INFINITY
+from rtamt.language.operators import Bounds
+from rtamt.language.units import UNITS, exact
+
+if TYPE_CHECKING:
+    from rtamt.errors import SpecificationError
+    from rtamt.language.lexer import Token
+    from rtamt.language.operators import Operator
+    from rtamt.language.parser import FormulaParser
+
+    #: A number of units (None: infinite), the unit as written, and the place.
+    Bound = tuple[Fraction | None, str, Span]
+
+
+def parse_interval(parser: FormulaParser, op: Operator, token: Token) -> Interval | None:
+    """``interval = "[" , bound , ( ":" | "," ) , bound , "]"``: read one after ``op``, written ``token``.
+
+    A bound without a unit has the parser's, but a lower bound that of the upper one, as in RTAMT.
+    Returns None where there is no interval and need be none.
+    """
+    opening = parser.token
+    if opening.text != "[":
+        if op.bounds is Bounds.REQUIRED:
+            raise _unbounded(parser, token, token.span)
+        return None
+    if op.bounds is Bounds.NONE:
+        raise parser.error(f"'{token.text}' takes no interval", opening.span)
+    parser.next()
+    begin, begin_unit, begin_span = _bound(parser)
+    separator = parser.token
+    if not parser.accept(":") and not parser.accept(","):
+        raise parser.error(f"expected ':' or ',' and an upper bound, got {separator}", separator.span)
+    end, end_unit, end_span = _bound(parser)
+    closing = parser.token
+    if not parser.accept("]"):
+        more = "; intervals are closed" if closing.text == ")" else ""
+        raise parser.error(f"expected ']' after the bounds, got {closing}{more}", closing.span)
+    span = Span(opening.start, closing.end)
+    if begin is None:
+        raise parser.error("the lower bound of an interval may not be infinite", begin_span, BoundError)
+    if end is None and op.bounds is Bounds.REQUIRED:
+        raise _unbounded(parser, token, end_span)
+    default = "" if parser.unit == "s" else parser.unit
+    begin_unit, end_unit = begin_unit or end_unit or default, end_unit or default
+    if begin_unit:
+        begin *= UNITS[begin_unit]
+    if end is not None:
+        if end_unit:
+            end *= UNITS[end_unit]
+        if end < begin:
+            written = parser.text[span.start : span.end]
+            raise parser.error(
+                f"the interval {written} is reversed: it ends before it begins", span, BoundError
+            )
+    return Interval(begin, end, begin_unit, "" if end is None else end_unit, span)
+
+
+def _unbounded(parser: FormulaParser, token: Token, span: Span) -> SpecificationError:
+    return parser.error(
+        f"'{token.text}' needs an interval with an upper bound, such as {token.text}[0:5]", span, BoundError
+    )
+
+
+def _bound(parser: FormulaParser) -> Bound:
+    """``bound = ( number , [ "/" , number ] | constant ) , [ unit ] | "inf"``."""
+    first = token = parser.next()
+    negative = first.text == "-"
+    if negative:
+        token = parser.next()
+    value: Fraction | None
+    if token.kind == "number":
+        value = _literal(parser, token)
+        if parser.accept("/"):
+            below = parser.next()
+            if below.kind != "number":
+                raise parser.error(f"expected a number after '/', got {below}", below.span)
+            divisor = _literal(parser, below)
+            if divisor == 0:
+                raise parser.error(
+                    "a bound may not be divided by zero", Span(token.start, below.end), BoundError
+                )
+            value /= divisor
+    elif token.kind == "name":
+        value = _constant(parser, token)
+    else:
+        raise parser.error(f"expected a bound (a number or a constant), got {token}", token.span)
+    span = Span(first.start, parser.tokens[parser.index - 1].end)
+    if negative or (value is not None and value < 0):
+        raise parser.error("a bound may not be negative; for the past use a past operator", span, BoundError)
+    unit = ""
+    name, after = parser.token, parser.tokens[min(parser.index + 1, len(parser.tokens) - 1)]
+    if name.text in UNITS and value is not None:
+        unit = parser.next().text
+    elif name.kind == "name" and after.text in (":", ",", "]"):
+        units = ", ".join(UNITS)
+        raise parser.error(f"'{name.text}' is not a unit of time; units are {units}", name.span)
+    return value, unit, span
+
+
+def _literal(parser: FormulaParser, token: Token) -> Fraction:
+    try:
+        return exact(token.text)
+    except ValueError:
+        raise parser.error("the bound is beyond the range of a double", token.span, BoundError) from None
+
+
+def _constant(parser: FormulaParser, token: Token) -> Fraction | None:
+    constants = parser.scope.constants
+    value = constants.get(token.text)
+    if value is None:
+        if token.text == INFINITY:
+            return None
+        hint = did_you_mean(token.text, constants) or f"; a bound is a number, a constant or {INFINITY}"
+        raise parser.error(f"'{token.text}' is not a declared constant{hint}", token.span, NameInFormulaError)
+    if isinf(value):
+        # Minus infinity is as negative as any other number below zero.
+        return None if value > 0 else Fraction(-1)
+    return exact(str(float(value)))

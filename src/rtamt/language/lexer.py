@@ -1,0 +1,118 @@
+"""Text to tokens, with one regular expression made from the table of operators.
+
+=========  ===================================================================
+kind       text
+=========  ===================================================================
+number     ``3``, ``0.5``, ``.5``, ``1e-3``, ``1_000``
+name       ``req``, ``req.value``, ``always``: which of them are operators is the parser's to say
+quoted     ``"engine speed"``: always a name; ``""`` inside stands for one double quote
+symbol     the operators that are no words, longest first, and ``( ) [ ] , : ; = @``
+unclosed   the opening of a comment or quoted name that has no end
+unknown    any other character
+end        after the last token
+=========  ===================================================================
+"""
+
+from __future__ import annotations
+
+import re
+from functools import lru_cache
+from typing import TYPE_CHECKING, NamedTuple
+
+from rtamt.errors import UsageError
+from rtamt.language.formula import Span
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from rtamt.language.operators import Language, Operator
+
+PUNCTUATION = "( ) [ ] , : ; = @".split()
+
+_WORD = r"[^\W\d][\w$]*|\$[\w$]*"
+_DIGITS = r"[0-9]+(?:_+[0-9]+)*"
+_NUMBER = rf"(?:{_DIGITS}(?:\.(?:{_DIGITS})?)?|\.{_DIGITS})(?:[eE][+-]?{_DIGITS})?"
+_NAME = rf"(?:{_WORD})(?:\.(?:{_WORD}))*"
+_SKIP = r"\s*(?:(?://[^\n]*|/\*[\s\S]*?\*/)\s*)*"
+
+#: A name that needs no quotes: a word, or words joined by dots.
+NAME = re.compile(_NAME)
+#: A topic such as ``/ns/req``, which where an operand can begin is a name as well.
+TOPIC = re.compile(rf"(?:/{_NAME})+")
+
+
+class Token(NamedTuple):
+    """A piece of the text: its kind, its characters, and where they stand."""
+
+    kind: str
+    text: str
+    start: int
+    end: int
+
+    @property
+    def span(self) -> Span:
+        """The characters' place in the text."""
+        return Span(self.start, self.end)
+
+    def __str__(self) -> str:
+        return "the end of the text" if self.kind == "end" else f"'{self.text}'"
+
+
+def is_word(spelling: str) -> bool:
+    """Tell whether an operator's spelling reads like a name, so that only its place tells them apart.
+
+    >>> is_word("until"), is_word("->")
+    (True, False)
+    """
+    return NAME.fullmatch(spelling) is not None
+
+
+@lru_cache(maxsize=32)
+def _pattern(operators: tuple[Operator, ...]) -> re.Pattern[str]:
+    symbols = {s for op in operators for s in op.spellings if not is_word(s)}.union(PUNCTUATION)
+    symbol = "|".join(re.escape(s) for s in sorted(symbols, key=lambda s: (-len(s), s)))
+    # Something always matches after the skipped part: the expression never backtracks into a comment.
+    return re.compile(
+        rf"{_SKIP}(?:(?P<name>{_NAME})|(?P<number>{_NUMBER})"
+        rf'|(?P<quoted>"(?:[^"]|"")*")|(?P<unclosed>/\*|")'
+        rf"|(?P<symbol>{symbol})|(?P<end>\Z)|(?P<unknown>[\s\S]))"
+    )
+
+
+def tokenize(text: str, language: Language) -> Sequence[Token]:
+    """Split a text into tokens; the last one is of kind ``end``.
+
+    What is no part of the language becomes a token of kind ``unknown`` or ``unclosed``, for the
+    parser to complain about when it gets there. Raises :class:`UsageError` if ``text`` is no text.
+
+    >>> from rtamt.language.operators import STL
+    >>> [token.text for token in tokenize("req.value >= 3 // high", STL)]
+    ['req.value', '>=', '3', '']
+    """
+    if not isinstance(text, str):
+        raise UsageError(f"a formula is text, got {type(text).__name__}")
+    tokens: list[Token] = []
+    for match in _pattern(language.operators).finditer(text):
+        kind, group = match.lastgroup, match.lastindex
+        if kind is None or group is None or kind == "end":
+            break
+        start, end = match.span(group)
+        tokens.append(Token(kind, text[start:end], start, end))
+    # The end is where the last token ends: a caret under a blank line would tell nobody anything.
+    last = tokens[-1].end if tokens else 0
+    tokens.append(Token("end", "", last, last))
+    return tokens
+
+
+def quoted(name: str) -> str:
+    """Return a name in double quotes, whatever characters it has.
+
+    >>> print(quoted('the "fast" one'))
+    "the ""fast"" one"
+    """
+    return '"' + name.replace('"', '""') + '"'
+
+
+def unquoted(text: str) -> str:
+    """Return the name that a token of kind ``quoted`` stands for."""
+    return text[1:-1].replace('""', '"')

@@ -1,0 +1,380 @@
+"""THE TABLE: every operator of the language, once.
+
+One frozen record an operator. Lexer, parser, printer, checks, horizon, desugaring, pastification,
+compiler, command-line help, the generated reference and the test generators all read this table;
+there is no second list. A :class:`Language` is an immutable set of operators;
+``STL.extend(...)`` returns a new one.
+
+The meaning of an operator is its ``definition``, a pure function on arrays (``definitions.py``).
+How it is made fast is either an ``expansion`` into simpler operators or a ``kernel``: one of five
+shapes that the compiler knows. Names of opcodes are those of the core.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+from fractions import Fraction
+from math import inf
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any
+
+from rtamt.language import definitions as d
+from rtamt.language.formula import Apply, Const, Formula, Interval
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Iterator, Mapping
+
+    Expansion = Callable[..., Formula]
+
+
+class Fixity(Enum):
+    """How an operator is written."""
+
+    PREFIX = "prefix"  # always[0:5] φ
+    LEFT = "left"  # a - b - c  is  (a - b) - c
+    RIGHT = "right"  # a -> b -> c  is  a -> (b -> c)
+    FUNCTION = "function"  # abs(x)
+    ATOM = "atom"  # true
+
+
+class Sort(Enum):
+    """How an operand is read: as a number, or as a formula that holds or does not."""
+
+    NUMBER = "number"
+    FORMULA = "formula"
+
+
+class Tense(Enum):
+    """Which instants an operator reads besides the present one."""
+
+    NONE = "none"
+    PAST = "past"
+    FUTURE = "future"
+
+
+class Bounds(Enum):
+    """Whether an operator takes an interval."""
+
+    NONE = "none"
+    OPTIONAL = "optional"  # left out: [0, inf)
+    REQUIRED = "required"  # and bounded
+
+
+@dataclass(frozen=True, slots=True)
+class Pointwise:
+    """One value from the operands' values at the same instant; ``partial`` if it can make a NaN."""
+
+    opcode: str
+    partial: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Window:
+    """Largest (``max``) or smallest (``min``) value in a window."""
+
+    reduce: str
+
+
+@dataclass(frozen=True, slots=True)
+class Shift:
+    """The operand one sample away, ``fill`` where that sample does not exist."""
+
+    fill: float
+
+
+@dataclass(frozen=True, slots=True)
+class Since:
+    """The recursion of since; the tense of its record is past."""
+
+
+@dataclass(frozen=True, slots=True)
+class Until:
+    """The window of until; in the past tense the window of precedes."""
+
+
+Kernel = Pointwise | Window | Shift | Since | Until
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Operator:
+    """One operator. Two operators are equal only if they are the same record.
+
+    ``power`` is the binding power (higher binds tighter). ``guards`` tells pastification how an
+    operand that was delayed by d is kept from being read before the operand meant anything:
+    ``"and"`` (the operand counts as false there), ``"implies"`` (as true), None (no need).
+    ``twin`` names the past operator that a future one becomes ("" if the operand itself does).
+    ``dual`` names the operator for which ``not op(x) == dual(not x)``.
+    """
+
+    name: str
+    spellings: tuple[str, ...]  # the first one is printed
+    fixity: Fixity
+    power: int
+    operands: tuple[Sort, ...]
+    result: Sort
+    doc: str
+    example: str
+    latex: str  # {0}, {1} operands, {I} the interval as a subscript
+    definition: Callable[..., Any]
+    tense: Tense = Tense.NONE
+    bounds: Bounds = Bounds.NONE
+    kernel: Kernel | None = None
+    expansion: Expansion | None = None
+    discrete_only: bool = False
+    dual: str | None = None
+    twin: str | None = None
+    guards: tuple[str | None, ...] = ()
+    folds: bool = False  # a function that also takes more operands: f(a, b, c) is f(f(a, b), c)
+    truth: Expansion | None = None  # of a predicate: the formula that is +inf where it holds, else -inf
+
+    def __call__(self, *args: Formula, interval: Interval | None = None) -> Apply:
+        """Build the formula ``op[interval](*args)``."""
+        return Apply(self, args, interval)
+
+    def __repr__(self) -> str:
+        return f"<operator {self.name}>"
+
+    def __reduce__(self) -> str | tuple[Any, ...]:
+        # Records are compared by identity, so a built-in one unpickles to the one in the table.
+        if STL.get(self.name) is self:
+            return (_builtin, (self.name,))
+        return object.__reduce__(self)
+
+
+def _builtin(name: str) -> Operator:
+    return STL[name]
+
+
+@dataclass(frozen=True, slots=True)
+class Language:
+    """An immutable set of operators."""
+
+    operators: tuple[Operator, ...]
+    _by_name: Mapping[str, Operator]
+    _by_spelling: Mapping[tuple[str, bool], Operator]
+
+    @classmethod
+    def of(cls, operators: Iterable[Operator]) -> Language:
+        """Build a language; a name or spelling that is used twice is an error."""
+        table = tuple(operators)
+        names: dict[str, Operator] = {}
+        spellings: dict[tuple[str, bool], Operator] = {}
+        for op in table:
+            if op.name in names:
+                raise ValueError(f"two operators are named '{op.name}'")
+            names[op.name] = op
+            for spelling in op.spellings:
+                key = (spelling, op.fixity in (Fixity.LEFT, Fixity.RIGHT))
+                if key in spellings:
+                    raise ValueError(f"'{spelling}' spells both '{spellings[key].name}' and '{op.name}'")
+                spellings[key] = op
+        return cls(table, MappingProxyType(names), MappingProxyType(spellings))
+
+    def extend(self, *operators: Operator) -> Language:
+        """Return a new language with these operators added."""
+        return Language.of((*self.operators, *operators))
+
+    def __getitem__(self, name: str) -> Operator:
+        return self._by_name[name]
+
+    def get(self, name: str) -> Operator | None:
+        """Return the operator called ``name``, or None."""
+        return self._by_name.get(name)
+
+    def opening(self, spelling: str) -> Operator | None:
+        """Return the operator that ``spelling`` means where an operand can begin."""
+        return self._by_spelling.get((spelling, False))
+
+    def infix(self, spelling: str) -> Operator | None:
+        """Return the operator that ``spelling`` means after an operand."""
+        return self._by_spelling.get((spelling, True))
+
+    def __iter__(self) -> Iterator[Operator]:
+        return iter(self.operators)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return (Language.of, (self.operators,))
+
+
+# ---- expansions: (operands..., interval) -> simpler formula -------------------------------------
+
+N, F = Sort.NUMBER, Sort.FORMULA
+
+
+def _ne(a: Formula, b: Formula, _i: Interval | None) -> Formula:
+    return STL["not"](STL["eq"](a, b))
+
+
+def _iff(a: Formula, b: Formula, _i: Interval | None) -> Formula:
+    return STL["and"](STL["implies"](a, b), STL["implies"](b, a))
+
+
+def _xor(a: Formula, b: Formula, _i: Interval | None) -> Formula:
+    return STL["not"](_iff(a, b, None))
+
+
+def _unless(a: Formula, b: Formula, i: Interval | None) -> Formula:
+    whole = None if i is None else Interval(Fraction(0), i.end, "", i.end_unit, i.span)
+    return STL["or"](STL["always"](a, interval=whole), STL["until"](a, b, interval=i))
+
+
+def _rise(a: Formula, _i: Interval | None) -> Formula:
+    return STL["and"](STL["prev"](STL["not"](a)), a)
+
+
+def _fall(a: Formula, _i: Interval | None) -> Formula:
+    return STL["and"](STL["prev"](a), STL["not"](a))
+
+
+def _function(name: str, arity: int, doc: str, example: str, **more: Any) -> Operator:
+    more.setdefault("latex", rf"\mathrm{{{{{name}}}}}({', '.join(f'{{{k}}}' for k in range(arity))})")
+    more.setdefault("operands", (N,) * arity)
+    more.setdefault("result", N)
+    return Operator(name, (name,), Fixity.FUNCTION, 200, doc=doc, example=example, **more)
+
+
+def _infix(name: str, spellings: str, power: int, doc: str, example: str, **more: Any) -> Operator:
+    more.setdefault("operands", (F, F))
+    more.setdefault("result", F)
+    return Operator(
+        name,
+        tuple(spellings.split()),
+        more.pop("fixity", Fixity.LEFT),
+        power,
+        doc=doc,
+        example=example,
+        **more,
+    )
+
+
+def _prefix(name: str, spellings: str, power: int, doc: str, example: str, **more: Any) -> Operator:
+    more.setdefault("operands", (F,))
+    more.setdefault("result", F)
+    return Operator(name, tuple(spellings.split()), Fixity.PREFIX, power, doc=doc, example=example, **more)
+
+
+# What a predicate's truth is made of: +inf or -inf. Not spelled in the language; the semantics that
+# need a verdict instead of a distance (rewrite/interface.py) put them in.
+_GT, _GE, _EQ = (
+    _function(
+        f"holds_{code}", 2, f"+inf where the operands compare '{sign}', else -inf.", f"holds_{code}(a, b)",
+        result=F, definition=definition, kernel=Pointwise(f"holds_{code}"),
+    )
+    for code, sign, definition in (("gt", ">", d.holds_gt), ("ge", ">=", d.holds_ge), ("eq", "==", d.holds_eq))
+)  # fmt: skip
+
+
+def holds(number: Formula) -> Formula:
+    """Return the formula that is +inf where ``number`` is positive, else -inf."""
+    return _GT(number, Const(0.0))
+
+
+STL: Language = Language.of((
+    # ---- atoms -------------------------------------------------------------------------------
+    Operator("true", ("true",), Fixity.ATOM, 200, (), F, "Always holds: +inf.", "true", r"\top",
+             d.true, expansion=lambda _i: Const(inf)),
+    Operator("false", ("false",), Fixity.ATOM, 200, (), F, "Never holds: -inf.", "false", r"\bot",
+             d.false, expansion=lambda _i: Const(-inf)),
+    # ---- numbers -----------------------------------------------------------------------------
+    _function("abs", 1, "Absolute value.", "abs(x) <= 2", latex=r"\left|{0}\right|",
+              definition=d.abs_, kernel=Pointwise("abs")),
+    _function("sqrt", 1, "Square root.", "sqrt(x) <= 2", latex=r"\sqrt{{{0}}}",
+              definition=d.sqrt, kernel=Pointwise("sqrt", partial=True)),
+    _function("exp", 1, "The exponential function.", "exp(x) <= 2",
+              definition=d.exp, kernel=Pointwise("exp")),
+    _function("pow", 2, "The first operand to the power of the second.", "pow(x, 2) <= 4",
+              latex=r"{{{0}}}^{{{1}}}", definition=d.pow_, kernel=Pointwise("pow", partial=True)),
+    _function("log", 2, "The logarithm of the first operand to the base of the second.", "log(x, 10) >= 1",
+              latex=r"\log_{{{1}}}({0})", definition=d.log, kernel=Pointwise("log", partial=True)),
+    _function("ln", 1, "The natural logarithm.", "ln(x) >= 0", latex=r"\ln({0})",
+              definition=d.ln, kernel=Pointwise("ln", partial=True)),
+    _function("min", 2, "The smallest operand.", "min(x, y) >= 0", latex=r"\min({0}, {1})",
+              definition=d.and_, kernel=Pointwise("min"), folds=True),
+    _function("max", 2, "The largest operand.", "max(x, y) >= 0", latex=r"\max({0}, {1})",
+              definition=d.or_, kernel=Pointwise("max"), folds=True),
+    _prefix("neg", "-", 120, "Minus.", "-x >= 2", operands=(N,), result=N, latex="-{0}",
+            definition=d.neg, kernel=Pointwise("neg")),
+    _infix("mul", "*", 110, "Product.", "2 * x <= 3", operands=(N, N), result=N, latex=r"{0} \cdot {1}",
+           definition=d.mul, kernel=Pointwise("mul", partial=True)),
+    _infix("div", "/", 110, "Quotient.", "x / 2 <= 3", operands=(N, N), result=N, latex=r"{0} / {1}",
+           definition=d.div, kernel=Pointwise("div", partial=True)),
+    _infix("add", "+", 100, "Sum.", "x + y <= 3", operands=(N, N), result=N, latex="{0} + {1}",
+           definition=d.add, kernel=Pointwise("add", partial=True)),
+    _infix("sub", "-", 100, "Difference.", "x - y <= 3", operands=(N, N), result=N, latex="{0} - {1}",
+           definition=d.sub, kernel=Pointwise("sub", partial=True)),
+    # ---- predicates --------------------------------------------------------------------------
+    _infix("ge", ">=", 90, "At least: a - b.", "x >= 3", operands=(N, N), latex=r"{0} \geq {1}", dual="lt",
+           definition=d.ge, expansion=lambda a, b, _i: STL["sub"](a, b), truth=lambda a, b, _i: _GE(a, b)),
+    _infix("gt", ">", 90, "More than: a - b.", "x > 3", operands=(N, N), latex="{0} > {1}", dual="le",
+           definition=d.ge, expansion=lambda a, b, _i: STL["sub"](a, b), truth=lambda a, b, _i: _GT(a, b)),
+    _infix("le", "<=", 90, "At most: b - a.", "x <= 3", operands=(N, N), latex=r"{0} \leq {1}", dual="gt",
+           definition=d.le, expansion=lambda a, b, _i: STL["sub"](b, a), truth=lambda a, b, _i: _GE(b, a)),
+    _infix("lt", "<", 90, "Less than: b - a.", "x < 3", operands=(N, N), latex="{0} < {1}", dual="ge",
+           definition=d.le, expansion=lambda a, b, _i: STL["sub"](b, a), truth=lambda a, b, _i: _GT(b, a)),
+    _infix("eq", "==", 90, "Equal: -|a - b|, at best 0.", "x == 3", operands=(N, N), latex="{0} = {1}", dual="ne",
+           definition=d.eq, expansion=lambda a, b, _i: STL["neg"](STL["abs"](STL["sub"](a, b))),
+           truth=lambda a, b, _i: _EQ(a, b)),
+    _infix("ne", "!= !==", 90, "Different: |a - b|.", "x != 3", operands=(N, N), latex=r"{0} \neq {1}", dual="eq",
+           definition=d.ne, expansion=lambda a, b, _i: STL["abs"](STL["sub"](a, b)),
+           truth=lambda a, b, _i: STL["not"](_EQ(a, b))),
+    # ---- Boolean -----------------------------------------------------------------------------
+    _prefix("not", "not !", 80, "Negation: minus.", "not (x >= 3)", latex=r"\neg {0}",
+            definition=d.neg, expansion=lambda a, _i: STL["neg"](a)),
+    _infix("and", "and & &&", 40, "Both: the smaller value.", "x >= 3 and y >= 3", latex=r"{0} \wedge {1}",
+           dual="or", definition=d.and_, kernel=Pointwise("min")),
+    _infix("or", "or | ||", 30, "At least one: the larger value.", "x >= 3 or y >= 3", latex=r"{0} \vee {1}",
+           dual="and", definition=d.or_, kernel=Pointwise("max")),
+    _infix("implies", "-> implies =>", 20, "If the first then the second: max(-a, b).", "x >= 3 -> y >= 3",
+           latex=r"{0} \to {1}", fixity=Fixity.RIGHT,
+           definition=d.implies, expansion=lambda a, b, _i: STL["or"](STL["not"](a), b)),
+    _infix("iff", "<-> iff", 15, "Both or neither: (a -> b) and (b -> a).", "x >= 3 <-> y >= 3",
+           latex=r"{0} \leftrightarrow {1}", dual="xor", definition=d.iff, expansion=_iff),
+    _infix("xor", "xor", 10, "One but not both: not (a <-> b).", "x >= 3 xor y >= 3",
+           latex=r"{0} \oplus {1}", dual="iff", definition=d.xor, expansion=_xor),
+    # ---- windows -----------------------------------------------------------------------------
+    _prefix("always", "always G", 75, "At every instant of the window ahead: the smallest value.",
+            "always[0:5](x >= 3)", latex=r"\mathbf{{G}}_{I} {0}", tense=Tense.FUTURE, bounds=Bounds.OPTIONAL,
+            definition=d.always, kernel=Window("min"), dual="eventually", twin="historically"),
+    _prefix("eventually", "eventually F", 75, "At some instant of the window ahead: the largest value.",
+            "eventually[0:5](x >= 3)", latex=r"\mathbf{{F}}_{I} {0}", tense=Tense.FUTURE, bounds=Bounds.OPTIONAL,
+            definition=d.eventually, kernel=Window("max"), dual="always", twin="once"),
+    _prefix("historically", "historically H", 75, "At every instant of the window behind: the smallest value.",
+            "historically[0:5](x >= 3)", latex=r"\mathbf{{H}}_{I} {0}", tense=Tense.PAST, bounds=Bounds.OPTIONAL,
+            definition=d.historically, kernel=Window("min"), dual="once", guards=("implies",)),
+    _prefix("once", "once O", 75, "At some instant of the window behind: the largest value.",
+            "once[0:5](x >= 3)", latex=r"\mathbf{{O}}_{I} {0}", tense=Tense.PAST, bounds=Bounds.OPTIONAL,
+            definition=d.once, kernel=Window("max"), dual="historically", guards=("and",)),
+    # ---- one sample away ---------------------------------------------------------------------
+    _prefix("prev", "prev Y previous", 70, "One sample ago; holds where there is none.", "prev(x >= 3)",
+            latex=r"\mathbf{{Y}} {0}", tense=Tense.PAST, discrete_only=True,
+            definition=d.prev, kernel=Shift(inf), dual="s_prev", guards=("implies",)),
+    _prefix("next", "next X", 70, "One sample ahead; holds where there is none.", "next(x >= 3)",
+            latex=r"\mathbf{{X}} {0}", tense=Tense.FUTURE, discrete_only=True,
+            definition=d.next_, kernel=Shift(inf), dual="s_next", twin=""),
+    _prefix("s_prev", "s_prev sY s_previous", 70, "One sample ago; fails where there is none.", "s_prev(x >= 3)",
+            latex=r"\mathbf{{Y}}_s {0}", tense=Tense.PAST, discrete_only=True,
+            definition=d.s_prev, kernel=Shift(-inf), dual="prev", guards=("and",)),
+    _prefix("s_next", "s_next sX", 70, "One sample ahead; fails where there is none.", "s_next(x >= 3)",
+            latex=r"\mathbf{{X}}_s {0}", tense=Tense.FUTURE, discrete_only=True,
+            definition=d.s_next, kernel=Shift(-inf), dual="next", twin=""),
+    # ---- two operands in time ----------------------------------------------------------------
+    _infix("until", "until U", 60, "The second within the window ahead, the first at every instant before it.",
+           "x >= 3 until[0:5] y >= 3", latex=r"{0} \mathbin{{\mathbf{{U}}_{I}}} {1}",
+           tense=Tense.FUTURE, bounds=Bounds.OPTIONAL, definition=d.until, kernel=Until(), twin="precedes"),
+    _infix("precedes", "precedes", 58, "until, read from as far behind as the interval reaches.",
+           "x >= 3 precedes[0:5] y >= 3", latex=r"{0} \mathbin{{\mathbf{{P}}_{I}}} {1}",
+           tense=Tense.PAST, bounds=Bounds.REQUIRED, definition=d.precedes, kernel=Until(),
+           guards=("implies", "and")),
+    _infix("unless", "unless W", 55, "Either the first throughout [0, b], or the first until the second.",
+           "x >= 3 unless[0:5] y >= 3", latex=r"{0} \mathbin{{\mathbf{{W}}_{I}}} {1}",
+           tense=Tense.FUTURE, bounds=Bounds.OPTIONAL, definition=d.unless, expansion=_unless),
+    _infix("since", "since S", 50, "The second within the window behind, the first at every instant after it.",
+           "x >= 3 since[0:5] y >= 3", latex=r"{0} \mathbin{{\mathbf{{S}}_{I}}} {1}",
+           tense=Tense.PAST, bounds=Bounds.OPTIONAL, definition=d.since, kernel=Since(), guards=(None, "and")),
+    # ---- edges -------------------------------------------------------------------------------
+    _function("rise", 1, "Holds now and not one sample ago.", "rise(x >= 3)", operands=(F,), result=F,
+              latex=r"\uparrow {0}", tense=Tense.PAST, discrete_only=True, definition=d.rise, expansion=_rise),
+    _function("fall", 1, "Held one sample ago and does not now.", "fall(x >= 3)", operands=(F,), result=F,
+              latex=r"\downarrow {0}", tense=Tense.PAST, discrete_only=True, definition=d.fall, expansion=_fall),
+))  # fmt: skip

@@ -1,0 +1,388 @@
+"""Tokens to a formula: recursive descent, with binding powers from the table of operators.
+
+::
+
+    expression = operand , { infix operator , [ interval ] , expression }
+    operand    = number | name | atom | group | call | prefix
+    group      = "(" , expression , ")"
+    call       = function , [ interval ] , "(" , expression , { "," , expression } , ")"
+    prefix     = prefix operator , [ interval ] , expression
+    interval   = "[" , bound , ( ":" | "," ) , bound , "]"
+    bound      = ( number , [ "/" , number ] | constant ) , [ unit ] | "inf"
+    name       = word , { "." , word } | topic | '"' , characters , '"'
+
+Words such as ``always``, ``G`` or ``min`` are operators only where an operator can stand: a prefix
+operator needs something after it that begins an operand or an interval, a function needs ``(``,
+and an infix operator stands after an operand.
+"""
+
+from __future__ import annotations
+
+from math import inf, isinf
+from typing import TYPE_CHECKING
+
+from rtamt.errors import NameInFormulaError, ParseError, SpecificationError, did_you_mean
+from rtamt.language import complaints
+from rtamt.language.formula import Apply, Const, Formula, Span, Var
+from rtamt.language.grammar import INFINITY, MAX_DEPTH, is_predicate, passes_on, sign
+from rtamt.language.intervals import parse_interval
+from rtamt.language.lexer import Token, quoted, tokenize, unquoted
+from rtamt.language.operators import STL, Bounds, Fixity, Language, Operator
+from rtamt.language.scope import Scope
+from rtamt.language.units import check_unit
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Mapping
+
+
+class FormulaParser:
+    """A place in a text, and one method for each production of the grammar."""
+
+    def __init__(self, text: str, language: Language, unit: str, scope: Scope) -> None:
+        self.text = text
+        self.language = language
+        self.unit = check_unit(unit)
+        self.scope = scope
+        self.tokens = tokenize(text, language)
+        self.index = 0
+        self._depth = 0
+        self._sign = sign(language)
+
+    # ---- moving --------------------------------------------------------------------------------
+
+    @property
+    def token(self) -> Token:
+        """The token that comes next."""
+        return self.tokens[self.index]
+
+    def next(self) -> Token:
+        """Take the next token; the end stays where it is."""
+        token = self.tokens[self.index]
+        if token.kind != "end":
+            self.index += 1
+        return token
+
+    def accept(self, symbol: str) -> bool:
+        """Take the next token if it is this symbol."""
+        if self.tokens[self.index].text == symbol:
+            self.index += 1
+            return True
+        return False
+
+    def error(
+        self, message: str, span: Span, kind: type[SpecificationError] = ParseError
+    ) -> SpecificationError:
+        """Return an error that points at the text."""
+        return kind(message, self.text, span)
+
+    # ---- productions ---------------------------------------------------------------------------
+
+    def formula(self) -> Formula:
+        """Read an expression that stands in no other one, whatever the depth of the caller's stack."""
+        self._depth = 0
+        try:
+            return self.expression()
+        except RecursionError:
+            raise self._too_deep() from None
+
+    def expression(self, power: int = 0, under: Operator | None = None) -> Formula:
+        """``expression = operand , { infix operator , [ interval ] , expression }``.
+
+        Operators that bind more weakly than ``power`` are left to the caller; ``under`` is the
+        operator whose operand this is.
+        """
+        if self._depth >= MAX_DEPTH:
+            raise self._too_deep()
+        self._depth += 1
+        start = self.tokens[self.index].start
+        left = self.operand(power, under)
+        last: tuple[Operator, Span] | None = None
+        while True:
+            token = self.tokens[self.index]
+            op = self.language.infix(token.text)
+            if op is None or op.power < power:
+                break
+            self.index += 1
+            timed = op.bounds is not Bounds.NONE or self.tokens[self.index].text == "["
+            interval = parse_interval(self, op, token) if timed else None
+            right_start = self.token.start
+            right = self.expression(op.power + 1 if op.fixity is Fixity.LEFT else op.power, op)
+            end = self.tokens[self.index - 1].end
+            if last is not None and is_predicate(op) and is_predicate(last[0]):
+                raise self._chained(Span(start, end), last[1], token.text, self.text[right_start:end])
+            left = Apply(op, (left, right), interval, Span(start, end))
+            last = (op, Span(right_start, end))
+        self._depth -= 1
+        return left
+
+    def operand(self, power: int, under: Operator | None) -> Formula:
+        """``operand = number | name | atom | group | call | prefix``."""
+        token = self.tokens[self.index]
+        if token.kind == "number":
+            return self.number()
+        op = self.language.opening(token.text)
+        if op is not None:
+            if op.fixity is Fixity.PREFIX and (token.kind != "name" or self._applies(self.index)):
+                return self.prefix(op, power, under)
+            if op.fixity is Fixity.FUNCTION and self.tokens[self.index + 1].text in ("(", "["):
+                return self.call(op)
+            if op.fixity is Fixity.ATOM:
+                self.index += 1
+                return Apply(op, (), None, token.span)
+        if token.kind in ("name", "quoted"):
+            return self.name()
+        if token.text == "(":
+            return self.group()
+        if self._begins_topic(self.index):
+            return self.name()
+        raise self.error(*complaints.no_operand(self.tokens, self.index))
+
+    def number(self) -> Const:
+        """``number = decimal literal``."""
+        token = self.next()
+        value = float(token.text)
+        if isinf(value):
+            raise self.error(
+                f"{token.text} is larger than every double; for infinity write {INFINITY}", token.span
+            )
+        return Const(value, token.span)
+
+    def group(self) -> Formula:
+        """``group = "(" , expression , ")"``."""
+        opening = self.next()
+        inner = self.expression()
+        if not self.accept(")"):
+            raise self.error(*complaints.no_close(self.language, self.tokens, self.index, opening))
+        return inner
+
+    def call(self, op: Operator) -> Formula:
+        """``call = function , [ interval ] , "(" , expression , { "," , expression } , ")"``."""
+        name = self.next()
+        interval = parse_interval(self, op, name)
+        opening = self.token
+        if not self.accept("("):
+            raise self.error(f"expected '(' after '{name.text}', got {opening}", opening.span)
+        operands = [self.expression()]
+        while self.accept(","):
+            operands.append(self.expression())
+        if not self.accept(")"):
+            raise self.error(
+                *complaints.no_close(self.language, self.tokens, self.index, opening, "',' or ')'")
+            )
+        span = Span(name.start, self.tokens[self.index - 1].end)
+        count = len(op.operands)
+        if len(operands) != count and not (op.folds and len(operands) > count):
+            more = " or more" if op.folds else ""
+            noun = "operand" if count == 1 and not op.folds else "operands"
+            raise self.error(f"'{name.text}' takes {count}{more} {noun}, got {len(operands)}", span)
+        result = Apply(op, tuple(operands[:count]), interval, span)
+        for operand in operands[count:]:
+            result = Apply(op, (result, operand), interval, span)
+        return result
+
+    def prefix(self, op: Operator, power: int, under: Operator | None) -> Formula:
+        """``prefix = prefix operator , [ interval ] , expression``; a minus before a number is its sign."""
+        token = self.next()
+        if op.power < power and not (under is not None and passes_on(under)):
+            by = "" if under is None else under.spellings[0]
+            raise self.error(
+                f"'{token.text}' binds more weakly than the '{by}' before it; "
+                f"put parentheses around it: {by} ({token.text} ...)",
+                token.span,
+            )
+        if op is self._sign:
+            value = self._signed(op)
+            if value is not None:
+                return Const(-value, Span(token.start, self.tokens[self.index - 1].end))
+        interval = parse_interval(self, op, token)
+        # Under `not`, whose power is higher, `always` takes in no more than `not` itself would.
+        operand = self.expression(max(power, op.power), op)
+        return Apply(op, (operand,), interval, Span(token.start, self.tokens[self.index - 1].end))
+
+    def name(self) -> Formula:
+        """``name = word , { "." , word } | topic | '"' , characters , '"'``."""
+        first = self.tokens[self.index]
+        if first.kind == "quoted":
+            self.index += 1
+            return self._meaning(unquoted(first.text), first.span, plain=False)
+        last = self.index
+        if first.text == "/" or self.tokens[last + 1].text == "/":
+            last = self._last_of_path()
+        self.index = last + 1
+        span = Span(first.start, self.tokens[last].end)
+        return self._meaning(self.text[span.start : span.end], span)
+
+    # ---- names ---------------------------------------------------------------------------------
+
+    def _last_of_path(self) -> int:
+        """Return the index of the last token of the name here: ``a/b`` is one only if declared so."""
+        first = self.index
+        start = self.tokens[first].start
+        topic = self.tokens[first].kind == "symbol"
+        free = topic and self.scope.variables is None
+        last = self._after_slash(first if topic else first + 1)
+        ends: list[int] = []
+        while last and (topic or len(ends) < self.scope.slashes):
+            ends.append(last)
+            last = self._after_slash(last + 1)
+        if free:
+            return ends[-1]
+        for end in reversed(ends[: self.scope.slashes]):
+            if self.text[start : self.tokens[end].end] in self.scope:
+                return end
+        return ends[-1] if topic else first
+
+    def _after_slash(self, at: int) -> int:
+        """Return the index of the word after a slash at ``at`` if no space is around it, else 0."""
+        slash, word = self.tokens[at], self.tokens[min(at + 1, len(self.tokens) - 1)]
+        glued = at == self.index or self.tokens[at - 1].end == slash.start
+        found = slash.text == "/" and glued and word.kind == "name" and word.start == slash.end
+        return at + 1 if found else 0
+
+    def _begins_topic(self, at: int) -> bool:
+        """Tell whether a topic such as ``/ns/req`` begins here: a slash after a space and before a word."""
+        slash = self.tokens[at]
+        if slash.text != "/" or self.tokens[at + 1].kind != "name" or self.tokens[at + 1].start != slash.end:
+            return False
+        before = self.tokens[at - 1] if at else None
+        return before is None or before.kind == "symbol" or before.end < slash.start
+
+    def _meaning(self, name: str, span: Span, *, plain: bool = True) -> Formula:
+        """Return what a name stands for."""
+        scope = self.scope
+        if name in scope.pending:
+            raise self.error(scope.pending[name], span, NameInFormulaError)
+        definition = scope.definitions.get(name)
+        if definition is not None:
+            return definition
+        value = scope.constants.get(name)
+        if value is not None:
+            return Const(float(value), span)
+        if scope.variables is not None and name in scope:
+            return Var(name, span)
+        if name == INFINITY and plain:
+            return Const(inf, span)
+        if plain:
+            self._not_an_operator(name, span)
+        if scope.variables is None:
+            return Var(name, span)
+        known = ", ".join(sorted(scope.names)[:8]) or "none"
+        hint = did_you_mean(name, scope.names) or f"; declared names: {known}"
+        raise self.error(f"'{name}' is not declared{hint}", span, NameInFormulaError)
+
+    def _not_an_operator(self, name: str, span: Span) -> None:
+        """Complain about a word operator where none can stand, unless it may well be a variable.
+
+        ``G`` may be one, and so may ``next`` in ``next >= 3``; ``next`` with nothing after it may not.
+        """
+        opening, follows = self.language.opening(name), self.token
+        prefix = opening is not None and opening.fixity is Fixity.PREFIX and len(name) > 2
+        infix = self.language.infix(name) is not None and len(name) > 1
+        compared = follows.kind == "symbol" and self.language.infix(follows.text) is not None
+        if not (prefix or infix) or (compared and self.scope.variables is None):
+            return
+        if infix:
+            raise self.error(*complaints.no_operand(self.tokens, self.index - 1))
+        raise self.error(
+            f"expected an operand after '{name}', got {follows}; if it is a variable, write {quoted(name)}",
+            span,
+        )
+
+    # ---- looking ahead -------------------------------------------------------------------------
+
+    def _applies(self, at: int) -> bool:
+        """Tell whether the word at this token, spelled like a prefix operator, is one."""
+        after = self.tokens[at + 1]
+        if after.text in ("[", "("):
+            return True
+        if after.kind == "symbol" and self.tokens[at].text in self.scope:
+            # `G - 3` with a variable G is a difference; without one, always(-3).
+            return self.language.infix(after.text) is None and self._opens(at + 1)
+        return self._opens(at + 1)
+
+    def _opens(self, at: int) -> bool:
+        """Tell whether an operand can begin at this token.
+
+        In a run of words that are infix operators, each is one if the next thing begins an operand,
+        and otherwise a name: ``G U x`` is until, ``G U >= 3`` is always.
+        """
+        end = at
+        while self._is_infix_word(end):
+            end += 1
+        token = self.tokens[end]
+        op = self.language.opening(token.text)
+        opens = (
+            token.kind in ("name", "number", "quoted")
+            or token.text == "("
+            or (token.text == "[" and end > at)
+            or (op is not None and op.fixity is Fixity.PREFIX)
+            or self._begins_topic(end)
+        )
+        return opens == ((end - at) % 2 == 0)
+
+    def _is_infix_word(self, at: int) -> bool:
+        token = self.tokens[at]
+        return token.kind == "name" and self.language.infix(token.text) is not None
+
+    def _signed(self, op: Operator) -> float | None:
+        """Take and return the number to which the minus just read is the sign, if there is one."""
+        token = self.tokens[self.index]
+        if token.kind != "number" and (token.text != INFINITY or INFINITY in self.scope):
+            return None
+        after = self.language.infix(self.tokens[self.index + 1].text)
+        if after is not None and after.power > op.power:
+            return None
+        if token.kind == "number":
+            return self.number().value
+        self.index += 1
+        return inf
+
+    # ---- errors --------------------------------------------------------------------------------
+
+    def _too_deep(self) -> SpecificationError:
+        return self.error(
+            f"nested too deeply: at most {MAX_DEPTH} formulas may stand inside one another; "
+            f"give an inner one a name and use the name",
+            self.token.span,
+        )
+
+    def _chained(self, whole: Span, middle: Span, symbol: str, right: str) -> SpecificationError:
+        first = self.text[whole.start : middle.end]
+        between = self.text[middle.start : middle.end]
+        return self.error(
+            f"comparisons do not chain; write {first} and {between} {symbol} {right}, or use parentheses",
+            whole,
+        )
+
+
+def parse_formula(
+    text: str,
+    *,
+    language: Language = STL,
+    constants: Mapping[str, float] | None = None,
+    definitions: Mapping[str, Formula] | None = None,
+    variables: Collection[str] | None = None,
+    unit: str = "s",
+) -> Formula:
+    """Return the formula that a text writes.
+
+    ``language``: the operators to read. ``constants``: numbers by name, for operands and bounds.
+    ``definitions``: formulas by name; their nodes are shared, not copied. ``variables``: the declared
+    names; None makes a variable of every name that is nothing else. ``unit``: that of bounds without
+    one; a lower bound without a unit has that of the upper bound, as in RTAMT.
+
+    Raises :class:`ParseError`, :class:`NameInFormulaError` or :class:`BoundError`, each with a caret
+    under the place, and :class:`UsageError` for a unit that does not exist. Source: the paper's
+    section 2, and RTAMT's grammar.
+
+    >>> print(parse_formula("G(req>=3 -> F[0:500ms] gnt>=3)"))
+    always(req >= 3 -> eventually[0:500ms](gnt >= 3))
+    >>> parse_formula("G >= 3 and s >= 1") == parse_formula("((G) >= 3) & (s >= 1.0)")
+    True
+    """
+    scope = Scope(constants or {}, definitions or {}, variables)
+    parser = FormulaParser(text, language, unit, scope)
+    formula = parser.formula()
+    if parser.token.kind != "end":
+        raise parser.error(*complaints.no_operator(language, parser.tokens, parser.index))
+    return formula

@@ -1,0 +1,322 @@
+"""Formula to text, to RTAMT's canonical text and to LaTeX: parentheses only where the parser needs them.
+
+Nothing here recurses: a formula is written from the outside in, off a stack of pieces, in time
+proportional to what is written.
+"""
+
+from __future__ import annotations
+
+import re
+from functools import lru_cache
+from math import copysign, isinf
+from string import Formatter
+from typing import TYPE_CHECKING
+
+from rtamt.language.formula import Apply, Const, Formula, Interval, Var
+from rtamt.language.grammar import INFINITY, is_infix, is_predicate, passes_on, sign
+from rtamt.language.lexer import NAME, TOPIC, is_word, quoted
+from rtamt.language.operators import STL, Fixity, Language, Operator
+from rtamt.language.units import UNITS, decimal
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable
+    from fractions import Fraction
+
+    #: Text, or a formula that is still to be written.
+    Piece = str | Formula
+
+#: RTAMT's identifiers that are none of ours: a slash is a letter there.
+_RTAMT_PATH = re.compile(r"[^\W\d][\w$.]*(?:/[\w$.]+)+")
+
+
+def to_text(formula: Formula, language: Language = STL) -> str:
+    """Return text that parses back to an equal formula, with the first spelling of each operator.
+
+    ``language``: that of the formula. Variables whose names would read as something else are put
+    in parentheses or double quotes.
+
+    >>> from rtamt.language.parser import parse_formula
+    >>> to_text(parse_formula("G((req>=3)->(F[0,5](gnt>=3)))"))
+    'always(req >= 3 -> eventually[0:5](gnt >= 3))'
+    >>> to_text(parse_formula("a - (b - c)"))
+    'a - (b - c)'
+    """
+    minus = sign(language)
+
+    def group(child: Formula, needed: bool) -> tuple[Piece, ...]:
+        return ("(", child, ")") if needed else (child,)
+
+    def pieces(node: Formula) -> Iterable[Piece]:
+        if isinstance(node, Const):
+            return (number(node.value),)
+        if isinstance(node, Var):
+            return (_name(node.name, language),)
+        if not isinstance(node, Apply):
+            raise TypeError(f"{type(node).__name__} is not a formula")
+        op, word = node.op, node.op.spellings[0] + _interval(node.interval)
+        if op.fixity is Fixity.ATOM:
+            return (word,)
+        if op.fixity is Fixity.FUNCTION:
+            return (word, "(", *_joined(_operands(node), ", "), ")")
+        if op.fixity is Fixity.PREFIX:
+            (operand,) = node.args
+            if _needs_group(operand, op) or _reads_on(operand, op, language):
+                return (word, "(", operand, ")")
+            return (word, " ", operand) if is_word(op.spellings[0]) else (word, operand)
+        left, right = node.args
+        return (
+            *group(
+                left, _falls_apart(left, op, Fixity.LEFT, minus) or _reads_on(left, op, language, left=True)
+            ),
+            f" {word} ",
+            *group(right, _falls_apart(right, op, Fixity.RIGHT, minus) or _reads_on(right, op, language)),
+        )
+
+    return _write(formula, pieces)
+
+
+def canonical(formula: Formula, language: Language = STL) -> str:
+    """Return the formula as RTAMT names its nodes: ``((a)>=(2.0))and(b)``, every operand in parentheses.
+
+    Deviations: unless is not expanded, a negative literal is one number, a bound has the unit in
+    which it was read.
+
+    >>> from rtamt.language.parser import parse_formula
+    >>> canonical(parse_formula("always[0:5](a >= 2) and not prev(b)"))
+    '(always[0,5]((a)>=(2.0)))and(not(previous(b)))'
+    """
+
+    def pieces(node: Formula) -> Iterable[Piece]:
+        if isinstance(node, Const):
+            return (repr(float(node.value)),)
+        if isinstance(node, Var):
+            return (node.name if _RTAMT_PATH.fullmatch(node.name) else _name(node.name, language),)
+        if not isinstance(node, Apply):
+            raise TypeError(f"{type(node).__name__} is not a formula")
+        op = node.op
+        word = _longest(op) + _interval(node.interval, ",", str)
+        if op.fixity is Fixity.ATOM:
+            return (word,)
+        if is_infix(op):
+            return ("(", node.args[0], ")", word, "(", node.args[1], ")")
+        return (word, "(", *_joined(node.args, ","), ")")
+
+    return _write(formula, pieces)
+
+
+def to_latex(formula: Formula) -> str:
+    r"""Return the formula as LaTeX mathematics, without dollar signs, from the operators' templates.
+
+    >>> from rtamt.language.parser import parse_formula
+    >>> print(to_latex(parse_formula("always(req >= 3 -> eventually[0:5](gnt >= 3))")))
+    \mathbf{G} (\mathrm{req} \geq 3 \to \mathbf{F}_{[0, 5]} (\mathrm{gnt} \geq 3))
+    """
+    minus = sign(STL)
+
+    def grouped(node: Apply, k: int) -> bool:
+        child, op = node.args[k], node.op
+        if is_infix(op):
+            return _falls_apart(child, op, Fixity.RIGHT if k else Fixity.LEFT, minus)
+        if op.fixity is Fixity.PREFIX and isinstance(child, Apply) and child.op.fixity is Fixity.PREFIX:
+            return not passes_on(op)
+        return _needs_group(child, op) or (op.fixity is Fixity.FUNCTION and isinstance(child, Apply))
+
+    def pieces(node: Formula) -> Iterable[Piece]:
+        if isinstance(node, Const):
+            yield _latex_number(node.value)
+        elif isinstance(node, Var):
+            yield _latex_name(node.name)
+        elif isinstance(node, Apply):
+            for literal, operand, exposed in _template(node.op.latex, node.interval is not None):
+                yield literal
+                if operand == "I":
+                    yield _latex_interval(node.interval)
+                elif operand is not None:
+                    k = int(operand)
+                    yield from ("(", node.args[k], ")") if exposed and grouped(node, k) else (node.args[k],)
+        else:
+            raise TypeError(f"{type(node).__name__} is not a formula")
+
+    return _write(formula, pieces)
+
+
+def number(value: float) -> str:
+    """Return the shortest text of a double that reads back as the same double.
+
+    >>> number(3.0), number(-0.5), number(1e300)
+    ('3', '-0.5', '1e+300')
+    """
+    if isinf(value):
+        return INFINITY if value > 0 else f"-{INFINITY}"
+    return repr(float(value)).removesuffix(".0")
+
+
+# ---- writing -------------------------------------------------------------------------------------
+
+
+def _write(formula: Formula, pieces: Callable[[Formula], Iterable[Piece]]) -> str:
+    """Write a formula, given what one node consists of."""
+    out: list[str] = []
+    stack: list[Piece] = [formula]
+    while stack:
+        piece = stack.pop()
+        if isinstance(piece, str):
+            out.append(piece)
+        else:
+            stack.extend(reversed(tuple(pieces(piece))))
+    return "".join(out)
+
+
+def _joined(operands: Iterable[Formula], separator: str) -> list[Piece]:
+    joined: list[Piece] = []
+    for operand in operands:
+        joined += (separator, operand) if joined else (operand,)
+    return joined
+
+
+def _operands(node: Apply) -> tuple[Formula, ...]:
+    """Return the operands of a function; f(f(a, b), c) is written f(a, b, c) where the function folds."""
+    if not node.op.folds:
+        return node.args
+    last: list[Formula] = []
+    first: Formula = node
+    while isinstance(first, Apply) and first.op is node.op and first.interval == node.interval:
+        last.extend(reversed(first.args[1:]))
+        first = first.args[0]
+    return (first, *reversed(last))
+
+
+# ---- parentheses ---------------------------------------------------------------------------------
+
+
+def _is_negative(formula: Formula) -> bool:
+    return isinstance(formula, Const) and copysign(1.0, formula.value) < 0
+
+
+def _needs_group(operand: Formula, op: Operator) -> bool:
+    """Tell whether the operand of a prefix operator is more than one thing (or a number under a minus)."""
+    if isinstance(operand, Apply):
+        return operand.op.fixity not in (Fixity.FUNCTION, Fixity.ATOM)
+    return isinstance(operand, Const) and (_is_negative(operand) or not passes_on(op))
+
+
+def _falls_apart(child: Formula, op: Operator, side: Fixity, minus: Operator | None) -> bool:
+    """Tell whether an infix operator's operand needs parentheses, on the side to which ``side`` chains."""
+    if _is_negative(child):
+        return minus is None or minus.power <= op.power
+    if not isinstance(child, Apply) or child.op.fixity in (Fixity.FUNCTION, Fixity.ATOM):
+        return False
+    if is_predicate(child.op) and is_predicate(op):
+        return True
+    chain = child.op.power == op.power and child.op.fixity is op.fixity is side
+    return child.op.power <= op.power and not chain
+
+
+def _reads_on(child: Formula, op: Operator, language: Language, *, left: bool = False) -> bool:
+    """Tell whether a variable such as ``G`` or ``S`` would be read as the operator of that spelling.
+
+    It would where a symbol may follow that can also begin an operand: ``G - 3`` is always(-3).
+    """
+    if not isinstance(child, Var) or _name(child.name, language) != child.name:
+        return False
+    prefix, infix = language.opening(child.name), language.infix(child.name)
+    if infix is None and (prefix is None or prefix.fixity is not Fixity.PREFIX):
+        # A topic after a word could also be a division.
+        return TOPIC.fullmatch(child.name) is not None and is_word(op.spellings[0])
+    if op.fixity is Fixity.PREFIX and infix is not None:
+        return True
+    if left:
+        return language.opening(op.spellings[0]) is not None
+    return any(
+        other.power <= op.power and any(map(language.opening, other.spellings))
+        for other in language
+        if is_infix(other)
+    )
+
+
+# ---- names, bounds -------------------------------------------------------------------------------
+
+
+def _name(name: str, language: Language) -> str:
+    """Return a variable's name, in double quotes if it would not be read as one."""
+    if NAME.fullmatch(name) is None and TOPIC.fullmatch(name) is None:
+        return quoted(name)
+    opening, infix = language.opening(name), language.infix(name)
+    spelled_out = (
+        name == INFINITY
+        or (opening is not None and opening.fixity is Fixity.ATOM)
+        or (opening is not None and opening.fixity is Fixity.PREFIX and len(name) > 2)
+        or (infix is not None and len(name) > 1)
+    )
+    return quoted(name) if spelled_out else name
+
+
+@lru_cache(maxsize=256)
+def _longest(op: Operator) -> str:
+    """Return RTAMT's spelling: the first one if it is a symbol, else the longest word."""
+    if not is_word(op.spellings[0]):
+        return op.spellings[0]
+    return max((s for s in op.spellings if is_word(s)), key=len)
+
+
+def _rational(value: Fraction) -> str:
+    return decimal(value) or str(value)
+
+
+def _interval(
+    interval: Interval | None, separator: str = ":", form: Callable[[Fraction], str] = _rational
+) -> str:
+    """Return an interval as it was written, or nothing if there is none."""
+    if interval is None:
+        return ""
+    begin_unit, end_unit = interval.begin_unit, interval.end_unit
+    if interval.end is not None and end_unit:
+        # A lower bound without a unit would be read in that of the upper one; zero is zero in any.
+        begin_unit = "" if interval.begin == 0 else begin_unit or "s"
+    begin = form(interval.begin / UNITS[begin_unit or "s"]) + begin_unit
+    end = INFINITY if interval.end is None else form(interval.end / UNITS[end_unit or "s"]) + end_unit
+    return f"[{begin}{separator}{end}]"
+
+
+# ---- LaTeX ---------------------------------------------------------------------------------------
+
+
+@lru_cache(maxsize=256)
+def _template(template: str, timed: bool) -> tuple[tuple[str, str | None, bool], ...]:
+    """Split a template into (text, field or None, whether nothing encloses the field)."""
+    if not timed:
+        template = template.replace("_{I}", "").replace("{I}", "")
+    parts, before = [], ""
+    for literal, name, _spec, _conversion in Formatter().parse(template):
+        before += literal
+        seen = before.rstrip()
+        exposed = not seen.strip("{") or seen[-1] not in "({[|,"
+        parts.append((literal, name, exposed))
+        before += name or ""
+    return tuple(parts)
+
+
+def _latex_interval(interval: Interval | None) -> str:
+    if interval is None:
+        return ""
+
+    def bound(value: Fraction, unit: str) -> str:
+        return _rational(value / UNITS[unit or "s"]) + (rf"\,\mathrm{{{unit}}}" if unit else "")
+
+    begin = bound(interval.begin, interval.begin_unit if interval.begin else "")
+    end = r"\infty)" if interval.end is None else bound(interval.end, interval.end_unit) + "]"
+    return f"{{[{begin}, {end}}}"
+
+
+def _latex_number(value: float) -> str:
+    text = number(value).replace(INFINITY, r"\infty")
+    if "e" not in text:
+        return text
+    mantissa, exponent = text.split("e")
+    return rf"{mantissa} \cdot 10^{{{int(exponent)}}}"
+
+
+def _latex_name(name: str) -> str:
+    special = {"\\": r"\backslash ", "^": r"\hat{\ }", "~": r"\sim ", " ": r"\ "}
+    escaped = "".join(special.get(c, f"\\{c}" if c in "{}$&#_%" else c) for c in name)
+    return escaped if len(name) == 1 else rf"\mathrm{{{escaped}}}"

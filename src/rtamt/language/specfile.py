@@ -1,0 +1,392 @@
+"""Specification files (``.stl``) and texts of one or more formulas to a document.
+
+::
+
+    document    = [ "specification" , word ] , { import } , { declaration | annotation } ,
+                  assertion , { ";" , assertion } , [ ";" ]
+    import      = "from" , module , "import" , word , [ ";" ]
+    declaration = ( [ "input" | "output" ] , type , name | "const" , type , name , "=" , value ) , [ ";" ]
+    annotation  = "@" , "topic" , "(" , name , "," , topic , ")" , [ ";" ]
+    assertion   = [ name , "=" ] , expression
+    type        = "float" | "int" | "long" | "complex" | "bool" | imported class
+    value       = [ "-" ] , number | "-inf" | "inf"
+
+None of these words is reserved: ``input >= 3`` is a formula over a variable called input.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from itertools import pairwise
+from math import inf
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Literal
+
+from rtamt.errors import NameInFormulaError, ParseError, did_you_mean
+from rtamt.language import complaints
+from rtamt.language.formula import Formula, Span
+from rtamt.language.grammar import INFINITY
+from rtamt.language.lexer import unquoted
+from rtamt.language.operators import STL, Fixity, Language
+from rtamt.language.parser import FormulaParser
+from rtamt.language.scope import Scope
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Mapping
+
+    from rtamt.errors import SpecificationError
+    from rtamt.language.lexer import Token
+
+#: The types that need no import.
+TYPES = ("float", "int", "long", "complex", "bool")
+
+_ROLES: Mapping[str, Literal["input", "output"]] = MappingProxyType({"input": "input", "output": "output"})
+
+
+@dataclass(frozen=True, slots=True)
+class Import:
+    """``from module import name``: a class that can be the type of a variable."""
+
+    module: str
+    name: str
+
+
+@dataclass(frozen=True, slots=True)
+class Declaration:
+    """A declared variable (with its role, if any) or constant (with its value)."""
+
+    name: str
+    type: str
+    kind: Literal["var", "const"] = "var"
+    role: Literal["input", "output"] | None = None
+    value: float | None = None
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Assertion:
+    """A formula and the name it was given, if any; earlier names in it are already replaced."""
+
+    name: str | None
+    formula: Formula
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True)
+class Document:
+    """What a specification text says."""
+
+    text: str
+    assertions: tuple[Assertion, ...]
+    name: str | None = None
+    imports: tuple[Import, ...] = ()
+    declarations: tuple[Declaration, ...] = ()
+    #: From variable to topic.
+    topics: Mapping[str, str] = field(default_factory=lambda: MappingProxyType({}))
+    #: Every constant a formula may use, by name: declared here, or given to :func:`parse_document`.
+    constants: Mapping[str, float] = field(default_factory=lambda: MappingProxyType({}))
+    #: Every named formula: defined here, or given to :func:`parse_document`.
+    definitions: Mapping[str, Formula] = field(default_factory=lambda: MappingProxyType({}))
+    #: Every variable declared, here or for :func:`parse_document`; if there is none, all names are free.
+    variables: tuple[str, ...] = ()
+
+    @property
+    def formula(self) -> Formula:
+        """The formula of the last assertion: what the document requires."""
+        return self.assertions[-1].formula
+
+
+def parse_document(
+    text: str,
+    *,
+    language: Language = STL,
+    unit: str = "s",
+    constants: Mapping[str, float] | None = None,
+    variables: Collection[str] | None = None,
+    definitions: Mapping[str, Formula] | None = None,
+) -> Document:
+    """Return what a specification text says; a single formula is such a text too.
+
+    ``language``, ``unit``, ``constants`` and ``definitions`` as in
+    :func:`~rtamt.language.parser.parse_formula`; ``variables`` are names declared elsewhere. Once a
+    variable is declared, there or in the text, a name that is not is an error.
+
+    Raises :class:`ParseError`, :class:`NameInFormulaError` or :class:`BoundError`. Source: listing 8
+    of the paper, and RTAMT's grammar.
+
+    >>> document = parse_document("input float x  const float c = 2  low = x <= c; always(low)")
+    >>> print(document.formula, document.declarations[0].role)
+    always(x <= 2) input
+    """
+    scope = Scope(constants or {}, definitions or {}, variables or None)
+    return _DocumentParser(text, language, unit, scope).document()
+
+
+def _name_of(token: Token) -> str:
+    return unquoted(token.text) if token.kind == "quoted" else token.text
+
+
+class _DocumentParser(FormulaParser):
+    """The productions of a document, above those of a formula."""
+
+    def __init__(self, text: str, language: Language, unit: str, scope: Scope) -> None:
+        super().__init__(text, language, unit, scope)
+        self._constants = dict(scope.constants)
+        self._definitions = dict(scope.definitions)
+        self._given = tuple(scope.variables or ())
+        self._imports: list[Import] = []
+        self._declarations: dict[str, Declaration] = {}
+        self._topics: dict[str, str] = {}
+
+    def document(self) -> Document:
+        """``document = [ header ] , { import } , { declaration | annotation } , assertion , ...``."""
+        name = self._header()
+        while self._import():
+            pass
+        while self._declaration() or self._annotation():
+            pass
+        declared = tuple(d.name for d in self._declarations.values() if d.kind == "var")
+        variables = tuple(dict.fromkeys((*self._given, *declared)))
+        assertions = self._assertions(variables)
+        return Document(
+            self.text,
+            assertions,
+            name,
+            tuple(self._imports),
+            tuple(self._declarations.values()),
+            MappingProxyType(self._topics),
+            MappingProxyType(self._constants),
+            MappingProxyType(self._definitions),
+            variables,
+        )
+
+    # ---- before the formulas ---------------------------------------------------------------------
+
+    def _header(self) -> str | None:
+        """``header = "specification" , word``."""
+        if not (self._word("specification") and self._plain_name(1)):
+            return None
+        self.next()
+        name = self.next().text
+        self.accept(";")
+        return name
+
+    def _import(self) -> bool:
+        """``import = "from" , module , "import" , word , [ ";" ]``."""
+        if not (self._word("from") and self._plain_name(1)):
+            return False
+        self.next()
+        module = self.next()
+        if not self.accept("import"):
+            raise self._expected(f"'import' after 'from {module.text}'")
+        name = self._taken("the name of a class")
+        if any(known.name == name.text for known in self._imports):
+            raise self.error(f"'{name.text}' is imported twice", name.span)
+        self._imports.append(Import(module.text, name.text))
+        self.accept(";")
+        return True
+
+    def _declaration(self) -> bool:
+        """``declaration = ( [ role ] , type , name | "const" , type , name , "=" , value ) , [ ";" ]``."""
+        if not self._declares():
+            return False
+        constant = self._word("const")
+        role = None if constant else _ROLES.get(self.token.text) if self._plain_type(1) else None
+        if constant or role:
+            self.next()
+        type_name = self.next()
+        if type_name.text not in self._types():
+            hint = did_you_mean(type_name.text, self._types())
+            raise self.error(
+                f"'{type_name.text}' is not a type{hint or '; types are ' + ', '.join(self._types())}"
+                f"{'' if hint else ', and classes that are imported'}",
+                type_name.span,
+            )
+        name = self._taken("the name of a constant" if constant else "the name of a variable", quotes=True)
+        self._declare(name, type_name.text, role, constant=constant)
+        self.accept(";")
+        return True
+
+    def _declare(
+        self, token: Token, type_name: str, role: Literal["input", "output"] | None, *, constant: bool
+    ) -> None:
+        name = _name_of(token)
+        self._check_nameable(token)
+        if "." in name:
+            head = name.split(".", 1)[0]
+            raise self.error(f"'{name}' is a field; declare '{head}', with a class as its type", token.span)
+        if name in self._declarations or name in self._constants or (constant and name in self._given):
+            raise self.error(f"'{name}' is declared twice", token.span)
+        value = None
+        if self.accept("="):
+            if not constant:
+                raise self.error(
+                    f"a variable has no value of its own; define it after the declarations: {name} = ...",
+                    self.tokens[self.index - 1].span,
+                )
+            value = self._value()
+            self._constants[name] = value
+        elif constant:
+            raise self.error(
+                f"the constant '{name}' has no value; write const {type_name} {name} = ...", token.span
+            )
+        self._declarations[name] = Declaration(
+            name, type_name, "const" if constant else "var", role, value, token.span
+        )
+
+    def _value(self) -> float:
+        """``value = [ "-" ] , number | "-inf" | "inf"``."""
+        minus = self.accept("-")
+        if self.token.kind == "number":
+            value = self.number().value
+        elif self.accept(INFINITY):
+            value = inf
+        else:
+            raise self._expected("a number")
+        return -value if minus else value
+
+    def _annotation(self) -> bool:
+        """``annotation = "@" , "topic" , "(" , name , "," , topic , ")" , [ ";" ]``."""
+        if not self.accept("@"):
+            return False
+        kind = self.next()
+        if kind.text != "topic":
+            raise self.error(f"expected 'topic' after '@', got {kind}", kind.span)
+        if not self.accept("("):
+            raise self._expected("'(' after '@ topic'")
+        name = self._taken("the name of a variable")
+        known = [*self._given, *(d.name for d in self._declarations.values() if d.kind == "var")]
+        if name.text not in known:
+            hint = did_you_mean(name.text, known) or "; declare it before its topic"
+            raise self.error(f"'{name.text}' is not a declared variable{hint}", name.span, NameInFormulaError)
+        if name.text in self._topics:
+            raise self.error(f"'{name.text}' has two topics", name.span)
+        if not self.accept(","):
+            raise self._expected(f"',' after '{name.text}'")
+        self._topics[name.text] = self._topic()
+        if not self.accept(")"):
+            raise self._expected("')' after the topic")
+        self.accept(";")
+        return True
+
+    def _topic(self) -> str:
+        """``topic``: characters without a space between them, up to the parenthesis."""
+        first = self.token
+        end = first.start
+        while self.token.text not in (")", "") and self.token.start == end:
+            end = self.next().end
+        if end == first.start:
+            raise self._expected("the name of a topic")
+        return self.text[first.start : end]
+
+    # ---- the formulas ----------------------------------------------------------------------------
+
+    def _assertions(self, variables: tuple[str, ...]) -> tuple[Assertion, ...]:
+        """``assertion , { ";" , assertion } , [ ";" ]``."""
+        pending = self._names_to_come()
+        found: list[Assertion] = []
+        while self.token.kind != "end":
+            if found and (self.token.text == "@" or self._declares()):
+                raise self.error(
+                    "declarations and annotations stand before the first formula", self.token.span
+                )
+            start, token, name = self.token.start, self.token, self._assertion_name()
+            if name is not None:
+                self._check_new(name, token)
+                pending[name] = f"'{name}' is used in its own definition"
+            self.scope = Scope(self._constants, self._definitions, variables or None, pending)
+            formula = self.formula()
+            found.append(Assertion(name, formula, Span(start, self.tokens[self.index - 1].end)))
+            if name is not None:
+                del pending[name]
+                self._definitions[name] = formula
+            if self.token.kind != "end" and not self.accept(";"):
+                raise self._not_finished()
+            while self.accept(";"):
+                pass
+        if not found:
+            empty = "the text is empty" if self.index == 0 else "the text has declarations but no formula"
+            raise self.error(empty, self.token.span)
+        return tuple(found)
+
+    def _assertion_name(self) -> str | None:
+        """``[ name , "=" ]``."""
+        token, last = self.token, self.index
+        if token.kind not in ("name", "quoted"):
+            return None
+        while (after := self._after_slash(last + 1)) > 0:
+            last = after
+        if self.tokens[last + 1].text != "=":
+            return None
+        self._check_nameable(token)
+        self.index = last + 2
+        return _name_of(token) if token.kind == "quoted" else self.text[token.start : self.tokens[last].end]
+
+    def _names_to_come(self) -> dict[str, str]:
+        """Return the names that later assertions define, each with what to say to an earlier use."""
+        rest = self.tokens[self.index :]
+        names = [_name_of(a) for a, b in pairwise(rest) if a.kind in ("name", "quoted") and b.text == "="]
+        return {n: f"'{n}' is only defined further down; move its definition up" for n in names}
+
+    def _check_new(self, name: str, token: Token) -> None:
+        if name in self._definitions:
+            raise self.error(f"'{name}' is defined twice", token.span)
+        if name in self._constants:
+            raise self.error(f"'{name}' is a constant already", token.span)
+
+    def _not_finished(self) -> SpecificationError:
+        if self.token.kind == "name" and self.tokens[self.index + 1].text == "=":
+            return self.error(f"expected ';' before the definition of {self.token}", self.token.span)
+        return self.error(*complaints.no_operator(self.language, self.tokens, self.index, "';'"))
+
+    # ---- looking ahead ---------------------------------------------------------------------------
+
+    def _word(self, word: str) -> bool:
+        return self.token.kind == "name" and self.token.text == word
+
+    def _types(self) -> tuple[str, ...]:
+        return (*TYPES, *(known.name for known in self._imports))
+
+    def _at(self, ahead: int) -> Token:
+        return self.tokens[min(self.index + ahead, len(self.tokens) - 1)]
+
+    def _plain_name(self, ahead: int) -> bool:
+        """Tell whether a name that cannot be an infix operator stands that far ahead."""
+        token = self._at(ahead)
+        return token.kind in ("name", "quoted") and self.language.infix(token.text) is None
+
+    def _plain_type(self, ahead: int) -> bool:
+        """Tell whether a type and a name stand that far ahead; the name may be ``S``, the type may not."""
+        typed = self._at(ahead).text in self._types() or self._plain_name(ahead)
+        return typed and self._at(ahead).kind == "name" and self._at(ahead + 1).kind in ("name", "quoted")
+
+    def _declares(self) -> bool:
+        """Tell whether a declaration stands here, be its type known or not."""
+        first = self.token
+        if first.kind != "name":
+            return False
+        if (first.text in _ROLES or first.text == "const") and self._plain_type(1):
+            return True
+        if first.text in self._types():
+            return self._at(1).kind in ("name", "quoted")
+        # Two names in a row are a declaration of unknown type if no formula could go on after them.
+        if self.language.opening(first.text) is not None or not (self._plain_name(0) and self._plain_name(1)):
+            return False
+        third = self._at(2)
+        return third.text in ("@", "=") or (third.kind == "name" and self.language.infix(third.text) is None)
+
+    # ---- errors ----------------------------------------------------------------------------------
+
+    def _taken(self, what: str, *, quotes: bool = False) -> Token:
+        """Take a name, or complain."""
+        if self.token.kind != "name" and not (quotes and self.token.kind == "quoted"):
+            raise self._expected(what)
+        return self.next()
+
+    def _check_nameable(self, token: Token) -> None:
+        op = self.language.opening(token.text)
+        if op is not None and op.fixity is Fixity.ATOM:
+            raise self.error(f"'{token.text}' is a word of the language and cannot be a name", token.span)
+
+    def _expected(self, what: str) -> SpecificationError:
+        return self.error(f"expected {what}, got {self.token}", self.token.span, ParseError)

@@ -1,0 +1,130 @@
+"""Durations with units to exact seconds, and back to text.
+
+====  ==================
+unit  seconds
+====  ==================
+s     1
+ms    1/1 000
+us    1/1 000 000
+ns    1/1 000 000 000
+====  ==================
+"""
+
+from __future__ import annotations
+
+import re
+from fractions import Fraction
+from functools import lru_cache
+from math import isfinite
+from numbers import Rational, Real
+from types import MappingProxyType
+from typing import TYPE_CHECKING, SupportsFloat
+
+from rtamt.errors import UsageError
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+#: Seconds in each unit, the largest first.
+UNITS: Mapping[str, Fraction] = MappingProxyType(
+    {"s": Fraction(1), "ms": Fraction(1, 10**3), "us": Fraction(1, 10**6), "ns": Fraction(1, 10**9)}
+)
+
+_DURATION = re.compile(r"\s*([^\s/A-Za-z]+(?:[eE][+-]?\d+)?)\s*(?:/\s*(\d+)\s*)?([A-Za-z]*)\s*")
+
+
+@lru_cache(maxsize=1024)
+def exact(literal: str) -> Fraction:
+    """Return the number that a decimal literal writes, without rounding.
+
+    Raises :class:`ValueError` if it is no number, or one beyond the range of a double.
+
+    >>> exact("0.1"), exact("1e-3")
+    (Fraction(1, 10), Fraction(1, 1000))
+    """
+    # A double first: 1e-999999999, or 0e-999999999, as a fraction would need a gigabyte.
+    nearest = float(literal)
+    if nearest == 0 and re.search("[1-9]", re.split("[eE]", literal)[0]) is None:
+        return Fraction(0)
+    if nearest == 0 or not isfinite(nearest):
+        raise ValueError(f"{literal} is beyond the range of a double")
+    return Fraction(literal.replace("_", ""))
+
+
+def check_unit(unit: str) -> str:
+    """Return ``unit`` if it is one; otherwise raise :class:`UsageError`.
+
+    >>> check_unit("ms")
+    'ms'
+    """
+    if unit not in UNITS:
+        raise UsageError(f"'{unit}' is not a unit of time; units are {', '.join(UNITS)}")
+    return unit
+
+
+def duration(value: str | SupportsFloat, unit: str = "s") -> Fraction:
+    """Return a duration in seconds, exact.
+
+    ``value``: text with or without a unit (``"100ms"``, ``"0.1 s"``, ``"1/3s"``) or a number; a float
+    means the shortest decimal that prints it, so 0.1 is one tenth. ``unit``: the unit where the value
+    has none. Raises :class:`UsageError` if it is no duration, negative, or infinite.
+
+    >>> duration("100ms"), duration(0.1), duration(5, "us")
+    (Fraction(1, 10), Fraction(1, 10), Fraction(1, 200000))
+    """
+    check_unit(unit)
+    try:
+        if isinstance(value, str):
+            match = _DURATION.fullmatch(value)
+            if match is None:
+                raise ValueError(value)
+            number = exact(match[1]) / exact(match[2] or "1")
+            unit = check_unit(match[3] or unit)
+        elif isinstance(value, bool):
+            raise TypeError(value)
+        elif isinstance(value, Rational):
+            number = Fraction(int(value.numerator), int(value.denominator))
+        elif isinstance(value, Real):
+            # str and not repr: that of a numpy scalar names its type.
+            number = exact(str(value))
+        else:
+            raise TypeError(value)
+    except (ValueError, TypeError, ZeroDivisionError):
+        shown = f"'{value}'" if isinstance(value, str) else repr(value)
+        raise UsageError(f"{shown} is not a duration; write for example '100ms', '1/3s' or 5") from None
+    if number < 0:
+        raise UsageError(f"a duration may not be negative, got {value}")
+    return number * UNITS[unit]
+
+
+def decimal(number: Fraction) -> str | None:
+    """Return the exact decimal text of a number, or None if it has none.
+
+    >>> decimal(Fraction(5, 2)), decimal(Fraction(4)), decimal(Fraction(1, 3))
+    ('2.5', '4', None)
+    """
+    rest, twos, fives = number.denominator, 0, 0
+    while rest % 2 == 0:
+        rest, twos = rest // 2, twos + 1
+    while rest % 5 == 0:
+        rest, fives = rest // 5, fives + 1
+    if rest != 1:
+        return None
+    places = max(twos, fives)
+    if places == 0:
+        return str(number.numerator)
+    digits = str(abs(number.numerator) * 10**places // number.denominator).rjust(places + 1, "0")
+    return f"{'-' if number < 0 else ''}{digits[:-places]}.{digits[-places:]}"
+
+
+def format_duration(seconds: Fraction) -> str:
+    """Return a duration for people to read, in the largest unit of which it is at least one.
+
+    >>> format_duration(Fraction(1, 10)), format_duration(Fraction(5)), format_duration(Fraction(1, 3))
+    ('100 ms', '5 s', '1/3 s')
+    """
+    if seconds != 0 and decimal(seconds) is not None:
+        for unit, size in UNITS.items():
+            if abs(seconds) >= size:
+                return f"{decimal(seconds / size)} {unit}"
+    return f"{decimal(seconds) or seconds} s"

@@ -1,0 +1,398 @@
+"""Every sentence about text that cannot be read, in full, with its caret."""
+
+import sys
+
+import pytest
+
+from rtamt.errors import BoundError, NameInFormulaError, ParseError, SpecificationError, UsageError
+from rtamt.language.parser import parse_formula
+from rtamt.language.specfile import parse_document
+
+# Text, what stands under the line in which the error is, class, sentence.
+FORMULAS = [
+    ("", "^", ParseError, "the text is empty"),
+    ("   // nothing", "^", ParseError, "the text is empty"),
+    ("x >= ", "    ^", ParseError, "expected an operand after '>=', got the end of the text"),
+    ("and x", "^^^", ParseError, "expected a formula, got 'and'"),
+    ("x and and y", "      ^^^", ParseError, "expected an operand after 'and', got 'and'"),
+    ("x + * y", "    ^", ParseError, "expected an operand after '+', got '*'"),
+    ("()", " ^", ParseError, "expected an operand after '(', got ')'"),
+    ("(x", "^", ParseError, "this '(' is never closed"),
+    ("(x and (y or z)", "^", ParseError, "this '(' is never closed"),
+    ("pow(x, 2", "   ^", ParseError, "this '(' is never closed"),
+    ("(x y", "   ^", ParseError, "expected an operator between 'x' and 'y'"),
+    ("(x]", "  ^", ParseError, "expected an operator or ')', got ']', which no '[' opens"),
+    ("x)", " ^", ParseError, "expected an operator or the end, got ')', which no '(' opens"),
+    ("x y", "  ^", ParseError, "expected an operator between 'x' and 'y'"),
+    ("x adn y", "  ^^^", ParseError, "expected an operator between 'x' and 'adn'; did you mean 'and'?"),
+    ("alway x", "^^^^^", ParseError, "expected an operator between 'alway' and 'x'; did you mean 'always'?"),
+    ("2x", " ^", ParseError, "expected an operator between '2' and 'x'"),
+    ("x !y", "  ^", ParseError, "expected an operator between 'x' and '!'"),
+    ("x, y", " ^", ParseError, "expected an operator or the end, got ','"),
+    ("x >= 1;", "      ^", ParseError, "expected an operator or the end, got ';'"),
+    ("x = 3", "  ^", ParseError, "'=' gives a name to a formula; to compare write '=='"),
+    (
+        "x[0]",
+        " ^",
+        ParseError,
+        "expected an operator or the end, got '['; intervals follow temporal operators",
+    ),
+    ("[0:5]", "^", ParseError, "expected a formula, got '['"),
+    (
+        "foo(x)",
+        "^^^",
+        ParseError,
+        "'foo' is not a function; functions are abs, sqrt, exp, pow, log, ln, min, max, rise, fall",
+    ),
+    ("abz(x)", "^^^", ParseError, "'abz' is not a function; did you mean 'abs'?"),
+    ("min(x)", "^^^^^^", ParseError, "'min' takes 2 or more operands, got 1"),
+    ("abs(x, y)", "^^^^^^^^^", ParseError, "'abs' takes 1 operand, got 2"),
+    ("abs[0:1](x)", "   ^", ParseError, "'abs' takes no interval"),
+    ("x ^ 2", "  ^", ParseError, "unexpected character '^'"),
+    ("x /* y", "  ^^", ParseError, "this comment is never closed"),
+    ('"x >= 1', "^", ParseError, "this quoted name is never closed"),
+    (
+        "1 <= x <= 3",
+        "^^^^^^^^^^^",
+        ParseError,
+        "comparisons do not chain; write 1 <= x and x <= 3, or use parentheses",
+    ),
+    (
+        "x > 1 == y > 2",
+        "^^^^^^^^^^",
+        ParseError,
+        "comparisons do not chain; write x > 1 and 1 == y, or use parentheses",
+    ),
+    (
+        "x - prev(x) >= 1",
+        "    ^^^^",
+        ParseError,
+        "'prev' binds more weakly than the '-' before it; put parentheses around it: - (prev ...)",
+    ),
+    (
+        "-always x",
+        " ^^^^^^",
+        ParseError,
+        "'always' binds more weakly than the '-' before it; put parentheses around it: - (always ...)",
+    ),
+    (
+        "x >= not y",
+        "     ^^^",
+        ParseError,
+        "'not' binds more weakly than the '>=' before it; put parentheses around it: >= (not ...)",
+    ),
+    (
+        "always",
+        "^^^^^^",
+        ParseError,
+        "expected an operand after 'always', got the end of the text; if it is a variable, write \"always\"",
+    ),
+    (
+        "x and always",
+        "      ^^^^^^",
+        ParseError,
+        "expected an operand after 'always', got the end of the text; if it is a variable, write \"always\"",
+    ),
+    (
+        "always until x",
+        "^^^^^^",
+        ParseError,
+        "expected an operand after 'always', got 'until'; if it is a variable, write \"always\"",
+    ),
+    (
+        "x >= 1 until",
+        "            ^",
+        ParseError,
+        "expected an operand after 'until', got the end of the text",
+    ),
+    ("until", "^^^^^", ParseError, "expected a formula, got 'until'"),
+    ("1e999", "^^^^^", ParseError, "1e999 is larger than every double; for infinity write inf"),
+    (
+        "x precedes y",
+        "  ^^^^^^^^",
+        BoundError,
+        "'precedes' needs an interval with an upper bound, such as precedes[0:5]",
+    ),
+    (
+        "x precedes[0:inf] y",
+        "             ^^^",
+        BoundError,
+        "'precedes' needs an interval with an upper bound, such as precedes[0:5]",
+    ),
+    ("always[5:1] x", "      ^^^^^", BoundError, "the interval [5:1] is reversed: it ends before it begins"),
+    (
+        "always[500ms:0.1s] x",
+        "      ^^^^^^^^^^^^",
+        BoundError,
+        "the interval [500ms:0.1s] is reversed: it ends before it begins",
+    ),
+    (
+        "always[-1:1] x",
+        "       ^^",
+        BoundError,
+        "a bound may not be negative; for the past use a past operator",
+    ),
+    ("always[inf:inf] x", "       ^^^", BoundError, "the lower bound of an interval may not be infinite"),
+    ("always[0:1e-999] x", "         ^^^^^^", BoundError, "the bound is beyond the range of a double"),
+    ("always[0:1/0] x", "         ^^^", BoundError, "a bound may not be divided by zero"),
+    ("always[0;5] x", "        ^", ParseError, "expected ':' or ',' and an upper bound, got ';'"),
+    ("always[5] x", "        ^", ParseError, "expected ':' or ',' and an upper bound, got ']'"),
+    ("always[0 5] x", "         ^", ParseError, "expected ':' or ',' and an upper bound, got '5'"),
+    ("always[0:5 x", "           ^", ParseError, "expected ']' after the bounds, got 'x'"),
+    ("always[0:5", "          ^", ParseError, "expected ']' after the bounds, got the end of the text"),
+    (
+        "always[0:5) x",
+        "          ^",
+        ParseError,
+        "expected ']' after the bounds, got ')'; intervals are closed",
+    ),
+    ("always[:5] x", "       ^", ParseError, "expected a bound (a number or a constant), got ':'"),
+    ("always[0:1/x] x", "           ^", ParseError, "expected a number after '/', got 'x'"),
+    ("always[0:5min] x", "          ^^^", ParseError, "'min' is not a unit of time; units are s, ms, us, ns"),
+    (
+        "always[0:T] x",
+        "         ^",
+        NameInFormulaError,
+        "'T' is not a declared constant; a bound is a number, a constant or inf",
+    ),
+    ("not[0:5] x", "   ^", ParseError, "'not' takes no interval"),
+    ("x +[0:1] y", "   ^", ParseError, "'+' takes no interval"),
+    ("\tx >= )", "\t     ^", ParseError, "expected an operand after '>=', got ')'"),
+]
+
+DOCUMENTS = [
+    ("", "^", ParseError, "the text is empty"),
+    ("// c", "^", ParseError, "the text is empty"),
+    (";", "^", ParseError, "expected a formula, got ';'"),
+    ("= x", "^", ParseError, "expected a formula, got '='"),
+    ("x = ", "   ^", ParseError, "expected an operand after '=', got the end of the text"),
+    ("float x", "       ^", ParseError, "the text has declarations but no formula"),
+    ("x y >= 1", "  ^", ParseError, "expected an operator between 'x' and 'y'"),
+    ("foo x;", "    ^", ParseError, "expected an operator between 'foo' and 'x'"),
+    ("flaot x float y x > 1", "^^^^^", ParseError, "'flaot' is not a type; did you mean 'float'?"),
+    (
+        "input Foo x x > 1",
+        "      ^^^",
+        ParseError,
+        "'Foo' is not a type; types are float, int, long, complex, bool, and classes that are imported",
+    ),
+    (
+        "const float c x > 1",
+        "            ^",
+        ParseError,
+        "the constant 'c' has no value; write const float c = ...",
+    ),
+    ("const float c = y", "                ^", ParseError, "expected a number, got 'y'"),
+    (
+        "float x = 3; x > 1",
+        "        ^",
+        ParseError,
+        "a variable has no value of its own; define it after the declarations: x = ...",
+    ),
+    ("float x input int x x > 1", "                  ^", ParseError, "'x' is declared twice"),
+    ("float x; const float x = 1; x > 1", "                     ^", ParseError, "'x' is declared twice"),
+    (
+        "float req.value; x",
+        "      ^^^^^^^^^",
+        ParseError,
+        "'req.value' is a field; declare 'req', with a class as its type",
+    ),
+    ("float true; x", "      ^^^^", ParseError, "'true' is a word of the language and cannot be a name"),
+    ("true = x", "^^^^", ParseError, "'true' is a word of the language and cannot be a name"),
+    ("from a.b", "        ^", ParseError, "expected 'import' after 'from a.b', got the end of the text"),
+    (
+        "from a import C from b import C x",
+        "                              ^",
+        ParseError,
+        "'C' is imported twice",
+    ),
+    (
+        "@ topic(x, a/b) x > 1",
+        "        ^",
+        NameInFormulaError,
+        "'x' is not a declared variable; declare it before its topic",
+    ),
+    (
+        "float req @ topic(rq, a) req",
+        "                  ^^",
+        NameInFormulaError,
+        "'rq' is not a declared variable; did you mean 'req'?",
+    ),
+    (
+        "float x @ topic(x, a) @ topic(x, b) x",
+        "                              ^",
+        ParseError,
+        "'x' has two topics",
+    ),
+    (
+        "float x @ frequency(x, a) x",
+        "          ^^^^^^^^^",
+        ParseError,
+        "expected 'topic' after '@', got 'frequency'",
+    ),
+    ("float x @ topic x", "                ^", ParseError, "expected '(' after '@ topic', got 'x'"),
+    ("float x @ topic(x a) x", "                  ^", ParseError, "expected ',' after 'x', got 'a'"),
+    ("float x @ topic(x,) x", "                  ^", ParseError, "expected the name of a topic, got ')'"),
+    (
+        "float x @ topic(x, a",
+        "                    ^",
+        ParseError,
+        "expected ')' after the topic, got the end of the text",
+    ),
+    (
+        "x > 1; float y; y > 1",
+        "       ^^^^^",
+        ParseError,
+        "declarations and annotations stand before the first formula",
+    ),
+    ("float x; y > 1", "         ^", NameInFormulaError, "'y' is not declared; declared names: x"),
+    (
+        "float gnt; gmt > 1",
+        "           ^^^",
+        NameInFormulaError,
+        "'gmt' is not declared; did you mean 'gnt'?",
+    ),
+    (
+        "c = d > 1; d = x",
+        "    ^",
+        NameInFormulaError,
+        "'d' is only defined further down; move its definition up",
+    ),
+    ("c = c + 1", "    ^", NameInFormulaError, "'c' is used in its own definition"),
+    ("c = x; c = y", "       ^", ParseError, "'c' is defined twice"),
+    ("const float c = 1; c = x > 2", "                   ^", ParseError, "'c' is a constant already"),
+    ("x > 1 d = x > 2", "      ^", ParseError, "expected ';' before the definition of 'd'"),
+    ("x > 1 y > 2", "      ^", ParseError, "expected an operator between '1' and 'y'"),
+    (
+        "const float T = -1; always[0:T] x",
+        "                             ^",
+        BoundError,
+        "a bound may not be negative; for the past use a past operator",
+    ),
+    (
+        "const float T = inf; always[T:T] x",
+        "                            ^",
+        BoundError,
+        "the lower bound of an interval may not be infinite",
+    ),
+    (
+        "const float T = 1; always[0:t] x",
+        "                            ^",
+        NameInFormulaError,
+        "'t' is not a declared constant; a bound is a number, a constant or inf",
+    ),
+]
+
+
+def shown(text: str, marks: str, sentence: str) -> str:
+    """What an error in a text of one line prints; ``marks`` is what stands under the text."""
+    column = len(marks) - len(marks.lstrip()) + 1
+    return f"{sentence}\n  line 1, column {column}:\n    {text}\n    {marks}"
+
+
+@pytest.mark.parametrize(("text", "marks", "kind", "sentence"), FORMULAS)
+def test_formula(text, marks, kind, sentence):
+    with pytest.raises(SpecificationError) as info:
+        parse_formula(text)
+    assert type(info.value) is kind
+    assert str(info.value) == shown(text, marks, sentence)
+    assert info.value.message == sentence
+    assert info.value.text == text
+
+
+@pytest.mark.parametrize(("text", "marks", "kind", "sentence"), DOCUMENTS)
+def test_document(text, marks, kind, sentence):
+    with pytest.raises(SpecificationError) as info:
+        parse_document(text)
+    assert type(info.value) is kind
+    assert str(info.value) == shown(text, marks, sentence)
+
+
+def test_the_caret_stands_in_the_right_line():
+    with pytest.raises(ParseError) as info:
+        parse_formula("x >= 1 and\n  y >== 2\n  or z")
+    assert str(info.value) == (
+        "expected an operand after '>=', got '='\n  line 2, column 7:\n      y >== 2\n          ^"
+    )
+
+
+@pytest.mark.parametrize(
+    ("name", "sentence"),
+    [
+        ("gmt", "'gmt' is not declared; did you mean 'gnt'?"),
+        ("speed", "'speed' is not declared; declared names: gnt, req"),
+        ("/ns/gnt", "'/ns/gnt' is not declared; did you mean 'gnt'?"),
+        ("inf.value", "'inf.value' is not declared; declared names: gnt, req"),
+    ],
+)
+def test_a_name_that_is_not_declared(name, sentence):
+    text = f"req >= 3 -> {name} >= 3"
+    with pytest.raises(NameInFormulaError) as info:
+        parse_formula(text, variables=["req", "gnt"])
+    assert str(info.value) == shown(text, " " * 12 + "^" * len(name), sentence)
+
+
+@pytest.mark.parametrize("text", ["x >= 1 and and y", "x and and >= y"])
+def test_a_missing_operand_is_not_an_undeclared_name(text):
+    with pytest.raises(ParseError) as info:
+        parse_formula(text, variables=["x", "y"])
+    assert info.value.message == "expected an operand after 'and', got 'and'"
+
+
+def test_an_operator_without_operand_is_not_an_undeclared_name():
+    with pytest.raises(ParseError) as info:
+        parse_formula("next >= 3", variables=["x"])
+    assert info.value.message == (
+        "expected an operand after 'next', got '>='; if it is a variable, write \"next\""
+    )
+
+
+TOO_DEEP = (
+    "nested too deeply: at most 200 formulas may stand inside one another; "
+    "give an inner one a name and use the name"
+)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "(" * 100_000,
+        "(" * 201 + "x" + ")" * 201,
+        "not " * 10_000 + "x",
+        "-" * 10_000 + "x",
+        "abs(" * 10_000,
+        "x -> " * 10_000 + "x",
+        "always[0:5] " * 10_000 + "x",
+        "G" + " G" * 10_000 + " >= 1",
+    ],
+)
+def test_nesting_too_deep_is_a_sentence_and_no_recursion_error(text):
+    with pytest.raises(ParseError) as info:
+        parse_formula(text)
+    assert info.value.message == TOO_DEEP
+
+
+def test_nesting_too_deep_for_the_stack_of_the_caller():
+    def descend(depth):
+        if depth:
+            return descend(depth - 1)
+        return parse_formula("(" * 150 + "x" + ")" * 150)
+
+    room = sys.getrecursionlimit() - 250
+    with pytest.raises(ParseError) as info:
+        descend(room)
+    assert info.value.message == TOO_DEEP
+
+
+@pytest.mark.parametrize(
+    ("call", "sentence"),
+    [
+        (lambda: parse_formula(3), "a formula is text, got int"),
+        (lambda: parse_formula("x", unit="h"), "'h' is not a unit of time; units are s, ms, us, ns"),
+        (lambda: parse_document(None), "a formula is text, got NoneType"),
+    ],
+)
+def test_arguments_that_do_not_fit(call, sentence):
+    with pytest.raises(UsageError) as info:
+        call()
+    assert str(info.value) == sentence

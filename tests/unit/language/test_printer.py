@@ -1,0 +1,240 @@
+"""Formula to text and back, canonical text, LaTeX."""
+
+from dataclasses import replace
+from fractions import Fraction
+from math import copysign, inf
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from rtamt.language.formula import Apply, Const, Interval, Var, variables
+from rtamt.language.operators import STL, Bounds, Fixity
+from rtamt.language.parser import parse_formula as parse
+from rtamt.language.printer import canonical, to_latex, to_text
+from rtamt.language.units import UNITS
+
+# A language in which powers collide, symbols begin other symbols, and a prefix binds tightest.
+ODD = STL.extend(
+    replace(STL["until"], name="equal", spellings=("~>", "equal"), power=STL["always"].power),
+    replace(STL["implies"], name="right", spellings=("right",), power=STL["until"].power),
+    replace(STL["mul"], name="power", spellings=("^",), power=130, fixity=Fixity.RIGHT),
+    replace(STL["mul"], name="tight", spellings=("@@",), power=130),
+    replace(STL["ge"], name="near", spellings=("~",), power=95),
+    replace(STL["neg"], name="less", spellings=("--",)),
+    replace(STL["not"], name="no", spellings=("no",), power=60),
+    replace(STL["always"], name="box", spellings=("<>", "box"), power=140),
+)
+LANGUAGES = {"STL": STL, "odd": ODD}
+
+NUMBERS = [0.0, -0.0, 1.0, -1.0, 2.5, -2.5, 0.1, 1e16, 1e300, -1e-300, inf, -inf]
+NAMES = ["x", "req.value", "/ns/req", "a/b", "my col", 'the "x"', "", "1x", "x.", "inf", "$a", "é", "s"]
+NAMES += [spelling for operator in ODD for spelling in operator.spellings]
+
+
+@st.composite
+def intervals(draw, bounds):
+    if bounds is Bounds.NONE or (bounds is Bounds.OPTIONAL and draw(st.booleans())):
+        return None
+    begin = draw(st.fractions(0, 10, max_denominator=1000))
+    length = draw(st.fractions(0, 10, max_denominator=7))
+    unit = st.sampled_from(["", *UNITS])
+    if bounds is Bounds.OPTIONAL and draw(st.booleans()):
+        return Interval(begin, None, draw(unit))
+    return Interval(begin, begin + length, draw(unit), draw(unit))
+
+
+@st.composite
+def formulas(draw, language):
+    @st.composite
+    def applied(inner, below):
+        operator = inner(st.sampled_from(language.operators))
+        args = tuple(inner(below) for _ in operator.operands)
+        return Apply(operator, args, inner(intervals(operator.bounds)))
+
+    leaf = st.sampled_from(NUMBERS).map(Const) | st.sampled_from(NAMES).map(Var)
+    return draw(st.recursive(leaf, applied, max_leaves=12))
+
+
+@pytest.mark.parametrize("name", LANGUAGES)
+@given(data=st.data())
+def test_printing_then_parsing_is_the_identity(name, data):
+    language = LANGUAGES[name]
+    formula = data.draw(formulas(language))
+    text = to_text(formula, language)
+    again = parse(text, language=language)
+    assert again == formula
+    assert to_text(again, language) == text
+
+
+@given(data=st.data())
+def test_canonical_text_parses_back_where_all_names_are_declared(data):
+    formula = data.draw(formulas(STL))
+    names = variables(formula)
+    # Const(inf) cannot be told from a declared variable of that name.
+    if "inf" not in names:
+        assert parse(canonical(formula), variables=names) == formula
+
+
+@given(data=st.data())
+def test_latex_braces_balance(data):
+    formula = data.draw(formulas(STL))
+    latex = to_latex(formula).replace(r"\{", "").replace(r"\}", "")
+    depths = [latex[:k].count("{") - latex[:k].count("}") for k in range(len(latex) + 1)]
+    assert min(depths) == 0
+    assert depths[-1] == 0
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "always(req >= 3 -> eventually[0:5](gnt >= 3))",
+        "a - (b - c)",
+        "a - b - c",
+        "(a -> b) -> c",
+        "a -> b -> c",
+        "(a >= b) >= c",
+        "x - (prev x)",
+        "not(always x)",
+        "-(2)",
+        "-(-2)",
+        "x - -2",
+        "-2 * x",
+        "pow(-x, 2)",
+        "min(a, b, c)",
+        "min(a, min(b, c))",
+        "x >= 1 since S >= 2",
+        "(G) - 3",
+        "G >= 3",
+        "x until U",
+        "always(U)",
+        "always G",
+        "x >= inf and -inf <= x or true",
+        'x >= "always"',
+        '"inf" >= "my col"',
+        "x until[100ms:0.5s] y",
+        "x until[0:500ms] y",
+        "x until[1/3:2] y",
+        "always[0:inf] x",
+        "x precedes[0:5] y",
+        "1e+300 * 1e-05 > 1e+16",
+    ],
+)
+def test_text_that_is_printed_as_it_was_written(text):
+    assert str(parse(text)) == text
+
+
+@pytest.mark.parametrize(
+    ("text", "printed"),
+    [
+        ("((x)) >= (3.0)", "x >= 3"),
+        ("G[0,5] x & !y", "always[0:5] x and not y"),
+        ("x until[0ms:0ms] y", "x until[0:0ms] y"),
+        ("x until[.25, 2.50] y", "x until[0.25:2.5] y"),
+        ("always x >= 1", "always(x >= 1)"),
+        ("x > 1 => y !== 2 || z", "x > 1 -> y != 2 or z"),
+    ],
+)
+def test_what_is_printed_for_other_spellings(text, printed):
+    assert str(parse(text)) == printed
+
+
+def test_units_survive_another_default():
+    assert str(parse("always[1:2] x", unit="ms")) == "always[1ms:2ms] x"
+    assert str(parse("always[1:inf] x", unit="us")) == "always[1us:inf] x"
+
+
+def test_a_lower_bound_in_seconds_says_so_beside_another_unit():
+    interval = Interval(Fraction(1), Fraction(2), "", "ms")
+    assert to_text(STL["always"](Var("x"), interval=interval)) == "always[1s:2000ms] x"
+
+
+def test_minus_zero_keeps_its_sign():
+    assert to_text(Const(-0.0)) == "-0"
+    assert copysign(1.0, parse("-0").value) == -1.0
+
+
+def test_a_topic_prints_bare_and_a_path_in_quotes():
+    assert to_text(Var("/ns/req")) == "/ns/req"
+    assert to_text(Var("a/b")) == '"a/b"'
+
+
+def test_long_chains_print_without_recursion():
+    text = " and ".join(["x >= 1"] * 10_000)
+    assert str(parse(text)) == text
+    nested = Var("x")
+    for _ in range(10_000):
+        nested = STL["prev"](nested)
+    assert to_text(nested).count("prev") == 10_000
+
+
+def test_a_long_minimum_stays_flat():
+    text = "min(" + ", ".join(["x"] * 5_000) + ")"
+    assert str(parse(text)) == text
+
+
+def test_what_is_no_formula():
+    for write in (to_text, to_latex, canonical):
+        with pytest.raises(TypeError, match="int is not a formula"):
+            write(STL["not"](3))
+
+
+# RTAMT's names for its nodes.
+@pytest.mark.parametrize(
+    ("text", "name"),
+    [
+        ("a >= 2", "(a)>=(2.0)"),
+        ("a !== 2", "(a)!=(2.0)"),
+        ("a and b", "(a)and(b)"),
+        ("a | b", "(a)or(b)"),
+        ("a => b", "(a)->(b)"),
+        ("a iff b", "(a)<->(b)"),
+        ("a xor b", "(a)xor(b)"),
+        ("!a", "not(a)"),
+        ("-a", "-(a)"),
+        ("G[0:5] a", "always[0,5](a)"),
+        ("F a", "eventually(a)"),
+        ("O[0:500ms] a", "once[0,500ms](a)"),
+        ("H[0.5:1] a", "historically[1/2,1](a)"),
+        ("a until[0:3] b", "(a)until[0,3](b)"),
+        ("a S b", "(a)since(b)"),
+        ("Y a", "previous(a)"),
+        ("sX a", "s_next(a)"),
+        ("rise(a)", "rise(a)"),
+        ("pow(a, 2)", "pow(a,2.0)"),
+        ("req.value + /ns/x", "(req.value)+(/ns/x)"),
+    ],
+)
+def test_canonical(text, name):
+    assert canonical(parse(text)) == name
+    assert parse(name) == parse(text)
+
+
+def test_canonical_names_may_hold_slashes():
+    assert canonical(Var("rtamt/req")) == "rtamt/req"
+
+
+@pytest.mark.parametrize(
+    ("text", "latex"),
+    [
+        ("always[0:500ms](x >= 3)", r"\mathbf{G}_{[0, 500\,\mathrm{ms}]} (x \geq 3)"),
+        ("always x", r"\mathbf{G} x"),
+        ("not always(x and y)", r"\neg \mathbf{G} (x \wedge y)"),
+        ("a - (b - c)", "a - (b - c)"),
+        ("pow(x + 1, y + 1)", "{(x + 1)}^{y + 1}"),
+        ("sqrt(x + 1)", r"\sqrt{x + 1}"),
+        ("abs(x + 1)", r"\left|x + 1\right|"),
+        ("exp(x)", r"\mathrm{exp}(x)"),
+        ("log(x, 10)", r"\log_{10}(x)"),
+        ("rise(x >= 1)", r"\uparrow (x \geq 1)"),
+        ("min(a, b, c)", r"\min(\min(a, b), c)"),
+        ("x until[1:inf] y", r"x \mathbin{\mathbf{U}_{[1, \infty)}} y"),
+        ("x since y", r"x \mathbin{\mathbf{S}} y"),
+        ("req_1.value <= -2.5", r"\mathrm{req\_1.value} \leq -2.5"),
+        ("x < 1e300 and x > -inf", r"x < 1 \cdot 10^{300} \wedge x > -\infty"),
+        ("-(a + b)", "-(a + b)"),
+        ("true -> false", r"\top \to \bot"),
+    ],
+)
+def test_latex(text, latex):
+    assert parse(text).latex() == latex
