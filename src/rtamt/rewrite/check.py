@@ -1,0 +1,80 @@
+"""What a well-formed formula must also satisfy before it can be evaluated: bounds, time domain, boundedness."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rtamt.errors import BoundError, SpecificationError
+from rtamt.language.formula import Apply, Formula, postorder
+from rtamt.language.operators import Bounds, Tense
+from rtamt.language.units import format_duration
+
+if TYPE_CHECKING:
+    from fractions import Fraction
+
+
+def check_bounds(formula: Formula, period: Fraction, text: str | None = None) -> None:
+    """Raise :class:`BoundError` unless every bound is a whole multiple of ``period`` (seconds).
+
+    >>> from fractions import Fraction
+    >>> from rtamt.language.parser import parse_formula
+    >>> check_bounds(parse_formula("always[0:1] x"), Fraction(1, 10))
+    """
+    for node in postorder(formula):
+        if not isinstance(node, Apply) or node.interval is None:
+            continue
+        for bound in (node.interval.begin, node.interval.end):
+            if bound is not None and (bound / period).denominator != 1:
+                raise BoundError(
+                    f"The operator bound must be a multiple of the sampling period: "
+                    f"{format_duration(bound)} is not a whole number of periods of {format_duration(period)}; "
+                    f"change the bound or the period",
+                    text,
+                    node.interval.span or node.span,
+                )
+
+
+def check_online(formula: Formula, text: str | None = None) -> None:
+    """Raise :class:`BoundError` at the first operator whose future is unbounded: it can never be known online."""
+    node = unbounded_future(formula)
+    if node is not None:
+        raise BoundError(
+            f"'{node.op.name}' without an upper bound needs the whole future and cannot be monitored online; "
+            f"give it a bound, such as {node.op.name}[0:10], or evaluate the finished trace offline",
+            text,
+            node.span,
+        )
+
+
+def check_dense(formula: Formula, text: str | None = None) -> None:
+    """Raise :class:`SpecificationError` at the first operator that only makes sense between samples."""
+    for node in postorder(formula):
+        if isinstance(node, Apply) and node.op.discrete_only:
+            raise SpecificationError(
+                f"'{node.op.name}' means one sample away, which dense time does not have; "
+                f"use a window such as once[0:1], or discrete time",
+                text,
+                node.span,
+            )
+
+
+def unbounded_future(formula: Formula) -> Apply | None:
+    """Return the first (innermost, leftmost) operator that reads an unbounded future, or None."""
+    for node in postorder(formula):
+        if isinstance(node, Apply) and reads_unbounded_future(node):
+            return node
+    return None
+
+
+def reads_unbounded_future(node: Apply) -> bool:
+    """Tell whether this operator itself, whatever its operands, reads an unbounded future."""
+    return (
+        node.op.tense is Tense.FUTURE
+        and node.op.bounds is not Bounds.NONE
+        and (node.interval is None or node.interval.end is None)
+    )
+
+
+def has_future(formula: Formula) -> bool:
+    """Tell whether any operator of the formula reads the future."""
+    return any(isinstance(n, Apply) and n.op.tense is Tense.FUTURE for n in postorder(formula))

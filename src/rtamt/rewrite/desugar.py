@@ -1,0 +1,66 @@
+"""Replace every operator that has an expansion, until only operators with kernels are left."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from rtamt.language.formula import Apply, Formula, Span, children, fold
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+
+def desugar(formula: Formula) -> Formula:
+    """Return an equivalent formula over core operators.
+
+    An operator with neither expansion nor kernel (one that was added with its definition alone)
+    stays; only the Python back end runs it. New nodes carry the span of the operator they explain.
+
+    >>> from rtamt.language.parser import parse_formula
+    >>> str(desugar(parse_formula("x >= 3 -> y <= 2")))
+    '-(x - 3) or 2 - y'
+    """
+    return fold(formula, expand)
+
+
+def expand(node: Formula, args: tuple[Formula, ...]) -> Formula:
+    """Expand one operator, whose operands are core formulas already."""
+    if not isinstance(node, Apply):
+        return node
+    if node.op.expansion is None or node.op.kernel is not None:
+        return rebuilt(node, args)
+    expanded = node.op.expansion(*args, node.interval)
+    return desugar_below(stamped(expanded, args, node.span), args)
+
+
+def desugar_below(formula: Formula, done: tuple[Formula, ...]) -> Formula:
+    """Desugar the nodes of an expansion above the operands, which are ``done``."""
+    stop = {id(arg) for arg in done}
+    return _rebuild_above(formula, stop, expand)
+
+
+def stamped(formula: Formula, operands: tuple[Formula, ...], span: Span | None) -> Formula:
+    """Give every node above the operands the span of the operator that was expanded."""
+    stop = {id(arg) for arg in operands}
+
+    def stamp(node: Formula, args: tuple[Formula, ...]) -> Formula:
+        return replace(node, args=args, span=span) if isinstance(node, Apply) else node
+
+    return _rebuild_above(formula, stop, stamp)
+
+
+def rebuilt(node: Apply, args: tuple[Formula, ...]) -> Apply:
+    """Return the node over new operands; the same object if they are the same objects."""
+    if all(new is old for new, old in zip(args, node.args, strict=True)):
+        return node
+    return replace(node, args=args)
+
+
+def _rebuild_above(
+    formula: Formula, stop: set[int], step: Callable[[Formula, tuple[Formula, ...]], Formula]
+) -> Formula:
+    # Expansions are a few nodes deep, so plain recursion is safe here.
+    if id(formula) in stop:
+        return formula
+    return step(formula, tuple(_rebuild_above(child, stop, step) for child in children(formula)))

@@ -1,0 +1,36 @@
+"""How far ahead of t a formula's value at t can depend on the signals (the paper's Definition 3)."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+from rtamt.language.formula import Apply, Formula, fold
+from rtamt.language.operators import Bounds, Tense
+
+
+def horizon(formula: Formula, period: Fraction = Fraction(1)) -> Fraction | None:
+    """Return the temporal depth H(φ) in seconds, exact; None if it is unbounded.
+
+    A monitor knows ρ(φ, w, t) when its input has reached t + H(φ). ``next`` counts one ``period``
+    (seconds); past operators add nothing.
+
+    >>> from rtamt.language.parser import parse_formula
+    >>> horizon(parse_formula("always[0:10](x >= 3 -> eventually[0:5] y >= 3)"))
+    Fraction(15, 1)
+    """
+
+    def step(node: Formula, below: tuple[Fraction | None, ...]) -> Fraction | None:
+        deepest = Fraction(0)
+        for depth in below:
+            if depth is None:
+                return None
+            deepest = max(deepest, depth)
+        if not isinstance(node, Apply) or node.op.tense is not Tense.FUTURE:
+            return deepest
+        if node.op.bounds is Bounds.NONE:
+            return deepest + period
+        if node.interval is None or node.interval.end is None:
+            return None
+        return deepest + node.interval.end
+
+    return fold(formula, step)

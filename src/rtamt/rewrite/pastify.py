@@ -1,0 +1,143 @@
+"""Pastification Π (the paper's Definition 4): bounded future to past, exact for every mixed formula.
+
+The theorem: ρ(φ, w, t) = ρ(Π(φ), w, t + H(φ)) for every t at which t + H(φ) lies in the trace.
+Two things make it hold where formulas mix past and future:
+
+- a sub-formula without future operators is delayed as a whole, ``once[d,d](φ)``;
+- a past operator over an operand that was delayed by d must read nothing from before the operand
+  meant anything, so the operand is guarded by ``once[d,d](true)`` (false before d, true from d on).
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from fractions import Fraction
+
+from rtamt.errors import BoundError
+from rtamt.language.formula import Apply, Formula, Interval, fold, postorder
+from rtamt.language.operators import STL, Tense
+from rtamt.rewrite.check import unbounded_future
+from rtamt.rewrite.horizon import horizon
+
+
+def pastify(formula: Formula, period: Fraction = Fraction(1), text: str | None = None) -> Formula:
+    """Return Π(φ): only past operators, the same value H(φ) later.
+
+    ``period`` (seconds) is what ``next`` counts. Raises :class:`BoundError` at an operator whose
+    future is unbounded.
+
+    >>> from rtamt.language.parser import parse_formula
+    >>> str(pastify(parse_formula("always[0:10](x >= 3 -> eventually[0:5] y >= 3)")))
+    'historically[0:10](once[5:5](x >= 3) -> once[0:5](y >= 3))'
+    """
+    node = unbounded_future(formula)
+    if node is not None:
+        raise BoundError(
+            f"Cannot pastify an unbounded {node.op.name}. Give it an upper bound, such as {node.op.name}[0:10]",
+            text,
+            node.span,
+        )
+    formula = expand_future_shorthand(formula)
+    return _Pastifier(formula, period).delayed(formula, horizon(formula, period) or Fraction(0))
+
+
+def expand_future_shorthand(formula: Formula) -> Formula:
+    """Expand derived temporal operators (rise, unless, …) where the future is involved.
+
+    Their pastification is that of their meaning.
+    """
+
+    def step(node: Formula, below: tuple[tuple[Formula, bool], ...]) -> tuple[Formula, bool]:
+        if not isinstance(node, Apply):
+            return node, False
+        args = tuple(arg for arg, _ in below)
+        future = node.op.tense is Tense.FUTURE or any(ahead for _, ahead in below)
+        if future and node.op.tense is not Tense.NONE and node.op.expansion is not None:
+            return node.op.expansion(*args, node.interval), True
+        return replace(node, args=args), future
+
+    return fold(formula, step)[0]
+
+
+class _Pastifier:
+    """One pastification: what is known of each node, and the results so far (shared nodes once)."""
+
+    def __init__(self, formula: Formula, period: Fraction) -> None:
+        self.period = period
+        self.unit = _unit(formula)
+        self.has_future: dict[int, bool] = {}
+        for node in postorder(formula):
+            below = any(self.has_future[id(arg)] for arg in node.args) if isinstance(node, Apply) else False
+            self.has_future[id(node)] = below or (isinstance(node, Apply) and node.op.tense is Tense.FUTURE)
+
+    def delayed(self, formula: Formula, delay: Fraction) -> Formula:
+        """Return P with ρ(formula, w, t) = ρ(P, w, t + delay); ``delay`` is at least the horizon."""
+        results: dict[tuple[int, Fraction], Formula] = {}
+        stack = [(formula, delay)]
+        while stack:  # a stack of our own, because formulas may be deeper than Python's
+            node, d = stack[-1]
+            wanted = [(arg, self._operand_delay(node, d)) for arg in self._open_operands(node)]
+            missing = [(arg, e) for arg, e in wanted if (id(arg), e) not in results]
+            if missing:
+                stack.extend(missing)
+                continue
+            stack.pop()
+            if (id(node), d) not in results:
+                results[id(node), d] = self._build(node, d, tuple(results[id(a), e] for a, e in wanted))
+        return results[id(formula), delay]
+
+    def _open_operands(self, node: Formula) -> tuple[Formula, ...]:
+        return node.args if isinstance(node, Apply) and self.has_future[id(node)] else ()
+
+    def _operand_delay(self, node: Formula, delay: Fraction) -> Fraction:
+        assert isinstance(node, Apply)
+        if node.op.tense is not Tense.FUTURE:
+            return delay
+        if node.interval is None:
+            return delay - self.period
+        assert node.interval.end is not None
+        return delay - node.interval.end
+
+    def _build(self, node: Formula, delay: Fraction, args: tuple[Formula, ...]) -> Formula:
+        if not self.has_future[id(node)]:
+            return self._shifted(node, delay)
+        assert isinstance(node, Apply)
+        if node.op.tense is Tense.FUTURE:
+            return _past_twin(node, args)
+        if node.op.tense is Tense.PAST:
+            args = tuple(
+                self._guarded(arg, how, delay) for arg, how in zip(args, node.op.guards, strict=True)
+            )
+        return Apply(node.op, args, node.interval, node.span)
+
+    def _shifted(self, formula: Formula, delay: Fraction) -> Formula:
+        if delay == 0:
+            return formula
+        return Apply(STL["once"], (formula,), Interval(delay, delay, self.unit, self.unit), formula.span)
+
+    def _guarded(self, operand: Formula, how: str | None, delay: Fraction) -> Formula:
+        if how is None or delay == 0:
+            return operand
+        meant = self._shifted(STL["true"](), delay)
+        pair = (meant, operand) if how == "implies" else (operand, meant)
+        return Apply(STL[how], pair, None, operand.span)
+
+
+def _unit(formula: Formula) -> str:
+    """Return the unit in which the formula's own bounds are written, so that delays read like them."""
+    intervals = (node.interval for node in postorder(formula) if isinstance(node, Apply))
+    units = (unit for i in intervals if i is not None for unit in (i.end_unit, i.begin_unit))
+    return next(filter(None, units), "")
+
+
+def _past_twin(node: Apply, args: tuple[Formula, ...]) -> Formula:
+    if not node.op.twin:
+        return args[0]  # next: the delay of its operand is all
+    twin = STL[node.op.twin]
+    interval = node.interval
+    assert interval is not None
+    assert interval.end is not None
+    if len(args) == 1:
+        unit = interval.end_unit
+        interval = Interval(Fraction(0), interval.end - interval.begin, "", unit, interval.span)
+    return Apply(twin, args, interval, node.span)

@@ -1,0 +1,31 @@
+"""Pastified forms, as they print."""
+
+from fractions import Fraction
+
+import pytest
+
+from rtamt.language.parser import parse_formula
+from rtamt.rewrite.pastify import pastify
+
+
+@pytest.mark.parametrize(
+    ("text", "past"),
+    [
+        ("x >= 3", "x >= 3"),
+        ("always[0:5](x >= 3)", "historically[0:5](x >= 3)"),
+        ("eventually[2:5](x >= 3)", "once[0:3](x >= 3)"),
+        ("always[0:10](x -> eventually[0:5] y)", "historically[0:10](once[5:5] x -> once[0:5] y)"),
+        ("x until[2:5] y", "x precedes[2:5] y"),
+        ("next(x) and y", "x and once[1:1] y"),
+        ("historically(eventually[0:2] x)", "historically(once[2:2] true -> once[0:2] x)"),
+        ("x since next(y)", "once[1:1] x since (y and once[1:1] true)"),
+        ("always[0:500ms] x", "historically[0:500ms] x"),
+        ("x unless[1:2] y", "historically[0:2] x or x precedes[1:2] y"),
+    ],
+)
+def test_pastified_form(text: str, past: str) -> None:
+    assert pastify(parse_formula(text)) == parse_formula(past)
+
+
+def test_next_is_delayed_by_one_period() -> None:
+    assert str(pastify(parse_formula("next(x) and y"), Fraction(1, 10))) == "x and once[0.1:0.1] y"
