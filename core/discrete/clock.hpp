@@ -1,0 +1,71 @@
+// Which times an online monitor takes, and how evenly they came.
+//
+// Cost: a few comparisons a sample. Memory: that of stamps.hpp.
+#pragma once
+
+#include "stamps.hpp"
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+
+namespace rtamt::discrete {
+
+class Clock {
+  public:
+    // A gap may differ from the period by `tolerance` periods. A strict clock refuses any other
+    // gap; one that is not counts it as a violation. The last `history` times are remembered.
+    Clock(double period, double tolerance, bool strict, std::size_t history)
+        : stamps_(period, history), period_(period), slack_(tolerance * period), strict_(strict) {}
+
+    // Whether the next sample may come at this time.
+    [[nodiscard]] bool accepts(double time) const noexcept {
+        if (!std::isfinite(time)) return false;
+        return stamps_.count() == 0 || (time > stamps_.last() && (!strict_ || even(time)));
+    }
+
+    // A sample came at a time that was accepted.
+    void advance(double time) noexcept {
+        if (stamps_.count() != 0 && !even(time)) ++violations_;
+        anchor_ = time;
+        steps_ = 0.0;
+        stamps_.add(time);
+    }
+
+    // Samples came one period apart, the first of a trace at time 0. Times are counted from one
+    // that was given, so that they do not drift.
+    void tick(std::size_t count) noexcept {
+        for (std::size_t i = 0; i < count; ++i) {
+            steps_ += 1.0;
+            if (stamps_.count() == 0) {
+                stamps_.add(0.0);
+            } else {
+                stamps_.add(stamps_.regular() ? stamps_.regular_next()
+                                              : anchor_ + steps_ * period_);
+            }
+        }
+    }
+
+    void reset() noexcept {
+        stamps_.reset();
+        violations_ = 0;
+    }
+
+    [[nodiscard]] std::uint64_t violations() const noexcept { return violations_; }
+    [[nodiscard]] const Stamps& stamps() const noexcept { return stamps_; }
+
+  private:
+    Stamps stamps_;
+    double period_;
+    double slack_;
+    double anchor_ = 0.0; // the last time that was given
+    double steps_ = 0.0;  // samples since then
+    std::uint64_t violations_ = 0;
+    bool strict_;
+
+    [[nodiscard]] bool even(double time) const noexcept {
+        return std::fabs(time - stamps_.last() - period_) <= slack_;
+    }
+};
+
+} // namespace rtamt::discrete

@@ -1,0 +1,132 @@
+// Functions of the operands at the same instant: arithmetic, comparison, and, or, not.
+//
+// Cost: one pass over the block, vectorised where the function allows it; none where no operand is
+// present. No memory.
+#pragma once
+
+#include "../algebra.hpp"
+#include "../kernel.hpp"
+
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+
+namespace rtamt::discrete {
+
+namespace pointwise {
+
+struct Neg {
+    static constexpr bool partial = false;
+    static double of(double a) noexcept { return -a; }
+};
+struct Abs {
+    static constexpr bool partial = false;
+    static double of(double a) noexcept { return std::fabs(a); }
+};
+struct Sqrt {
+    static constexpr bool partial = true;
+    static double of(double a) noexcept { return std::sqrt(a); }
+};
+struct Exp {
+    static constexpr bool partial = false;
+    static double of(double a) noexcept { return std::exp(a); }
+};
+struct Ln {
+    static constexpr bool partial = true;
+    static double of(double a) noexcept { return std::log(a); }
+};
+struct Add {
+    static constexpr bool partial = true;
+    static double of(double a, double b) noexcept { return a + b; }
+};
+struct Sub {
+    static constexpr bool partial = true;
+    static double of(double a, double b) noexcept { return a - b; }
+};
+struct Mul {
+    static constexpr bool partial = true;
+    static double of(double a, double b) noexcept { return a * b; }
+};
+struct Div {
+    static constexpr bool partial = true;
+    static double of(double a, double b) noexcept { return a / b; }
+};
+struct Pow {
+    static constexpr bool partial = true;
+    static double of(double a, double b) noexcept { return std::pow(a, b); }
+};
+struct Log { // of a to the base b
+    static constexpr bool partial = true;
+    static double of(double a, double b) noexcept { return std::log(a) / std::log(b); }
+};
+template <class Algebra>
+struct Join {
+    static constexpr bool partial = false;
+    static double of(double a, double b) noexcept { return Algebra::join(a, b); }
+};
+struct HoldsGreater {
+    static constexpr bool partial = false;
+    static double of(double a, double b) noexcept { return a > b ? infinity : -infinity; }
+};
+struct HoldsGreaterEqual {
+    static constexpr bool partial = false;
+    static double of(double a, double b) noexcept { return a >= b ? infinity : -infinity; }
+};
+struct HoldsEqual {
+    static constexpr bool partial = false;
+    static double of(double a, double b) noexcept { return a == b ? infinity : -infinity; }
+};
+
+} // namespace pointwise
+
+// Evaluates `function(i)` for each place of the range; answers the first that is NaN, or `defined`.
+//
+// Without its sign, a double is NaN if and only if its bits are above those of infinity; adding
+// what lies between these and the top bit shows that in the top bit. Unlike a comparison with
+// itself, that fills vectors on every machine.
+template <bool partial, class Function>
+[[nodiscard]] std::size_t fill(double* __restrict out, Range range, Function&& function) noexcept {
+    constexpr std::uint64_t magnitude = ~std::uint64_t{0} >> 1U;
+    constexpr std::uint64_t above = magnitude - std::bit_cast<std::uint64_t>(infinity);
+    std::uint64_t seen = 0;
+    for (std::size_t i = range.begin; i < range.end; ++i) {
+        const double value = function(i);
+        out[i] = value;
+        if constexpr (partial) seen |= (std::bit_cast<std::uint64_t>(value) & magnitude) + above;
+    }
+    if (seen <= magnitude) [[likely]] {
+        return Kernel::defined;
+    }
+    std::size_t place = range.begin;
+    while (!std::isnan(out[place]))
+        ++place;
+    return place;
+}
+
+template <class Function>
+class Unary final : public Kernel {
+  public:
+    using Kernel::Kernel;
+
+    std::size_t run(const Block& block) noexcept override {
+        const double* __restrict a = this->a();
+        return fill<Function::partial>(out(), block.present(lag()),
+                                       [=](std::size_t i) { return Function::of(a[i]); });
+    }
+};
+
+template <class Function>
+class Binary final : public Kernel {
+  public:
+    using Kernel::Kernel;
+
+    std::size_t run(const Block& block) noexcept override {
+        const double* __restrict a = this->a(); // a and b may be the same: they are only read
+        const double* __restrict b = this->b();
+        return fill<Function::partial>(out(), block.present(lag()),
+                                       [=](std::size_t i) { return Function::of(a[i], b[i]); });
+    }
+};
+
+} // namespace rtamt::discrete

@@ -1,0 +1,85 @@
+// The times of the last few samples: what becomes known late is told with the time it belongs to.
+//
+// Cost: a multiplication a sample. Memory: none while every sample comes exactly a period after the
+// one before, which is computed instead; from the first that does not, a ring of as many numbers as
+// were asked for, touched as far as the trace has come.
+#pragma once
+
+#include "../arena.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <limits>
+
+namespace rtamt::discrete {
+
+class Stamps {
+  public:
+    // Keeps the last `size` times, at least one.
+    Stamps(double period, std::size_t size)
+        : arena_(size), ring_(arena_.take(size)), size_(size), period_(period) {}
+
+    void add(double time) noexcept {
+        if (count_ == 0) origin_ = time;
+        last_ = time;
+        if (regular() && time == computed(count_)) {
+            ++regular_;
+        } else {
+            ring_[next_] = time;
+            if (++next_ == size_) next_ = 0;
+        }
+        ++count_;
+    }
+
+    void reset() noexcept {
+        last_ = std::numeric_limits<double>::quiet_NaN();
+        count_ = 0;
+        regular_ = 0;
+        next_ = 0;
+    }
+
+    [[nodiscard]] std::size_t count() const noexcept { return count_; }
+
+    // Whether every time so far is the first one and a whole number of periods.
+    [[nodiscard]] bool regular() const noexcept { return regular_ == count_; }
+
+    // The time that keeps them so.
+    [[nodiscard]] double regular_next() const noexcept { return computed(count_); }
+
+    // The last time; NaN before the first.
+    [[nodiscard]] double last() const noexcept { return last_; }
+
+    // How many of the last times are still here.
+    [[nodiscard]] std::size_t available() const noexcept { return std::min(count_, size_); }
+
+    // Writes the last `count` times, oldest first; there are so many available.
+    void copy(std::size_t count, double* out) const noexcept {
+        const std::size_t stored = std::min(count, count_ - regular_);
+        for (std::size_t i = 0; i < count - stored; ++i)
+            out[i] = computed(count_ - count + i);
+        out += count - stored;
+        const std::size_t wrapped = stored > next_ ? stored - next_ : 0;
+        std::copy_n(ring_ + (size_ - wrapped), wrapped, out);
+        std::copy_n(ring_ + (next_ + wrapped - stored), stored - wrapped, out + wrapped);
+    }
+
+    // Bytes in use.
+    [[nodiscard]] std::size_t bytes() const noexcept { return regular() ? 0 : arena_.bytes(); }
+
+  private:
+    Arena arena_;
+    double* ring_; // the times from the first irregular one on
+    std::size_t size_;
+    std::size_t next_ = 0;    // cell of the ring to be written next
+    std::size_t count_ = 0;   // times so far
+    std::size_t regular_ = 0; // times before the first irregular one
+    double period_;
+    double origin_ = 0.0; // the first time
+    double last_ = std::numeric_limits<double>::quiet_NaN();
+
+    [[nodiscard]] double computed(std::size_t index) const noexcept {
+        return origin_ + static_cast<double>(index) * period_;
+    }
+};
+
+} // namespace rtamt::discrete

@@ -1,0 +1,32 @@
+// The cells of a ring that an update is about to overwrite, kept so that it can be taken back.
+//
+// Memory: as many cells as the ring, lazily mapped like it; only programs that compute with the
+// result of a temporal operator have one. Cost: an update copies as many cells as it overwrites;
+// the whole ring when it wraps round, which is O(1) a sample on average.
+#pragma once
+
+#include "cells.hpp"
+
+#include <cstddef>
+
+namespace rtamt {
+
+class Journal {
+  public:
+    explicit Journal(double* store) noexcept : store_(store) {}
+
+    void save(const double* ring, std::size_t begin, std::size_t count) noexcept {
+        begin_ = begin;
+        count_ = count;
+        copy_cells(ring + begin, count, store_);
+    }
+
+    void restore(double* ring) const noexcept { copy_cells(store_, count_, ring + begin_); }
+
+  private:
+    double* store_;
+    std::size_t begin_ = 0;
+    std::size_t count_ = 0;
+};
+
+} // namespace rtamt

@@ -1,0 +1,256 @@
+#include "program.hpp"
+
+#include "crc32.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <initializer_list>
+#include <limits>
+#include <stdexcept>
+#include <string_view>
+#include <type_traits>
+
+namespace rtamt {
+
+namespace {
+
+static_assert(std::numeric_limits<double>::is_iec559, "programs store IEEE 754 doubles");
+
+constexpr std::string_view magic = "RTAMTPRG";
+constexpr std::uint16_t version = 1;
+constexpr std::size_t header_size = 32;
+constexpr std::size_t record_size = 40;
+constexpr std::size_t checksum_size = 4;
+
+[[noreturn]] void refuse(const std::string& reason) {
+    throw std::invalid_argument("This is not a program that can be run: " + reason + ".");
+}
+
+// Reads numbers in little endian order; the caller has checked that the bytes are there.
+class Reader {
+  public:
+    explicit Reader(std::span<const std::uint8_t> bytes) noexcept : bytes_(bytes) {}
+
+    template <class Unsigned>
+    [[nodiscard]] Unsigned take() noexcept {
+        static_assert(std::is_unsigned_v<Unsigned>);
+        std::uint64_t value = 0;
+        for (std::size_t i = 0; i < sizeof(Unsigned); ++i) {
+            value |= std::uint64_t{bytes_[i]} << (8U * i);
+        }
+        bytes_ = bytes_.subspan(sizeof(Unsigned));
+        return static_cast<Unsigned>(value);
+    }
+
+    [[nodiscard]] std::string text(std::size_t length) {
+        const auto part = bytes_.first(length);
+        bytes_ = bytes_.subspan(length);
+        return {part.begin(), part.end()};
+    }
+
+  private:
+    std::span<const std::uint8_t> bytes_;
+};
+
+struct Header {
+    std::uint8_t domain = 0;
+    std::uint32_t instructions = 0;
+    std::uint32_t inputs = 0;
+    std::uint32_t outputs = 0;
+    std::uint32_t note = 0;
+};
+
+Header read_header(Reader& reader, std::size_t size) {
+    if (size < header_size + checksum_size) {
+        refuse("it has " + std::to_string(size) + " bytes, fewer than the " +
+               std::to_string(header_size + checksum_size) + " of the shortest one");
+    }
+    if (reader.text(magic.size()) != magic) {
+        refuse("it does not begin with \"" + std::string(magic) + "\"");
+    }
+    if (const auto found = reader.take<std::uint16_t>(); found != version) {
+        refuse("its format has version " + std::to_string(found) + ", this core reads version " +
+               std::to_string(version));
+    }
+    Header header;
+    header.domain = reader.take<std::uint8_t>();
+    const auto reserved = reader.take<std::uint8_t>();
+    header.instructions = reader.take<std::uint32_t>();
+    header.inputs = reader.take<std::uint32_t>();
+    header.outputs = reader.take<std::uint32_t>();
+    header.note = reader.take<std::uint32_t>();
+    if (reserved != 0 || reader.take<std::uint32_t>() != 0) {
+        refuse("a reserved byte of its header is not zero");
+    }
+    const std::uint64_t expected = header_size + std::uint64_t{record_size} * header.instructions +
+                                   std::uint64_t{4} * header.outputs + header.note + checksum_size;
+    if (size != expected) {
+        refuse("it has " + std::to_string(size) + " bytes where its header promises " +
+               std::to_string(expected));
+    }
+    return header;
+}
+
+// The first thing that is wrong with one instruction, given those before it.
+class Checker {
+  public:
+    Checker(const Program& program, std::size_t index)
+        : program_(program), index_(index), instruction_(program.instructions[index]),
+          info_(info(instruction_.opcode)) {}
+
+    void check() const {
+        operands();
+        numbers();
+        lags();
+    }
+
+  private:
+    const Program& program_;
+    std::size_t index_;
+    const Instruction& instruction_;
+    const OpcodeInfo& info_;
+
+    [[noreturn]] void fail(const std::string& reason) const {
+        refuse("instruction " + std::to_string(index_) + " (" + std::string(info_.name) + ") " +
+               reason);
+    }
+
+    void operands() const {
+        const std::initializer_list<std::uint32_t> operands{instruction_.a, instruction_.b};
+        std::size_t place = 0;
+        for (const std::uint32_t operand : operands) {
+            const bool wanted = place++ < info_.operands;
+            if (!wanted && operand != no_operand) fail("has an operand too many");
+            if (wanted && operand == no_operand) fail("lacks an operand");
+            if (wanted && operand >= index_) {
+                fail("reads instruction " + std::to_string(operand) + ", which is not before it");
+            }
+        }
+    }
+
+    void numbers() const {
+        const std::int64_t n = instruction_.n;
+        if (std::isnan(instruction_.x)) fail("holds a number that is NaN");
+        switch (info_.count) {
+        case Count::none:
+            break;
+        case Count::input:
+            if (n < 0 || n >= std::int64_t{program_.inputs}) {
+                fail("reads input " + std::to_string(n) + " of " + std::to_string(program_.inputs));
+            }
+            break;
+        case Count::distance:
+            if (n < 0 || n > longest) {
+                fail("has the distance " + std::to_string(n) + ", outside 0 to 2^48");
+            }
+            break;
+        case Count::width:
+            if (n < 1 || n > longest) {
+                fail("has the width " + std::to_string(n) + ", outside 1 to 2^48");
+            }
+            break;
+        }
+    }
+
+    void lags() const {
+        const std::int64_t lag = instruction_.lag;
+        if (lag < 0 || lag > longest) {
+            fail("has the lag " + std::to_string(lag) + ", outside 0 to 2^48");
+        }
+        if (info_.operands == 0 && lag != 0) {
+            fail("has the lag " + std::to_string(lag) + " where only 0 makes sense");
+        }
+        const std::int64_t expected = program_.operand_lag(instruction_);
+        for (const std::uint32_t operand : {instruction_.a, instruction_.b}) {
+            if (operand == no_operand) continue;
+            const Instruction& source = program_.instructions[operand];
+            if (source.opcode != Opcode::constant && source.lag != expected) {
+                fail("mixes operands of lag " + std::to_string(expected) + " and " +
+                     std::to_string(source.lag));
+            }
+        }
+        if (info_.pointwise && lag != expected) {
+            fail("has the lag " + std::to_string(lag) + " where its operands have " +
+                 std::to_string(expected));
+        }
+    }
+};
+
+Instruction read_instruction(Reader& reader, std::size_t index) {
+    Instruction instruction;
+    const auto code = reader.take<std::uint8_t>();
+    if (code >= opcodes.size()) {
+        refuse("instruction " + std::to_string(index) + " has the unknown opcode " +
+               std::to_string(code));
+    }
+    instruction.opcode = static_cast<Opcode>(code);
+    bool clean = true;
+    for (int i = 0; i < 3; ++i)
+        clean = reader.take<std::uint8_t>() == 0 && clean;
+    instruction.a = reader.take<std::uint32_t>();
+    instruction.b = reader.take<std::uint32_t>();
+    clean = reader.take<std::uint32_t>() == 0 && clean;
+    if (!clean) {
+        refuse("a reserved byte of instruction " + std::to_string(index) + " is not zero");
+    }
+    instruction.n = std::bit_cast<std::int64_t>(reader.take<std::uint64_t>());
+    instruction.x = std::bit_cast<double>(reader.take<std::uint64_t>());
+    instruction.lag = std::bit_cast<std::int64_t>(reader.take<std::uint64_t>());
+    return instruction;
+}
+
+} // namespace
+
+Program Program::parse(std::span<const std::uint8_t> bytes) {
+    Reader reader(bytes);
+    const Header header = read_header(reader, bytes.size());
+    const auto body = bytes.first(bytes.size() - checksum_size);
+    if (Reader(bytes.last(checksum_size)).take<std::uint32_t>() != crc32(body)) {
+        refuse("its checksum does not match, so it was damaged on the way");
+    }
+    if (header.domain == 1) refuse("it is for dense time, and this core runs discrete time only");
+    if (header.domain != 0) {
+        refuse("it is for the unknown time domain " + std::to_string(header.domain));
+    }
+    if (header.outputs == 0) refuse("it has no output");
+
+    Program program;
+    program.inputs = header.inputs;
+    program.instructions.reserve(header.instructions);
+    for (std::size_t index = 0; index < header.instructions; ++index) {
+        program.instructions.push_back(read_instruction(reader, index));
+        Checker(program, index).check();
+    }
+    program.outputs.reserve(header.outputs);
+    for (std::size_t place = 0; place < header.outputs; ++place) {
+        const auto index = reader.take<std::uint32_t>();
+        if (index >= header.instructions) {
+            refuse("output " + std::to_string(place) + " is instruction " + std::to_string(index) +
+                   " of " + std::to_string(header.instructions));
+        }
+        program.outputs.push_back(index);
+    }
+    program.note = reader.text(header.note);
+    return program;
+}
+
+std::int64_t Program::operand_lag(const Instruction& instruction) const noexcept {
+    for (const std::uint32_t operand : {instruction.a, instruction.b}) {
+        if (operand != no_operand && instructions[operand].opcode != Opcode::constant) {
+            return instructions[operand].lag;
+        }
+    }
+    return 0;
+}
+
+std::int64_t Program::latest() const noexcept {
+    std::int64_t latest = 0;
+    for (const std::uint32_t output : outputs) {
+        latest = std::max(latest, instructions[output].lag);
+    }
+    return latest;
+}
+
+} // namespace rtamt

@@ -1,0 +1,63 @@
+// A program: a flat list of instructions in static single assignment form, read from bytes.
+//
+// Layout, little endian, version 1:
+//
+//     offset  type   field
+//          0  8 B    magic "RTAMTPRG"
+//          8  u16    version = 1
+//         10  u8     time domain: 0 discrete, 1 dense
+//         11  u8     0
+//         12  u32    number of instructions
+//         16  u32    number of inputs
+//         20  u32    number of outputs
+//         24  u32    length of the note
+//         28  u32    0
+//         32         instructions, 40 bytes each: u8 opcode, 3 B 0, u32 a, u32 b, u32 0,
+//                    i64 n, f64 x, i64 lag; an operand that is not used is 0xFFFFFFFF
+//                    outputs, one u32 instruction index each
+//                    the note: bytes for whoever carries the program (JSON), not interpreted
+//                    u32 CRC-32 of everything before it
+//
+// An instruction with lag L yields, at slot s, the value for time (sample index) s - L.
+#pragma once
+
+#include "opcodes.hpp"
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace rtamt {
+
+inline constexpr std::uint32_t no_operand = 0xFFFFFFFFU;
+
+// Widths, distances and lags stay below this, so that sums of a few of them cannot overflow.
+inline constexpr std::int64_t longest = 281'474'976'710'656; // 2^48
+
+struct Instruction {
+    Opcode opcode{};
+    std::uint32_t a = no_operand;
+    std::uint32_t b = no_operand;
+    std::int64_t n = 0; // input index, distance of a shift, or width of a window
+    double x = 0.0;     // value of a constant, or what a shift yields where there is no sample
+    std::int64_t lag = 0;
+};
+
+struct Program {
+    std::vector<Instruction> instructions;
+    std::vector<std::uint32_t> outputs;
+    std::uint32_t inputs = 0;
+    std::string note;
+
+    // Reads and checks a serialised program; throws std::invalid_argument with one sentence.
+    [[nodiscard]] static Program parse(std::span<const std::uint8_t> bytes);
+
+    // The lag shared by the operands of an instruction; constants have no time and do not count.
+    [[nodiscard]] std::int64_t operand_lag(const Instruction& instruction) const noexcept;
+
+    // How many slots after the last sample the last output becomes known.
+    [[nodiscard]] std::int64_t latest() const noexcept;
+};
+
+} // namespace rtamt

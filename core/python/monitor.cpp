@@ -1,0 +1,265 @@
+#include "monitor.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <string>
+
+namespace rtamt::python {
+
+using discrete::Failure;
+using discrete::Outcome;
+
+namespace {
+
+// No input has this value, so it marks those that have none yet.
+constexpr double missing = std::numeric_limits<double>::quiet_NaN();
+
+constexpr const char* in_use =
+    "The monitor is in use by another thread: give each thread a monitor of its own.";
+
+// How many samples a value may come late, and the last one: those that a caller may have to name.
+[[nodiscard]] std::size_t history_of(const Program& program) noexcept {
+    return static_cast<std::size_t>(program.latest()) + 1;
+}
+
+} // namespace
+
+void raise_undefined(const Exceptions& exceptions, const Failure& failure) {
+    const nb::object arguments = nb::make_tuple(failure.instruction, failure.sample);
+    PyErr_SetObject(exceptions.undefined.ptr(), arguments.ptr());
+    throw nb::python_error();
+}
+
+Monitor::Monitor(Program program, const std::vector<nb::str>& names, double period,
+                 double tolerance, bool strict, const nb::object& ignored, Exceptions exceptions)
+    : executor_(std::move(program)),
+      clock_(period, tolerance, strict, history_of(executor_.program())),
+      exceptions_(std::move(exceptions)), row_(names.size()), previous_(names.size(), missing) {
+    const std::size_t inputs = executor_.program().inputs;
+    if (names.size() != inputs) {
+        throw std::invalid_argument("Got " + std::to_string(names.size()) +
+                                    " names for a program with " + std::to_string(inputs) +
+                                    " inputs.");
+    }
+    if (!(period > 0.0) || !std::isfinite(period) || !(tolerance >= 0.0)) {
+        throw std::invalid_argument(
+            "The period must be positive and finite, the tolerance 0 or more.");
+    }
+    for (const nb::str& name : names) {
+        if (places_.contains(name)) {
+            throw std::invalid_argument("Two inputs are called '" + std::string(name.c_str()) +
+                                        "'.");
+        }
+        places_[name] = nb::int_(names_.size());
+        PyObject* interned = nb::object(name).release().ptr();
+        PyUnicode_InternInPlace(&interned);
+        names_.push_back(nb::steal<nb::str>(interned));
+    }
+    ignored_ = nb::steal<nb::object>(PyFrozenSet_New(ignored.is_none() ? nullptr : ignored.ptr()));
+    if (!ignored_.is_valid()) throw nb::python_error();
+}
+
+// ---- one sample ---------------------------------------------------------------------------------
+
+PyObject* Monitor::update(PyObject* time, PyObject* values) noexcept {
+    double t = 0.0;
+    if (!ready()) return nullptr;
+    if (!numbers_.read(time, t) || !clock_.accepts(t)) return refuse("time");
+    if (!PyDict_Check(values) || static_cast<std::size_t>(PyDict_Size(values)) != names_.size()) {
+        return refuse("names");
+    }
+    Py_ssize_t position = 0;
+    std::size_t guess = 0;
+    PyObject* name = nullptr;
+    PyObject* value = nullptr;
+    while (PyDict_Next(values, &position, &name, &value) != 0) {
+        const auto index = place(name, guess++);
+        if (!index) return refuse("names");
+        if (!numbers_.read(value, row_[*index])) return refuse("value");
+    }
+    return take([&] { clock_.advance(t); });
+}
+
+PyObject* Monitor::update_pairs(PyObject* time, PyObject* pairs) noexcept {
+    double t = 0.0;
+    if (!ready()) return nullptr;
+    if (!numbers_.read(time, t) || !clock_.accepts(t)) return refuse("time");
+    if (!PyList_Check(pairs) && !PyTuple_Check(pairs)) return refuse("pairs");
+    std::ranges::copy(previous_, row_.begin());
+    std::size_t guess = 0;
+    for (Py_ssize_t i = 0; i < PySequence_Fast_GET_SIZE(pairs); ++i) {
+        PyObject* pair = PySequence_Fast_GET_ITEM(pairs, i);
+        if ((!PyTuple_Check(pair) && !PyList_Check(pair)) || PySequence_Fast_GET_SIZE(pair) != 2) {
+            return refuse("pairs");
+        }
+        PyObject* name = PySequence_Fast_GET_ITEM(pair, 0);
+        PyObject* value = PySequence_Fast_GET_ITEM(pair, 1);
+        if (const auto index = place(name, guess)) {
+            if (!numbers_.read(value, row_[*index])) return refuse("value");
+            guess = *index + 1;
+            continue;
+        }
+        const int skipped = PySet_Contains(ignored_.ptr(), name);
+        if (skipped < 0) PyErr_Clear(); // what cannot be hashed is no name
+        if (skipped <= 0) return refuse("names");
+    }
+    for (const double value : row_) {
+        if (std::isnan(value)) return refuse("names");
+    }
+    return take([&] { clock_.advance(t); });
+}
+
+PyObject* Monitor::step(std::span<PyObject* const> values) noexcept {
+    if (!ready()) return nullptr;
+    if (values.size() != row_.size()) return refuse("count");
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        if (!numbers_.read(values[i], row_[i])) return refuse("value");
+    }
+    return take([&] { clock_.tick(1); });
+}
+
+// Runs the sample in row_; `accepted` sets the clock once nothing can go wrong any more.
+template <class Accepted>
+PyObject* Monitor::take(Accepted&& accepted) noexcept {
+    double value = 0.0;
+    const Outcome outcome = executor_.step(row_.data(), value);
+    if (outcome == Outcome::failed) [[unlikely]] {
+        return fail();
+    }
+    std::swap(row_, previous_);
+    std::forward<Accepted>(accepted)();
+    if (outcome == Outcome::known) return PyFloat_FromDouble(value);
+    Py_RETURN_NONE;
+}
+
+PyObject* Monitor::fail() const noexcept {
+    const Failure failure = executor_.failure();
+    PyObject* arguments =
+        Py_BuildValue("(IL)", failure.instruction, static_cast<long long>(failure.sample));
+    if (arguments != nullptr) PyErr_SetObject(exceptions_.undefined.ptr(), arguments);
+    Py_XDECREF(arguments);
+    return nullptr;
+}
+
+PyObject* Monitor::refuse(const char* reason) const noexcept {
+    if (PyErr_Occurred() == nullptr) PyErr_SetString(exceptions_.refused.ptr(), reason);
+    return nullptr;
+}
+
+// Whether a sample may come now; if not, a Python exception is set.
+bool Monitor::ready() const noexcept {
+    if (!busy_ && !executor_.finished()) [[likely]] {
+        return true;
+    }
+    if (busy_) PyErr_SetString(PyExc_RuntimeError, in_use);
+    (void)refuse("finished");
+    return false;
+}
+
+// The index of the input of this name, which is probably the one guessed; or nothing.
+std::optional<std::size_t> Monitor::place(PyObject* name, std::size_t guess) noexcept {
+    if (guess < names_.size() && names_[guess].ptr() == name) [[likely]] {
+        return guess;
+    }
+    PyObject* index = PyDict_GetItemWithError(places_.ptr(), name);
+    if (index == nullptr) {
+        PyErr_Clear(); // what cannot be hashed is no name
+        return std::nullopt;
+    }
+    return PyLong_AsSize_t(index);
+}
+
+// ---- many samples -------------------------------------------------------------------------------
+
+std::vector<Result> Monitor::push(const std::optional<Column>& times,
+                                  const std::vector<Column>& columns) {
+    require_idle();
+    if (executor_.finished()) {
+        (void)refuse("finished");
+        throw nb::python_error();
+    }
+    std::size_t count = times ? times->shape(0) : 0;
+    if (!times && !columns.empty()) count = columns.front().shape(0);
+    const auto pointers = pointers_of(columns, names_.size(), count);
+    Results results;
+    for (std::size_t i = 0; i < executor_.program().outputs.size(); ++i) {
+        results.add(executor_.known(i, count));
+    }
+    const auto failure =
+        exclusively(count, [&] { return executor_.push(pointers, count, results.pointers()); });
+    if (failure) raise_undefined(exceptions_, *failure);
+    if (times) {
+        for (std::size_t i = 0; i < count; ++i)
+            clock_.advance(times->data()[i]);
+    } else {
+        clock_.tick(count);
+    }
+    if (count > 0) {
+        for (std::size_t i = 0; i < pointers.size(); ++i)
+            previous_[i] = pointers[i][count - 1];
+    }
+    return results.hand_over();
+}
+
+std::vector<Result> Monitor::finish() {
+    require_idle();
+    Results results;
+    for (std::size_t i = 0; i < executor_.program().outputs.size(); ++i) {
+        results.add(executor_.remaining(i));
+    }
+    const auto failure = exclusively(history_of(executor_.program()),
+                                     [&] { return executor_.finish(results.pointers()); });
+    if (failure) raise_undefined(exceptions_, *failure);
+    return results.hand_over();
+}
+
+void Monitor::reset() {
+    require_idle();
+    executor_.reset();
+    clock_.reset();
+    std::ranges::fill(previous_, missing);
+}
+
+double Monitor::last(std::uint32_t instruction) const {
+    require_idle();
+    if (instruction >= executor_.program().instructions.size()) {
+        throw std::out_of_range("There is no instruction " + std::to_string(instruction) + ".");
+    }
+    return executor_.last(instruction);
+}
+
+Result Monitor::recent(std::size_t count) const {
+    require_idle();
+    const std::size_t available = clock_.stamps().available();
+    if (count > available) {
+        throw std::invalid_argument("Only the times of the last " + std::to_string(available) +
+                                    " samples are remembered.");
+    }
+    Results results;
+    results.add(count);
+    clock_.stamps().copy(count, results.pointers().front());
+    return std::move(results.hand_over().front());
+}
+
+void Monitor::require_idle() const {
+    if (busy_) throw std::runtime_error(in_use);
+}
+
+template <class Work>
+std::optional<Failure> Monitor::exclusively(std::size_t count, Work&& work) {
+    struct Busy {
+        bool& flag;
+        explicit Busy(bool& busy) noexcept : flag(busy) { flag = true; }
+        ~Busy() { flag = false; }
+        Busy(const Busy&) = delete;
+        Busy& operator=(const Busy&) = delete;
+        Busy(Busy&&) = delete;
+        Busy& operator=(Busy&&) = delete;
+    };
+    const Busy busy(busy_);
+    return without_gil(count, std::forward<Work>(work));
+}
+
+} // namespace rtamt::python

@@ -1,0 +1,80 @@
+// The online monitor as Python sees it: names, times and numbers checked, then the executor.
+//
+// update, update_pairs and step refuse what is wrong with a short Refused and change nothing; the
+// Python caller looks again and writes the sentence. Nothing here formats a message a sample.
+#pragma once
+
+#include "../discrete/clock.hpp"
+#include "../discrete/executor.hpp"
+#include "arrays.hpp"
+#include "numbers.hpp"
+
+#include <nanobind/nanobind.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace rtamt::python {
+
+// The exceptions of the module.
+struct Exceptions {
+    nb::object refused;   // an update was refused
+    nb::object undefined; // an operation made NaN: instruction, sample
+};
+
+[[noreturn]] void raise_undefined(const Exceptions& exceptions, const discrete::Failure& failure);
+
+class Monitor {
+  public:
+    Monitor(Program program, const std::vector<nb::str>& names, double period, double tolerance,
+            bool strict, const nb::object& ignored, Exceptions exceptions);
+
+    // One sample each. A float or None is what became known of the first output; null, with a
+    // Python exception set, is a refusal.
+    [[nodiscard]] PyObject* update(PyObject* time, PyObject* values) noexcept;
+    [[nodiscard]] PyObject* update_pairs(PyObject* time, PyObject* pairs) noexcept;
+    [[nodiscard]] PyObject* step(std::span<PyObject* const> values) noexcept;
+
+    [[nodiscard]] std::vector<Result> push(const std::optional<Column>& times,
+                                           const std::vector<Column>& columns);
+    [[nodiscard]] std::vector<Result> finish();
+    void reset();
+    [[nodiscard]] double last(std::uint32_t instruction) const;
+    [[nodiscard]] Result recent(std::size_t count) const;
+
+    [[nodiscard]] std::int64_t samples() const noexcept { return executor_.samples(); }
+    [[nodiscard]] std::uint64_t violations() const noexcept { return clock_.violations(); }
+    [[nodiscard]] double last_time() const noexcept { return clock_.stamps().last(); }
+    [[nodiscard]] std::size_t state_bytes() const noexcept {
+        return executor_.state_bytes() + clock_.stamps().bytes();
+    }
+
+  private:
+    discrete::Executor executor_;
+    discrete::Clock clock_;
+    Numbers numbers_;
+    Exceptions exceptions_;
+    std::vector<nb::str> names_;   // interned, in the order of the inputs
+    nb::dict places_;              // from name to index
+    nb::object ignored_;           // names of variables that exist and are not read
+    std::vector<double> row_;      // the sample that is being read
+    std::vector<double> previous_; // the last sample that was taken; NaN where there is none
+    bool busy_ = false;            // another thread is inside, without the GIL
+
+    void require_idle() const;
+    PyObject* refuse(const char* reason) const noexcept;
+    [[nodiscard]] bool ready() const noexcept;
+    [[nodiscard]] std::optional<std::size_t> place(PyObject* name, std::size_t guess) noexcept;
+    [[nodiscard]] PyObject* fail() const noexcept;
+
+    template <class Accepted>
+    [[nodiscard]] PyObject* take(Accepted&& accepted) noexcept;
+    template <class Work>
+    [[nodiscard]] std::optional<discrete::Failure> exclusively(std::size_t count, Work&& work);
+};
+
+} // namespace rtamt::python

@@ -1,0 +1,102 @@
+// Programs for tests: a builder, and the bytes of a program as whoever compiles one writes them.
+#pragma once
+
+#include "crc32.hpp"
+#include "program.hpp"
+
+#include <bit>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace programs {
+
+using rtamt::Instruction;
+using rtamt::Opcode;
+using rtamt::Program;
+
+class Builder {
+  public:
+    std::uint32_t input() {
+        return add({Opcode::input, rtamt::no_operand, rtamt::no_operand, program_.inputs++, 0, 0});
+    }
+    std::uint32_t constant(double x) {
+        return add({Opcode::constant, rtamt::no_operand, rtamt::no_operand, 0, x, 0});
+    }
+    // The lag of a pointwise operation is that of its operands.
+    std::uint32_t pointwise(Opcode opcode, std::uint32_t a, std::uint32_t b = rtamt::no_operand) {
+        Instruction instruction{opcode, a, b, 0, 0, 0};
+        instruction.lag = program_.operand_lag(instruction);
+        return add(instruction);
+    }
+    std::uint32_t unary(Opcode opcode, std::uint32_t a, std::int64_t n, std::int64_t lag,
+                        double x = 0) {
+        return add({opcode, a, rtamt::no_operand, n, x, lag});
+    }
+    std::uint32_t binary(Opcode opcode, std::uint32_t a, std::uint32_t b, std::int64_t n,
+                         std::int64_t lag) {
+        return add({opcode, a, b, n, 0, lag});
+    }
+    // The same values, known `distance` slots later.
+    std::uint32_t later(std::uint32_t a, std::int64_t distance) {
+        return unary(Opcode::shift, a, distance, lag(a) + distance);
+    }
+    [[nodiscard]] std::int64_t lag(std::uint32_t a) const { return program_.instructions[a].lag; }
+    Builder& output(std::uint32_t a) {
+        program_.outputs.push_back(a);
+        return *this;
+    }
+    [[nodiscard]] const Program& program() const { return program_; }
+
+  private:
+    Program program_;
+
+    std::uint32_t add(const Instruction& instruction) {
+        program_.instructions.push_back(instruction);
+        return static_cast<std::uint32_t>(program_.instructions.size() - 1);
+    }
+};
+
+template <class Unsigned>
+void put(std::vector<std::uint8_t>& bytes, Unsigned value) {
+    for (std::size_t i = 0; i < sizeof(Unsigned); ++i) {
+        bytes.push_back(static_cast<std::uint8_t>(std::uint64_t{value} >> (8 * i)));
+    }
+}
+
+// Sets the checksum at the end right.
+inline std::vector<std::uint8_t> sealed(std::vector<std::uint8_t> bytes) {
+    bytes.erase(bytes.end() - 4, bytes.end());
+    put(bytes, rtamt::crc32(bytes));
+    return bytes;
+}
+
+inline std::vector<std::uint8_t> bytes_of(const Program& program) {
+    std::vector<std::uint8_t> bytes;
+    for (const char letter : std::string("RTAMTPRG"))
+        put(bytes, static_cast<std::uint8_t>(letter));
+    put(bytes, std::uint16_t{1});
+    put(bytes, std::uint16_t{0});
+    put(bytes, static_cast<std::uint32_t>(program.instructions.size()));
+    put(bytes, program.inputs);
+    put(bytes, static_cast<std::uint32_t>(program.outputs.size()));
+    put(bytes, static_cast<std::uint32_t>(program.note.size()));
+    put(bytes, std::uint32_t{0});
+    for (const Instruction& instruction : program.instructions) {
+        put(bytes, static_cast<std::uint32_t>(instruction.opcode));
+        put(bytes, instruction.a);
+        put(bytes, instruction.b);
+        put(bytes, std::uint32_t{0});
+        put(bytes, static_cast<std::uint64_t>(instruction.n));
+        put(bytes, std::bit_cast<std::uint64_t>(instruction.x));
+        put(bytes, static_cast<std::uint64_t>(instruction.lag));
+    }
+    for (const std::uint32_t output : program.outputs)
+        put(bytes, output);
+    for (const char letter : program.note)
+        put(bytes, static_cast<std::uint8_t>(letter));
+    put(bytes, std::uint32_t{0});
+    return sealed(std::move(bytes));
+}
+
+} // namespace programs

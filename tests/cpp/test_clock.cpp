@@ -1,0 +1,77 @@
+#include "discrete/clock.hpp"
+
+#include "check.hpp"
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+using rtamt::discrete::Clock;
+
+static constexpr double inf = std::numeric_limits<double>::infinity();
+static constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
+
+TEST(time_must_be_finite_and_grow) {
+    Clock clock(1.0, inf, true, 1);
+    CHECK(std::isnan(clock.stamps().last()));
+    CHECK(!clock.accepts(not_a_number) && !clock.accepts(inf) && !clock.accepts(-inf));
+    CHECK(clock.accepts(-7.5));
+    clock.advance(-7.5);
+    CHECK(clock.stamps().last() == -7.5);
+    CHECK(!clock.accepts(-7.5) && !clock.accepts(-8.0) && !clock.accepts(not_a_number));
+    CHECK(clock.accepts(-7.0) && clock.accepts(1e9));
+}
+
+TEST(strict_clock_refuses_a_gap_out_of_tolerance) {
+    Clock clock(2.0, 0.25, true, 1);
+    clock.advance(10.0);
+    CHECK(!clock.accepts(11.25));
+    CHECK(clock.accepts(11.5) && clock.accepts(12.0) && clock.accepts(12.5));
+    CHECK(!clock.accepts(12.75));
+    CHECK(clock.violations() == 0);
+}
+
+TEST(lenient_clock_counts_a_gap_out_of_tolerance) {
+    Clock clock(2.0, 0.25, false, 1);
+    for (const double time : {10.0, 12.0, 17.0, 17.5, 19.5}) {
+        CHECK(clock.accepts(time));
+        clock.advance(time);
+    }
+    CHECK(clock.violations() == 2);
+    clock.reset();
+    CHECK(clock.violations() == 0 && std::isnan(clock.stamps().last()));
+    CHECK(clock.accepts(0.0));
+}
+
+TEST(ticks_start_at_zero_and_do_not_drift) {
+    Clock clock(0.1, 0.5, true, 1);
+    clock.tick(1);
+    CHECK(clock.stamps().last() == 0.0);
+    for (int i = 0; i < 100000; ++i)
+        clock.tick(1);
+    CHECK(clock.stamps().last() == 100000 * 0.1);
+    clock.tick(0);
+    CHECK(clock.stamps().last() == 100000 * 0.1);
+    clock.advance(10000.13);
+    clock.tick(5);
+    CHECK(clock.stamps().last() == 10000.13 + 5 * 0.1);
+}
+
+TEST(ticks_after_regular_times_go_on_from_the_first_of_them) {
+    Clock clock(0.1, 0.5, true, 1);
+    for (int i = 0; i < 7; ++i)
+        clock.advance(3.0 + i * 0.1);
+    clock.tick(3);
+    CHECK(clock.stamps().last() == 3.0 + 9 * 0.1 && clock.stamps().regular());
+}
+
+TEST(ticks_of_many_samples_are_as_many_ticks) {
+    Clock clock(0.5, 0.5, true, 4);
+    clock.tick(4);
+    std::vector<double> times(4);
+    clock.stamps().copy(4, times.data());
+    CHECK((times == std::vector<double>{0.0, 0.5, 1.0, 1.5}));
+    clock.reset();
+    clock.tick(1);
+    CHECK(clock.stamps().last() == 0.0);
+}

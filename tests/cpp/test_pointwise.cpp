@@ -1,0 +1,111 @@
+#include "discrete/pointwise.hpp"
+
+#include "programs.hpp"
+#include "ways.hpp"
+
+#include <utility>
+
+using oracle::inf;
+using programs::Builder;
+using rtamt::Opcode;
+using ways::Executor;
+using ways::Random;
+using ways::Signal;
+
+static const std::vector<Opcode> unary{Opcode::neg, Opcode::abs, Opcode::sqrt, Opcode::exp,
+                                       Opcode::ln};
+static const std::vector<Opcode> binary{
+    Opcode::add, Opcode::sub, Opcode::mul,      Opcode::div,      Opcode::pow,     Opcode::log,
+    Opcode::min, Opcode::max, Opcode::holds_gt, Opcode::holds_ge, Opcode::holds_eq};
+
+// Above 1, where no operation makes NaN.
+static Signal tame(Random& random, std::size_t count) {
+    Signal signal;
+    for (std::size_t i = 0; i < count; ++i) {
+        signal.push_back(1.25 + static_cast<double>(random.between(0, 12)) / 4);
+    }
+    return signal;
+}
+
+TEST(every_operation_is_its_definition_at_every_lag_and_in_any_chunks) {
+    Random random(3);
+    for (const std::size_t count : std::initializer_list<std::size_t>{0, 1, 3, 700}) {
+        const std::vector<Signal> columns{tame(random, count), tame(random, count)};
+        for (const std::int64_t lag : {0, 1, 5, 300}) {
+            Builder builder;
+            const auto a = builder.input();
+            const auto b = builder.input();
+            const auto c = builder.constant(2.5);
+            const auto late_a = builder.later(a, lag);
+            const auto late_b = builder.later(b, lag);
+            for (const Opcode opcode : unary)
+                builder.output(builder.pointwise(opcode, late_a));
+            for (const Opcode opcode : binary) {
+                builder.output(builder.pointwise(opcode, late_a, late_b));
+                builder.output(builder.pointwise(opcode, late_a, c));
+                builder.output(builder.pointwise(opcode, c, late_b));
+                builder.output(builder.pointwise(opcode, late_a, late_a));
+                builder.output(builder.pointwise(opcode, c, c));
+            }
+            ways::check_all_ways(builder.program(), columns, count, random,
+                                 "lag " + std::to_string(lag));
+        }
+    }
+}
+
+TEST(comparisons_differ_at_equality_only) {
+    Builder builder;
+    const auto a = builder.input();
+    const auto zero = builder.constant(0.0);
+    for (const Opcode opcode : {Opcode::holds_gt, Opcode::holds_ge, Opcode::holds_eq}) {
+        builder.output(builder.pointwise(opcode, a, zero));
+    }
+    std::vector<Signal> outputs;
+    CHECK(!ways::offline(builder.program(), {{-1.0, -0.0, 0.0, 1.0}}, 4, outputs));
+    CHECK((outputs[0] == Signal{-inf, -inf, -inf, inf}));
+    CHECK((outputs[1] == Signal{-inf, inf, inf, inf}));
+    CHECK((outputs[2] == Signal{-inf, inf, inf, -inf}));
+}
+
+TEST(every_partial_operation_reports_the_sample_where_it_makes_nan) {
+    struct Case {
+        Opcode opcode;
+        double a;
+        double b;
+    };
+    for (const Case& example :
+         {Case{Opcode::sqrt, -1, 0}, Case{Opcode::ln, -1, 0}, Case{Opcode::add, inf, -inf},
+          Case{Opcode::sub, inf, inf}, Case{Opcode::mul, 0, inf}, Case{Opcode::div, 0, 0},
+          Case{Opcode::pow, -1, 0.5}, Case{Opcode::log, -1, 2}}) {
+        const bool two = rtamt::info(example.opcode).operands == 2;
+        for (const std::size_t bad : std::initializer_list<std::size_t>{0, 5, 299, 599}) {
+            Builder builder;
+            const auto a = builder.input();
+            const auto b = builder.input();
+            builder.output(builder.pointwise(example.opcode, a, two ? b : rtamt::no_operand));
+            std::vector<Signal> columns{Signal(600, 2.0), Signal(600, 3.0)};
+            columns[0][bad] = example.a;
+            columns[1][bad] = example.b;
+            std::vector<Signal> outputs;
+            const auto failure = ways::offline(builder.program(), columns, 600, outputs);
+            const std::string name(rtamt::info(example.opcode).name);
+            CHECK_NOTE(failure && failure->instruction == 2 && std::cmp_equal(failure->sample, bad),
+                       name);
+            Executor executor(builder.program());
+            const auto online = ways::push(executor, columns, 0, 600, outputs);
+            CHECK_NOTE(online && online->instruction == 2 && std::cmp_equal(online->sample, bad),
+                       name);
+        }
+    }
+}
+
+TEST(infinite_values_are_legal) {
+    Builder builder;
+    const auto a = builder.input();
+    builder.output(builder.pointwise(Opcode::add, a, a));
+    builder.output(builder.pointwise(Opcode::exp, a));
+    std::vector<Signal> outputs;
+    CHECK(!ways::offline(builder.program(), {{inf, -inf}}, 2, outputs));
+    CHECK((outputs[0] == Signal{inf, -inf}));
+    CHECK((outputs[1] == Signal{inf, 0.0}));
+}

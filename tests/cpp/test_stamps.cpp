@@ -1,0 +1,63 @@
+#include "discrete/stamps.hpp"
+
+#include "check.hpp"
+
+#include <cmath>
+#include <vector>
+
+using rtamt::discrete::Stamps;
+
+static std::vector<double> last(const Stamps& stamps, std::size_t count) {
+    std::vector<double> times(count);
+    stamps.copy(count, times.data());
+    return times;
+}
+
+// Adds the times one by one; whatever is asked for on the way is what was added last.
+static void check_all(Stamps& stamps, const std::vector<double>& times, std::size_t size) {
+    for (std::size_t i = 0; i < times.size(); ++i) {
+        stamps.add(times[i]);
+        CHECK(stamps.count() == i + 1 && stamps.last() == times[i]);
+        CHECK(stamps.available() == std::min(i + 1, size));
+        for (std::size_t count = 0; count <= stamps.available(); ++count) {
+            const auto end = times.begin() + static_cast<std::ptrdiff_t>(i + 1);
+            CHECK(last(stamps, count) ==
+                  std::vector<double>(end - static_cast<std::ptrdiff_t>(count), end));
+        }
+    }
+}
+
+TEST(the_last_times_come_back_oldest_first_wherever_they_stop_being_regular) {
+    for (std::size_t size = 1; size <= 7; ++size) {
+        Stamps stamps(0.1, size);
+        for (std::size_t irregular = 1; irregular <= 20; ++irregular) {
+            std::vector<double> times;
+            for (std::size_t i = 0; i < 20; ++i) {
+                const double late = i >= irregular ? 0.03 : 0.0;
+                times.push_back(5.0 + static_cast<double>(i) * 0.1 + late);
+            }
+            check_all(stamps, times, size);
+            CHECK(stamps.regular() == (irregular == 20));
+            CHECK(stamps.bytes() == (stamps.regular() ? 0 : 8 * size));
+            stamps.reset();
+            CHECK(stamps.count() == 0 && stamps.available() == 0 && std::isnan(stamps.last()));
+        }
+    }
+}
+
+TEST(regular_times_are_exactly_those_that_were_given) {
+    Stamps stamps(0.1, 3);
+    for (int i = 0; i < 1000; ++i)
+        stamps.add(i * 0.1);
+    CHECK(stamps.regular() && stamps.regular_next() == 1000 * 0.1);
+    CHECK((last(stamps, 3) == std::vector<double>{997 * 0.1, 998 * 0.1, 999 * 0.1}));
+}
+
+TEST(times_that_were_summed_up_drift_and_are_kept_as_they_are) {
+    Stamps stamps(0.1, 4);
+    std::vector<double> times{0.0};
+    for (int i = 0; i < 50; ++i)
+        times.push_back(times.back() + 0.1);
+    check_all(stamps, times, 4);
+    CHECK(!stamps.regular());
+}

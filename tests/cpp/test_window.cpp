@@ -1,0 +1,60 @@
+#include "discrete/window.hpp"
+
+#include "programs.hpp"
+#include "ways.hpp"
+
+using oracle::inf;
+using programs::Builder;
+using rtamt::Opcode;
+using ways::Executor;
+using ways::Random;
+using ways::Signal;
+
+TEST(extremum_is_its_definition_for_any_width_lag_and_chunks) {
+    Random random(5);
+    for (const std::size_t count : std::initializer_list<std::size_t>{0, 1, 2, 10, 257, 700}) {
+        const std::vector<Signal> columns{random.signal(count)};
+        for (const std::int64_t width : {1, 2, 3, 4, 5, 6, 7, 8, 9, 17, 100, 255, 256, 257, 800}) {
+            for (const std::int64_t head : {0, 3, 270}) {
+                Builder builder;
+                const auto late = builder.later(builder.input(), head);
+                for (const Opcode opcode : {Opcode::slide_max, Opcode::slide_min}) {
+                    for (const std::int64_t lag :
+                         {head, head + width - 1, head + width + 5, std::int64_t{0}}) {
+                        builder.output(builder.unary(opcode, late, width, lag));
+                    }
+                }
+                ways::check_all_ways(builder.program(), columns, count, random,
+                                     "width " + std::to_string(width) + ", head " +
+                                         std::to_string(head) + ", count " + std::to_string(count));
+            }
+        }
+    }
+}
+
+TEST(window_of_a_constant_is_cut_at_the_ends_of_the_trace) {
+    Builder builder;
+    const auto three = builder.constant(3.0);
+    builder.input();
+    builder.output(builder.unary(Opcode::slide_max, three, 2, 3)); // eventually[2,3]
+    std::vector<Signal> outputs;
+    CHECK(!ways::offline(builder.program(), {Signal(5, 0.0)}, 5, outputs));
+    CHECK((outputs[0] == Signal{3, 3, 3, -inf, -inf}));
+}
+
+TEST(historically_eventually_reads_nothing_from_before_the_horizon) {
+    // historically(eventually[0,2] x) on 0,0,5,5,5,5,5 is 5 everywhere.
+    Builder builder;
+    const auto eventually = builder.unary(Opcode::slide_max, builder.input(), 3, 2);
+    builder.output(builder.unary(Opcode::run_min, eventually, 0, 2));
+    std::vector<Signal> outputs;
+    CHECK(!ways::offline(builder.program(), {{0, 0, 5, 5, 5, 5, 5}}, 7, outputs));
+    CHECK((outputs[0] == Signal(7, 5.0)));
+}
+
+TEST(a_wide_window_costs_one_double_a_sample_of_it) {
+    Builder builder;
+    builder.output(builder.unary(Opcode::slide_max, builder.input(), 1000000, 0));
+    Executor executor(builder.program());
+    CHECK(executor.state_bytes() < 8 * 1000000 + 100);
+}
