@@ -1,0 +1,81 @@
+"""The compiled back end: runs serialised programs over samples in discrete time."""
+
+from collections.abc import Collection, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+class Refused(Exception):  # noqa: N818 - a word that reads well after except
+    """An update was refused; the monitor is as it was."""
+
+class Undefined(Exception):  # noqa: N818
+    """An operation made NaN; args are the instruction and the sample."""
+
+    args: tuple[int, int]
+
+class Monitor:
+    """Runs a program online, one sample or one chunk at a time."""
+
+    def __init__(
+        self,
+        program: bytes,
+        names: Sequence[str],
+        period: float = 1.0,
+        tolerance: float = ...,
+        strict: bool = True,
+        ignored: Collection[str] | None = None,
+    ) -> None: ...
+    def update(self, t: float, values: Mapping[str, Any], /) -> float | None:
+        """Take the sample of time t, a dict of every input; return what became known, or None."""
+
+    def update_pairs(self, t: float, pairs: Sequence[Sequence[Any]], /) -> float | None:
+        """The same from (name, value) pairs; a variable left out keeps its value."""
+
+    def step(self, *values: float) -> float | None:
+        """Take the next sample, one value an input, a period after the last one."""
+
+    def push(
+        self, times: NDArray[np.float64] | None, columns: Sequence[NDArray[np.float64]]
+    ) -> list[NDArray[np.float64]]:
+        """Take a chunk, a column an input; return what became known of each output."""
+
+    def finish(self) -> list[NDArray[np.float64]]:
+        """End the trace; return the rest of each output."""
+
+    def reset(self) -> None:
+        """Forget every sample."""
+
+    def last(self, instruction: int) -> float:
+        """The value of an instruction at the last slot."""
+
+    def recent(self, count: int) -> NDArray[np.float64]:
+        """The times of the last samples, as many as values can be outstanding and one more."""
+
+    @property
+    def samples(self) -> int:
+        """How many samples came."""
+
+    @property
+    def violations(self) -> int:
+        """How many gaps were out of tolerance."""
+
+    @property
+    def last_time(self) -> float:
+        """The time of the last sample, or NaN."""
+
+    @property
+    def state_bytes(self) -> int:
+        """Bytes of state."""
+
+def opcode_names() -> list[str]:
+    """The names of the opcodes, in the order of their codes."""
+
+def evaluate(program: bytes, columns: Sequence[NDArray[np.float64]], n: int) -> list[NDArray[np.float64]]:
+    """Run a program over a whole trace of n samples; return n values an output."""
+
+def scan(kind: str, a: NDArray[np.float64], b: NDArray[np.float64] | None = None) -> NDArray[np.float64]:
+    """Unbounded future over a whole column: run_max, run_min, or until."""
+
+def memory(program: bytes) -> int:
+    """Bytes of state of a new monitor of this program."""

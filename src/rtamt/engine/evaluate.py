@@ -1,0 +1,76 @@
+"""Offline: formulas and a finished trace to robustness signals."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rtamt.engine.compile import Plan, compile_plan
+from rtamt.engine.core import core
+from rtamt.errors import EvaluationError
+from rtamt.language.formula import Apply, postorder
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+    from fractions import Fraction
+
+    from rtamt.engine.program import Program
+    from rtamt.engine.signals import FloatArray, Trace
+    from rtamt.language.formula import Formula
+
+
+class Evaluator:
+    """Evaluates the same core formulas (see ``desugar``) over traces, compiling no more often than needed."""
+
+    def __init__(self, formulas: Sequence[Formula], period: Fraction) -> None:
+        self._formulas = tuple(formulas)
+        self._period = period
+        self._longest = longest_bound(formulas, period)
+        self._plans: dict[int, Plan] = {}
+
+    def __call__(self, trace: Trace) -> list[FloatArray]:
+        """Return the robustness of each formula at each of the n samples of the trace."""
+        n = len(trace)
+        # A trace longer than every bound needs no clipping, so that one plan serves all such traces.
+        clip = min(n, self._longest + 1)
+        plan = self._plans.get(clip)
+        if plan is None:
+            self._plans.clear()
+            plan = self._plans[clip] = compile_plan(self._formulas, self._period, clip)
+        columns = dict(trace.columns)
+        for stage in plan.stages:
+            values = run(stage.program, columns, trace)
+            for scan in stage.scans:
+                columns[scan.name] = core().scan(scan.kind, *(values[i] for i in scan.outputs))
+        return run(plan.program, columns, trace)
+
+
+def longest_bound(formulas: Sequence[Formula], period: Fraction) -> int:
+    """Return the largest finite bound of any interval, in samples."""
+    longest = 0
+    for formula in formulas:
+        for node in postorder(formula):
+            if isinstance(node, Apply) and node.interval is not None:
+                last = node.interval.end if node.interval.end is not None else node.interval.begin
+                longest = max(longest, int(last / period))
+    return longest
+
+
+def run(program: Program, columns: Mapping[str, FloatArray], trace: Trace) -> list[FloatArray]:
+    """Run one program over whole columns."""
+    _core = core()
+    inputs = [columns[name] for name in program.inputs]
+    try:
+        values: list[FloatArray] = _core.evaluate(program.to_bytes(), inputs, len(trace))
+    except _core.Undefined as error:
+        instruction, sample = error.args
+        raise undefined(program, instruction, sample, float(trace.times[sample])) from None
+    return values
+
+
+def undefined(program: Program, instruction: int, sample: int, time: float) -> EvaluationError:
+    """Return the error for a value that does not exist (0/0, inf - inf, …)."""
+    return EvaluationError(
+        f"'{program.origins[instruction]}' has no value at sample {sample}, time {time:g} s: it is 0/0, inf - inf, "
+        f"0 * inf, or a root or logarithm of a negative number; "
+        f"change the formula or the data so that this cannot happen"
+    )

@@ -1,0 +1,248 @@
+"""Online: samples in, robustness out as soon as it is known; nothing is lost when an update fails."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from math import isfinite, isnan
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rtamt.engine import python_backend, signals
+from rtamt.engine.compile import compile_program
+from rtamt.engine.core import core
+from rtamt.engine.evaluate import undefined
+from rtamt.engine.signals import Signal
+from rtamt.errors import TraceError, UsageError
+from rtamt.language.formula import variables
+from rtamt.rewrite.check import check_bounds, check_online
+from rtamt.rewrite.desugar import desugar
+from rtamt.rewrite.horizon import horizon
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from rtamt.language.formula import Formula
+
+
+class Monitor:
+    """Watches one formula over a stream of samples in discrete time.
+
+    Built by ``Specification.monitor``. Feed it with one of :meth:`update` (a sample by name),
+    :meth:`step` (a sample by position, fastest) and :meth:`update_many` (a chunk), then
+    :meth:`finish`. Values come in order, each exactly once: ρ at t as soon as the input has
+    reached t + horizon.
+
+    >>> import rtamt
+    >>> monitor = rtamt.parse("always[0:1](x >= 3)").monitor(period=1)
+    >>> [monitor.update(t, x=x) for t, x in enumerate([5.0, 4.0, 6.0])]
+    [None, 1.0, 1.0]
+    >>> monitor.finish()
+    Signal(times=array([2.]), values=array([3.]))
+    """
+
+    def __init__(
+        self,
+        formula: Formula,
+        *,
+        text: str | None = None,
+        period: Fraction = Fraction(1),
+        tolerance: float = signals.TOLERANCE,
+        backend: str = "cpp",
+    ) -> None:
+        check_bounds(formula, period, text)
+        check_online(formula, text)
+        depth = horizon(formula, period)
+        assert depth is not None
+        self._period = period
+        self._tolerance = tolerance
+        self._depth = depth
+        self._lag = int(depth / period)
+        self.input_names: tuple[str, ...] = variables(formula)
+        self._finished = False
+        self._program = None
+        if backend == "python":
+            self._backend: Any = python_backend.PythonMonitor((formula,), self.input_names, period, tolerance)
+            self._refused: Any = python_backend.Refused
+            self._undefined: Any = ()
+        else:
+            _core = core()
+            self._program = compile_program((desugar(formula),), period, self.input_names)
+            self._backend = _core.Monitor(
+                self._program.to_bytes(), list(self.input_names), float(period), tolerance
+            )
+            self._refused, self._undefined = _core.Refused, _core.Undefined
+        self._update = self._backend.update
+        self._step = self._backend.step
+
+    @property
+    def horizon(self) -> float:
+        """Seconds after t at which ρ at t is known."""
+        return float(self._depth)
+
+    @property
+    def period(self) -> Fraction:
+        """Seconds from one sample to the next."""
+        return self._period
+
+    @property
+    def samples(self) -> int:
+        """How many samples the monitor has taken since the start or the last reset."""
+        return int(self._backend.samples)
+
+    @property
+    def memory(self) -> int:
+        """Bytes of state."""
+        return int(self._backend.state_bytes)
+
+    def update(self, time: float, /, **values: float) -> float | None:
+        """Take one sample: ``time`` in seconds and a number for every variable.
+
+        Returns ρ at ``time - horizon``; None until the horizon has passed. Raises
+        :class:`TraceError` for wrong data and :class:`EvaluationError` where an operation has no
+        value; the monitor is then as it was. A formula that reads ``req.value`` takes an object
+        with that field as ``req=``, or the number as ``**{"req.value": 3}``.
+        """
+        try:
+            return self._update(time, values)  # type: ignore[no-any-return]
+        except self._refused:
+            flat = self._fields(values)
+            if flat is not None:
+                return self.update(time, **flat)
+            raise self._refusal(time, values) from None
+        except self._undefined as error:
+            raise self._no_value(error, (time,)) from None
+
+    def step(self, *values: float) -> float | None:
+        """Take one sample by position, in the order of ``input_names``, one period after the last.
+
+        Returns and raises as :meth:`update` does; for loops in which a microsecond counts.
+        """
+        try:
+            return self._step(*values)  # type: ignore[no-any-return]
+        except self._refused:
+            if len(values) != len(self.input_names):
+                raise TraceError(
+                    f"got {len(values)} values at sample {self.samples}, expected {len(self.input_names)}: "
+                    f"{', '.join(self.input_names) or 'the formula reads no variable'}"
+                ) from None
+            time = self._next_time()
+            raise self._refusal(time, dict(zip(self.input_names, values, strict=True))) from None
+        except self._undefined as error:
+            raise self._no_value(error, (self._next_time(),)) from None
+
+    def update_many(self, data: Any) -> Signal:
+        """Take a chunk of samples: a mapping (or frame) from variable to values, with ``"time"``.
+
+        Returns what became known, a Signal of as many values. ``"time"`` may be left out; samples
+        then follow one period after another. Raises as :meth:`update` does.
+        """
+        if self._finished:
+            raise self._is_finished()
+        times, columns = self._chunk(data)
+        before = self._backend.recent(min(self._lag, self.samples))
+        try:
+            known = self._backend.push(times, columns)[0]
+        except self._undefined as error:
+            raise self._no_value(error, times) from None
+        return Signal(np.concatenate((before, times))[: len(known)], known)
+
+    def finish(self) -> Signal:
+        """Say that no more samples will come; returns the values that were still unknown."""
+        if self._finished:
+            return Signal(np.empty(0), np.empty(0))
+        try:
+            values = self._backend.finish()[0]
+        except self._undefined as error:
+            raise self._no_value(error, ()) from None
+        self._finished = True
+        return Signal(self._backend.recent(len(values)), values)
+
+    def reset(self) -> None:
+        """Forget the trace; the next sample is the first."""
+        self._backend.reset()
+        self._finished = False
+
+    def _fields(self, values: dict[str, Any]) -> dict[str, Any] | None:
+        """Return the values with objects taken apart into the fields that the formula reads, if there are any."""
+        flat = dict(values)
+        for name in self.input_names:
+            head, *path = name.split(".")
+            if path and name not in values and head in values:
+                flat[name] = signals.field_of(values[head], head, path, self.samples)
+        if len(flat) == len(values):
+            return None
+        heads = {name.split(".")[0] for name in flat if name in self.input_names and name not in values}
+        return {name: value for name, value in flat.items() if name not in heads or name in self.input_names}
+
+    def _next_time(self) -> float:
+        return float(self._backend.last_time) + float(self._period) if self.samples else 0.0
+
+    # ---- what goes wrong -------------------------------------------------------------------------
+
+    def _chunk(self, data: Any) -> tuple[signals.FloatArray, list[signals.FloatArray]]:
+        last = float(self._backend.last_time) if self.samples else None
+        times, columns, n = signals.columns_of(data, self.input_names)
+        if times is None:
+            times = np.array(self._next_time() + float(self._period) * np.arange(n), dtype=np.float64)
+        signals.check_increasing(times, last, self.samples)
+        signals.check_regular(times, self._period, self._tolerance, last, self.samples)
+        for name, column in columns.items():
+            signals.check_numbers(name, column, times, self.samples)
+        return times, [columns[name] for name in self.input_names]
+
+    def _is_finished(self) -> UsageError:
+        return UsageError("the monitor has finished its trace; call reset() before the next sample")
+
+    def _refusal(self, time: Any, values: dict[str, Any]) -> Exception:
+        """Find out why the back end took no sample, and say it."""
+        index = self.samples
+        if self._finished:
+            return self._is_finished()
+        last = float(self._backend.last_time) if index else None
+        error = refused_time(time, index, last) or refused_values(values, self.input_names, index, time)
+        if error is not None:
+            return error
+        assert last is not None
+        return signals.irregular(index, float(time), last, self._period, self._tolerance)
+
+    def _no_value(self, error: Exception, new: Sequence[float] | signals.FloatArray) -> Exception:
+        """Name the sub-formula and the instant of a value that does not exist; ``new`` are the stamps taken."""
+        instruction, sample = error.args
+        assert self._program is not None
+        stamps = np.concatenate((self._backend.recent(min(self._lag, self.samples)), new))
+        first = self.samples + len(new) - len(stamps)
+        return undefined(self._program, instruction, sample, float(stamps[sample - first]))
+
+
+def refused_time(time: Any, index: int, last: float | None) -> TraceError | None:
+    """Return what is wrong with a sample's time stamp, if anything is."""
+    if not signals.is_number(time):
+        return TraceError(
+            f"time is {time!r} at sample {index}, expected a number of seconds", variable="time"
+        )
+    if not isfinite(time):
+        return TraceError(f"time is {float(time)} at sample {index}: give a finite number of seconds")
+    if last is not None and time <= last:
+        return signals.not_increasing(index, float(time), last)
+    return None
+
+
+def refused_values(
+    values: dict[str, Any], names: tuple[str, ...], index: int, time: float
+) -> TraceError | None:
+    """Return what is wrong with a sample's values, if anything is."""
+    for name in values:
+        if name not in names:
+            return signals.unknown_variable(name, names)
+    for name in names:
+        if name not in values:
+            return signals.missing_variable(name, tuple(values))
+        value = values[name]
+        if not signals.is_number(value):
+            return TraceError(
+                f"'{name}' is {value!r} at sample {index}, expected a number", variable=name, index=index
+            )
+        if isnan(value):
+            return signals.nan_error(name, index, float(time))
+    return None

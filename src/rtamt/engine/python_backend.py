@@ -1,0 +1,170 @@
+"""The Python back end of a monitor: the definition behind the interface of the compiled monitor.
+
+Slow and plain, for machines where nothing can be compiled and for operators that have only a
+definition. It says no (:class:`Refused`) where the compiled monitor does, and for the same reasons.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from math import inf, isfinite, isnan
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rtamt.engine import signals
+from rtamt.engine.reference import ReferenceMonitor, history
+from rtamt.rewrite.horizon import horizon
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Mapping, Sequence
+    from fractions import Fraction
+
+    from rtamt.engine.signals import FloatArray
+    from rtamt.language.formula import Formula
+
+
+class Refused(Exception):  # noqa: N818 - the compiled monitor's word
+    """An update cannot be taken; nothing has changed."""
+
+
+class PythonMonitor:
+    """One monitor over the definition; see ``_core.Monitor`` for what each method means."""
+
+    def __init__(
+        self,
+        formulas: Sequence[Formula],
+        names: tuple[str, ...],
+        period: Fraction,
+        tolerance: float = inf,
+        strict: bool = True,
+        ignored: Collection[str] = (),
+    ) -> None:
+        depths = [horizon(formula, period) for formula in formulas]
+        lags = [int(depth / period) for depth in depths if depth is not None]
+        assert len(lags) == len(depths), "unbounded future is refused before"
+        reach: list[int] = []
+        for formula in formulas:
+            behind = history(formula, period)
+            if behind is None:
+                reach = []
+                break
+            reach.append(behind)
+        # A formula without variables still counts samples: one column that nothing reads.
+        self._names = names
+        self._monitor = ReferenceMonitor(
+            formulas, names or ("#",), period, lags, max(reach) if reach else None
+        )
+        self._period = float(period)
+        self._tolerance = tolerance
+        self._strict = strict
+        self._ignored = frozenset(ignored)
+        self._stamps: deque[float] = deque(maxlen=max(lags, default=0) + 1)
+        self._values: dict[str, float] = {}
+        self._finished = False
+        self.violations = 0
+
+    @property
+    def samples(self) -> int:
+        """How many samples have been taken."""
+        return self._monitor.samples
+
+    @property
+    def last_time(self) -> float | None:
+        """The stamp of the last sample; None before the first."""
+        return self._stamps[-1] if self._stamps else None
+
+    @property
+    def state_bytes(self) -> int:
+        """Bytes of signal kept; grows with the trace where the past is unbounded."""
+        return self._monitor.state_bytes
+
+    def recent(self, count: int) -> FloatArray:
+        """Return the stamps of the last ``count`` samples."""
+        return np.array(list(self._stamps)[len(self._stamps) - count :], dtype=np.float64)
+
+    def update(self, time: float, values: Mapping[str, float]) -> float | None:
+        """Take one sample with a value for every variable."""
+        if set(values) != set(self._names):
+            raise Refused("variables")
+        return self._take(time, {name: _number(values[name]) for name in self._names})
+
+    def update_pairs(self, time: float, pairs: Sequence[tuple[str, float]]) -> float | None:
+        """Take one sample; a variable that is left out keeps its value."""
+        values = dict(self._values)
+        for name, value in pairs:
+            if name in self._names:
+                values[name] = _number(value)
+            elif name not in self._ignored:
+                raise Refused("unknown variable")
+        if len(values) != len(self._names):
+            raise Refused("missing variable")
+        return self._take(time, values)
+
+    def step(self, *values: float) -> float | None:
+        """Take one sample, values in the order of the inputs, one period after the last."""
+        if len(values) != len(self._names):
+            raise Refused("number of values")
+        time = self._stamps[-1] + self._period if self._stamps else 0.0
+        return self._take(time, {n: _number(v) for n, v in zip(self._names, values, strict=True)})
+
+    def push(self, times: FloatArray, columns: Sequence[FloatArray]) -> list[FloatArray]:
+        """Take many samples, checked by the caller."""
+        off = [self._off(a, b) for a, b in zip([self.last_time, *times], times, strict=False)]
+        if len(times):
+            self._begin(float(times[0]))
+        known = self._monitor.push(list(columns) or [np.zeros(len(times))])
+        self._stamps.extend(float(time) for time in times)
+        self.violations += sum(off)
+        if len(times):
+            self._values = {name: float(c[-1]) for name, c in zip(self._names, columns, strict=True)}
+        return known
+
+    def finish(self) -> list[FloatArray]:
+        """Return what was still unknown; after it only ``reset`` is possible."""
+        known = self._monitor.finish()
+        self._finished = True
+        return known
+
+    def reset(self) -> None:
+        """Forget the trace."""
+        self._monitor.reset()
+        self._finished = False
+        self._stamps.clear()
+        self._values = {}
+        self.violations = 0
+
+    def _take(self, time: Any, values: Mapping[str, float]) -> float | None:
+        time = _number(time)
+        if self._finished:
+            raise Refused("finished")
+        if not isfinite(time) or (self._stamps and time <= self._stamps[-1]):
+            raise Refused("time")
+        off = self._off(self.last_time, time)
+        if off and self._strict:
+            raise Refused("period")
+        columns = [np.array([values[name]]) for name in self._names] or [np.zeros(1)]
+        self._begin(time)
+        known = self._monitor.push(columns)[0]
+        self._stamps.append(time)
+        self._values = dict(values)
+        self.violations += off
+        return float(known[0]) if len(known) else None
+
+    def _begin(self, time: float) -> None:
+        """Let the definition's messages count time from the first stamp."""
+        if not self._stamps:
+            self._monitor.start = time
+
+    def _off(self, before: float | None, time: float) -> bool:
+        """Tell whether a gap misses the period by more than the tolerance; the first sample has none."""
+        return before is not None and abs(time - before - self._period) > self._tolerance * self._period
+
+
+def _number(value: Any) -> float:
+    if not signals.is_number(value):
+        raise Refused("not a number")
+    number = float(value)
+    if isnan(number):
+        raise Refused("NaN")
+    return number

@@ -1,0 +1,309 @@
+"""Whatever the caller has (lists, arrays, frames, objects with fields) to float64 arrays: once, at the edge."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from datetime import datetime
+from fractions import Fraction
+from functools import reduce
+from numbers import Real
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rtamt.errors import TraceError, did_you_mean
+from rtamt.language.units import format_duration
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Sequence
+
+    from numpy.typing import NDArray
+
+    FloatArray = NDArray[np.float64]
+
+#: The key under which a trace holds its time stamps.
+TIME = "time"
+
+#: How far, as a fraction of the period, the gap between two samples may be from the period.
+TOLERANCE = 0.1
+
+
+@dataclass(frozen=True, slots=True)
+class Signal:
+    """Values over time: ``times`` in seconds, ``values``; float64 arrays of the same length."""
+
+    times: FloatArray
+    values: FloatArray
+
+    def __len__(self) -> int:
+        return len(self.times)
+
+
+@dataclass(frozen=True, slots=True)
+class Trace:
+    """A finished recording in discrete time: one column of ``len(times)`` samples for each variable."""
+
+    times: FloatArray
+    columns: Mapping[str, FloatArray]
+    period: Fraction
+
+    def __len__(self) -> int:
+        return len(self.times)
+
+
+def trace(data: Any, names: Sequence[str], period: Fraction | None, known: Collection[str] = ()) -> Trace:
+    """Normalise a finished recording; the caller's data is never changed.
+
+    ``data``: a mapping, or anything with columns (a pandas or polars frame), from variable to n
+    numbers; ``"time"`` (n stamps, seconds or datetimes) is optional. ``names`` are the variables the
+    formula reads, ``known`` others that may be there. Without a ``period`` (seconds) it is taken
+    from the stamps. Raises :class:`TraceError`.
+    """
+    times, columns, n = columns_of(data, names, known)
+    if n == 0:
+        raise TraceError("the trace is empty: give at least one sample")
+    if times is None:
+        period = period or Fraction(1)
+        times = np.arange(n, dtype=np.float64) * float(period)
+    else:
+        check_increasing(times)
+        period = period or infer_period(times)
+        check_regular(times, period)
+    for name, column in columns.items():
+        check_numbers(name, column, times)
+    return Trace(times, columns, period)
+
+
+def columns_of(
+    data: Any, names: Sequence[str], known: Collection[str] = ()
+) -> tuple[FloatArray | None, dict[str, FloatArray], int]:
+    """Return the time stamps (None if there are none), a column for each name, and their common length."""
+    keys = _keys(data)
+    if isinstance(data, Mapping):
+        _refuse_unknown(keys, names, known)
+    columns = {name: _column(data, keys, name) for name in names}
+    times = stamps(data[TIME]) if TIME in keys else None
+    return times, columns, _common_length(columns, times, data, keys)
+
+
+def array(values: Any, name: str) -> FloatArray:
+    """Return ``values`` as a contiguous one-dimensional float64 array.
+
+    Always a copy: sub-formulas are evaluated when they are asked for, whatever the caller has done
+    to the data by then.
+    """
+    try:
+        raw = np.asarray(values)
+        # numpy would read the text "1.5" as a number and None as NaN; both are more likely mistakes.
+        numeric = raw.dtype.kind in "fiub" or (raw.dtype.kind == "O" and all(map(is_number, raw.flat)))
+        if raw.ndim == 0 or not numeric:
+            raise _not_numbers(values, name)
+        result = np.array(raw, dtype=np.float64, order="C")
+    except (TypeError, ValueError):
+        raise _not_numbers(values, name) from None
+    if raw.ndim != 1:
+        raise TraceError(
+            f"'{name}' has {raw.ndim} dimensions, expected 1: give one number a sample", variable=name
+        )
+    return result
+
+
+def is_number(value: Any) -> bool:
+    """Tell whether a value is a real number that a double can hold: Python's, numpy's, or any other."""
+    if not isinstance(value, (Real, np.bool_)):
+        return False
+    try:
+        float(value)
+    except OverflowError:
+        return False
+    return True
+
+
+def stamps(values: Any) -> FloatArray:
+    """Return time stamps as seconds: numbers are seconds, datetimes count from 1970."""
+    raw = np.asarray(values)
+    if raw.dtype.kind == "O" and len(raw) and isinstance(raw.flat[0], datetime):
+        raw = np.array([value.timestamp() for value in raw.flat])
+    if raw.dtype.kind == "M":
+        raw = raw.astype("datetime64[ns]").astype(np.int64) / 1e9
+    return array(raw, TIME)
+
+
+def check_numbers(name: str, column: FloatArray, times: FloatArray, first: int = 0) -> None:
+    """Raise :class:`TraceError` at the first NaN; ``first`` is the index of ``column[0]`` in the recording."""
+    bad = np.isnan(column)
+    if bad.any():
+        i = int(bad.argmax())
+        raise nan_error(name, first + i, float(times[i]))
+
+
+def nan_error(name: str, index: int, time: float) -> TraceError:
+    """Return the error for a NaN in the data."""
+    return TraceError(
+        f"'{name}' is NaN at sample {index}, time {time:g} s: fill the gap or leave the sample out",
+        variable=name,
+        index=index,
+        time=time,
+    )
+
+
+def check_increasing(times: FloatArray, before: float | None = None, first: int = 0) -> None:
+    """Raise :class:`TraceError` unless times are finite and increase strictly, also from ``before`` on.
+
+    ``first`` is the index of ``times[0]`` in the whole recording, for the message.
+    """
+    finite = np.isfinite(times)
+    if not finite.all():
+        i = int((~finite).argmax())
+        raise TraceError(
+            f"time is {times[i]} at sample {first + i}: give a finite number of seconds",
+            variable=TIME,
+            index=first + i,
+        )
+    if before is not None and len(times) and times[0] <= before:
+        raise not_increasing(first, float(times[0]), before)
+    steps = np.diff(times)
+    if (steps <= 0).any():
+        i = int((steps <= 0).argmax()) + 1
+        raise not_increasing(first + i, float(times[i]), float(times[i - 1]))
+
+
+def not_increasing(index: int, time: float, before: float) -> TraceError:
+    """Return the error for a stamp that is not later than the one before."""
+    return TraceError(
+        f"time does not increase at sample {index}: {time:g} s comes after {before:g} s; "
+        f"sort the samples and drop repeated stamps",
+        variable=TIME,
+        index=index,
+        time=time,
+    )
+
+
+def infer_period(times: FloatArray) -> Fraction:
+    """Return the median gap, as the shortest decimal within a millionth of it; 1 s for one sample."""
+    if len(times) < 2:
+        return Fraction(1)
+    gap = float(np.median(np.diff(times)))
+    for digits in range(1, 10):
+        short = float(f"{gap:.{digits}g}")
+        if abs(short - gap) <= 1e-6 * gap:
+            return Fraction(repr(short))
+    return Fraction(repr(gap))
+
+
+def check_regular(
+    times: FloatArray,
+    period: Fraction,
+    tolerance: float = TOLERANCE,
+    before: float | None = None,
+    first: int = 0,
+) -> None:
+    """Raise :class:`TraceError` where the gap to the sample before is not one period (within tolerance)."""
+    whole = times if before is None else np.concatenate(([before], times))
+    step = float(period)
+    off = np.abs(np.diff(whole) - step) > tolerance * step
+    if off.any():
+        i = int(off.argmax()) + 1
+        index = first + i - (0 if before is None else 1)
+        raise irregular(index, float(whole[i]), float(whole[i - 1]), period, tolerance)
+
+
+def irregular(index: int, time: float, before: float, period: Fraction, tolerance: float) -> TraceError:
+    """Return the error for a sample that is not one period after the one before."""
+    return TraceError(
+        f"sample {index} at {time:g} s is {time - before:g} s after the one before, expected "
+        f"{format_duration(period)} (within {tolerance:.0%}): give the right period, or resample the trace",
+        variable=TIME,
+        index=index,
+        time=time,
+    )
+
+
+def unknown_variable(name: str, names: Collection[str]) -> TraceError:
+    """Return the error for a variable that the formula does not read."""
+    reads = ", ".join(names) or "no variable"
+    return TraceError(
+        f"unknown variable '{name}' in the data{did_you_mean(name, names)}; the formula reads {reads}",
+        variable=name,
+    )
+
+
+def missing_variable(name: str, keys: Collection[str]) -> TraceError:
+    """Return the error for a variable that the formula reads and the data lacks."""
+    has = ", ".join(str(key) for key in keys) or "nothing"
+    return TraceError(f"the data has no '{name}'{did_you_mean(name, keys)}; it has {has}", variable=name)
+
+
+def field(value: Any, path: Sequence[str]) -> Any:
+    """Follow a path of fields into an object."""
+    return reduce(getattr, path, value)
+
+
+def _keys(data: Any) -> list[str]:
+    if isinstance(data, Mapping):
+        return list(data)
+    columns = getattr(data, "columns", None)
+    if columns is None:
+        raise TraceError(
+            f"expected a mapping from variable to values, such as {{'time': [...], 'x': [...]}}, "
+            f"got {type(data).__name__}"
+        )
+    return list(columns)
+
+
+def _refuse_unknown(keys: Sequence[str], names: Sequence[str], known: Collection[str]) -> None:
+    heads = {name.split(".")[0] for name in names}
+    for key in keys:
+        if key != TIME and key not in names and key not in known and key not in heads:
+            raise unknown_variable(str(key), names)
+
+
+def _column(data: Any, keys: Sequence[str], name: str) -> FloatArray:
+    if name in keys:
+        return array(data[name], name)
+    head, *path = name.split(".")
+    if path and head in keys:
+        return array([field_of(value, head, path, i) for i, value in enumerate(data[head])], name)
+    raise missing_variable(name, [key for key in keys if key != TIME])
+
+
+def field_of(value: Any, head: str, path: Sequence[str], index: int) -> Any:
+    """Follow a path of fields (``req.value``) into the object that a variable holds at a sample."""
+    try:
+        return field(value, path)
+    except AttributeError:
+        raise TraceError(
+            f"'{head}' has no field '{'.'.join(path)}' at sample {index}: it is a {type(value).__name__}",
+            variable=head,
+            index=index,
+        ) from None
+
+
+def _common_length(
+    columns: Mapping[str, FloatArray], times: FloatArray | None, data: Any, keys: Sequence[str]
+) -> int:
+    lengths = {name: len(column) for name, column in columns.items()}
+    if times is not None:
+        lengths = {TIME: len(times), **lengths}
+    if not lengths:  # a formula without variables still needs instants
+        lengths = {key: len(data[key]) for key in keys}
+    if len(set(lengths.values())) > 1:
+        (a, n), (b, m) = next(
+            ((a, n), (b, m)) for a, n in lengths.items() for b, m in lengths.items() if n != m
+        )
+        raise TraceError(f"'{a}' has {n} samples but '{b}' has {m}: give one value of each at every sample")
+    return next(iter(lengths.values()), 0)
+
+
+def _not_numbers(values: Any, name: str) -> TraceError:
+    try:
+        items = enumerate(values)
+    except TypeError:
+        return TraceError(f"'{name}' is {values!r}, expected a sequence of numbers", variable=name)
+    for i, value in items:
+        if not is_number(value):
+            return TraceError(
+                f"'{name}' is {value!r} at sample {i}, expected a number", variable=name, index=i
+            )
+    return TraceError(f"'{name}' cannot be read as a sequence of numbers", variable=name)

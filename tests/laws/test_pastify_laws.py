@@ -1,0 +1,64 @@
+"""Pastification is exact: ρ(φ, w, t) = ρ(Π(φ), w, t + H(φ)) for every formula with bounded future."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import assume, given
+from hypothesis import strategies as st
+
+from rtamt.errors import EvaluationError
+from rtamt.language.formula import Apply, Formula
+from rtamt.language.operators import STL
+from rtamt.language.parser import parse_formula
+from rtamt.rewrite.check import has_future
+from rtamt.rewrite.horizon import horizon
+from rtamt.rewrite.pastify import pastify
+from tests.laws.test_engine_laws import by_definition, by_engine
+from tests.strategies import formulas, traces
+
+
+@pytest.mark.parametrize("evaluate", [by_definition, by_engine])
+@given(data=st.data(), period=st.sampled_from([Fraction(1), Fraction(1, 4)]))
+def test_the_pastified_formula_says_the_same_one_horizon_later(
+    evaluate: Any, data: st.DataObject, period: Fraction
+) -> None:
+    formula = data.draw(formulas(period=period))
+    columns = data.draw(traces())
+    depth = horizon(formula, period)
+    assert depth is not None
+    delay = int(depth / period)
+    assume(delay < len(columns["x"]))
+    expected = by_definition(formula, columns, period)
+    assume(expected is not None)
+    past = pastify(formula, period)
+    assert not has_future(past)
+    try:
+        got = evaluate(past, columns, period)
+    except EvaluationError:
+        got = None
+    # Before the horizon a delayed operand is infinite, so that arithmetic on it may have no value.
+    assume(got is not None)
+    assert expected is not None
+    np.testing.assert_array_equal(got[delay:], expected[: len(expected) - delay])
+
+
+@given(formulas(future=False))
+def test_a_past_formula_is_its_own_pastification(formula: Formula) -> None:
+    assert pastify(formula) == formula
+
+
+@given(formulas())
+def test_a_pastified_formula_can_be_printed_and_read_again(formula: Formula) -> None:
+    past = pastify(formula)
+    assert parse_formula(str(past)) == past
+
+
+def test_a_deep_chain_needs_no_recursion() -> None:
+    formula: Formula = parse_formula("next(x)")
+    for _ in range(3000):
+        formula = Apply(STL["and"], (formula, formula))
+    assert horizon(pastify(formula)) == 0

@@ -1,0 +1,121 @@
+"""Whether a formula holds, by quantifiers over samples: the other side of the sign theorem.
+
+Written by hand, an entry an operator, so that it shares no line with the definitions of robustness.
+Operands that are read as numbers are numbers here too, and those come from the definition.
+"""
+
+from __future__ import annotations
+
+import operator
+from typing import TYPE_CHECKING
+
+from rtamt.engine.reference import evaluate
+from rtamt.language.formula import Apply, Formula, fold
+from rtamt.language.operators import Bounds, Sort
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+    from fractions import Fraction
+
+    import numpy as np
+    from numpy.typing import NDArray
+
+    Truth = list[bool]
+
+COMPARISONS: dict[str, Callable[[float, float], bool]] = {
+    "gt": operator.gt,
+    "ge": operator.ge,
+    "lt": operator.lt,
+    "le": operator.le,
+    "eq": operator.eq,
+    "ne": operator.ne,
+}
+
+POINTWISE: dict[str, Callable[..., bool]] = {
+    "not": lambda p: not p,
+    "and": lambda p, q: p and q,
+    "or": lambda p, q: p or q,
+    "implies": lambda p, q: q if p else True,
+    "iff": lambda p, q: p is q,
+    "xor": lambda p, q: p is not q,
+}
+
+
+def _always(p: Truth, t: int, a: int, b: float) -> bool:
+    return all(p[u] for u in range(len(p)) if t + a <= u <= t + b)
+
+
+def _eventually(p: Truth, t: int, a: int, b: float) -> bool:
+    return any(p[u] for u in range(len(p)) if t + a <= u <= t + b)
+
+
+def _historically(p: Truth, t: int, a: int, b: float) -> bool:
+    return all(p[u] for u in range(len(p)) if t - b <= u <= t - a)
+
+
+def _once(p: Truth, t: int, a: int, b: float) -> bool:
+    return any(p[u] for u in range(len(p)) if t - b <= u <= t - a)
+
+
+def _until(p: Truth, q: Truth, t: int, a: int, b: float) -> bool:
+    return any(q[u] and all(p[t:u]) for u in range(len(q)) if t + a <= u <= t + b)
+
+
+def _since(p: Truth, q: Truth, t: int, a: int, b: float) -> bool:
+    return any(q[u] and all(p[u + 1 : t + 1]) for u in range(len(q)) if t - b <= u <= t - a)
+
+
+def _precedes(p: Truth, q: Truth, t: int, a: int, b: int) -> bool:
+    begin = t - b
+    return any(q[u] and all(p[max(begin, 0) : u]) for u in range(len(q)) if begin + a <= u <= t)
+
+
+def _unless(p: Truth, q: Truth, t: int, a: int, b: float) -> bool:
+    return all(p[u] for u in range(len(p)) if t <= u <= t + b) or _until(p, q, t, a, b)
+
+
+IN_TIME: dict[str, Callable[..., bool]] = {
+    "always": _always,
+    "eventually": _eventually,
+    "historically": _historically,
+    "once": _once,
+    "until": _until,
+    "since": _since,
+    "precedes": _precedes,
+    "unless": _unless,
+    "prev": lambda p, t: t == 0 or p[t - 1],
+    "s_prev": lambda p, t: t > 0 and p[t - 1],
+    "next": lambda p, t: t == len(p) - 1 or p[t + 1],
+    "s_next": lambda p, t: t < len(p) - 1 and p[t + 1],
+    "rise": lambda p, t: p[t] and not (t > 0 and p[t - 1]),
+    "fall": lambda p, t: not p[t] and (t == 0 or p[t - 1]),
+}
+
+ATOMS = {"true": True, "false": False}
+
+COVERED = {*COMPARISONS, *POINTWISE, *IN_TIME, *ATOMS}
+
+
+def satisfied(
+    formula: Formula, columns: Mapping[str, NDArray[np.float64]], n: int, period: Fraction
+) -> list[bool]:
+    """Tell at every sample whether the formula holds; a number holds where it is positive."""
+
+    def step(node: Formula, below: tuple[Truth, ...]) -> Truth:
+        if not isinstance(node, Apply) or node.op.result is Sort.NUMBER:
+            return [bool(v > 0) for v in evaluate(node, columns, n, period)]
+        name = node.op.name
+        if name in COMPARISONS:
+            left, right = (evaluate(operand, columns, n, period).tolist() for operand in node.args)
+            return [COMPARISONS[name](a, b) for a, b in zip(left, right, strict=True)]
+        if name in POINTWISE:
+            return [POINTWISE[name](*values) for values in zip(*below, strict=True)]
+        if name in ATOMS:
+            return [ATOMS[name]] * n
+        window: tuple[float, ...] = ()
+        if node.op.bounds is not Bounds.NONE:
+            begin, end = (0, None) if node.interval is None else (node.interval.begin, node.interval.end)
+            window = (int(begin / period), float("inf") if end is None else int(end / period))
+        return [IN_TIME[name](*below, t, *window) for t in range(n)]
+
+    return fold(formula, step)
