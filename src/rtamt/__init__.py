@@ -1,0 +1,65 @@
+"""Runtime monitors for Signal Temporal Logic: requirement and signal in, robustness out."""
+
+from rtamt.engine.monitor import Monitor
+from rtamt.engine.signals import Signal
+from rtamt.errors import (
+    BoundError,
+    EvaluationError,
+    NameInFormulaError,
+    ParseError,
+    RTAMTException,
+    SpecificationError,
+    StlError,
+    STLParseException,
+    TraceError,
+    UsageError,
+)
+from rtamt.language.operators import STL
+from rtamt.rtamt_api import (
+    Language,
+    Semantics,
+    StlDiscreteTimeOfflineSpecification,
+    StlDiscreteTimeOnlineSpecification,
+    StlDiscreteTimeOnlineSpecificationCpp,
+    STLDiscreteTimeSpecification,
+    StlDiscreteTimeSpecification,
+    StlDiscreteTimeSpecificationCpp,
+    StlIOType,
+    STLSpecification,
+    TimeInterpretation,
+)
+from rtamt.specification import Result, Specification, load, parse, robustness
+
+__version__ = "1.0.0.dev0"
+
+__all__ = [
+    "STL",
+    "BoundError",
+    "EvaluationError",
+    "Language",
+    "Monitor",
+    "NameInFormulaError",
+    "ParseError",
+    "RTAMTException",
+    "Result",
+    "STLDiscreteTimeSpecification",
+    "STLParseException",
+    "STLSpecification",
+    "Semantics",
+    "Signal",
+    "Specification",
+    "SpecificationError",
+    "StlDiscreteTimeOfflineSpecification",
+    "StlDiscreteTimeOnlineSpecification",
+    "StlDiscreteTimeOnlineSpecificationCpp",
+    "StlDiscreteTimeSpecification",
+    "StlDiscreteTimeSpecificationCpp",
+    "StlError",
+    "StlIOType",
+    "TimeInterpretation",
+    "TraceError",
+    "UsageError",
+    "load",
+    "parse",
+    "robustness",
+]

@@ -1,0 +1,43 @@
+"""The paper's API: programs written for RTAMT run unchanged, over the engine of this library.
+
+Thin: the classes keep declarations, put the text together, and hand everything else to
+:mod:`rtamt.language`, :mod:`rtamt.rewrite` and :mod:`rtamt.engine`.
+
+==================  =====================================================================
+module              what it holds
+==================  =====================================================================
+options             Semantics, Language, TimeInterpretation, StlIOType
+declarations        what every class shares: names, types, topics, modules, the text
+discrete            discrete time: sampling period, values of sub-formulas, the offline class
+discrete_online     the online class, and the combined one
+associativity       the warning for chains that RTAMT read differently
+failures            every error leaves as an RTAMTException
+==================  =====================================================================
+"""
+
+from rtamt.rtamt_api.discrete import StlDiscreteTimeOfflineSpecification
+from rtamt.rtamt_api.discrete_online import (
+    StlDiscreteTimeOnlineSpecification,
+    StlDiscreteTimeOnlineSpecificationCpp,
+    StlDiscreteTimeSpecification,
+    StlDiscreteTimeSpecificationCpp,
+)
+from rtamt.rtamt_api.options import Language, Semantics, StlIOType, TimeInterpretation
+
+#: Spellings of older programs and of the paper's ROS code.
+STLSpecification = StlDiscreteTimeSpecification
+STLDiscreteTimeSpecification = StlDiscreteTimeSpecification
+
+__all__ = [
+    "Language",
+    "STLDiscreteTimeSpecification",
+    "STLSpecification",
+    "Semantics",
+    "StlDiscreteTimeOfflineSpecification",
+    "StlDiscreteTimeOnlineSpecification",
+    "StlDiscreteTimeOnlineSpecificationCpp",
+    "StlDiscreteTimeSpecification",
+    "StlDiscreteTimeSpecificationCpp",
+    "StlIOType",
+    "TimeInterpretation",
+]

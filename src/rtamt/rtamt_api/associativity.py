@@ -1,0 +1,62 @@
+"""The warning for a formula that RTAMT would have read in another way: chains such as ``a -> b -> c``.
+
+Every infix operator of RTAMT associates to the left; those that the operator table marks as
+associating to the right do not. Reading the text once more in RTAMT's way shows whether it matters.
+"""
+
+from __future__ import annotations
+
+import warnings
+from dataclasses import replace
+from functools import cache
+from typing import TYPE_CHECKING
+
+from rtamt.language.formula import Apply, Formula, fold, postorder
+from rtamt.language.operators import STL, Fixity, Language
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from rtamt.language.specfile import Document
+
+
+def warn_of_chains(document: Document, read: Callable[[str, Language], Document], stacklevel: int) -> None:
+    """Warn where ``document`` has an assertion that RTAMT would have read differently.
+
+    ``read`` reads a text in a language; ``stacklevel`` is that of :func:`warnings.warn`.
+    """
+    if not any(_may_differ(assertion.formula) for assertion in document.assertions):
+        return
+    theirs = read(document.text, _left_to_right())
+    for ours, other in zip(document.assertions, theirs.assertions, strict=True):
+        formula = fold(other.formula, _as_ours)
+        if formula != ours.formula:
+            warnings.warn(
+                f"a chain without parentheses is read as '{ours.formula}'; RTAMT read it as '{formula}': "
+                f"add parentheses to say which one is meant",
+                stacklevel=stacklevel,
+            )
+
+
+@cache
+def _left_to_right() -> Language:
+    return Language.of(replace(op, fixity=Fixity.LEFT) if op.fixity is Fixity.RIGHT else op for op in STL)
+
+
+def _may_differ(formula: Formula) -> bool:
+    """Tell whether an operator that associates to the right has an operand of the same kind."""
+    return any(
+        _to_the_right(node) and any(map(_to_the_right, node.args))
+        for node in postorder(formula)
+        if isinstance(node, Apply)
+    )
+
+
+def _to_the_right(node: Formula) -> bool:
+    return isinstance(node, Apply) and node.op.fixity is Fixity.RIGHT
+
+
+def _as_ours(node: Formula, args: tuple[Formula, ...]) -> Formula:
+    if not isinstance(node, Apply):
+        return node
+    return Apply(STL[node.op.name], args, node.interval, node.span)

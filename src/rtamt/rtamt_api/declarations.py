@@ -1,0 +1,335 @@
+"""What every class of the paper's API shares: names, types, topics, modules and the text."""
+
+from __future__ import annotations
+
+import importlib
+import math
+from abc import ABC, abstractmethod
+from numbers import Real
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from rtamt.engine.signals import field
+from rtamt.errors import NameInFormulaError, StlError, UsageError, did_you_mean
+from rtamt.language.formula import Var, postorder, variables
+from rtamt.language.operators import STL, Language
+from rtamt.language.parser import parse_formula
+from rtamt.language.specfile import Document, parse_document
+from rtamt.language.units import check_unit
+from rtamt.rtamt_api.associativity import warn_of_chains
+from rtamt.rtamt_api.failures import raises_rtamt
+
+if TYPE_CHECKING:
+    import os
+    from types import ModuleType
+
+    from rtamt.language.formula import Formula
+
+#: The types of variables that need no import, and what their variables hold until they get a value.
+SCALARS: dict[str, type] = {"float": float, "int": int, "long": int, "complex": complex, "bool": bool}
+
+#: The name of the result of an assertion without one.
+UNNAMED = "out"
+
+
+class Declarations(ABC):
+    """A specification in the making: declare, set :attr:`spec`, then :meth:`parse`.
+
+    Not made by users; the classes for discrete and dense time derive from it.
+    """
+
+    def __init__(self) -> None:
+        #: The specification's name; a text that begins with ``specification <name>`` sets it.
+        self.name = "STL specification"
+        #: The text of the requirement.
+        self.spec: str | None = None
+        #: From the name of an imported class to the module it came from.
+        self.modules: dict[str, ModuleType] = {}
+        #: From the name of a variable to its ROS topic.
+        self.var_topic_dict: dict[str, str] = {}
+        self._unit = "s"
+        self._sub_specs: list[str] = []
+        self._types: dict[str, str] = {}
+        self._io_types: dict[str, str] = {}
+        self._constants: dict[str, float] = {}
+        self._objects: dict[str, Any] = {}
+        self._document: Document | None = None
+
+    # ---- declaring -------------------------------------------------------------------------------
+
+    @raises_rtamt
+    def declare_var(self, var_name: str, var_type: str) -> None:
+        """Declare a variable: ``var_type`` is float, int, complex, or an imported message class.
+
+        Declaring it again replaces the declaration. Raises :class:`RTAMTException` for a type that is
+        neither built in nor imported.
+        """
+        _require_text("the name of a variable", var_name)
+        if var_name in self._constants:
+            raise UsageError(f"'{var_name}' is a constant already; give the variable another name")
+        self._objects[var_name] = self._new_object(var_name, var_type)
+        self._types[var_name] = var_type
+        self._io_types[var_name] = "output"
+        self.var_topic_dict.setdefault(var_name, f"rtamt/{var_name}")
+
+    @raises_rtamt
+    def declare_const(self, const_name: str, const_type: str, const_val: float | str) -> None:
+        """Declare a named number, for use in formulas and as a bound; ``const_val`` may be its text."""
+        _require_text("the name of a constant", const_name)
+        if const_name in self._constants or const_name in self._types:
+            raise UsageError(f"'{const_name}' is declared already; give the constant another name")
+        if const_type not in SCALARS:
+            raise UsageError(
+                f"the constant '{const_name}' cannot be a {const_type}; its type is float or int"
+            )
+        try:
+            value = float(const_val)
+        except (TypeError, ValueError):
+            value = math.nan
+        if math.isnan(value):
+            raise UsageError(f"the constant '{const_name}' is {const_val!r}, expected a number")
+        self._constants[const_name] = value
+
+    @raises_rtamt
+    def set_var_io_type(self, var_name: str, var_iotype: str) -> None:
+        """Say on which side of the interface a declared variable is: ``'input'`` or ``'output'``."""
+        self._require_declared(var_name)
+        if var_iotype not in ("input", "output"):
+            raise UsageError(f"the io type of '{var_name}' is {var_iotype!r}; choose 'input' or 'output'")
+        self._io_types[var_name] = var_iotype
+
+    @raises_rtamt
+    def set_var_topic(self, var_name: str, var_topic: str) -> None:
+        """Say on which ROS topic a declared variable comes or goes."""
+        self._require_declared(var_name)
+        self.var_topic_dict[var_name] = var_topic
+
+    @raises_rtamt
+    def import_module(self, from_name: str, module_name: str) -> None:
+        """Import a message class: as Python's ``from from_name import module_name`` does."""
+        try:
+            module = importlib.import_module(from_name)
+        except ImportError as error:
+            raise UsageError(f"the module '{from_name}' cannot be imported: {error}") from error
+        if not hasattr(module, module_name):
+            raise UsageError(
+                f"the module '{from_name}' has no '{module_name}'{did_you_mean(module_name, vars(module))}"
+            )
+        self.modules[module_name] = module
+
+    @raises_rtamt
+    def add_sub_spec(self, sub_spec: str) -> None:
+        """Add named formulas (``name = formula;``) that :attr:`spec` can use; they change no result."""
+        _require_text("a sub-specification", sub_spec)
+        self._sub_specs.append(sub_spec)
+
+    @raises_rtamt
+    def get_spec_from_file(self, path: str | os.PathLike[str]) -> str:
+        """Return the text of a file, for :attr:`spec`."""
+        try:
+            return Path(path).read_text(encoding="utf-8")
+        except FileNotFoundError:
+            raise UsageError(f"The file {path} does not exist.") from None
+        except OSError as error:
+            raise UsageError(f"The file {path} cannot be read: {error.strerror}.") from error
+        except UnicodeDecodeError as error:
+            raise UsageError(f"The file {path} is not UTF-8 text (byte {error.start}).") from error
+
+    @property
+    def unit(self) -> str:
+        """The unit of time stamps and of bounds without one: s, ms, us or ns."""
+        return self._unit
+
+    @unit.setter
+    @raises_rtamt
+    def unit(self, unit: str) -> None:
+        before, self._unit = self._unit, check_unit(unit)
+        try:
+            self._settings_changed()
+        except StlError:
+            self._unit = before
+            raise
+
+    # ---- reading ---------------------------------------------------------------------------------
+
+    @raises_rtamt
+    def parse(self) -> None:
+        """Read the sub-specifications and :attr:`spec`.
+
+        Raises :class:`STLParseException`, with a caret under the place, for text that is wrong.
+        """
+        if not isinstance(self.spec, str):
+            raise UsageError(f"spec is {self.spec!r}; set it to the text of the requirement first")
+        document = self._read_as(self._text(self.spec), STL)
+        warn_of_chains(document, self._read_as, stacklevel=4)
+        self._adopt(document)
+        self._check_objects(document)
+        self._parsed(document)
+        self._document = document
+        out = self._out_name[0]
+        self._objects.setdefault(out, 0.0)
+        self.var_topic_dict.setdefault(out, f"rtamt/{out}")
+
+    @property
+    def var_object_dict(self) -> dict[str, Any]:
+        """From each variable to its current value."""
+        return self._objects
+
+    @property
+    def out_var(self) -> str | None:
+        """The variable that holds the result: ``out`` where the text names none; None before ``parse``."""
+        return None if self._document is None else self._out_name[0]
+
+    @property
+    def out_var_field(self) -> str:
+        """The field of :attr:`out_var` that holds the result, ``''`` if it has no fields."""
+        return "" if self._document is None else self._out_name[1]
+
+    @property
+    def free_vars(self) -> set[str]:
+        """The variables that are declared or read and not computed: what an update is given."""
+        if self._document is None:
+            return set(self._types)
+        computed = {head_of(name) for name in self._assertions(self._document)}
+        read = {head_of(name) for f in self._assertions(self._document).values() for name in variables(f)}
+        return (set(self._types) | read) - computed
+
+    def _settings_changed(self) -> None:
+        """Do what a setting that changed after ``parse`` asks for; overridden by classes with more state."""
+        if self._document is not None:
+            document = self._read_as(self._document.text, STL)
+            self._parsed(document)
+            self._document = document
+
+    @abstractmethod
+    def _parsed(self, document: Document) -> None:
+        """Take over a document that has been read: each time domain has its own checks."""
+
+    @property
+    def _parsed_document(self) -> Document:
+        if self._document is None:
+            raise UsageError("no specification has been read; set spec and call parse() first")
+        return self._document
+
+    @property
+    def _out_name(self) -> tuple[str, str]:
+        head, _, field = list(self._assertions(self._parsed_document))[-1].partition(".")
+        return head, field
+
+    def _text(self, spec: str) -> str:
+        """Join sub-specifications and specification into one text, so that carets point into it."""
+        parts = [text if text.rstrip().endswith(";") else text + ";" for text in self._sub_specs]
+        return "\n".join([*parts, spec])
+
+    def _read_as(self, text: str, language: Language) -> Document:
+        return parse_document(
+            text,
+            language=language,
+            unit=self._unit,
+            constants=self._constants,
+            variables=tuple(self._types) or None,
+        )
+
+    def _read_formula(self, text: str) -> Formula:
+        """Read a formula with the names of the specification."""
+        document = self._parsed_document
+        return parse_formula(
+            text,
+            constants=document.constants,
+            definitions=document.definitions,
+            variables=document.variables or None,
+            unit=self._unit,
+        )
+
+    def _adopt(self, document: Document) -> None:
+        """Declare what the text itself declares."""
+        if document.name is not None:
+            self.name = document.name
+        for imported in document.imports:
+            self.import_module(imported.module, imported.name)
+        for declaration in document.declarations:
+            if declaration.kind == "var":
+                self.declare_var(declaration.name, declaration.type)
+                if declaration.role is not None:
+                    self.set_var_io_type(declaration.name, declaration.role)
+        for name, topic in document.topics.items():
+            self.set_var_topic(name, topic)
+
+    def _check_objects(self, document: Document) -> None:
+        """Make sure that the numbers that are read of declared objects, and written into one, are there."""
+        for formula in self._assertions(document).values():
+            for node in postorder(formula):
+                if isinstance(node, Var) and head_of(node.name) in self._objects:
+                    message = self._lacks(node.name)
+                    if message:
+                        raise NameInFormulaError(message, document.text, node.span)
+        result = list(self._assertions(document))[-1]
+        if "." in result and head_of(result) not in self._objects:
+            raise UsageError(
+                f"the result '{result}' is a field of '{head_of(result)}', which is not declared; "
+                f"import its class and declare it"
+            )
+        if head_of(result) in self._objects:
+            message = self._lacks(result)
+            if message:
+                raise UsageError(message)
+
+    def _lacks(self, name: str) -> str:
+        """Return what is wrong with a number called ``name`` in a declared object, or nothing."""
+        head, *path = name.split(".")
+        held, kind = self._objects[head], self._types.get(head, "number")
+        try:
+            value = field(held, path)
+        except AttributeError:
+            missing = ".".join(path)
+            return (
+                f"'{head}' is a {kind} and has no field '{missing}'{did_you_mean(missing, _numbers_in(held))}"
+            )
+        if path or isinstance(value, Real):
+            return ""
+        such = [f", such as {head}.{number}" for number in _numbers_in(held)[:1]]
+        return f"'{head}' is a {kind} and no number; name one of its fields{''.join(such)}"
+
+    def _assertions(self, document: Document) -> dict[str, Formula]:
+        """Return the formulas by name, the result last."""
+        named = {assertion.name or UNNAMED: assertion.formula for assertion in document.assertions[:-1]}
+        last = document.assertions[-1]
+        named.pop(last.name or UNNAMED, None)
+        return {**named, last.name or UNNAMED: last.formula}
+
+    def _require_declared(self, name: str) -> None:
+        if name not in self._types:
+            raise UsageError(
+                f"the variable '{name}' is not declared{did_you_mean(name, self._types)}; "
+                f"call declare_var('{name}', ...) first"
+            )
+
+    def _new_object(self, name: str, type_name: str) -> Any:
+        if type_name in SCALARS:
+            return SCALARS[type_name]()
+        if type_name not in self.modules:
+            raise UsageError(
+                f"the type '{type_name}' of '{name}' is neither built in ({', '.join(SCALARS)}) nor imported"
+                f"{did_you_mean(type_name, [*SCALARS, *self.modules])}; import it with import_module(module, "
+                f"'{type_name}') first"
+            )
+        cls = getattr(self.modules[type_name], type_name)
+        try:
+            return cls()
+        except TypeError as error:
+            raise UsageError(f"'{name}' cannot start as a {type_name} without arguments: {error}") from error
+
+
+def head_of(name: str) -> str:
+    """Return the variable to which a name belongs: of a field, what stands before the first dot."""
+    return name.partition(".")[0]
+
+
+def _numbers_in(held: Any) -> list[str]:
+    """Return the names of an object's public fields that hold numbers."""
+    return [name for name in dir(held) if name[0] != "_" and isinstance(getattr(held, name, None), Real)]
+
+
+def _require_text(what: str, value: object) -> None:
+    if not isinstance(value, str):
+        raise UsageError(f"{what} is {value!r}, expected text")

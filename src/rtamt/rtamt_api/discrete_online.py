@@ -1,0 +1,334 @@
+"""The paper's API in discrete time, online: one sample in, one number out."""
+
+from __future__ import annotations
+
+from numbers import Real
+from typing import TYPE_CHECKING, Any
+
+from rtamt.engine import signals
+from rtamt.engine.compile import compile_program
+from rtamt.engine.core import core
+from rtamt.engine.evaluate import undefined
+from rtamt.engine.monitor import refused_time, refused_values
+from rtamt.errors import RTAMTException, SpecificationError, TraceError, UsageError
+from rtamt.language.formula import Apply, Formula, Var, postorder
+from rtamt.language.operators import Tense
+from rtamt.language.units import UNITS
+from rtamt.rewrite.desugar import desugar
+from rtamt.rewrite.pastify import pastify
+from rtamt.rtamt_api.declarations import head_of
+from rtamt.rtamt_api.discrete import DiscreteTimeSpecification, StlDiscreteTimeOfflineSpecification
+from rtamt.rtamt_api.failures import raises_rtamt
+from rtamt.rtamt_api.options import Language, Semantics
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Mapping
+
+    from rtamt.engine.program import Program
+    from rtamt.language.specfile import Document
+
+
+class StlDiscreteTimeOnlineSpecification(DiscreteTimeSpecification):
+    """Watches a stream of samples.
+
+    A formula with future operators must be rewritten by :meth:`pastify`; its robustness then comes
+    one horizon late.
+
+    >>> import rtamt
+    >>> spec = rtamt.StlDiscreteTimeOnlineSpecification()
+    >>> spec.declare_var("req", "float")
+    >>> spec.spec = "historically[0:1](req >= 3)"
+    >>> spec.parse()
+    >>> [spec.update(t, [("req", x)]) for t, x in enumerate([5.0, 4.0, 6.0])]
+    [2.0, 1.0, 1.0]
+    """
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._pastified = False
+        # From a variable to what formulas read of it: itself, or its fields by full name.
+        self._reads: dict[str, list[str]] = {}
+        self._monitor: Any = None  # the core's, made by the first update
+        self._program: Program | None = None
+        self._refusals: tuple[type[Exception], ...] = ()
+        self._take: Callable[[Any, Any], Any] = self._begin
+        self._shared = False  # whether var_object_dict was handed out: values may come through it
+        self._seen: dict[str, Any] = {}  # what was in it after the latest update
+
+    @raises_rtamt
+    def pastify(self) -> None:
+        """Rewrite the formulas into past operators, equal one horizon later (the paper's Definition 4).
+
+        Raises :class:`RTAMTException` at an operator whose future is unbounded.
+        """
+        text = self._parsed_document.text
+        formulas = {name: pastify(formula, self._period, text) for name, formula in self._formulas.items()}
+        self._start_over(formulas)
+        self._pastified = True
+
+    def update(self, timestamp: float, dataset: Iterable[tuple[str, Any]]) -> Any:
+        """Take one sample and return the robustness.
+
+        ``timestamp`` in :attr:`unit`, later than the one before; ``dataset``: pairs of a name and a
+        number (or an object, where the specification reads fields). A variable that is left out keeps
+        its value. Returns a float, or the object of :attr:`out_var` with the robustness in its field.
+        Raises :class:`RTAMTException` for wrong data, and the monitor is then as it was.
+        """
+        try:
+            return self._take(timestamp, dataset)
+        except self._refusals:
+            return self._update_carefully(timestamp, dataset)
+
+    def reset(self) -> None:
+        """Forget the trace; the next sample is the first."""
+        if self._monitor is not None:
+            self._monitor.reset()
+        self._violations = 0
+        self._value_of = None
+        self._take = self._begin
+
+    @property
+    def sampling_violation_counter(self) -> int:
+        """How many gaps between samples missed the period by more than the tolerance."""
+        online = 0 if self._monitor is None else int(self._monitor.violations)
+        return self._violations + online
+
+    @property
+    def var_object_dict(self) -> dict[str, Any]:
+        """From each variable to its current value; what is assigned to an entry counts in the next update."""
+        if not self._shared:
+            self._shared = True
+            if self._monitor is not None and self._monitor.samples:
+                self._collect()
+            self._seen = dict(self._objects)
+            self._take = self._begin
+        return self._objects
+
+    # ---- starting --------------------------------------------------------------------------------
+
+    def _parsed(self, document: Document) -> None:
+        super()._parsed(document)
+        self._reads = {}
+        for name in self._inputs:
+            self._reads.setdefault(head_of(name), []).append(name)
+        self._start_over(self._formulas)
+        self._pastified = False
+
+    def _settings_changed(self) -> None:
+        pastified = self._pastified
+        super()._settings_changed()
+        if pastified:
+            self.pastify()
+
+    def _start_over(self, formulas: dict[str, Formula]) -> None:
+        self._formulas = formulas
+        self._monitor = None
+        self._value_of = None
+        self._take = self._begin
+
+    def _begin(self, timestamp: Any, dataset: Any) -> Any:
+        """Take a sample before which something has to be set up."""
+        self._require_monitor()
+        objects = self.out_var_field or any(name != head_of(name) for name in self._inputs)
+        plain = not self._shared and not objects
+        self._take = self._monitor.update_pairs if plain else self._update_carefully
+        try:
+            robustness = self.update(timestamp, dataset)
+        except RTAMTException:
+            self._take = self._begin
+            raise
+        self._value_of = self._latest
+        return robustness
+
+    @raises_rtamt
+    def _require_monitor(self) -> None:
+        if self._monitor is not None:
+            return
+        text = self._parsed_document.text
+        formulas = [self._result, *(f for f in self._formulas.values() if f is not self._result)]
+        for formula in formulas:
+            _require_past(formula, text)
+        _core = core()
+        self._program = compile_program(tuple(map(desugar, formulas)), self._period, self._inputs)
+        self._monitor = _core.Monitor(
+            self._program.to_bytes(),
+            list(self._inputs),
+            self._period_in_units,
+            self._tolerance,
+            strict=False,
+            ignored=frozenset(self._types),
+        )
+        self._refusals = (_core.Refused, _core.Undefined)
+
+    # ---- the careful way: objects, values assigned from outside, any iterable, and errors ----------
+
+    @raises_rtamt
+    def _update_carefully(self, timestamp: Any, dataset: Any) -> Any:
+        given = self._pairs(dataset)
+        numbers = self._numbers(given)
+        index = self._monitor.samples
+        _core = core()
+        try:
+            robustness = self._monitor.update_pairs(timestamp, list(numbers.items()))
+        except _core.Refused:
+            raise self._refusal(timestamp, numbers, index) from None
+        except _core.Undefined as error:
+            assert self._program is not None
+            instruction, sample = error.args
+            raise undefined(self._program, instruction, sample, self._seconds(timestamp)) from None
+        self._objects.update(given)
+        published = self._publish(robustness)
+        if self._shared:
+            self._collect()
+            self._seen = dict(self._objects)
+        return published
+
+    def _pairs(self, dataset: Any) -> dict[str, Any]:
+        try:
+            return {str(name): value for name, value in dataset}
+        except (TypeError, ValueError):
+            raise TraceError(
+                f"expected pairs of a name and a value, such as [('x', 1.0)], got {dataset!r}"
+            ) from None
+
+    def _numbers(self, given: Mapping[str, Any]) -> dict[str, Any]:
+        """Return the numbers of a sample, by the names that the formulas read."""
+        for name in given:
+            if name not in self._reads and name not in self._types and name not in self._inputs:
+                raise signals.unknown_variable(name, tuple(self._reads))
+        numbers: dict[str, Any] = {}
+        for head, names in self._reads.items():
+            if head in given:
+                source = given[head]
+            elif head in self._objects and self._came_from_outside(head):
+                source = self._objects[head]
+            else:
+                continue
+            for name in names:
+                numbers[name] = self._field(source, name)
+        return numbers | {name: given[name] for name in self._inputs if name in given}
+
+    def _came_from_outside(self, head: str) -> bool:
+        """Tell whether a variable's entry in var_object_dict has to be read: objects change in place."""
+        return not isinstance(self._objects[head], Real) or self._changed(head)
+
+    def _field(self, source: Any, name: str) -> Any:
+        head, *path = name.split(".")
+        try:
+            return signals.field(source, path)
+        except AttributeError:
+            raise TraceError(
+                f"'{head}' has no field '{'.'.join(path)}' at sample {self._monitor.samples}: "
+                f"it is a {type(source).__name__}",
+                variable=head,
+                index=self._monitor.samples,
+            ) from None
+
+    def _refusal(self, timestamp: Any, numbers: dict[str, Any], index: int) -> Exception:
+        """Find out why the core took no sample, and say it."""
+        time = self._seconds(timestamp)
+        last = self._seconds(self._monitor.last_time) if index else None
+        error = refused_time(time, index, last)
+        for name in self._inputs:
+            if error is None and index == 0 and name not in numbers:
+                error = TraceError(
+                    f"'{name}' has no value yet at sample 0: give every variable in the first update; "
+                    f"later ones may leave it out",
+                    variable=name,
+                    index=0,
+                )
+        error = error or refused_values(numbers, tuple(numbers), index, time)
+        assert error is not None, "the core refuses for one of these reasons"
+        return error
+
+    def _seconds(self, timestamp: Any) -> Any:
+        return timestamp * float(UNITS[self._unit]) if isinstance(timestamp, Real) else timestamp
+
+    # ---- values ----------------------------------------------------------------------------------
+
+    def _publish(self, robustness: float) -> Any:
+        """Write the result where the specification says, and return it."""
+        head, field = self._out_name
+        if not field:
+            self._objects[head] = robustness
+            return robustness
+        *path, last = field.split(".")
+        setattr(signals.field(self._objects[head], path), last, robustness)
+        return self._objects[head]
+
+    def _holds(self, name: str) -> bool:
+        # Once var_object_dict is handed out, every update writes into it.
+        written = self._shared and self._value_of == self._latest
+        return written or self._changed(name) or super()._holds(name)
+
+    def _changed(self, name: str) -> bool:
+        """Tell whether someone has assigned to a variable's entry in var_object_dict."""
+        return self._shared and self._objects[name] is not self._seen.get(name)
+
+    def _latest(self, part: Formula) -> float:
+        assert self._program is not None
+        return float(self._monitor.last(self._program.value_of[desugar(part)]))
+
+    def _collect(self) -> None:
+        """Bring var_object_dict up to date with the updates that went past it."""
+        for name, formula in [*((name, Var(name)) for name in self._inputs), *self._formulas.items()]:
+            if isinstance(self._objects.get(name), Real):
+                self._objects[name] = self._latest(formula)
+
+
+class StlDiscreteTimeOnlineSpecificationCpp(StlDiscreteTimeOnlineSpecification):
+    """The same: the class that RTAMT offers for its C++ back end."""
+
+
+class StlDiscreteTimeSpecification(StlDiscreteTimeOfflineSpecification, StlDiscreteTimeOnlineSpecification):
+    """Evaluates finished traces and watches streams.
+
+    ``semantics``: how predicates are judged. ``language``: which back end RTAMT would run; here both
+    names mean the same compiled core.
+
+    >>> import rtamt
+    >>> spec = rtamt.StlDiscreteTimeSpecification()
+    >>> spec.declare_var("x", "float")
+    >>> spec.spec = "eventually[0:1](x >= 3)"
+    >>> spec.parse()
+    >>> spec.evaluate({"time": [0, 1], "x": [5, 4]})
+    [[0.0, 2.0], [1.0, 1.0]]
+    >>> spec.pastify()
+    >>> [spec.update(t, [("x", x)]) for t, x in enumerate([5, 4])]
+    [2.0, 2.0]
+    """
+
+    @raises_rtamt
+    def __init__(
+        self, semantics: Semantics = Semantics.STANDARD, language: Language = Language.PYTHON
+    ) -> None:
+        super().__init__()
+        if semantics is not Semantics.STANDARD:
+            raise UsageError(f"the semantics {semantics!r} is not supported; choose Semantics.STANDARD")
+        if not isinstance(language, Language):
+            raise UsageError(f"the language is {language!r}; choose Language.PYTHON or Language.CPP")
+
+    def evaluate(self, dataset: Mapping[str, Any]) -> list[list[float]]:
+        """Evaluate a finished trace; see :class:`StlDiscreteTimeOfflineSpecification`."""
+        result = super().evaluate(dataset)
+        self._take = self._begin  # so that values come from the stream again after the next update
+        return result
+
+
+class StlDiscreteTimeSpecificationCpp(StlDiscreteTimeSpecification):
+    """The same, with RTAMT's C++ back end named by the class."""
+
+    def __init__(self, semantics: Semantics = Semantics.STANDARD) -> None:
+        super().__init__(semantics, Language.CPP)
+
+
+def _require_past(formula: Formula, text: str) -> None:
+    """Raise at the outermost operator that reads the future: an online monitor cannot."""
+    future = [n for n in postorder(formula) if isinstance(n, Apply) and n.op.tense is Tense.FUTURE]
+    if future:
+        name = future[-1].op.name
+        message = (
+            f"{name[0].upper()}{name[1:]} operator is not implemented in the STL online monitor. "
+            f"Call pastify() after parse(), or evaluate the finished trace offline"
+        )
+        raise RTAMTException(str(SpecificationError(message, text, future[-1].span)))

@@ -1,0 +1,34 @@
+"""Every error of the library leaves the paper's API as an RTAMTException, with its sentence and its caret."""
+
+from __future__ import annotations
+
+from functools import wraps
+from typing import TYPE_CHECKING, ParamSpec, TypeVar
+
+from rtamt.errors import RTAMTException, SpecificationError, StlError, STLParseException
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+P = ParamSpec("P")
+R = TypeVar("R")
+
+
+def raises_rtamt(method: Callable[P, R]) -> Callable[P, R]:
+    """Make a method raise :class:`STLParseException` for text that is wrong, else :class:`RTAMTException`.
+
+    The original error stays reachable as ``__cause__``.
+    """
+
+    @wraps(method)
+    def translating(*args: P.args, **kwargs: P.kwargs) -> R:
+        try:
+            return method(*args, **kwargs)
+        except RTAMTException:
+            raise
+        except SpecificationError as error:
+            raise STLParseException(str(error)) from error
+        except StlError as error:
+            raise RTAMTException(str(error)) from error
+
+    return translating
