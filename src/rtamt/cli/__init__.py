@@ -1,0 +1,99 @@
+"""The command line ``rtamt``: one sentence on stderr for whatever goes wrong, never a traceback."""
+
+from __future__ import annotations
+
+import os
+import sys
+from types import MappingProxyType
+from typing import TYPE_CHECKING
+
+import rtamt
+from rtamt.cli import check, info, monitor, operators
+from rtamt.cli.command import BROKEN_PIPE, ERROR, INTERRUPTED, OK, Command, Help, Parser, complain
+from rtamt.errors import StlError, UsageError, did_you_mean
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+COMMANDS: Mapping[str, Command] = MappingProxyType(
+    {c.name: c for c in (check.COMMAND, monitor.COMMAND, info.COMMAND, operators.COMMAND)}
+)
+
+_EXAMPLES = """\
+examples:
+  rtamt check examples/request_grant/spec.stl examples/request_grant/*.csv
+  rtamt info "always((req >= 3) -> eventually[0:5](gnt >= 3))"
+  echo '{"time": 0, "x": 5}' | rtamt monitor "x >= 3"
+
+exit codes:
+  0 satisfied (or done), 1 violated, 2 something is wrong: one sentence on stderr says what"""
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run the command line; return the exit code."""
+    try:
+        code = _dispatch(list(sys.argv[1:] if argv is None else argv))
+        sys.stdout.flush()
+    except StlError as error:
+        complain(error)
+    except KeyboardInterrupt:
+        return INTERRUPTED
+    except BrokenPipeError:
+        # Nobody reads on. What Python still holds for stdout goes nowhere, without a word at exit.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return BROKEN_PIPE
+    except MemoryError:
+        complain("not enough memory: are the bounds of a window as large as they should be?")
+    except Exception as error:  # noqa: BLE001 - a mistake of ours; the user gets a sentence all the same
+        complain(f"internal error, please report it: {type(error).__name__}: {error}")
+    else:
+        return code
+    return ERROR
+
+
+def _dispatch(argv: list[str]) -> int:
+    if not argv:
+        print(_overview().format_help().rstrip())
+        return ERROR
+    name, *rest = argv
+    if name.startswith("-"):
+        _overview().parse_args(argv)  # --help and --version do not return
+    command = COMMANDS.get(name)
+    if command is None:
+        hint = did_you_mean(name, COMMANDS)
+        raise UsageError(f"there is no command '{name}', only {', '.join(COMMANDS)}{hint}")
+    parser = _parser(command)
+    # Options may stand anywhere, between traces too; but intermixed parsing does not know "--".
+    return command.run(parser.parse_args(rest) if "--" in rest else parser.parse_intermixed_args(rest))
+
+
+def _parser(command: Command) -> Parser:
+    parser = Parser(
+        prog=f"rtamt {command.name}",
+        formatter_class=Help,
+        allow_abbrev=False,
+    )
+    command.configure(parser)
+    return parser
+
+
+def _overview() -> Parser:
+    width = max(map(len, COMMANDS))
+    listing = "\n".join(f"  {c.name:<{width}}  {c.summary}" for c in COMMANDS.values())
+    parser = Parser(
+        prog="rtamt",
+        usage="rtamt COMMAND ...",
+        description=(
+            "Runtime monitors for Signal Temporal Logic: a requirement and a recorded or live signal go in, "
+            "the robustness comes out.\n\n"
+            f"commands ('rtamt COMMAND --help' says more):\n{listing}"
+        ),
+        epilog=_EXAMPLES,
+        formatter_class=Help,
+        allow_abbrev=False,
+    )
+    parser.add_argument("--version", action="version", version=f"rtamt {rtamt.__version__}")
+    return parser
+
+
+__all__ = ["COMMANDS", "OK", "main"]

@@ -1,0 +1,169 @@
+"""``rtamt check``: does each recording satisfy the requirement? The exit code serves a CI job."""
+
+from __future__ import annotations
+
+import json
+import sys
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from rtamt.cli.command import (
+    ERROR,
+    OK,
+    VIOLATED,
+    Command,
+    CommandError,
+    add_specification_options,
+    complain,
+    json_number,
+    read_specification,
+    short,
+)
+from rtamt.cli.terminal import Progress, table, use_color
+from rtamt.errors import StlError
+from rtamt.language.units import format_duration
+from rtamt.readers import read
+
+if TYPE_CHECKING:
+    import argparse
+
+    from rtamt.specification import Result, Specification
+
+_DESCRIPTION = """\
+Evaluate recordings against a requirement: the robustness at the first instant (how far
+the recording is from violating the requirement, or below 0 from satisfying it) and the verdict.
+
+Exit code: 0 all satisfied, 1 some violated, 2 some could not be evaluated."""
+
+_EPILOG = """\
+A trace is a CSV file whose header names the columns. Time stamps (seconds, or the unit in the
+header: 't [ms]') are in the column called time, t, timestamp or stamp; without one, samples are
+one period apart. Columns that the formula does not read may hold anything.
+
+--json prints one object a line: {"trace", "satisfied", "robustness", "samples", "period"}, or
+{"trace", "error"}. JSON has no infinities: they are the strings "inf" and "-inf".
+
+examples:
+  rtamt check examples/request_grant/spec.stl examples/request_grant/*.csv
+  rtamt check "always((req >= 3) -> eventually[0:5](gnt >= 3))" log.csv --json
+  rtamt check "always[0:500ms](speed <= 30)" drive.csv --period 100ms -o robustness.csv"""
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """What came of one trace: a result, or the reason why there is none."""
+
+    trace: str
+    verdict: str  # satisfied, violated or error
+    result: Result | None = None
+    error: str = ""
+
+
+_KINDS = {"satisfied": "good", "violated": "bad", "error": "error"}
+_CODES = {"satisfied": OK, "violated": VIOLATED, "error": ERROR}
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of the command."""
+    parser.description = _DESCRIPTION
+    parser.epilog = _EPILOG
+    add_specification_options(parser)
+    parser.add_argument("traces", metavar="TRACE", nargs="+", help="a CSV file")
+    parser.add_argument("--time-column", metavar="NAME", help="the column of time stamps; '' for none")
+    parser.add_argument("-o", "--output", metavar="FILE", help="write the robustness at every sample as CSV")
+    parser.add_argument("--json", action="store_true", help="print JSON, one object a line")
+    parser.add_argument("--quiet", action="store_true", help="print errors only: the exit code has it all")
+    parser.add_argument(
+        "--color", default="auto", metavar="{auto,always,never}", help="colour (default: auto, on a terminal)"
+    )
+
+
+def run(args: argparse.Namespace) -> int:
+    """Evaluate every trace, print what came of it."""
+    color = use_color(args.color, sys.stdout)
+    if args.output is not None and len(args.traces) > 1:
+        raise CommandError(f"--output takes the robustness of one trace, got {len(args.traces)} traces")
+    spec = read_specification(args)
+    outcomes: list[Outcome] = []
+    with Progress() as progress:
+        for number, trace in enumerate(args.traces, 1):
+            label = f"{number}/{len(args.traces)} {trace}"
+            outcome = _evaluate(spec, trace, args.time_column, progress, label)
+            outcomes.append(outcome)
+            if outcome.error:
+                progress.clear()
+                complain(outcome.error)
+            if args.json and not args.quiet:
+                progress.clear()
+                print(_as_json(outcome), flush=True)
+    if not args.json and not args.quiet and any(outcome.result for outcome in outcomes):
+        print(_as_table(spec, outcomes, color))
+    if args.output is not None and outcomes[0].result is not None:
+        _write(outcomes[0].result, args.output)
+    return max(_CODES[outcome.verdict] for outcome in outcomes)
+
+
+def _evaluate(
+    spec: Specification, trace: str, time_column: str | None, progress: Progress, label: str
+) -> Outcome:
+    progress.show(label)
+    try:
+        data = read(
+            trace,
+            spec.input_names,
+            time_column=time_column,
+            progress=lambda samples: progress.show(f"{label}: {samples:,} samples"),
+        )
+    except StlError as error:
+        return Outcome(trace, "error", error=str(error))
+    try:
+        result = spec.evaluate(data)
+        return Outcome(trace, "satisfied" if result.satisfied else "violated", result)
+    except StlError as error:
+        return Outcome(trace, "error", error=f"{trace}: {error}")
+
+
+def _as_json(outcome: Outcome) -> str:
+    result = outcome.result
+    if result is None:
+        return json.dumps({"trace": outcome.trace, "error": outcome.error})
+    return json.dumps(
+        {
+            "trace": outcome.trace,
+            "satisfied": outcome.verdict == "satisfied",
+            "robustness": json_number(result.robustness),
+            "samples": len(result.trace),
+            "period": float(result.trace.period),
+        }
+    )
+
+
+def _as_table(spec: Specification, outcomes: list[Outcome], color: bool) -> str:
+    rows = [("trace", "samples", "period", "robustness", "verdict")]
+    for outcome in outcomes:
+        cells = ("-", "-", "-")
+        if outcome.result is not None:
+            trace = outcome.result.trace
+            cells = (str(len(trace)), format_duration(trace.period), short(outcome.result.robustness))
+        rows.append((outcome.trace, *cells, outcome.verdict))
+    kinds = [_KINDS[outcome.verdict] for outcome in outcomes]
+    title = f"{spec.name}: {spec.formula}" if spec.name else str(spec.formula)
+    text = f"{title}\n\n{table(rows, right=(1, 2, 3), kinds=kinds, color=color)}"
+    if len(outcomes) > 1:
+        verdicts = [outcome.verdict for outcome in outcomes]
+        counts = [f"{verdicts.count(verdict)} {verdict}" for verdict in _CODES if verdict in verdicts]
+        text += f"\n\n{', '.join(counts)}"
+    return text
+
+
+def _write(result: Result, path: str) -> None:
+    rows = zip(result.signal.times.tolist(), result.signal.values.tolist(), strict=True)
+    try:
+        with open(path, "w", encoding="utf-8", newline="") as file:
+            file.write("time,robustness\n")
+            file.writelines(f"{time!r},{value!r}\n" for time, value in rows)
+    except OSError as error:
+        raise CommandError(f"cannot write '{path}': {error.strerror}") from None
+
+
+COMMAND = Command("check", "evaluate recordings: robustness and verdict", configure, run)

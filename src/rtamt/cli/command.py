@@ -1,0 +1,122 @@
+"""What every command of the command line is made of, and the options that several of them take."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import re
+import sys
+import textwrap
+from dataclasses import dataclass
+from math import isfinite
+from typing import TYPE_CHECKING, NoReturn
+
+from rtamt.engine.core import core
+from rtamt.errors import SpecificationError, StlError, UsageError
+from rtamt.language.units import UNITS
+from rtamt.readers import READERS
+from rtamt.specification import Specification, load, parse
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+OK, VIOLATED, ERROR = 0, 1, 2
+INTERRUPTED, BROKEN_PIPE = 130, 141  # what a shell reports for a program ended by these signals
+
+_SPECIFICATION_SUFFIXES = (".stl",)
+_LIKE_A_PATH = re.compile(r"[\w.~:\\/-]*[\\/][\w.~:\\/-]*")
+
+
+@dataclass(frozen=True, slots=True)
+class Command:
+    """One command: ``run`` returns the exit code."""
+
+    name: str
+    summary: str
+    configure: Callable[[argparse.ArgumentParser], None]
+    run: Callable[[argparse.Namespace], int]
+
+
+class Help(argparse.HelpFormatter):
+    """Wraps prose to the width of the terminal; a paragraph with indented lines stays as it is."""
+
+    def _fill_text(self, text: str, width: int, indent: str) -> str:  # noqa: ARG002 - the base class has it
+        paragraphs = text.split("\n\n")
+        return "\n\n".join(p if "\n " in p else textwrap.fill(p, width) for p in paragraphs)
+
+
+class Parser(argparse.ArgumentParser):
+    """An argument parser whose errors are one sentence, like all others."""
+
+    def error(self, message: str) -> NoReturn:
+        """Raise :class:`UsageError`, with the way to the help."""
+        raise UsageError(f"{message}; see '{self.prog} --help'")
+
+
+class CommandError(StlError):
+    """A command cannot go on; the sentence is complete, file name and all."""
+
+
+def add_specification_options(parser: argparse.ArgumentParser) -> None:
+    """Add SPEC and what tells how to read it."""
+    parser.add_argument("spec", metavar="SPEC", help="a specification file (.stl), or a formula in quotes")
+    parser.add_argument(
+        "--period", metavar="DURATION", help="the sampling period: seconds, or with a unit, such as 100ms"
+    )
+    units = ", ".join(UNITS)
+    parser.add_argument("--unit", default="s", help=f"of bounds without a unit: {units} (default: s)")
+    parser.add_argument(
+        "--backend",
+        default="cpp",
+        metavar="{cpp,python}",
+        help="cpp: the compiled core (default); python: the definition itself, slow, needs no compiler",
+    )
+
+
+def read_specification(args: argparse.Namespace) -> Specification:
+    """Read SPEC: the file of that name, else the text itself."""
+    spec: str = args.spec
+    if args.backend == "cpp":
+        try:
+            core()
+        except UsageError as error:
+            raise CommandError(f"{error}; on the command line: --backend python") from None
+    options = {"period": args.period, "unit": args.unit, "backend": args.backend}
+    if os.path.isfile(spec):
+        if os.path.splitext(spec)[1].lower() in set(READERS) - {".txt"}:
+            raise CommandError(f"'{spec}' is a trace; the specification comes before the traces")
+        try:
+            return load(spec, **options)
+        except SpecificationError as error:
+            raise CommandError(f"{spec}: {error}") from error
+    if os.path.isdir(spec):
+        raise CommandError(f"'{spec}' is a directory, expected a specification file or a formula")
+    if spec.lower().endswith(_SPECIFICATION_SUFFIXES) or _LIKE_A_PATH.fullmatch(spec):
+        raise CommandError(f"there is no file '{spec}' (if a formula is meant, put it in parentheses)")
+    if not spec.strip():
+        raise CommandError("the specification is empty; give a file or a formula, such as 'always(x >= 3)'")
+    return parse(spec, **options)
+
+
+def complain(sentence: object) -> None:
+    """Print one sentence on stderr, after what has gone to stdout."""
+    sys.stdout.flush()
+    print(f"rtamt: {sentence}", file=sys.stderr, flush=True)
+
+
+def json_number(value: float) -> float | str:
+    """Return a number as JSON can hold it: JSON has no infinities, so they are text.
+
+    >>> json_number(float("-inf")), json_number(2.5)
+    ('-inf', 2.5)
+    """
+    return value if isfinite(value) else str(value)
+
+
+def short(value: float) -> str:
+    """Return a number for people: six digits, no minus before zero.
+
+    >>> short(3.0), short(-0.0), short(float("inf"))
+    ('3', '0', 'inf')
+    """
+    return f"{value + 0.0:.6g}"

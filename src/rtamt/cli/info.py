@@ -1,0 +1,163 @@
+"""``rtamt info``: what a requirement reads, how far it looks ahead, what it becomes, what it costs."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from typing import TYPE_CHECKING, Any
+
+from rtamt.cli.command import OK, Command, add_specification_options, read_specification
+from rtamt.engine.compile import compile_program
+from rtamt.engine.core import core
+from rtamt.errors import BoundError
+from rtamt.language.units import format_duration
+from rtamt.rewrite.check import check_bounds, check_online
+from rtamt.rewrite.desugar import desugar
+from rtamt.rewrite.horizon import horizon
+from rtamt.rewrite.pastify import pastify
+
+if TYPE_CHECKING:
+    import argparse
+    from collections.abc import Iterator
+
+    from rtamt.engine.program import Program
+    from rtamt.language.formula import Formula
+    from rtamt.specification import Specification
+
+_DESCRIPTION = """\
+Tell what a requirement reads, how far ahead it looks (its horizon), the same requirement with past
+operators only (its pastified form), and what an online monitor of it runs and keeps in memory."""
+
+_EPILOG = """\
+In the listing of the program every line is an instruction: %0, %1, ... are results, n is a width in
+samples, and a lag is the number of samples after which a result is known.
+
+--json prints one object: {"name", "formula", "latex", "variables", "period", "horizon", "pastified",
+"program", "memory", "offline_only"}; what does not exist is null. Durations are in seconds, memory
+in bytes.
+
+examples:
+  rtamt info examples/request_grant/spec.stl
+  rtamt info "always[0:10]((req >= 3) -> eventually[0:500ms](gnt >= 3))" --period 100ms
+  rtamt info "x >= 3 until[0:5] y >= 3" --latex"""
+
+
+@dataclass(frozen=True, slots=True)
+class Facts:
+    """What there is to tell of a requirement; None is for what it does not have."""
+
+    spec: Specification
+    period: Fraction
+    horizon: Fraction | None = None
+    pastified: Formula | None = None
+    program: Program | None = None
+    memory: int | None = None  # bytes; also None where there is no compiled core to ask
+    offline_only: str | None = None  # why there is no program
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of the command."""
+    parser.description = _DESCRIPTION
+    parser.epilog = _EPILOG
+    add_specification_options(parser)
+    parser.add_argument("--latex", action="store_true", help="print the formula as LaTeX, and nothing else")
+    parser.add_argument("--json", action="store_true", help="print JSON: one object")
+
+
+def run(args: argparse.Namespace) -> int:
+    """Print what there is to tell."""
+    spec = read_specification(args)
+    if args.latex:
+        print(spec.formula.latex())
+        return OK
+    facts = gather(spec)
+    print(_as_json(facts) if args.json else "\n".join(_lines(facts)))
+    return OK
+
+
+def gather(spec: Specification) -> Facts:
+    """Find out all there is to tell; what an online monitor cannot have stays None."""
+    period = spec.period or Fraction(1)
+    facts = Facts(spec, period)
+    try:
+        check_online(spec.formula, spec.text)
+        facts = replace(
+            facts, horizon=horizon(spec.formula, period), pastified=pastify(spec.formula, period, spec.text)
+        )
+        check_bounds(spec.formula, period, spec.text)
+    except BoundError as error:
+        return replace(facts, offline_only=error.message)
+    program = compile_program((desugar(spec.formula),), period, spec.input_names)
+    memory = None if spec.backend == "python" else int(core().memory(program.to_bytes()))
+    return replace(facts, program=program, memory=memory)
+
+
+def _variables(spec: Specification) -> list[dict[str, Any]]:
+    declared = {declaration.name: declaration for declaration in spec.document.declarations}
+    rows = []
+    for name in spec.input_names:
+        declaration = declared.get(name) or declared.get(name.split(".")[0])
+        rows.append(
+            {
+                "name": name,
+                "type": declaration.type if declaration else None,
+                "role": declaration.role if declaration else None,
+                "topic": spec.document.topics.get(name.split(".")[0]),
+            }
+        )
+    return rows
+
+
+def _lines(facts: Facts) -> Iterator[str]:
+    spec = facts.spec
+    if spec.name:
+        yield f"name       {spec.name}"
+    yield f"formula    {spec.formula}"
+    for assertion in spec.document.assertions[:-1]:
+        if assertion.name:
+            yield f"           {assertion.name} = {assertion.formula}"
+    for i, variable in enumerate(_variables(spec)):
+        topic = variable["topic"] and f"({variable['topic']})"
+        words = [variable["role"], variable["type"], variable["name"], topic]
+        yield f"{'' if i else 'variables':<11}{' '.join(word for word in words if word)}"
+    if not spec.input_names:
+        yield "variables  none"
+    default = "" if spec.period else " (the default; --period sets it)"
+    yield f"period     {format_duration(facts.period)}{default}"
+    if facts.horizon is not None:
+        ahead = format_duration(facts.horizon)
+        yield f"horizon    {ahead}: the value at t is known at t + {ahead}"
+        yield f"pastified  {facts.pastified}"
+    if facts.program is None:
+        yield f"online     no: {facts.offline_only}"
+        return
+    if facts.memory is None:
+        yield "memory     only the compiled core can tell (leave out --backend python)"
+    else:
+        doubles = round(facts.memory / 8)
+        yield f"memory     {facts.memory:,} bytes ({doubles:,} doubles), whatever the length of the trace"
+    yield "program"
+    for line in facts.program.disassemble().splitlines():
+        yield f"  {line}"
+
+
+def _as_json(facts: Facts) -> str:
+    spec = facts.spec
+    return json.dumps(
+        {
+            "name": spec.name,
+            "formula": str(spec.formula),
+            "latex": spec.formula.latex(),
+            "variables": _variables(spec),
+            "period": float(facts.period),
+            "horizon": None if facts.horizon is None else float(facts.horizon),
+            "pastified": None if facts.pastified is None else str(facts.pastified),
+            "program": None if facts.program is None else facts.program.disassemble().splitlines(),
+            "memory": facts.memory,
+            "offline_only": facts.offline_only,
+        }
+    )
+
+
+COMMAND = Command("info", "horizon, pastified form, program and memory of a requirement", configure, run)

@@ -1,0 +1,127 @@
+"""``rtamt monitor``: samples on stdin, robustness on stdout as soon as it is known."""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections import deque
+from typing import TYPE_CHECKING
+
+from rtamt.cli.command import (
+    ERROR,
+    OK,
+    Command,
+    CommandError,
+    add_specification_options,
+    complain,
+    json_number,
+    read_specification,
+)
+from rtamt.cli.samples import STDIN, Samples
+from rtamt.engine.signals import TOLERANCE
+from rtamt.errors import StlError, TraceError
+
+if TYPE_CHECKING:
+    import argparse
+
+    from rtamt.engine.monitor import Monitor
+
+_DESCRIPTION = """\
+Watch a stream of samples. Each line of input is one sample; each line of output is the robustness
+at one instant, printed as soon as the future that the formula speaks of has passed (the rest
+follows at the end of input)."""
+
+_EPILOG = """\
+input: JSON objects, one a line, or CSV with a header row. What the formula does not read is left
+out of account. Time stamps (seconds) are in time, t, timestamp or stamp; without one, samples are
+one period apart (--period, default 1 s). Fields: {"req": {"value": 3}} or {"req.value": 3}.
+
+output: {"time": 0.0, "robustness": 3.0}. JSON has no infinities: they are the strings "inf" and
+"-inf", here and in the input.
+
+A line that is no sample ends the monitor with exit code 2. With --keep-going it is reported and
+left out, and the exit code is 2 at the end. A sample that is left out leaves a gap in time, which
+--tolerance inf allows: the next sample then takes its place.
+
+examples:
+  echo '{"time": 0, "x": 5}' | rtamt monitor "x >= 3"
+  rtamt monitor "(req >= 3) -> eventually[0:5](gnt >= 3)" < examples/request_grant/c_violated.csv
+  tail -f log.jsonl | rtamt monitor "historically[0:1](speed <= 30)" --period 100ms --keep-going"""
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of the command."""
+    parser.description = _DESCRIPTION
+    parser.epilog = _EPILOG
+    add_specification_options(parser)
+    parser.add_argument("--time-column", metavar="NAME", help="the key or column of time stamps; '' for none")
+    parser.add_argument(
+        "--tolerance",
+        type=float,
+        default=TOLERANCE,
+        metavar="FRACTION",
+        help=f"by how much of the period a gap between samples may miss it (default: {TOLERANCE})",
+    )
+    parser.add_argument("--keep-going", action="store_true", help="report a bad line and go on")
+
+
+def run(args: argparse.Namespace) -> int:
+    """Read samples until the end of input, print what becomes known."""
+    if not args.tolerance >= 0:
+        raise CommandError(f"the tolerance is {args.tolerance:g}; give a fraction of the period, such as 0.1")
+    watched = Watched(read_specification(args).monitor(tolerance=args.tolerance))
+    samples = Samples(watched.monitor.input_names, args.time_column)
+    if sys.stdin.isatty():
+        complain("reading samples from the terminal, one JSON object a line; Ctrl-D ends")
+    code = OK
+    for number, line in enumerate(sys.stdin.buffer, 1):
+        try:
+            sample = samples.read(line, number)
+        except TraceError as error:
+            problem = str(error)
+        else:
+            problem = watched.take(*sample, number) if sample is not None else ""
+        if problem:
+            complain(problem)
+            code = ERROR
+            if not args.keep_going:
+                return code
+    if not watched.monitor.samples:
+        raise CommandError(f"{STDIN} has no samples: give one JSON object a line, or CSV with a header row")
+    watched.finish()
+    return code
+
+
+class Watched:
+    """A monitor with the time stamps of the samples whose robustness is not known yet."""
+
+    def __init__(self, monitor: Monitor) -> None:
+        self.monitor = monitor
+        self._period = float(monitor.period)
+        self._stamps: deque[float] = deque()
+
+    def take(self, time: float | None, values: dict[str, float], line: int) -> str:
+        """Take a sample and print what became known; return what is wrong with the sample, if anything is."""
+        if time is None:
+            time = self.monitor.samples * self._period
+        try:
+            robustness = self.monitor.update(time, **values)
+        except StlError as error:
+            return f"{STDIN}, line {line}: {error}"
+        self._stamps.append(time)
+        if robustness is not None:
+            _print(self._stamps.popleft(), robustness)
+        return ""
+
+    def finish(self) -> None:
+        """End the trace; print what was not known yet."""
+        signal = self.monitor.finish()
+        for time, robustness in zip(signal.times.tolist(), signal.values.tolist(), strict=True):
+            _print(time, robustness)
+
+
+def _print(time: float, robustness: float) -> None:
+    print(json.dumps({"time": time, "robustness": json_number(robustness)}), flush=True)
+
+
+COMMAND = Command("monitor", "watch a stream: samples on stdin, robustness on stdout", configure, run)

@@ -1,0 +1,83 @@
+"""``rtamt operators``: the language, as the operator table has it."""
+
+from __future__ import annotations
+
+import shutil
+import sys
+import textwrap
+from typing import TYPE_CHECKING
+
+from rtamt.cli.command import OK, Command
+from rtamt.cli.terminal import table, use_color
+from rtamt.errors import UsageError, did_you_mean
+from rtamt.language.operators import STL, Bounds, Fixity
+from rtamt.language.units import UNITS
+
+if TYPE_CHECKING:
+    import argparse
+
+    from rtamt.language.operators import Operator
+
+_DESCRIPTION = "List the operators of the language, those that bind tightest first."
+
+_EPILOG = """\
+examples:
+  rtamt operators                 all of them
+  rtamt operators until since     two of them"""
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of the command."""
+    parser.description = _DESCRIPTION
+    parser.epilog = _EPILOG
+    parser.add_argument("names", metavar="OPERATOR", nargs="*", help="a name or spelling (default: all)")
+
+
+def run(args: argparse.Namespace) -> int:
+    """Print the operators asked for."""
+    tightest_first = sorted(STL, key=lambda op: -op.power)
+    chosen = tightest_first if not args.names else [op for name in args.names for op in _called(name)]
+    rows = [("name", "written", "example", "meaning")]
+    rows += [(op.name, _written(op), op.example, op.doc) for op in chosen]
+    print(_fitted(rows))
+    if not args.names:
+        print(f"\n{_notes()}")
+    return OK
+
+
+def _fitted(rows: list[tuple[str, str, str, str]]) -> str:
+    """Return the rows as a table; the meanings on lines of their own where the terminal is too narrow."""
+    color = use_color("auto", sys.stdout)
+    wide = table(rows, color=color)
+    width = max(len(line) for line in table(rows).splitlines())
+    if not sys.stdout.isatty() or width <= shutil.get_terminal_size().columns:
+        return wide
+    lines = table([row[:3] for row in rows], color=color).splitlines()
+    return "\n".join(f"{line}\n    {meaning}" for line, (*_, meaning) in zip(lines, rows, strict=True))
+
+
+def _notes() -> str:
+    right = ", ".join(op.spellings[0] for op in STL if op.fixity is Fixity.RIGHT)
+    notes = (
+        f"[a:b] is an interval, also written [a,b], with or without units ({', '.join(UNITS)}), as in "
+        f"always[0:500ms](x >= 3); [a:b]? may be left out: the window is then unbounded. Operators with "
+        f"two operands associate to the left, {right} to the right. A number used as a formula is its own "
+        f"robustness."
+    )
+    return textwrap.fill(notes, min(100, shutil.get_terminal_size().columns))
+
+
+def _called(name: str) -> list[Operator]:
+    found = [op for op in STL if name == op.name or name in op.spellings]
+    if not found:
+        known = sorted({word for op in STL for word in (op.name, *op.spellings)})
+        raise UsageError(f"there is no operator '{name}'{did_you_mean(name, known)}; see 'rtamt operators'")
+    return found
+
+
+def _written(op: Operator) -> str:
+    interval = {Bounds.NONE: "", Bounds.OPTIONAL: " [a:b]?", Bounds.REQUIRED: " [a:b]"}[op.bounds]
+    return " ".join(op.spellings) + interval
+
+
+COMMAND = Command("operators", "list the operators of the language", configure, run)

@@ -1,0 +1,275 @@
+"""CSV files: a header row that names the columns, then a row of values for each sample."""
+
+from __future__ import annotations
+
+import csv
+import os
+import re
+from array import array
+from contextlib import suppress
+from dataclasses import dataclass
+from itertools import chain, islice
+from math import isnan
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rtamt.engine.signals import TIME
+from rtamt.errors import TraceError, did_you_mean
+from rtamt.language.units import UNITS
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
+
+    from rtamt.engine.signals import FloatArray
+
+#: What a column of time stamps is called, in any case, with or without a unit: ``Time [ms]``.
+TIME_NAMES = ("time", "t", "timestamp", "stamp")
+
+DELIMITERS = (",", ";", "\t")
+
+_BLOCK = 65_536  # lines at a time: enough to keep numpy busy, little enough to keep memory flat
+_NAME_WITH_UNIT = re.compile(r"(?P<name>.*\S)\s*[\[(]\s*(?P<unit>[^\[\]()]+?)\s*[\])]", re.DOTALL)
+
+
+@dataclass(frozen=True, slots=True)
+class Header:
+    """The names of the columns, and how the file is written."""
+
+    file: str
+    names: tuple[str, ...]
+    delimiter: str
+    line: int  # of the file, in which the header ends
+
+    def error(self, line: int, problem: str, variable: str | None = None) -> TraceError:
+        """Return an error with its place in the file."""
+        return TraceError(f"{self.file}, line {line}: {problem}", variable=variable)
+
+
+@dataclass(frozen=True, slots=True)
+class Column:
+    """A column that is wanted: its name in the result, its position in the file."""
+
+    name: str
+    position: int
+
+
+def read_csv(
+    path: str | os.PathLike[str],
+    names: Iterable[str] | None = None,
+    *,
+    time_column: str | None = None,
+    progress: Callable[[int], None] | None = None,
+) -> dict[str, FloatArray]:
+    """Read a CSV file; arguments and result as for :func:`rtamt.readers.read`.
+
+    Values are separated by commas, semicolons or tabs (the header tells which), may be quoted and
+    padded with spaces; empty lines and lines that begin with ``#`` are left out. A unit in the header
+    (``req [V]``) need not be given; that of the time column (``t [ms]``) is taken into account.
+    """
+    file = os.fspath(path)
+    if os.path.isdir(file):
+        raise TraceError(f"'{file}' is a directory, expected a CSV file")
+    try:
+        with open(file, encoding="utf-8-sig", newline="") as lines:
+            header, rows = read_header(lines, file)
+            time = find_time(header, time_column)
+            wanted = header.names if names is None else names
+            columns = [find(header, name) for name in dict.fromkeys(wanted) if time is None or name != TIME]
+            if time is not None:
+                columns = [Column(TIME, time.position), *(c for c in columns if names or c != time)]
+            data = _read_rows(rows, header, columns, progress)
+    except FileNotFoundError:
+        raise TraceError(f"there is no file '{file}'") from None
+    except OSError as error:
+        raise TraceError(f"cannot read '{file}': {error.strerror}") from None
+    except UnicodeDecodeError:
+        raise TraceError(
+            f"'{file}' is not UTF-8 text; save it as CSV in UTF-8 (spreadsheets offer this under 'save as')"
+        ) from None
+    if data and not data[0]:
+        raise TraceError(f"'{file}' has column names but no samples: give at least one")
+    result = {column.name: np.frombuffer(values) for column, values in zip(columns, data, strict=True)}
+    if time is not None:
+        # A division by a whole number rounds once; a product with 0.001 would round twice.
+        result[TIME] = result[TIME] / time_divisor(header, time)
+    return result
+
+
+# ---- the header ----------------------------------------------------------------------------------
+
+
+def read_header(lines: Iterator[str], file: str, before: int = 0) -> tuple[Header, Iterator[str]]:
+    """Read the row that names the columns; return it, and the lines after it. ``before``: lines read before.
+
+    Where the first row is all numbers, a comment right above it has the names: numpy writes such files.
+    """
+    first, comment, count = "", "", before
+    for first in lines:
+        count += 1
+        if not first.isspace() and not first.startswith("#"):
+            break
+        comment = first.lstrip("#") if first.startswith("#") else ""
+    else:
+        raise TraceError(f"'{file}' is empty: it needs a row of column names, then a row for each sample")
+    delimiter = max(DELIMITERS, key=first.count)
+    reader = csv.reader(chain([first], lines), delimiter=delimiter, skipinitialspace=True)
+    try:
+        cells = next(reader)
+    except csv.Error as error:
+        raise TraceError(f"{file}, line {count - 1 + reader.line_num}: {error}") from None
+    header = Header(file, tuple(cell.strip() for cell in cells), delimiter, count - 1 + reader.line_num)
+    if not all(_is_number(cell) for cell in header.names if cell):
+        return header, lines
+    names = tuple(cell.strip() for cell in comment.split(delimiter))
+    if len(names) == len(cells) and all(names):
+        return Header(file, names, delimiter, count - 1), chain([first], lines)
+    raise header.error(header.line, f"expected a row of column names, such as time,x; got '{first.strip()}'")
+
+
+def find(header: Header, name: str) -> Column:
+    """Return the column called ``name``; a unit in brackets after it in the file does not matter."""
+    exact = [i for i, cell in enumerate(header.names) if cell == name]
+    found = exact or [i for i, cell in enumerate(header.names) if split_unit(cell)[0] == name]
+    if not found:
+        raise missing_column(header, name)
+    if len(found) > 1:
+        raise header.error(
+            header.line,
+            f"columns {found[0] + 1} and {found[1] + 1} are both called '{name}'; rename one of them",
+            name,
+        )
+    return Column(name, found[0])
+
+
+def missing_column(header: Header, name: str) -> TraceError:
+    """Return the error for a column that is not there."""
+    hint = did_you_mean(name, header.names)
+    return TraceError(f"{header.file} has no column '{name}', only {_listing(header)}{hint}", variable=name)
+
+
+def _listing(header: Header) -> str:
+    shown = header.names[:12]
+    more = len(header.names) - len(shown)
+    return ", ".join(shown) + (f" and {more} more" if more else "")
+
+
+def find_time(header: Header, wanted: str | None) -> Column | None:
+    """Return the column of time stamps: the one wanted, else the first with a known name, if any."""
+    if wanted is not None:
+        return find(header, wanted) if wanted else None
+    bare = [split_unit(cell)[0].lower() for cell in header.names]
+    for name in TIME_NAMES:
+        if name in bare:
+            return find(header, header.names[bare.index(name)])
+    return None
+
+
+def split_unit(cell: str) -> tuple[str, str]:
+    """Return the name and the unit of a column: ``Time [ms]`` is ``("Time", "ms")``.
+
+    >>> split_unit("Time [ms]"), split_unit("req")
+    (('Time', 'ms'), ('req', ''))
+    """
+    match = _NAME_WITH_UNIT.fullmatch(cell)
+    return (match["name"], match["unit"]) if match else (cell, "")
+
+
+def time_divisor(header: Header, column: Column) -> float:
+    """Return how many of the time column's units make a second."""
+    cell = header.names[column.position]
+    unit = split_unit(cell)[1]
+    if unit in ("", "sec", "seconds"):
+        return 1.0
+    if unit not in UNITS:
+        known = ", ".join(UNITS)
+        raise header.error(header.line, f"the unit of the time column '{cell}' is none of {known}", cell)
+    return float(1 / UNITS[unit])
+
+
+# ---- the rows ------------------------------------------------------------------------------------
+
+
+def _read_rows(
+    lines: Iterator[str],
+    header: Header,
+    columns: Sequence[Column],
+    progress: Callable[[int], None] | None,
+) -> list[array[float]]:
+    """Read the rest of the file: numpy's parser as long as it is plain, row by row from there on."""
+    data = [array("d") for _ in columns]
+    line = header.line
+    while block := list(islice(lines, _BLOCK)):
+        values = _plain(block, header, columns)
+        if values is None:
+            for row in _checked(chain(block, lines), header, line, columns):
+                for column, value in zip(data, row, strict=True):
+                    column.append(value)
+        else:
+            for column, part in zip(data, values, strict=True):
+                column.frombytes(part.tobytes())
+        line += len(block)
+        if progress is not None:
+            progress(len(data[0]) if data else line - header.line)
+    return data
+
+
+def _plain(block: list[str], header: Header, columns: Sequence[Column]) -> FloatArray | None:
+    """Return the values of a block of lines, one row for each column; None if anything is unusual."""
+    text = "".join(block)
+    if '"' in text or "#" in text or not columns or any(not line or line.isspace() for line in block):
+        return None
+    if {line.count(header.delimiter) for line in block} != {len(header.names) - 1}:
+        return None
+    with suppress(ValueError):
+        positions = [column.position for column in columns]
+        values = np.loadtxt(block, delimiter=header.delimiter, usecols=positions, comments=None, ndmin=2)
+        if not np.isnan(values).any():
+            return np.ascontiguousarray(values.T)
+    return None  # the slow way finds the cell that is no number
+
+
+def _checked(
+    lines: Iterator[str], header: Header, before: int, columns: Sequence[Column]
+) -> Iterator[list[float]]:
+    """Yield the numbers of each row; raise :class:`TraceError` where there is none."""
+    reader = csv.reader(lines, delimiter=header.delimiter, skipinitialspace=True)
+    try:
+        for row in reader:
+            if not row or (len(row) == 1 and not row[0].strip()) or row[0].startswith("#"):
+                continue
+            yield numbers(row, header, before + reader.line_num, columns)
+    except csv.Error as error:
+        raise header.error(before + reader.line_num, str(error)) from None
+
+
+def numbers(row: list[str], header: Header, line: int, columns: Collection[Column]) -> list[float]:
+    """Return the numbers of one row, those of ``columns``."""
+    if len(row) != len(header.names):
+        count = f"{len(row)} value{'s' * (len(row) != 1)}"
+        raise header.error(line, f"{count}, but {len(header.names)} columns ({_listing(header)})")
+    return [number(row[column.position], header.names[column.position], header, line) for column in columns]
+
+
+def number(text: str, name: str, header: Header, line: int) -> float:
+    """Return the number in one cell."""
+    text = text.strip()
+    if not text:
+        raise header.error(line, f"'{name}' is empty, expected a number", name)
+    if not _is_number(text):
+        hint = " with a decimal point" if _is_number(text.replace(",", ".")) else ""
+        raise header.error(line, f"'{name}' is '{text}', expected a number{hint}", name)
+    value = float(text)
+    if isnan(value):
+        raise header.error(line, f"'{name}' is NaN: fill the gap or leave the sample out", name)
+    return value
+
+
+def _is_number(text: str) -> bool:
+    if "_" in text or not text.isascii():  # Python's 1_000, and digits of other scripts
+        return False
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return True

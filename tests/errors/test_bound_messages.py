@@ -1,0 +1,55 @@
+"""Every sentence about intervals that cannot be used, in full, with its caret."""
+
+from __future__ import annotations
+
+import pytest
+
+import rtamt
+
+
+def test_a_bound_that_is_no_multiple_of_the_period() -> None:
+    with pytest.raises(rtamt.BoundError) as info:
+        rtamt.parse("always[0:0.25](x >= 3)", period="100ms")
+    assert str(info.value) == (
+        "The operator bound must be a multiple of the sampling period: 250 ms is not a whole number of periods "
+        "of 100 ms; change the bound or the period\n"
+        "  line 1, column 7:\n"
+        "    always[0:0.25](x >= 3)\n"
+        "          ^^^^^^^^"
+    )
+
+
+def test_the_period_may_also_come_with_the_data() -> None:
+    spec = rtamt.parse("always[0:1](x >= 3)")
+    with pytest.raises(rtamt.BoundError, match="1 s is not a whole number of periods of 2 s"):
+        spec.evaluate({"time": [0, 2], "x": [1, 2]})
+    with pytest.raises(rtamt.BoundError, match="1 s is not a whole number of periods of 300 ms"):
+        spec.monitor(period="300ms")
+
+
+def test_unbounded_future_online() -> None:
+    with pytest.raises(rtamt.BoundError) as info:
+        rtamt.parse("x >= 1 and (eventually y >= 1)").monitor()
+    assert str(info.value) == (
+        "'eventually' without an upper bound needs the whole future and cannot be monitored online; "
+        "give it a bound, such as eventually[0:10], or evaluate the finished trace offline\n"
+        "  line 1, column 13:\n"
+        "    x >= 1 and (eventually y >= 1)\n"
+        "                ^^^^^^^^^^^^^^^^^"
+    )
+
+
+def test_unbounded_future_cannot_be_pastified() -> None:
+    with pytest.raises(rtamt.BoundError) as info:
+        rtamt.parse("always(x >= 1)").pastified()
+    assert str(info.value) == (
+        "Cannot pastify an unbounded always. Give it an upper bound, such as always[0:10]\n"
+        "  line 1, column 1:\n"
+        "    always(x >= 1)\n"
+        "    ^^^^^^^^^^^^^^"
+    )
+
+
+def test_tenths_are_exact_multiples() -> None:
+    spec = rtamt.parse("always[0:0.3](x >= 3)", period=0.1)
+    assert spec.evaluate({"x": [4, 5, 6, 1]}).robustness == -2

@@ -1,0 +1,395 @@
+"""Every sentence of the paper's API about wrong calls and wrong data, in full."""
+
+from __future__ import annotations
+
+import sys
+from types import ModuleType, SimpleNamespace
+
+import pytest
+
+import rtamt
+
+NAN = float("nan")
+PREFIX = "RTAMT Exception: "
+
+
+class Sensor:
+    """A message class of the tests."""
+
+    def __init__(self) -> None:
+        self.value = 0.0
+        self.label = ""
+
+
+class Picky:
+    """A class that cannot be made without arguments."""
+
+    def __init__(self, size: int) -> None:
+        self.size = size
+
+
+@pytest.fixture(autouse=True)
+def messages(monkeypatch):
+    module = ModuleType("some_msgs")
+    module.Sensor, module.Picky = Sensor, Picky
+    monkeypatch.setitem(sys.modules, "some_msgs", module)
+
+
+def fresh(text=None, names="x y"):
+    spec = rtamt.StlDiscreteTimeSpecification()
+    spec.import_module("some_msgs", "Sensor")
+    for name in names.split():
+        spec.declare_var(name, "float")
+    spec.declare_var("sensor", "Sensor")
+    if text is not None:
+        spec.spec = text
+        spec.parse()
+    return spec
+
+
+def said(call, kind=rtamt.RTAMTException):
+    with pytest.raises(rtamt.RTAMTException) as info:
+        call()
+    assert type(info.value) is kind
+    text = str(info.value)
+    assert text.startswith(PREFIX)
+    return text.removeprefix(PREFIX)
+
+
+SETTINGS = {
+    "unknown type": (
+        lambda s: s.declare_var("q", "Sensr"),
+        "the type 'Sensr' of 'q' is neither built in (float, int, long, complex, bool) nor imported; "
+        "did you mean 'Sensor'?; import it with import_module(module, 'Sensr') first",
+    ),
+    "class with arguments": (
+        lambda s: (s.import_module("some_msgs", "Picky"), s.declare_var("q", "Picky")),
+        "'q' cannot start as a Picky without arguments: "
+        "Picky.__init__() missing 1 required positional argument: 'size'",
+    ),
+    "name is no text": (
+        lambda s: s.declare_var(3, "float"),
+        "the name of a variable is 3, expected text",
+    ),
+    "constant's name is no text": (
+        lambda s: s.declare_const(None, "float", 1),
+        "the name of a constant is None, expected text",
+    ),
+    "sub-specification is no text": (
+        lambda s: s.add_sub_spec(3),
+        "a sub-specification is 3, expected text",
+    ),
+    "variable that is a constant": (
+        lambda s: (s.declare_const("c", "float", 1), s.declare_var("c", "float")),
+        "'c' is a constant already; give the variable another name",
+    ),
+    "constant twice": (
+        lambda s: s.declare_const("x", "float", 1),
+        "'x' is declared already; give the constant another name",
+    ),
+    "constant of a class": (
+        lambda s: s.declare_const("c", "Sensor", 1),
+        "the constant 'c' cannot be a Sensor; its type is float or int",
+    ),
+    "constant without number": (
+        lambda s: s.declare_const("c", "float", "five"),
+        "the constant 'c' is 'five', expected a number",
+    ),
+    "io type of nothing": (
+        lambda s: s.set_var_io_type("xx", "input"),
+        "the variable 'xx' is not declared; did you mean 'x'?; call declare_var('xx', ...) first",
+    ),
+    "io type": (
+        lambda s: s.set_var_io_type("x", "in"),
+        "the io type of 'x' is 'in'; choose 'input' or 'output'",
+    ),
+    "topic of nothing": (
+        lambda s: s.set_var_topic("q", "a/q"),
+        "the variable 'q' is not declared; call declare_var('q', ...) first",
+    ),
+    "module": (
+        lambda s: s.import_module("no_such_module", "A"),
+        "the module 'no_such_module' cannot be imported: No module named 'no_such_module'",
+    ),
+    "class of module": (
+        lambda s: s.import_module("some_msgs", "Sensors"),
+        "the module 'some_msgs' has no 'Sensors'; did you mean 'Sensor'?",
+    ),
+    "unit": (
+        lambda s: setattr(s, "unit", "min"),
+        "'min' is not a unit of time; units are s, ms, us, ns",
+    ),
+    "unit of the period": (
+        lambda s: s.set_sampling_period(1, "h"),
+        "'h' is not a unit of time; units are s, ms, us, ns",
+    ),
+    "period": (lambda s: s.set_sampling_period(0, "ms"), "the sampling period is 0 ms; it must be positive"),
+    "tolerance": (
+        lambda s: s.set_sampling_period(1, "s", 1.5),
+        "the sampling tolerance is 1.5; it is a fraction of the period, from 0 to 1",
+    ),
+    "file": (lambda s: s.get_spec_from_file("no/such.stl"), "The file no/such.stl does not exist."),
+    "no text": (
+        lambda s: s.parse(),
+        "spec is None; set it to the text of the requirement first",
+    ),
+    "evaluate before parse": (
+        lambda s: s.evaluate({"time": [0], "x": [1]}),
+        "no specification has been read; set spec and call parse() first",
+    ),
+    "update before parse": (
+        lambda s: s.update(0, [("x", 1)]),
+        "no specification has been read; set spec and call parse() first",
+    ),
+    "pastify before parse": (
+        lambda s: s.pastify(),
+        "no specification has been read; set spec and call parse() first",
+    ),
+    "value before parse": (
+        lambda s: s.get_value("xx"),
+        "'xx' has no value yet; did you mean 'x'?; call update() or evaluate() first",
+    ),
+}
+
+
+@pytest.mark.parametrize("case", SETTINGS)
+def test_a_wrong_setting_or_call(case):
+    call, message = SETTINGS[case]
+    spec = fresh()
+    assert said(lambda: call(spec)) == message
+
+
+def test_a_file_that_is_no_text(tmp_path):
+    path = tmp_path / "binary.stl"
+    path.write_bytes(b"x >= \xff")
+    assert said(lambda: fresh().get_spec_from_file(path)) == f"The file {path} is not UTF-8 text (byte 5)."
+    assert said(lambda: fresh().get_spec_from_file(tmp_path)) == (
+        f"The file {tmp_path} cannot be read: Is a directory."
+    )
+
+
+def test_wrong_options_of_the_combined_class():
+    cls = rtamt.StlDiscreteTimeSpecification
+    assert said(lambda: cls(language="C")) == "the language is 'C'; choose Language.PYTHON or Language.CPP"
+    assert said(lambda: cls("standard")) == (
+        "the semantics 'standard' is not supported; choose Semantics.STANDARD"
+    )
+
+
+TEXTS = {
+    "syntax": (
+        "always(x >= 3",
+        "this '(' is never closed\n  line 1, column 7:\n    always(x >= 3\n          ^",
+    ),
+    "unknown name": (
+        "xx >= 3",
+        "'xx' is not declared; did you mean 'x'?\n  line 1, column 1:\n    xx >= 3\n    ^^",
+    ),
+    "no multiple of the period": (
+        "once[0:0.5] x",
+        "The operator bound must be a multiple of the sampling period: 500 ms is not a whole number of "
+        "periods of 1 s; change the bound or the period\n"
+        "  line 1, column 5:\n    once[0:0.5] x\n        ^^^^^^^",
+    ),
+    "object for a number": (
+        "once(sensor >= 3)",
+        "'sensor' is a Sensor and no number; name one of its fields, such as sensor.value\n"
+        "  line 1, column 6:\n    once(sensor >= 3)\n         ^^^^^^",
+    ),
+    "field that is not there": (
+        "once(sensor.valu >= 3)",
+        "'sensor' is a Sensor and has no field 'valu'; did you mean 'value'?\n"
+        "  line 1, column 6:\n    once(sensor.valu >= 3)\n         ^^^^^^^^^^^",
+    ),
+    "field of a number": (
+        "x.value >= 3",
+        "'x' is a float and has no field 'value'\n  line 1, column 1:\n    x.value >= 3\n    ^^^^^^^",
+    ),
+}
+
+
+@pytest.mark.parametrize("case", TEXTS)
+def test_a_text_that_is_wrong(case):
+    text, message = TEXTS[case]
+    assert said(lambda: fresh(text), rtamt.STLParseException) == message
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        (
+            "rob.value = x",
+            "the result 'rob.value' is a field of 'rob', which is not declared; "
+            "import its class and declare it",
+        ),
+        ("sensor = x", "'sensor' is a Sensor and no number; name one of its fields, such as sensor.value"),
+        ("sensor.val = x", "'sensor' is a Sensor and has no field 'val'; did you mean 'value'?"),
+    ],
+)
+def test_a_result_that_has_no_place(text, message):
+    assert said(lambda: fresh(text)) == message
+
+
+def test_the_caret_points_into_the_subspecification_that_is_wrong():
+    spec = fresh()
+    spec.add_sub_spec("low = x <= 3")
+    spec.add_sub_spec("late = once[0:0.5](low);")
+    spec.spec = "always(late)"
+    assert said(spec.parse, rtamt.STLParseException).splitlines()[1:] == [
+        "  line 2, column 12:",
+        "    late = once[0:0.5](low);",
+        "               ^^^^^^^",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("text", "operator", "place"),
+    [
+        ("always(x)", "Always", "line 1, column 1:\n    always(x)\n    ^^^^^^^^^"),
+        ("y and F[0,2](x)", "Eventually", "line 1, column 7:\n    y and F[0,2](x)\n          ^^^^^^^^^"),
+        ("x until[0,1] y", "Until", "line 1, column 1:\n    x until[0,1] y\n    ^^^^^^^^^^^^^^"),
+        ("once(next(x))", "Next", "line 1, column 6:\n    once(next(x))\n         ^^^^^^^"),
+    ],
+)
+def test_future_online_is_refused_before_the_data_is_looked_at(text, operator, place):
+    spec = fresh(text)
+    assert said(lambda: spec.update("nonsense", None)) == (
+        f"{operator} operator is not implemented in the STL online monitor. "
+        f"Call pastify() after parse(), or evaluate the finished trace offline\n  {place}"
+    )
+
+
+@pytest.mark.parametrize("operator", ["always", "eventually"])
+def test_unbounded_future_cannot_be_pastified(operator):
+    spec = fresh(f"{operator}(x)")
+    assert said(spec.pastify, rtamt.STLParseException) == (
+        f"Cannot pastify an unbounded {operator}. Give it an upper bound, such as {operator}[0:10]\n"
+        f"  line 1, column 1:\n    {operator}(x)\n    {'^' * (len(operator) + 3)}"
+    )
+
+
+OFFLINE = {
+    "no mapping": (
+        [[0, 1]],
+        "expected a mapping from variable to values, such as {'time': [...], 'x': [...]}, got list",
+    ),
+    "no time": ({"x": [1]}, "the data has no 'time'; it has x"),
+    "no variable": ({"time": [0], "xs": [1]}, "the data has no 'x'; did you mean 'xs'?; it has xs"),
+    "lengths": (
+        {"time": [0, 1], "x": [1]},
+        "'time' has 2 samples but 'x' has 1: give one value of each at every sample",
+    ),
+    "empty": ({"time": [], "x": []}, "the trace is empty: give at least one sample"),
+    "NaN": (
+        {"time": [0, 0.5], "x": [1, NAN]},
+        "'x' is NaN at sample 1, time 0.5 s: fill the gap or leave the sample out",
+    ),
+    "text": ({"time": [0, 1], "x": [1, "a"]}, "'x' is 'a' at sample 1, expected a number"),
+    "time": (
+        {"time": [0, 2, 1], "x": [1, 1, 1]},
+        "time does not increase at sample 2: 1 s comes after 2 s; sort the samples and drop repeated stamps",
+    ),
+}
+
+
+@pytest.mark.parametrize("case", OFFLINE)
+def test_wrong_data_offline(case):
+    data, message = OFFLINE[case]
+    spec = fresh("x >= 1")
+    assert said(lambda: spec.evaluate(data)) == message
+
+
+def test_an_object_without_the_field_offline():
+    spec = fresh("sensor.value")
+    data = {"time": [0, 1], "sensor": [Sensor(), SimpleNamespace(speed=1.0)]}
+    assert said(lambda: spec.evaluate(data)) == (
+        "'sensor' has no field 'value' at sample 1: it is a SimpleNamespace"
+    )
+
+
+NO_PAIRS = "expected pairs of a name and a value, such as [('x', 1.0)], got "
+ONLINE = {
+    "no pairs": (1, 5, NO_PAIRS + "5"),
+    "names only": (1, ["x"], NO_PAIRS + "['x']"),
+    "unknown name": (
+        1,
+        [("xx", 1.0)],
+        "unknown variable 'xx' in the data; did you mean 'x'?; the formula reads x",
+    ),
+    "NaN": (1, [("x", NAN)], "'x' is NaN at sample 1, time 1 s: fill the gap or leave the sample out"),
+    "text": (1, [("x", "a")], "'x' is 'a' at sample 1, expected a number"),
+    "None": (1, [("x", None)], "'x' is None at sample 1, expected a number"),
+    "time": (
+        0,
+        [("x", 1.0)],
+        "time does not increase at sample 1: 0 s comes after 0 s; sort the samples and drop repeated stamps",
+    ),
+    "no time": (None, [("x", 1.0)], "time is None at sample 1, expected a number of seconds"),
+    "infinite time": (
+        float("inf"),
+        [("x", 1.0)],
+        "time is inf at sample 1: give a finite number of seconds",
+    ),
+    "no value": (
+        2,
+        [("x", 0.0)],
+        "'0 / x' has no value at sample 1, time 2 s: it is 0/0, inf - inf, 0 * inf, or a root or "
+        "logarithm of a negative number; change the formula or the data so that this cannot happen",
+    ),
+}
+
+
+@pytest.mark.parametrize("case", ONLINE)
+def test_wrong_data_online(case):
+    time, pairs, message = ONLINE[case]
+    spec = fresh("once(0 / x >= 0)")
+    spec.update(0, [("x", 1.0)])
+    assert said(lambda: spec.update(time, pairs)) == message
+
+
+def test_the_first_update_needs_every_variable():
+    spec = fresh("x + y")
+    assert said(lambda: spec.update(0, [("x", 1.0)])) == (
+        "'y' has no value yet at sample 0: give every variable in the first update; "
+        "later ones may leave it out"
+    )
+    assert spec.update(0, [("x", 1.0), ("y", 1.0)]) == 2.0
+
+
+def test_an_object_without_the_field_online():
+    spec = fresh("sensor.value")
+    assert said(lambda: spec.update(0, [("sensor", 3.0)])) == (
+        "'sensor' has no field 'value' at sample 0: it is a float"
+    )
+
+
+def test_times_in_messages_are_seconds_whatever_the_unit():
+    spec = fresh("x")
+    spec.unit = "ms"
+    spec.update(0, [("x", 1.0)])
+    assert said(lambda: spec.update(1500, [("x", NAN)])) == (
+        "'x' is NaN at sample 1, time 1.5 s: fill the gap or leave the sample out"
+    )
+    assert said(lambda: spec.evaluate({"time": [0, 1500], "x": [1, NAN]})) == (
+        "'x' is NaN at sample 1, time 1.5 s: fill the gap or leave the sample out"
+    )
+
+
+def test_values_that_do_not_exist():
+    spec = fresh("once(x >= 1)")
+    spec.update(0, [("x", 3), ("y", 1)])
+    assert said(lambda: spec.get_value("y")) == (
+        "the specification does not read 'y', so that its values are not kept"
+    )
+    assert said(lambda: spec.get_value("x >= 2")) == (
+        "'x >= 2' is no part of the specification once((x)>=(1.0))"
+    )
+    assert said(lambda: spec.get_value("xx"), rtamt.STLParseException) == (
+        "'xx' is not declared; did you mean 'x'?\n  line 1, column 1:\n    xx\n    ^^"
+    )
+
+
+def test_the_original_error_is_the_cause():
+    with pytest.raises(rtamt.RTAMTException) as info:
+        fresh("once[5:2] x")
+    assert isinstance(info.value.__cause__, rtamt.BoundError)

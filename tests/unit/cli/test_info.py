@@ -1,0 +1,122 @@
+"""``rtamt info``, for people and as JSON."""
+
+import json
+
+import pytest
+
+from rtamt.engine import _core
+
+
+def test_a_bounded_requirement(run, write):
+    write(
+        "spec.stl",
+        "specification response\n"
+        "input float req\n"
+        "output float gnt\n"
+        "@ topic(req, /plant/req)\n"
+        "granted = eventually[0:5](gnt >= 3);\n"
+        "always[0:10](req >= 3 -> granted)\n",
+    )
+    answer = run("info", "spec.stl")
+    *facts, memory = answer.out.partition("program\n")[0].splitlines()
+    assert facts == [
+        "name       response",
+        "formula    always[0:10](req >= 3 -> eventually[0:5](gnt >= 3))",
+        "           granted = eventually[0:5](gnt >= 3)",
+        "variables  input float req (/plant/req)",
+        "           output float gnt",
+        "period     1 s (the default; --period sets it)",
+        "horizon    15 s: the value at t is known at t + 15 s",
+        "pastified  historically[0:10](once[5:5](req >= 3) -> once[0:5](gnt >= 3))",
+    ]
+    assert memory.startswith("memory     ")
+    assert memory.endswith(" doubles), whatever the length of the trace")
+    program = answer.out.partition("program\n")[2].splitlines()
+    assert program[0] == "  %0   lag 0    input req"
+    assert program[-1].endswith("-> output")
+    assert (answer.code, answer.err) == (0, "")
+
+
+def test_memory_is_what_a_monitor_takes(run):
+    import rtamt
+
+    formula = "always[0:1000](x >= 3)"
+    told = json.loads(run("info", formula, "--period", "1", "--json").out)["memory"]
+    assert told == rtamt.parse(formula).monitor(period=1).memory
+    assert 1000 * 8 <= told <= 2.5 * 1001 * 8 + 1024
+
+
+def test_unbounded_future_is_offline_only_and_the_reason_is_given(run):
+    answer = run("info", "always(x >= 3)")
+    assert answer == (
+        0,
+        "formula    always(x >= 3)\n"
+        "variables  x\n"
+        "period     1 s (the default; --period sets it)\n"
+        "online     no: 'always' without an upper bound needs the whole future and cannot be monitored "
+        "online; give it a bound, such as always[0:10], or evaluate the finished trace offline\n",
+        "",
+    )
+
+
+def test_bounds_that_need_another_period(run):
+    answer = run("info", "once[0:100ms](x >= 3)")
+    assert answer.out.splitlines()[-1] == (
+        "online     no: The operator bound must be a multiple of the sampling period: 100 ms is not "
+        "a whole number of periods of 1 s; change the bound or the period"
+    )
+    answer = run("info", "once[0:100ms](x >= 3)", "--period", "50ms")
+    assert "period     50 ms\n" in answer.out
+    assert "slide_max %2 n=3" in answer.out
+
+
+def test_json(run):
+    assert json.loads(run("info", "next(req.value >= 3)", "--json", "--backend", "python").out) == {
+        "name": None,
+        "formula": "next(req.value >= 3)",
+        "latex": run("info", "next(req.value >= 3)", "--latex").out.strip(),
+        "variables": [{"name": "req.value", "type": None, "role": None, "topic": None}],
+        "period": 1.0,
+        "horizon": 1.0,
+        "pastified": "req.value >= 3",
+        "program": [
+            "%0   lag 0    input req.value",
+            "%1   lag 0    const 3.0",
+            "%2   lag 0    sub %0 %1",
+            "%3   lag 1    shift %2 fill=inf  -> output",
+        ],
+        "memory": None,
+        "offline_only": None,
+    }
+
+
+def test_json_of_an_offline_requirement(run):
+    found = json.loads(run("info", "eventually(x >= 3)", "--json").out)
+    assert [found[key] for key in ("horizon", "pastified", "program", "memory")] == [None] * 4
+    assert found["offline_only"].startswith("'eventually' without an upper bound needs the whole future")
+
+
+def test_latex_alone(run):
+    assert run("info", "always[0:5](x >= 3)", "--latex") == (0, "\\mathbf{G}_{[0, 5]} (x \\geq 3)\n", "")
+
+
+def test_without_the_core_everything_but_memory_is_told(run):
+    answer = run("info", "always[0:5](x >= 3)", "--backend", "python")
+    assert "memory     only the compiled core can tell (leave out --backend python)\n" in answer.out
+    assert "slide_min" in answer.out
+
+
+def test_a_formula_without_variables(run):
+    assert "variables  none\n" in run("info", "true").out
+
+
+@pytest.mark.parametrize("formula", ["x", "historically(x)", "x since[0:3] y", "always[0:100](x) or y"])
+def test_memory_is_that_of_the_core(run, formula):
+    import rtamt
+    from rtamt.engine.compile import compile_program
+    from rtamt.rewrite.desugar import desugar
+
+    spec = rtamt.parse(formula, period=1)
+    program = compile_program((desugar(spec.formula),), spec.period, spec.input_names)
+    told = json.loads(run("info", formula, "--json").out)["memory"]
+    assert told == _core.memory(program.to_bytes())

@@ -1,0 +1,114 @@
+"""``rtamt monitor``: what goes in, what comes out, and when."""
+
+import json
+
+import pytest
+
+
+def lines(text):
+    return [tuple(json.loads(line).values()) for line in text.splitlines()]
+
+
+def jsonl(*samples):
+    return "".join(json.dumps(sample) + "\n" for sample in samples)
+
+
+@pytest.mark.parametrize("backend", ["cpp", "python"])
+def test_values_come_in_order_each_once_and_the_rest_at_the_end(run, backend):
+    stdin = jsonl(*({"time": t, "x": x} for t, x in enumerate([5, 4, 6, 2])))
+    answer = run("monitor", "always[0:2](x >= 3)", "--backend", backend, stdin=stdin)
+    assert answer == (
+        0,
+        '{"time": 0.0, "robustness": 1.0}\n'
+        '{"time": 1.0, "robustness": -1.0}\n'
+        '{"time": 2.0, "robustness": -1.0}\n'
+        '{"time": 3.0, "robustness": -1.0}\n',
+        "",
+    )
+
+
+def test_a_line_may_have_more_than_the_formula_reads(run):
+    stdin = jsonl({"level": "info", "time": 0, "x": 5, "tags": ["a"]}, {"time": 1, "x": 2, "more": None})
+    assert lines(run("monitor", "x >= 3", stdin=stdin).out) == [(0.0, 2.0), (1.0, -1.0)]
+
+
+@pytest.mark.parametrize(
+    "stdin",
+    [
+        "time,x\n0,5\n1,2\n",
+        "x;note;t [ms]\n5;a;0\n\n2;b;1000\n",
+        '\ufeff# comment\ntime,"x"\r\n0,5\r\n1," 2 "\r\n',
+        jsonl({"time": 0, "x": 5}, {"time": 1, "x": 2}),
+        "\ufeff\n" + jsonl({"t": 0, "x": 5}) + "\n# comment\n" + jsonl({"t": 1, "x": 2}),
+        jsonl({"Stamp": 0, "x": 5}, {"Stamp": 1, "x": 2}),
+        jsonl({"x": 5}, {"x": 2}),
+    ],
+)
+def test_every_way_to_write_the_same_samples(run, stdin):
+    assert run("monitor", "x >= 3", stdin=stdin) == (
+        0,
+        '{"time": 0.0, "robustness": 2.0}\n{"time": 1.0, "robustness": -1.0}\n',
+        "",
+    )
+
+
+def test_fields_are_nested_objects_or_names_with_dots(run):
+    nested, flat = jsonl({"req": {"value": 5}}), jsonl({"req.value": 5})
+    assert lines(run("monitor", "req.value >= 3", stdin=nested).out) == [(0.0, 2.0)]
+    assert lines(run("monitor", "req.value >= 3", stdin=flat).out) == [(0.0, 2.0)]
+
+
+def test_infinities_and_truth_values(run):
+    stdin = jsonl({"x": "inf"}, {"x": "-inf"}, {"x": True}, {"x": 1e308})
+    expected = [(0.0, "inf"), (1.0, "-inf"), (2.0, 1.0), (3.0, 1e308)]
+    assert lines(run("monitor", "x >= 0", stdin=stdin).out) == expected
+
+
+def test_period_and_time_column(run):
+    stdin = jsonl({"clock": 3.0, "time": 1, "x": 5}, {"clock": 3.1, "time": 1, "x": 2})
+    answer = run("monitor", "once[0:100ms](x >= 3)", "--period", "0.1", "--time-column", "clock", stdin=stdin)
+    assert lines(answer.out) == [(3.0, 2.0), (3.1, 2.0)]
+    answer = run("monitor", "x >= 3", "--period", "0.5", "--time-column", "", stdin=stdin)
+    assert lines(answer.out) == [(0.0, 2.0), (0.5, -1.0)]
+
+
+def test_a_formula_may_read_time(run):
+    assert lines(run("monitor", "time <= 1", stdin=jsonl({"time": 0}, {"time": 1})).out) == [(0, 1), (1, 0)]
+
+
+def test_a_bad_line_ends_the_monitor_and_nothing_is_printed_after_it(run):
+    stdin = jsonl({"x": 5}, {"x": 4}, {"y": 1}, {"x": 1})
+    assert run("monitor", "always[0:1](x >= 3)", stdin=stdin) == (
+        2,
+        '{"time": 0.0, "robustness": 1.0}\n',
+        "rtamt: stdin, line 3: the data has no 'x'; it has y\n",
+    )
+
+
+def test_keep_going_leaves_bad_lines_out(run):
+    stdin = "starting up\n" + jsonl({"x": 5}) + "{oops\n" + jsonl({"x": "abc"}, {"x": 4})
+    answer = run("monitor", "x >= 3", "--keep-going", stdin=stdin)
+    assert lines(answer.out) == [(0.0, 2.0), (1.0, 1.0)]
+    assert answer.code == 2
+    assert answer.err == (
+        'rtamt: stdin, line 1: expected a JSON object, such as {"time": 0, "x": 1}, '
+        "or a row of CSV column names, got 'starting up'\n"
+        "rtamt: stdin, line 3: not JSON: Expecting property name enclosed in double quotes at column 2\n"
+        "rtamt: stdin, line 4: 'x' is \"abc\", expected a number\n"
+    )
+
+
+def test_a_sample_that_is_left_out_leaves_a_gap_which_the_tolerance_may_allow(run):
+    stdin = jsonl({"time": 0, "x": 5}, {"time": 1, "x": None}, {"time": 2, "x": 4})
+    answer = run("monitor", "x >= 3", "--keep-going", stdin=stdin)
+    assert lines(answer.out) == [(0.0, 2.0)]
+    assert answer.err.splitlines()[1] == (
+        "rtamt: stdin, line 3: sample 1 at 2 s is 2 s after the one before, expected 1 s (within 10%): "
+        "give the right period, or resample the trace"
+    )
+    answer = run("monitor", "x >= 3", "--keep-going", "--tolerance", "inf", stdin=stdin)
+    assert lines(answer.out) == [(0.0, 2.0), (2.0, 1.0)]
+
+
+def test_a_formula_without_variables_counts_samples(run):
+    assert lines(run("monitor", "true", stdin=jsonl({"a": 1}, {"a": 2})).out) == [(0.0, "inf"), (1.0, "inf")]

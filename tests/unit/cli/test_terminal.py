@@ -1,0 +1,61 @@
+"""Colour, tables and the counter line."""
+
+import io
+
+import pytest
+
+from rtamt.cli.terminal import Progress, table, use_color
+
+
+class Terminal(io.StringIO):
+    def isatty(self):
+        return True
+
+
+@pytest.fixture(autouse=True)
+def _a_plain_terminal(monkeypatch):
+    monkeypatch.delenv("NO_COLOR", raising=False)
+    monkeypatch.setenv("TERM", "xterm")
+
+
+def test_colour_only_on_a_terminal(monkeypatch):
+    assert use_color("auto", Terminal())
+    assert not use_color("auto", io.StringIO())
+    assert use_color("always", io.StringIO())
+    assert not use_color("never", Terminal())
+    monkeypatch.setenv("TERM", "dumb")
+    assert not use_color("auto", Terminal())
+
+
+def test_no_color_is_respected(monkeypatch):
+    monkeypatch.setenv("NO_COLOR", "1")
+    assert not use_color("auto", Terminal())
+    assert use_color("always", Terminal())
+
+
+def test_colour_does_not_change_the_columns():
+    rows = [("a", "b"), ("x", "yy"), ("longer", "z")]
+    kinds = ["good", "bad"]
+    assert table(rows) == "a       b\nx       yy\nlonger  z"
+    assert table(rows, kinds=kinds, color=True) == (
+        "\x1b[1ma       b\x1b[0m\nx       \x1b[32myy\x1b[0m\nlonger  \x1b[31mz\x1b[0m"
+    )
+
+
+def test_the_counter_line_comes_after_a_while_and_goes_away(monkeypatch):
+    clock = iter([0.0, 0.1, 1.0, 1.0, 1.1])
+    monkeypatch.setattr("rtamt.cli.terminal.time.monotonic", lambda: next(clock))
+    stream = Terminal()
+    with Progress(stream) as progress:
+        progress.show("too early")
+        progress.show("1/3 a.csv")
+        progress.show("too soon")
+    assert stream.getvalue() == "\r\x1b[K1/3 a.csv\r\x1b[K"
+
+
+def test_no_counter_line_where_stderr_is_no_terminal(monkeypatch):
+    monkeypatch.setattr(Progress, "PAUSE", 0.0)
+    stream = io.StringIO()
+    with Progress(stream) as progress:
+        progress.show("1/3 a.csv")
+    assert stream.getvalue() == ""

@@ -1,0 +1,275 @@
+"""The CSV reader: what it takes, what it refuses, and in which words."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from rtamt.errors import TraceError
+from rtamt.readers import csv as csv_module
+from rtamt.readers import read
+
+
+@pytest.fixture
+def write(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+
+    def write(content, name="log.csv"):
+        data = content if isinstance(content, bytes) else content.encode()
+        (tmp_path / name).write_bytes(data)
+        return name
+
+    return write
+
+
+def as_lists(data):
+    return {name: column.tolist() for name, column in data.items()}
+
+
+def test_columns_come_as_float64_arrays_with_time_first(write):
+    data = read(write("time,req,gnt\n0,1,2\n1,3,4\n"), ["gnt", "req"])
+    assert as_lists(data) == {"time": [0.0, 1.0], "gnt": [2.0, 4.0], "req": [1.0, 3.0]}
+    assert list(data) == ["time", "gnt", "req"]
+    assert all(column.dtype == np.float64 for column in data.values())
+
+
+def test_without_names_every_column_is_read(write):
+    assert as_lists(read(write("t,a,b\n0,1,2\n"))) == {"time": [0.0], "a": [1.0], "b": [2.0]}
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        "time,req\n0,1.5\n1,-2\n",
+        "time;req\n0;1.5\n1;-2\n",
+        "time\treq\n0\t1.5\n1\t-2\n",
+        "\ufefftime,req\n0,1.5\n1,-2\n",
+        " time , req \n 0 , 1.5 \n 1 , -2\n",
+        'time,"req"\n"0","1.5"\n1,-2\n',
+        "time,req\r\n0,1.5\r\n1,-2\r\n",
+        "time,req\n0,1.5\n1,-2",
+        "\n\ntime,req\n\n0,1.5\n   \n1,-2\n\n",
+        "# a comment\ntime,req\n# another, with a comma\n0,1.5\n1,-2\n",
+        "# time,req\n0,1.5\n1,-2\n",
+        "Time [s],req\n0,1.5\n1,-2\n",
+        "TIME,req [V]\n0,1.5\n1,-2\n",
+        "Timestamp (ms),req\n0,1.5\n1000,-2\n",
+        "stamp [ns],req\n0,1.5\n1000000000,-2\n",
+        'time,note,req\n0,"a, b",1.5\n1,"two\nlines",-2\n',
+        "time,note,req\n0,started # 1,1.5\n1,,-2\n",
+        "req,t\n1.5,0\n-2,1\n",
+        "note,req,time,t\nx,1.5,0,7\ny,-2,1,7\n",
+        "time,req\n0,15e-1\n1,-2.000\n",
+    ],
+)
+def test_every_way_to_write_the_same_file_gives_the_same_numbers(write, content):
+    assert as_lists(read(write(content), ["req"])) == {"time": [0.0, 1.0], "req": [1.5, -2.0]}
+
+
+def test_fields_and_topics_are_names_of_columns(write):
+    data = read(write("time,req.value,/gnt/x\n0,1,2\n"), ["req.value", "/gnt/x"])
+    assert as_lists(data) == {"time": [0.0], "req.value": [1.0], "/gnt/x": [2.0]}
+
+
+def test_without_a_time_column_there_is_no_time(write):
+    assert as_lists(read(write("req\n1\n2\n"), ["req"])) == {"req": [1.0, 2.0]}
+
+
+def test_time_column_can_be_named_or_refused(write):
+    file = write("time,clock,req\n0,5,1\n")
+    assert as_lists(read(file, ["req"], time_column="clock")) == {"time": [5.0], "req": [1.0]}
+    assert as_lists(read(file, ["req"], time_column="")) == {"req": [1.0]}
+
+
+def test_a_formula_may_read_the_time_column(write):
+    assert as_lists(read(write("t,x\n0,1\n"), ["t", "x"])) == {"time": [0.0], "t": [0.0], "x": [1.0]}
+
+
+def test_milliseconds_become_seconds_with_one_rounding(write):
+    data = read(write("t [ms],x\n0,1\n100,1\n300,1\n700,1\n"), ["x"])
+    assert data["time"].tolist() == [0.0, 0.1, 0.3, 0.7]
+
+
+def test_infinities_are_numbers(write):
+    assert read(write("x\ninf\n-inf\nInfinity\n"), ["x"])["x"].tolist() == [np.inf, -np.inf, np.inf]
+
+
+def test_what_nobody_reads_may_hold_anything(write):
+    assert as_lists(read(write("x,note,x2,x2\n1,nan,,\n2,abc,,7\n"), ["x"])) == {"x": [1.0, 2.0]}
+
+
+def test_suffixes_that_are_csv_too(write):
+    assert as_lists(read(write("x\ty\n1\t2\n", "log.TSV"), ["y"])) == {"y": [2.0]}
+
+
+def test_progress_counts_samples(write, monkeypatch):
+    monkeypatch.setattr(csv_module, "_BLOCK", 2)
+    counts = []
+    read(write("x\n1\n2\n3\n4\n5\n"), ["x"], progress=counts.append)
+    assert counts == [2, 4, 5]
+
+
+@given(
+    st.lists(st.tuples(*[st.floats(allow_nan=False)] * 2), min_size=1, max_size=12),
+    st.integers(1, 5),
+    st.sampled_from(["", "\n", "# comment\n", '"1","2"\n']),
+    st.integers(0, 12),
+)
+def test_numbers_survive_whatever_block_an_unusual_line_falls_into(tmp_path_factory, rows, block, odd, at):
+    lines = [f"{a!r},{b!r}\n" for a, b in rows]
+    extra = [(1.0, 2.0)] if odd.startswith('"') else []
+    at = min(at, len(rows))
+    path = tmp_path_factory.mktemp("csv") / "log.csv"
+    path.write_text("".join(["a,b\n", *lines[:at], odd, *lines[at:]]))
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(csv_module, "_BLOCK", block)
+        data = read(path)
+    expected = [*rows[:at], *extra, *rows[at:]]
+    assert list(zip(data["a"], data["b"], strict=True)) == expected
+
+
+LONG = "time,x\n" + "0,1\n" * 10 + "1,{}\n" + "0,1\n" * 10
+
+
+@pytest.mark.parametrize(
+    ("content", "names", "message"),
+    [
+        ("time,req\n0,1\n1,abc\n", ["req"], "log.csv, line 3: 'req' is 'abc', expected a number"),
+        ("time,req\n0,1\n1,\n", ["req"], "log.csv, line 3: 'req' is empty, expected a number"),
+        (
+            "time,req\n0,1\n1,NaN\n",
+            ["req"],
+            "log.csv, line 3: 'req' is NaN: fill the gap or leave the sample out",
+        ),
+        ("time,req\n0,1\n1,1_000\n", ["req"], "log.csv, line 3: 'req' is '1_000', expected a number"),
+        ("time,req\n0,1\n1,١\n", ["req"], "log.csv, line 3: 'req' is '١', expected a number"),
+        ("time,req\n0,1\n1,0x10\n", ["req"], "log.csv, line 3: 'req' is '0x10', expected a number"),
+        (
+            "time;req\n0;1,5\n",
+            ["req"],
+            "log.csv, line 2: 'req' is '1,5', expected a number with a decimal point",
+        ),
+        ("Time [s],req\nnow,1\n", ["req"], "log.csv, line 2: 'Time [s]' is 'now', expected a number"),
+        (
+            "time,req\n0,1\n1\n",
+            ["req"],
+            "log.csv, line 3: 1 value, but 2 columns (time, req)",
+        ),
+        (
+            "time,req\n0,1\n1,2,3\n",
+            ["req"],
+            "log.csv, line 3: 3 values, but 2 columns (time, req)",
+        ),
+        (
+            'time,note,req\n0,"two\nlines",1\n\n1,x,bad\n',
+            ["req"],
+            "log.csv, line 5: 'req' is 'bad', expected a number",
+        ),
+        (LONG.format("abc"), ["x"], "log.csv, line 12: 'x' is 'abc', expected a number"),
+        (
+            LONG.format("nan"),
+            ["x"],
+            "log.csv, line 12: 'x' is NaN: fill the gap or leave the sample out",
+        ),
+        (LONG.format("1,2"), ["x"], "log.csv, line 12: 3 values, but 2 columns (time, x)"),
+        (
+            "time,req,gmt\n0,1,2\n",
+            ["req", "gnt"],
+            "log.csv has no column 'gnt', only time, req, gmt; did you mean 'gmt'?",
+        ),
+        (
+            ",".join(f"c{i}" for i in range(20)) + "\n",
+            ["volts"],
+            "log.csv has no column 'volts', only c0, c1, c2, c3, c4, c5, c6, c7, c8, c9, c10, c11 and 8 more",
+        ),
+        (
+            "time,req,req\n0,1,2\n",
+            ["req"],
+            "log.csv, line 1: columns 2 and 3 are both called 'req'; rename one of them",
+        ),
+        (
+            "time,time,req\n0,1,2\n",
+            ["req"],
+            "log.csv, line 1: columns 1 and 2 are both called 'time'; rename one of them",
+        ),
+        (
+            "t [min],req\n0,1\n",
+            ["req"],
+            "log.csv, line 1: the unit of the time column 't [min]' is none of s, ms, us, ns",
+        ),
+        (
+            "0,1\n1,2\n",
+            ["req"],
+            "log.csv, line 1: expected a row of column names, such as time,x; got '0,1'",
+        ),
+        ("", ["req"], "'log.csv' is empty: it needs a row of column names, then a row for each sample"),
+        (
+            "\n# x\n",
+            ["req"],
+            "'log.csv' is empty: it needs a row of column names, then a row for each sample",
+        ),
+        ("time,req\n", ["req"], "'log.csv' has column names but no samples: give at least one"),
+        (
+            b"time,req\n0,\xff\n",
+            ["req"],
+            "'log.csv' is not UTF-8 text; save it as CSV in UTF-8 (spreadsheets offer this under 'save as')",
+        ),
+    ],
+)
+@pytest.mark.parametrize("block", [3, 65_536])
+def test_messages(write, monkeypatch, content, names, message, block):
+    monkeypatch.setattr(csv_module, "_BLOCK", block)
+    with pytest.raises(TraceError) as error:
+        read(write(content), names)
+    assert str(error.value) == message
+
+
+def test_message_for_a_field_too_long_for_a_csv_file(write):
+    with pytest.raises(TraceError) as error:
+        read(write('time,x\n0,"' + "1" * 200_000 + '"\n'), ["x"])
+    assert str(error.value) == "log.csv, line 2: field larger than field limit (131072)"
+
+
+def test_message_names_the_variable(write):
+    with pytest.raises(TraceError) as error:
+        read(write("time,req\n0,abc\n"), ["req"])
+    assert error.value.variable == "req"
+
+
+def test_message_for_a_time_column_that_is_not_there(write):
+    with pytest.raises(TraceError) as error:
+        read(write("time,req\n0,1\n"), ["req"], time_column="tine")
+    assert str(error.value) == "log.csv has no column 'tine', only time, req; did you mean 'time'?"
+
+
+def test_message_for_a_missing_file():
+    with pytest.raises(TraceError) as error:
+        read("nowhere/log.csv", ["x"])
+    assert str(error.value) == "there is no file 'nowhere/log.csv'"
+
+
+def test_message_for_a_directory(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "log.csv").mkdir()
+    with pytest.raises(TraceError) as error:
+        read("log.csv", ["x"])
+    assert str(error.value) == "'log.csv' is a directory, expected a CSV file"
+
+
+def test_message_for_an_unreadable_file():
+    with pytest.raises(TraceError) as error:
+        read("x" * 300 + ".csv", ["x"])
+    assert str(error.value) == f"cannot read '{'x' * 300}.csv': File name too long"
+
+
+def test_message_for_an_unknown_suffix():
+    with pytest.raises(TraceError) as error:
+        read("log.parquet", ["x"])
+    assert (
+        str(error.value) == "cannot tell how to read 'log.parquet': its name ends in none of .csv, .tsv, .txt"
+    )
+    with pytest.raises(TraceError) as error:
+        read("log.cvs", ["x"])
+    assert str(error.value) == (
+        "cannot tell how to read 'log.cvs': its name ends in none of .csv, .tsv, .txt; did you mean '.csv'?"
+    )
