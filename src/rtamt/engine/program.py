@@ -31,6 +31,9 @@ OPCODES = (
     "shift", "slide_max", "slide_min", "run_max", "run_min", "since", "until",
 )  # fmt: skip
 
+#: Time domains, in the order of their codes.
+DOMAINS = ("discrete", "dense")
+
 NO_OPERAND = 0xFFFFFFFF
 _HEADER = struct.Struct("<8sHBBIIIII")
 _RECORD = struct.Struct("<B3xIIIqdq")
@@ -69,8 +72,9 @@ class Instruction:
 class Program:
     """Instructions in SSA form, equal ones merged.
 
-    ``outputs`` are indices of instructions; ``lags`` tells after how many samples each output is
-    known. ``value_of`` maps each core sub-formula to its instruction, ``origins`` the other way.
+    ``period`` is the sampling period, in dense time the length of a tick (seconds). ``outputs`` are
+    indices of instructions; ``lags`` tells after how many samples or ticks each output is known.
+    ``value_of`` maps each core sub-formula to its instruction, ``origins`` the other way.
     """
 
     instructions: tuple[Instruction, ...]
@@ -79,10 +83,11 @@ class Program:
     period: Fraction
     value_of: Mapping[Formula, int]
     origins: tuple[Formula | None, ...]
+    domain: str = "discrete"
 
     @property
     def lags(self) -> tuple[int, ...]:
-        """Samples after which each output's value at a sample is known."""
+        """Samples (or ticks) after which each output's value at a sample is known."""
         return tuple(self.instructions[i].lag for i in self.outputs)
 
     def to_bytes(self) -> bytes:

@@ -5,7 +5,9 @@ compiler, command-line help, the generated reference and the test generators all
 there is no second list. A :class:`Language` is an immutable set of operators;
 ``STL.extend(...)`` returns a new one.
 
-The meaning of an operator is its ``definition``, a pure function on arrays (``definitions.py``).
+The meaning of an operator is its ``definition``, a pure function on arrays (``definitions.py``). In
+dense time an operator of one instant means the same, value by value; one that reads others has its
+value at an instant as ``dense`` (``dense_definitions.py``), or means what its ``expansion`` means.
 How it is made fast is either an ``expansion`` into simpler operators or a ``kernel``: one of five
 shapes that the compiler knows. Names of opcodes are those of the core.
 """
@@ -20,6 +22,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from rtamt.language import definitions as d
+from rtamt.language import dense_definitions as dense
 from rtamt.language.formula import Apply, Const, Formula, Interval
 
 if TYPE_CHECKING:
@@ -121,6 +124,7 @@ class Operator:
     bounds: Bounds = Bounds.NONE
     kernel: Kernel | None = None
     expansion: Expansion | None = None
+    dense: Callable[..., float] | None = None
     discrete_only: bool = False
     dual: str | None = None
     twin: str | None = None
@@ -335,16 +339,16 @@ STL: Language = Language.of((
     # ---- windows -----------------------------------------------------------------------------
     _prefix("always", "always G", 75, "At every instant of the window ahead: the smallest value.",
             "always[0:5](x >= 3)", latex=r"\mathbf{{G}}_{I} {0}", tense=Tense.FUTURE, bounds=Bounds.OPTIONAL,
-            definition=d.always, kernel=Window("min"), dual="eventually", twin="historically"),
+            definition=d.always, dense=dense.always, kernel=Window("min"), dual="eventually", twin="historically"),
     _prefix("eventually", "eventually F", 75, "At some instant of the window ahead: the largest value.",
             "eventually[0:5](x >= 3)", latex=r"\mathbf{{F}}_{I} {0}", tense=Tense.FUTURE, bounds=Bounds.OPTIONAL,
-            definition=d.eventually, kernel=Window("max"), dual="always", twin="once"),
+            definition=d.eventually, dense=dense.eventually, kernel=Window("max"), dual="always", twin="once"),
     _prefix("historically", "historically H", 75, "At every instant of the window behind: the smallest value.",
             "historically[0:5](x >= 3)", latex=r"\mathbf{{H}}_{I} {0}", tense=Tense.PAST, bounds=Bounds.OPTIONAL,
-            definition=d.historically, kernel=Window("min"), dual="once", guards=("implies",)),
+            definition=d.historically, dense=dense.historically, kernel=Window("min"), dual="once", guards=("implies",)),
     _prefix("once", "once O", 75, "At some instant of the window behind: the largest value.",
             "once[0:5](x >= 3)", latex=r"\mathbf{{O}}_{I} {0}", tense=Tense.PAST, bounds=Bounds.OPTIONAL,
-            definition=d.once, kernel=Window("max"), dual="historically", guards=("and",)),
+            definition=d.once, dense=dense.once, kernel=Window("max"), dual="historically", guards=("and",)),
     # ---- one sample away ---------------------------------------------------------------------
     _prefix("prev", "prev Y previous", 70, "One sample ago; holds where there is none.", "prev(x >= 3)",
             latex=r"\mathbf{{Y}} {0}", tense=Tense.PAST, discrete_only=True,
@@ -361,17 +365,17 @@ STL: Language = Language.of((
     # ---- two operands in time ----------------------------------------------------------------
     _infix("until", "until U", 60, "The second within the window ahead, the first at every instant before it.",
            "x >= 3 until[0:5] y >= 3", latex=r"{0} \mathbin{{\mathbf{{U}}_{I}}} {1}",
-           tense=Tense.FUTURE, bounds=Bounds.OPTIONAL, definition=d.until, kernel=Until(), twin="precedes"),
+           tense=Tense.FUTURE, bounds=Bounds.OPTIONAL, definition=d.until, dense=dense.until, kernel=Until(), twin="precedes"),
     _infix("precedes", "precedes", 58, "until, read from as far behind as the interval reaches.",
            "x >= 3 precedes[0:5] y >= 3", latex=r"{0} \mathbin{{\mathbf{{P}}_{I}}} {1}",
-           tense=Tense.PAST, bounds=Bounds.REQUIRED, definition=d.precedes, kernel=Until(),
+           tense=Tense.PAST, bounds=Bounds.REQUIRED, definition=d.precedes, dense=dense.precedes, kernel=Until(),
            guards=("implies", "and")),
     _infix("unless", "unless W", 55, "Either the first throughout [0, b], or the first until the second.",
            "x >= 3 unless[0:5] y >= 3", latex=r"{0} \mathbin{{\mathbf{{W}}_{I}}} {1}",
-           tense=Tense.FUTURE, bounds=Bounds.OPTIONAL, definition=d.unless, expansion=_unless),
+           tense=Tense.FUTURE, bounds=Bounds.OPTIONAL, definition=d.unless, dense=dense.unless, expansion=_unless),
     _infix("since", "since S", 50, "The second within the window behind, the first at every instant after it.",
            "x >= 3 since[0:5] y >= 3", latex=r"{0} \mathbin{{\mathbf{{S}}_{I}}} {1}",
-           tense=Tense.PAST, bounds=Bounds.OPTIONAL, definition=d.since, kernel=Since(), guards=(None, "and")),
+           tense=Tense.PAST, bounds=Bounds.OPTIONAL, definition=d.since, dense=dense.since, kernel=Since(), guards=(None, "and")),
     # ---- edges -------------------------------------------------------------------------------
     _function("rise", 1, "Holds now and not one sample ago.", "rise(x >= 3)", operands=(F,), result=F,
               latex=r"\uparrow {0}", tense=Tense.PAST, discrete_only=True, definition=d.rise, expansion=_rise),

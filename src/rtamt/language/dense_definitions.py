@@ -1,0 +1,188 @@
+"""What the operators in time mean in dense time: the value at one instant, literally by the definition.
+
+Operands are :class:`Steps`: piecewise constant, right-continuous functions on [t₀, ∞), all from the same
+t₀; the last value holds for ever. ``x`` stands for φ, ``y`` for ψ; ``a`` and ``b`` are the bounds of the
+interval, ``b=None`` where there is no upper one; ``t`` is an instant, t ≥ t₀. Every window is cut at t₀
+and nowhere else; over an empty set the supremum is -inf and the infimum +inf. Operators of one instant
+(``and``, ``+``, …) mean in dense time what they mean in discrete time, value by value.
+
+A supremum over a window is that over the finitely many values that the operands take in it: at the
+points where something changes, and on the open intervals between neighbours. So that an interval has an
+instant to be represented by, **times and bounds are whole numbers of quarters of a tick**: samples and
+bounds lie at whole ticks, results are wanted between them (at halves), and windows around those are
+looked at between *their* points (at quarters). Python's integers have no largest one, so that no sum of
+a time and a bound is too large.
+
+:func:`lifted` makes an operand again out of the values at instants.
+
+>>> from rtamt.language.dense_definitions import Steps, lifted, once
+>>> pulse = Steps((0, 8, 12), (0.0, 6.0, 0.0))  # 6 from tick 2 to tick 3
+>>> once(20, pulse, 8, 12), once(24, pulse, 8, 12)
+(6.0, 0.0)
+>>> lifted(once, (pulse,), 8, 12)
+Steps(times=(0, 8, 16, 24), values=(-inf, 0.0, 6.0, 0.0))
+"""
+
+from __future__ import annotations
+
+from bisect import bisect_left, bisect_right
+from itertools import pairwise
+from math import copysign, inf
+from typing import TYPE_CHECKING, NamedTuple
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable
+
+#: Times and bounds in these functions are counted in quarters of a tick.
+QUARTERS = 4
+
+
+class Steps(NamedTuple):
+    """A function that is constant from each of ``times`` (strictly increasing) up to the next, then for ever."""
+
+    times: tuple[int, ...]
+    values: tuple[float, ...]
+
+    def at(self, t: int) -> float:
+        """Return the value at an instant, ``t`` not before the first of ``times``."""
+        return self.values[bisect_right(self.times, t) - 1]
+
+
+def merged(times: Iterable[int], values: Iterable[float]) -> Steps:
+    """Return the function without the times at which nothing changes; 0.0 and -0.0 are different values."""
+    kept: list[tuple[int, float]] = []
+    for time, value in zip(times, values, strict=True):
+        if not kept or value != kept[-1][1] or copysign(1.0, value) != copysign(1.0, kept[-1][1]):
+            kept.append((time, value))
+    return Steps(tuple(t for t, _ in kept), tuple(v for _, v in kept))
+
+
+def critical(operands: Iterable[Steps], a: int, b: int | None) -> list[int]:
+    """Return all instants, from t₀ on, at which an operator's value can change.
+
+    The value at t depends on how t, t ± a, t ± b and t - b + a lie among the times at which an operand
+    changes, and on nothing else. So it is constant between neighbours of this set, and after the last.
+    """
+    operands = tuple(operands)
+    shifts = {0, a, -a} if b is None else {0, a, -a, b, -b, b - a, a - b}
+    start = operands[0].times[0]
+    changes = {c for operand in operands for c in operand.times}
+    return sorted({c + shift for c in changes for shift in shifts if c + shift >= start})
+
+
+def lifted(at: Callable[..., float], operands: tuple[Steps, ...], a: int, b: int | None) -> Steps:
+    """Return an operator's values at all instants, from ``at(t, *operands, a, b)``, its value at one.
+
+    Robustness is right-continuous: from each critical instant up to the next it is what it is strictly
+    between them. Every operator has that value at the critical instant itself, except until[a,b] and
+    precedes[a,b] with a > 0, which may have another there (φ falls exactly a later); by convention that
+    instant takes the value that follows.
+    """
+    instants = critical(operands, a, b)
+    between = [(c + d) // 2 for c, d in pairwise(instants)] + [instants[-1] + QUARTERS // 2]
+    return merged(instants, [at(t, *operands, a, b) for t in between])
+
+
+def _pieces(
+    begin: int, end: int | None, operands: tuple[Steps, ...], cut: int | None = None
+) -> list[tuple[int, bool]]:
+    """Return an instant for each piece of [begin, end] on which nothing changes, in order.
+
+    The pieces are points (False) and the open intervals between neighbouring ones (True). The points are
+    both ends, the changes of the operands, and ``cut`` where it lies inside. ``end=None`` is infinity.
+    """
+    if end is not None and end < begin:
+        return []
+    points = {begin} if end is None else {begin, end}
+    for operand in operands:
+        times = operand.times
+        last = len(times) if end is None else bisect_left(times, end)
+        points.update(times[bisect_right(times, begin) : last])
+    if cut is not None and begin < cut and (end is None or cut < end):
+        points.add(cut)
+    ordered = sorted(points)
+    pieces = [(ordered[0], False)]
+    for c, d in pairwise(ordered):
+        pieces += [((c + d) // 2, True), (d, False)]
+    return pieces if end is not None else [*pieces, (ordered[-1] + 1, True)]
+
+
+# ---- windows ------------------------------------------------------------------------------------
+
+
+def _ahead(t: int, x: Steps, a: int, b: int | None) -> list[float]:
+    """Return the values of φ on [t+a, t+b], which no end of the trace cuts."""
+    return [x.at(u) for u, _ in _pieces(t + a, None if b is None else t + b, (x,))]
+
+
+def _behind(t: int, x: Steps, a: int, b: int | None) -> list[float]:
+    """Return the values of φ on [t-b, t-a] ∩ [t₀, ∞)."""
+    start = x.times[0]
+    return [x.at(u) for u, _ in _pieces(start if b is None else max(t - b, start), t - a, (x,))]
+
+
+def eventually(t: int, x: Steps, a: int, b: int | None) -> float:
+    """``eventually[a,b] φ``: sup of φ over [t+a, t+b]."""
+    return max(_ahead(t, x, a, b))
+
+
+def always(t: int, x: Steps, a: int, b: int | None) -> float:
+    """``always[a,b] φ``: inf of φ over [t+a, t+b]."""
+    return min(_ahead(t, x, a, b))
+
+
+def once(t: int, x: Steps, a: int, b: int | None) -> float:
+    """``once[a,b] φ``: sup of φ over [t-b, t-a] ∩ [t₀, ∞)."""
+    return max(_behind(t, x, a, b), default=-inf)
+
+
+def historically(t: int, x: Steps, a: int, b: int | None) -> float:
+    """``historically[a,b] φ``: inf of φ over [t-b, t-a] ∩ [t₀, ∞)."""
+    return min(_behind(t, x, a, b), default=inf)
+
+
+# ---- two operands in time -----------------------------------------------------------------------
+
+
+def _reached(begin: int, first: int, last: int | None, x: Steps, y: Steps) -> float:
+    """Sup over t' ∈ [first, last] of min(ψ(t'), inf of φ over [begin, t')); begin ≤ first ≤ last."""
+    best, held = -inf, inf
+    for u, interval in _pieces(begin, last, (x, y), cut=first):
+        if interval:  # a part of it comes before each t' that lies in it
+            held = min(held, x.at(u))
+        if u >= first:
+            best = max(best, min(y.at(u), held))
+        if not interval:
+            held = min(held, x.at(u))
+    return best
+
+
+def until(t: int, x: Steps, y: Steps, a: int, b: int | None) -> float:
+    """``φ until[a,b] ψ``: sup over t' ∈ [t+a, t+b] of min(ψ(t'), inf of φ over [t, t'))."""
+    return _reached(t, t + a, None if b is None else t + b, x, y)
+
+
+def precedes(t: int, x: Steps, y: Steps, a: int, b: int) -> float:
+    """``φ precedes[a,b] ψ``: sup over t' ∈ [t-b+a, t] of min(ψ(t'), inf of φ over [t-b, t')), from t₀ on."""
+    start = x.times[0]
+    return _reached(max(t - b, start), max(t - b + a, start), t, x, y)
+
+
+def since(t: int, x: Steps, y: Steps, a: int, b: int | None) -> float:
+    """``φ since[a,b] ψ``: sup over t' ∈ [t-b, t-a] ∩ [t₀, ∞) of min(ψ(t'), inf of φ over (t', t])."""
+    start = x.times[0]
+    begin = start if b is None else max(t - b, start)
+    best, held = -inf, inf
+    for u, interval in reversed(_pieces(begin, t, (x, y), cut=t - a)):
+        if interval:  # a part of it comes after each t' that lies in it
+            held = min(held, x.at(u))
+        if u <= t - a:
+            best = max(best, min(y.at(u), held))
+        if not interval:
+            held = min(held, x.at(u))
+    return best
+
+
+def unless(t: int, x: Steps, y: Steps, a: int, b: int | None) -> float:
+    """``φ unless[a,b] ψ``: max(always[0,b] φ, φ until[a,b] ψ)."""
+    return max(always(t, x, 0, b), until(t, x, y, a, b))
