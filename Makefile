@@ -11,9 +11,7 @@ RUN := $(VENV)/bin/python
 WITH_VENV := PATH="$(CURDIR)/$(VENV)/bin:$$PATH" VIRTUAL_ENV="$(CURDIR)/$(VENV)"
 
 EXAMPLE := examples/request_grant
-CHECK_EXAMPLE := check $(EXAMPLE)/spec.stl $(EXAMPLE)/*.csv
-CXX_SOURCES = $(shell find core tests/cpp benchmarks -name '*.cpp')
-CXX_FILES = $(CXX_SOURCES) $(shell find core tests/cpp benchmarks -name '*.hpp')
+CXX_FILES := find core tests/cpp benchmarks -name
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
@@ -24,7 +22,7 @@ help: ## list the tasks
 
 # `check` says 1 where a requirement is violated, as two of the four recordings do; 2 is an error.
 run: $(VENV)/.core ## check the four recordings of the paper's Fig. 4: specification in, robustness and verdict out
-	$(VENV)/bin/rtamt $(CHECK_EXAMPLE) || [ $$? -eq 1 ]
+	$(VENV)/bin/rtamt check $(EXAMPLE)/spec.stl $(EXAMPLE)/*.csv || [ $$? -eq 1 ]
 
 test: test-python test-cpp test-install ## everything that can be tested
 
@@ -36,26 +34,25 @@ test-cpp: $(VENV)/.group-build ## C++: the core alone, under the address and und
 	$(WITH_VENV) cmake --build --preset asan
 	$(WITH_VENV) ctest --preset asan --no-tests=error
 
-test-install: $(VENV)/.made ## `pip install .` in an empty environment, used from outside the checkout
+test-install: $(VENV)/.made ## `pip install .` in an empty environment, and a check with what it installed
 	rm -rf build/install
 	$(RUN) -m venv build/install
 	build/install/bin/python -m pip install --quiet .
-	cd build && install/bin/python -c "import rtamt.engine._core, sys; sys.exit('/src/' in rtamt.__file__)"
-	build/install/bin/rtamt $(CHECK_EXAMPLE) --quiet || [ $$? -eq 1 ]
+	build/install/bin/rtamt check $(EXAMPLE)/spec.stl $(EXAMPLE)/a_satisfied.csv
 
-lint: $(VENV)/.core $(VENV)/.group-test $(VENV)/.group-lint ## ruff, mypy, import contracts, clang-format, clang-tidy
+lint: $(VENV)/.core $(VENV)/.group-lint ## ruff, mypy, import contracts, clang-format, clang-tidy
 	$(RUN) -m ruff check
 	$(RUN) -m ruff format --check
 	$(RUN) -m mypy
 	$(VENV)/bin/lint-imports
-	$(VENV)/bin/clang-format --dry-run --Werror $(CXX_FILES)
+	$(CXX_FILES) '*.[ch]pp' | xargs $(VENV)/bin/clang-format --dry-run --Werror
 	$(WITH_VENV) cmake --preset tidy --log-level=WARNING
-	printf '%s\n' $(CXX_SOURCES) | xargs -P "$$(nproc)" -n 1 $(VENV)/bin/clang-tidy -p build/tidy --quiet
+	$(CXX_FILES) '*.cpp' | xargs -P "$$(nproc)" -n 1 $(VENV)/bin/clang-tidy -p build/tidy --quiet
 
 format: $(VENV)/.group-lint ## format Python and C++
 	$(RUN) -m ruff check --select I --fix
 	$(RUN) -m ruff format
-	$(VENV)/bin/clang-format -i $(CXX_FILES)
+	$(CXX_FILES) '*.[ch]pp' | xargs $(VENV)/bin/clang-format -i
 
 bench: $(VENV)/.core ## what a sample costs, beside the figures to reach
 	$(RUN) benchmarks/run.py

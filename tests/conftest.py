@@ -10,7 +10,7 @@ from rtamt.language.formula import Formula
 PHASES = [phase for phase in Phase if phase is not Phase.explain]
 
 settings.register_profile("dev", max_examples=100, deadline=None, phases=PHASES)
-settings.register_profile("ci", max_examples=400, deadline=None, phases=PHASES, derandomize=True)
+settings.register_profile("ci", max_examples=150, deadline=None, phases=PHASES, derandomize=True)
 settings.load_profile("ci" if os.environ.get("CI") == "true" else "dev")
 
 # A failing example shows its formula as text, not as nested records of operators.

@@ -1,4 +1,4 @@
-"""Formulas, traces and chunkings for property tests, generated from the table of operators."""
+"""Formulas, from the table of operators, and traces and chunkings of both kinds, for property tests."""
 
 from __future__ import annotations
 
@@ -20,6 +20,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     Array = NDArray[np.float64]
+    # Of each variable, its times in ticks and its values.
+    DenseTrace = dict[str, tuple[NDArray[np.int64], Array]]
 
 # Every combination of these values of the variables is one sample of the trace on which arithmetic is tried.
 _PROBE = (-2.0, 0.0, 1.0, 3.0)
@@ -164,3 +166,61 @@ def chunkings(n: int) -> SearchStrategy[list[int]]:
     """Return a strategy of sizes, some of them 0, that add up to ``n``."""
     cuts = st.lists(st.integers(0, n), max_size=max(2, n))
     return cuts.map(lambda c: [b - a for a, b in itertools.pairwise([0, *sorted(c), n])])
+
+
+@st.composite
+def dense_traces(
+    draw: DrawFn,
+    variables: Sequence[str] = ("x", "y"),
+    max_size: int = 12,
+    *,
+    infinite: bool = False,
+    origin: int = 0,
+) -> DenseTrace:
+    """Draw a signal a variable, each with times of its own, in ticks from ``origin`` on.
+
+    Starts and ends differ, jumps coincide often, segments of one tick and repeated values occur, and
+    some signals have a single sample or end before another one begins.
+    """
+    values = st.integers(-8, 8).map(lambda k: k / 2)
+    if infinite:
+        values = st.one_of(values, values, values, st.sampled_from((np.inf, -np.inf)))
+    trace = {}
+    for name in variables:
+        n = draw(st.integers(1, max_size))
+        steps = draw(st.lists(st.sampled_from((1, 1, 1, 2, 2, 3, 5)), min_size=n - 1, max_size=n - 1))
+        times = np.cumsum([origin + draw(st.sampled_from((0, 0, 0, 1, 2, 5, 12))), *steps], dtype=np.int64)
+        palette = draw(st.lists(values, min_size=1, max_size=5, unique=True))
+        column = draw(st.lists(st.sampled_from(palette), min_size=n, max_size=n))
+        trace[name] = (times, np.array(column, float))
+    return trace
+
+
+@st.composite
+def dense_chunkings(draw: DrawFn, trace: DenseTrace) -> list[DenseTrace]:
+    """Draw a way to hand over a dense trace: updates, each with some samples of some variables.
+
+    A variable may be absent from an update, present without samples, far ahead of the others or far
+    behind; sometimes every update is one sample of one variable.
+    """
+    sizes = {name: len(times) for name, (times, _) in trace.items()}
+    if draw(st.booleans()):
+        order = draw(st.permutations([name for name, n in sizes.items() for _ in range(n)]))
+        shares = [{name: 1} for name in order]
+    else:
+        m = draw(st.integers(1, 6))
+        shares = [{} for _ in range(m)]
+        for name, n in sizes.items():
+            cuts = sorted(draw(st.lists(st.integers(0, n), min_size=m - 1, max_size=m - 1)))
+            for share, (begin, end) in zip(shares, itertools.pairwise([0, *cuts, n]), strict=True):
+                if end > begin or draw(st.booleans()):
+                    share[name] = end - begin
+    updates, begun = [], dict.fromkeys(sizes, 0)
+    for share in shares:
+        update = {}
+        for name, size in share.items():
+            begin = begun[name]
+            begun[name] += size
+            update[name] = tuple(column[begin : begin + size] for column in trace[name])
+        updates.append(update)
+    return updates

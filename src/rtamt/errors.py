@@ -19,6 +19,7 @@ the line and a caret under the place.
 
 from __future__ import annotations
 
+import reprlib
 from difflib import get_close_matches
 from typing import TYPE_CHECKING
 
@@ -132,6 +133,15 @@ def caret(text: str, span: Span) -> str:
     pad = "".join("\t" if c == "\t" else " " for c in before + text[shown_from:start])
     width = max(1, min(span.end, shown_to) - start)
     return f"  line {number}, column {start - line_start + 1}:\n    {line}\n    {pad}{'^' * width}"
+
+
+def shown(value: object) -> str:
+    """Return a value as a message shows it: as Python writes it, and never pages of it.
+
+    >>> shown("abc"), len(shown(10**400))
+    ("'abc'", 40)
+    """
+    return reprlib.repr(value)
 
 
 def did_you_mean(name: str, known: Iterable[str]) -> str:

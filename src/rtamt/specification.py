@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cached_property
+from math import isnan
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -12,10 +13,11 @@ from rtamt.engine import reference, signals
 from rtamt.engine.evaluate import Evaluator
 from rtamt.engine.monitor import Monitor
 from rtamt.engine.signals import Signal, Trace
-from rtamt.errors import UsageError, did_you_mean
+from rtamt.errors import BoundError, UsageError, did_you_mean, shown
 from rtamt.language.formula import Formula, variables
 from rtamt.language.operators import STL, Language
 from rtamt.language.parser import parse_formula
+from rtamt.language.printer import to_text
 from rtamt.language.specfile import Document, parse_document
 from rtamt.language.units import duration
 from rtamt.rewrite import interface
@@ -35,7 +37,7 @@ BACKENDS = ("cpp", "python")
 Duration = str | float | Fraction
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Specification:
     """A requirement: one formula, with the names, types and sub-formulas of its document.
 
@@ -75,15 +77,23 @@ class Specification:
         return float("inf") if depth is None else float(depth)
 
     def pastified(self, period: Duration | None = None) -> Formula:
-        """Return Π(φ): past operators only, the same value one horizon later (Definition 4)."""
-        return pastify(self.formula, self._period(period) or Fraction(1), self.text)
+        """Return Π(φ): past operators only, the same value one horizon later (Definition 4).
 
-    def evaluate(self, data: Any, *, period: Duration | None = None) -> Result:
+        >>> import rtamt
+        >>> print(rtamt.parse("x >= 3 -> eventually[0:5](y >= 3)").pastified())
+        once[5:5](x >= 3) -> once[0:5](y >= 3)
+        """
+        return pastify(self.formula, self._period(period) or Fraction(1), self.text, self.unit)
+
+    def evaluate(
+        self, data: Any, *, period: Duration | None = None, tolerance: float = signals.TOLERANCE
+    ) -> Result:
         """Compute the robustness of a finished recording at every sample.
 
         ``data``: a mapping (or frame) from variable to n numbers; ``"time"``: n stamps in seconds
         (or datetimes), may be left out. ``period``: seconds, or text such as ``"100ms"``; by default
-        that of the specification, else the median gap of the stamps, else 1 s.
+        that of the specification, else the median gap of the stamps, else 1 s. ``tolerance``: the
+        fraction of the period by which a gap between samples may miss it.
 
         Raises :class:`TraceError` where the data is wrong, :class:`BoundError` where an interval is
         no multiple of the period, :class:`EvaluationError` where an operation has no value.
@@ -93,9 +103,9 @@ class Specification:
         >>> result.robustness, result.satisfied, result.signal.values
         (1.0, True, array([1., 1., 3.]))
         """
-        trace = signals.trace(data, self.input_names, self._period(period), self._declared)
-        check_bounds(self.formula, trace.period, self.text)
-        return Result(self, trace, Signal(trace.times, self.robustness_of(self.formula, trace)))
+        trace = signals.trace(data, self.input_names, self._period(period), self._declared, tolerance)
+        self._check_bounds(trace)
+        return Result(self, trace, Signal(trace.times.copy(), self.robustness_of(self.formula, trace)))
 
     def monitor(
         self,
@@ -107,6 +117,11 @@ class Specification:
 
         ``period`` as in :meth:`evaluate`, by default 1 s. ``tolerance``: the fraction of the period
         by which a gap between samples may miss it. Raises :class:`BoundError` for unbounded future.
+
+        >>> import rtamt
+        >>> monitor = rtamt.parse("always[0:200ms](x >= 3)").monitor(period="100ms")
+        >>> [monitor.update(t, x=5) for t in (0.0, 0.1, 0.2)]
+        [None, None, 2.0]
         """
         return Monitor(
             self.formula,
@@ -114,6 +129,7 @@ class Specification:
             period=self._period(period) or Fraction(1),
             tolerance=tolerance,
             backend=self.backend,
+            known=self._declared,
         )
 
     def robustness_of(self, formula: Formula, trace: Trace) -> FloatArray:
@@ -128,7 +144,13 @@ class Specification:
         return evaluator(trace)[0]
 
     def named(self, name: str) -> Formula:
-        """Return a named sub-specification, or the formula of any other text, parsed as part of this one."""
+        """Return a named sub-specification, or the formula of any other text, parsed as part of this one.
+
+        >>> import rtamt
+        >>> spec = rtamt.parse("asked = req >= 3; always(asked -> gnt >= 3)")
+        >>> print(spec.named("asked"), "|", spec.named("once asked"))
+        req >= 3 | once(req >= 3)
+        """
         for assertion in self.document.assertions:
             if assertion.name == name:
                 return assertion.formula
@@ -152,11 +174,29 @@ class Specification:
     def _period(self, period: Duration | None) -> Fraction | None:
         return self.period if period is None else positive_period(period)
 
+    def _check_bounds(self, trace: Trace) -> None:
+        try:
+            check_bounds(self.formula, trace.period, self.text)
+        except BoundError as error:
+            if not trace.inferred:
+                raise
+            raise BoundError(
+                f"{error.message} (the period was taken from the time stamps; period= sets it)",
+                self.text,
+                error.span,
+            ) from None
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        # The text says it all, and is read without recursion however long it is.
+        declared = {declaration.name for declaration in self.document.declarations}
+        given = {name: v for name, v in self.document.constants.items() if name not in declared}
+        return _parse_again, (self.text, self.period, self.unit, self.backend, given, self.language)
+
     def __str__(self) -> str:
-        return str(self.formula)
+        return to_text(self.formula, self.language)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Result:
     """What an evaluation gives: numbers and a verdict at the first instant, and the whole signal."""
 
@@ -175,18 +215,34 @@ class Result:
         """Whether the formula holds at the first instant: Boolean semantics, evaluated on its own.
 
         Where the robustness is 0, only this has a verdict.
+
+        >>> import rtamt
+        >>> [rtamt.parse(text).evaluate({"x": [3]}).satisfied for text in ("x >= 3", "x > 3")]
+        [True, False]
         """
         lowered = interface.boolean(self.specification.formula)
         return bool(self.specification.robustness_of(lowered, self.trace)[0] > 0)
 
     def __getitem__(self, name: str) -> Signal:
-        """Return the signal of a named sub-specification, or of any formula over the same variables."""
+        """Return the signal of a named sub-specification, or of any formula over the same variables.
+
+        >>> import rtamt
+        >>> result = rtamt.parse("low = x <= 3; always(low)").evaluate({"time": [0, 1], "x": [1, 2]})
+        >>> result["low"]
+        Signal(times=array([0., 1.]), values=array([2., 1.]))
+        >>> result["x + 1"].values
+        array([2., 3.])
+        """
         formula = self.specification.named(name)
+        names = tuple(self.trace.columns)
         for variable in variables(formula):
             if variable not in self.trace.columns:
-                raise signals.missing_variable(variable, tuple(self.trace.columns))
+                raise UsageError(
+                    f"'{name}' reads '{variable}', which the formula does not{did_you_mean(variable, names)}; "
+                    f"the recording was read for {', '.join(names)} only"
+                )
         check_bounds(formula, self.trace.period, name)
-        return Signal(self.trace.times, self.specification.robustness_of(formula, self.trace))
+        return Signal(self.trace.times.copy(), self.specification.robustness_of(formula, self.trace))
 
 
 def parse(
@@ -213,6 +269,9 @@ def parse(
         raise UsageError(
             f"unknown backend '{backend}'{did_you_mean(backend, BACKENDS)}; choose from {', '.join(BACKENDS)}"
         )
+    for name, value in (constants or {}).items():
+        if not signals.is_number(value) or isnan(value):
+            raise UsageError(f"the constant '{name}' is {shown(value)}; give a number")
     document = parse_document(text, language=language, unit=unit, constants=constants)
     exact = None if period is None else positive_period(period)
     spec = Specification(document, exact, unit, backend, language)
@@ -222,8 +281,36 @@ def parse(
     return spec
 
 
-def load(path: str | os.PathLike[str], **options: Any) -> Specification:
-    """Read a specification file (``.stl``); options as for :func:`parse`."""
+def _parse_again(
+    text: str,
+    period: Fraction | None,
+    unit: str,
+    backend: str,
+    constants: Mapping[str, float],
+    language: Language,
+) -> Specification:
+    return parse(text, period=period, unit=unit, backend=backend, constants=constants, language=language)
+
+
+def load(
+    path: str | os.PathLike[str],
+    *,
+    period: Duration | None = None,
+    unit: str = "s",
+    backend: str = "cpp",
+    constants: Mapping[str, float] | None = None,
+    language: Language = STL,
+) -> Specification:
+    """Read a specification file (``.stl``); settings and errors as for :func:`parse`.
+
+    >>> import pathlib, tempfile
+    >>> import rtamt
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     path = pathlib.Path(folder, "limit.stl")
+    ...     _ = path.write_text("specification limit; input float x; always(x <= 3)")
+    ...     print(rtamt.load(path).name)
+    limit
+    """
     try:
         text = Path(path).read_text(encoding="utf-8-sig")
     except OSError as error:
@@ -232,17 +319,26 @@ def load(path: str | os.PathLike[str], **options: Any) -> Specification:
         raise UsageError(
             f"'{path}' is not UTF-8 text (byte {error.start}); is it a specification?"
         ) from error
-    return parse(text, **options)
+    return parse(text, period=period, unit=unit, backend=backend, constants=constants, language=language)
 
 
-def robustness(text: str, data: Any, **options: Any) -> float:
-    """Return the robustness of a recording at its first instant; options as for :func:`parse`.
+def robustness(
+    text: str,
+    data: Any,
+    *,
+    period: Duration | None = None,
+    unit: str = "s",
+    backend: str = "cpp",
+    constants: Mapping[str, float] | None = None,
+) -> float:
+    """Return the robustness of a recording at its first instant; settings and errors as for :func:`parse`.
 
     >>> import rtamt
     >>> rtamt.robustness("eventually(x >= 3)", {"x": [1, 2, 5]})
     2.0
     """
-    return parse(text, **options).evaluate(data).robustness
+    spec = parse(text, period=period, unit=unit, backend=backend, constants=constants)
+    return spec.evaluate(data).robustness
 
 
 def positive_period(period: Duration) -> Fraction:

@@ -21,10 +21,20 @@ def test_a_bound_that_is_no_multiple_of_the_period() -> None:
 
 def test_the_period_may_also_come_with_the_data() -> None:
     spec = rtamt.parse("always[0:1](x >= 3)")
-    with pytest.raises(rtamt.BoundError, match="1 s is not a whole number of periods of 2 s"):
+    place = "\n  line 1, column 7:\n    always[0:1](x >= 3)\n          ^^^^^"
+    with pytest.raises(rtamt.BoundError) as info:
         spec.evaluate({"time": [0, 2], "x": [1, 2]})
-    with pytest.raises(rtamt.BoundError, match="1 s is not a whole number of periods of 300 ms"):
+    assert str(info.value) == (
+        "The operator bound must be a multiple of the sampling period: 1 s is not a whole number of periods "
+        "of 2 s; change the bound or the period (the period was taken from the time stamps; period= sets it)"
+        + place
+    )
+    with pytest.raises(rtamt.BoundError) as info:
         spec.monitor(period="300ms")
+    assert str(info.value) == (
+        "The operator bound must be a multiple of the sampling period: 1 s is not a whole number of periods "
+        "of 300 ms; change the bound or the period" + place
+    )
 
 
 def test_unbounded_future_online() -> None:

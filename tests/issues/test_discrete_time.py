@@ -259,10 +259,10 @@ def test_the_violation_counter_looks_at_every_gap_not_only_the_last():
     [
         ({"time": [0, 1]}, "the data has no 'x'; it has nothing"),
         ({"x": [0, 1]}, "the data has no 'time'; it has x"),
-        ({"time": [0, 1], "xx": [1, 2]}, "the data has no 'x'; did you mean 'xx'?; it has xx"),
+        ({"time": [0, 1], "xx": [1, 2]}, "the data has no 'x'; it has xx; did you mean 'xx'?"),
         (
             {"time": [0, 1], "x": [1]},
-            "'time' has 2 samples but 'x' has 1: give one value of each at every sample",
+            "'time' has 2 and 'x' has 1 samples: give one value of each at every sample",
         ),
     ],
 )

@@ -158,6 +158,17 @@ def test_a_text_declares_what_calls_would(tmp_path):
     assert spec.update(0, [("req", Message(5.0))]) == 3.0
 
 
+def test_sides_of_the_interface_can_be_read():
+    spec = rtamt.StlDiscreteTimeSpecification()
+    for name in ("req", "gnt", "late"):
+        spec.declare_var(name, "float")
+    assert spec.var_io_dict == {"req": "output", "gnt": "output", "late": "output"}
+    spec.set_var_io_type("req", "input")
+    spec.spec = "input float late req >= late"
+    spec.parse()
+    assert spec.var_io_dict == {"req": "input", "gnt": "output", "late": "input"}
+
+
 def test_constants_are_numbers_and_bounds():
     for value in (2, 2.0, "2"):
         assert declared("once[0:c](x >= c)", c=value).spec_print() == "once[0,2]((x)>=(2.0))"
@@ -173,20 +184,31 @@ def test_the_period_may_be_set_after_parse_and_survives_pastify():
 
 def test_a_setting_that_does_not_fit_changes_nothing():
     spec = declared("once[0:1](x)")
-    with pytest.raises(rtamt.STLParseException):
+    message = (
+        "RTAMT Exception: The operator bound must be a multiple of the sampling period: {} is not a whole "
+        "number of periods of {}; change the bound or the period\n"
+        "  line 1, column 5:\n    once[0:1](x)\n        ^^^^^"
+    )
+    with pytest.raises(rtamt.STLParseException) as info:
         spec.set_sampling_period(3, "s", 0.4)
+    assert str(info.value) == message.format("1 s", "3 s")
     assert (spec.get_sampling_frequency(), spec.sampling_tolerance) == (1.0, 0.1)
-    with pytest.raises(rtamt.STLParseException):
+    with pytest.raises(rtamt.STLParseException) as info:
         spec.unit = "ms"
+    assert str(info.value) == message.format("1 ms", "1 s")
     assert spec.unit == "s"
     assert [spec.update(t, [("x", x)]) for t, x in enumerate([5, 1, 2])] == [5.0, 5.0, 2.0]
 
 
 def test_a_text_that_cannot_be_read_leaves_the_one_before():
     spec = declared("once(x)")
-    spec.spec = "once[0:0.5](x)"
-    with pytest.raises(rtamt.STLParseException):
+    spec.spec = "once[0:1(x)"
+    with pytest.raises(rtamt.STLParseException) as info:
         spec.parse()
+    assert str(info.value) == (
+        "RTAMT Exception: expected ']' after the bounds, got '('\n"
+        "  line 1, column 9:\n    once[0:1(x)\n            ^"
+    )
     assert spec.spec_print() == "once(x)"
 
 
@@ -269,22 +291,36 @@ def test_online_violations_are_counted_from_reset_to_reset():
 
 
 @pytest.mark.parametrize(
-    ("time", "pairs"),
+    ("time", "pairs", "message"),
     [
-        (2, [("x", float("nan"))]),
-        (2, [("x", "text")]),
-        (2, [("z", 1.0)]),
-        (1, [("x", 50.0)]),
-        (2, [("x", 0.0), ("y", 0.0)]),
+        (
+            2,
+            [("x", float("nan"))],
+            "'x' is NaN at sample 2, time 2 s: fill the gap or leave the sample out",
+        ),
+        (2, [("x", "text")], "'x' is 'text' at sample 2, expected a number"),
+        (2, [("z", 1.0)], "unknown variable 'z' in the data; the formula reads x, y"),
+        (
+            1,
+            [("x", 50.0)],
+            "time does not increase at sample 2: 1 s comes after 1 s; sort the samples and drop repeated stamps",
+        ),
+        (
+            2,
+            [("x", 0.0), ("y", 0.0)],
+            "'x / y' has no value at sample 2, time 2 s: it is 0/0, inf - inf, 0 * inf, or a root or "
+            "logarithm of a negative number; change the formula or the data so that this cannot happen",
+        ),
     ],
     ids=["NaN", "text", "unknown name", "time stands still", "0/0"],
 )
-def test_an_update_that_fails_leaves_the_monitor_as_it_was(time, pairs):
+def test_an_update_that_fails_leaves_the_monitor_as_it_was(time, pairs, message):
     spec = declared("once(x / y >= 1)")
     assert spec.update(0, [("x", 4), ("y", 2)]) == 1.0
     assert spec.update(1, [("x", 1)]) == 1.0
-    with pytest.raises(rtamt.RTAMTException):
+    with pytest.raises(rtamt.RTAMTException) as info:
         spec.update(time, pairs)
+    assert str(info.value) == f"RTAMT Exception: {message}"
     assert (spec.get_value("x"), spec.get_value("y"), spec.get_value("out")) == (1.0, 2.0, 1.0)
     assert spec.sampling_violation_counter == 0
     assert spec.update(2, []) == 1.0
@@ -312,8 +348,11 @@ def test_a_result_with_a_field_is_written_into_the_declared_object():
     assert spec.get_value("req") is given
     assert spec.get_value("req.value") == 5.0
     assert spec.get_value("rob.value") == 2.0
-    with pytest.raises(rtamt.RTAMTException):
+    with pytest.raises(rtamt.RTAMTException) as info:
         spec.update(1, [("req", Message(float("nan")))])
+    assert str(info.value) == (
+        "RTAMT Exception: 'req.value' is NaN at sample 1, time 1 s: fill the gap or leave the sample out"
+    )
     assert declared_object.value == 2.0
 
 
@@ -342,8 +381,11 @@ def test_numbers_can_be_assigned_to_var_object_dict_between_updates():
     assert spec.update(2, [("y", 0.5)]) == 10.5
     assert (values["out"], values["low"], spec.get_value("low")) == (10.5, -7.0, -7.0)
     values["x"] = float("nan")
-    with pytest.raises(rtamt.RTAMTException):
+    with pytest.raises(rtamt.RTAMTException) as info:
         spec.update(3, [])
+    assert str(info.value) == (
+        "RTAMT Exception: 'x' is NaN at sample 3, time 3 s: fill the gap or leave the sample out"
+    )
     values["x"] = 1.0
     assert spec.update(3, []) == 1.5
 
@@ -371,6 +413,12 @@ def test_values_by_name_by_canonical_text_and_by_any_text():
         assert spec.get_value(name) == value, name
 
 
+def test_a_part_that_the_result_can_do_without_has_a_value():
+    spec = declared("once(x) precedes[0:0] y")
+    assert [spec.update(t, [("x", x), ("y", 1)]) for t, x in enumerate([3, 5, 4])] == [1.0, 1.0, 1.0]
+    assert spec.get_value("once(x)") == 5.0
+
+
 def test_offline_values_are_lists():
     spec = declared("low = x <= 3; always(low)")
     spec.evaluate({"time": [0, 1], "x": [1, 5]})
@@ -386,11 +434,25 @@ def test_spec_print_shows_what_is_monitored():
     assert spec.spec_print() == "once[0,1]((x)>=(y))"
 
 
+def test_a_delay_is_printed_in_the_unit_in_which_it_is_read_again():
+    spec = rtamt.StlDiscreteTimeSpecification()
+    spec.unit = "ms"
+    spec.set_sampling_period(10, "ms")
+    spec.spec = "next(x) and y"
+    spec.parse()
+    spec.pastify()
+    assert spec.spec_print() == "(x)and(once[10ms,10ms](y))"
+    spec.spec = spec.spec_print()
+    spec.parse()
+    assert [spec.update(10 * t, [("x", 9), ("y", y)]) for t, y in enumerate([3, 1, 2])] == [-inf, 3.0, 1.0]
+
+
 # ---- chains ------------------------------------------------------------------------------------------
 
 
 def test_a_chain_that_rtamt_read_differently_is_warned_of_where_parse_is_called():
-    with pytest.warns(UserWarning, match="chain") as caught:
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
         spec = declared("x >= 1 -> y >= 1 -> x >= 2")
     assert [str(w.message) for w in caught] == [
         "a chain without parentheses is read as 'x >= 1 -> y >= 1 -> x >= 2'; RTAMT read it as "

@@ -42,6 +42,8 @@ def main(argv: Sequence[str] | None = None) -> int:
         # Nobody reads on. What Python still holds for stdout goes nowhere, without a word at exit.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return BROKEN_PIPE
+    except OSError as error:
+        complain(f"cannot write the output: {error.strerror}")
     except MemoryError:
         complain("not enough memory: are the bounds of a window as large as they should be?")
     except Exception as error:  # noqa: BLE001 - a mistake of ours; the user gets a sentence all the same

@@ -19,7 +19,7 @@ from rtamt.cli.command import (
     read_specification,
     short,
 )
-from rtamt.cli.terminal import Progress, table, use_color
+from rtamt.cli.terminal import Progress, printed, table, use_color
 from rtamt.errors import StlError
 from rtamt.language.units import format_duration
 from rtamt.readers import read
@@ -147,7 +147,8 @@ def _as_table(spec: Specification, outcomes: list[Outcome], color: bool) -> str:
             cells = (str(len(trace)), format_duration(trace.period), short(outcome.result.robustness))
         rows.append((outcome.trace, *cells, outcome.verdict))
     kinds = [_KINDS[outcome.verdict] for outcome in outcomes]
-    title = f"{spec.name}: {spec.formula}" if spec.name else str(spec.formula)
+    formula = printed(spec.formula)
+    title = f"{spec.name}: {formula}" if spec.name else formula
     text = f"{title}\n\n{table(rows, right=(1, 2, 3), kinds=kinds, color=color)}"
     if len(outcomes) > 1:
         verdicts = [outcome.verdict for outcome in outcomes]

@@ -8,6 +8,7 @@ from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
 from rtamt.cli.command import OK, Command, add_specification_options, read_specification
+from rtamt.cli.terminal import is_printable, printed
 from rtamt.engine.compile import compile_program
 from rtamt.engine.core import core
 from rtamt.errors import BoundError
@@ -113,10 +114,10 @@ def _lines(facts: Facts) -> Iterator[str]:
     spec = facts.spec
     if spec.name:
         yield f"name       {spec.name}"
-    yield f"formula    {spec.formula}"
+    yield f"formula    {printed(spec.formula)}"
     for assertion in spec.document.assertions[:-1]:
         if assertion.name:
-            yield f"           {assertion.name} = {assertion.formula}"
+            yield f"           {assertion.name} = {printed(assertion.formula)}"
     for i, variable in enumerate(_variables(spec)):
         topic = variable["topic"] and f"({variable['topic']})"
         words = [variable["role"], variable["type"], variable["name"], topic]
@@ -128,7 +129,8 @@ def _lines(facts: Facts) -> Iterator[str]:
     if facts.horizon is not None:
         ahead = format_duration(facts.horizon)
         yield f"horizon    {ahead}: the value at t is known at t + {ahead}"
-        yield f"pastified  {facts.pastified}"
+        assert facts.pastified is not None
+        yield f"pastified  {printed(facts.pastified)}"
     if facts.program is None:
         yield f"online     no: {facts.offline_only}"
         return
@@ -147,12 +149,12 @@ def _as_json(facts: Facts) -> str:
     return json.dumps(
         {
             "name": spec.name,
-            "formula": str(spec.formula),
-            "latex": spec.formula.latex(),
+            "formula": printed(spec.formula),
+            "latex": spec.formula.latex() if is_printable(spec.formula) else None,
             "variables": _variables(spec),
             "period": float(facts.period),
             "horizon": None if facts.horizon is None else float(facts.horizon),
-            "pastified": None if facts.pastified is None else str(facts.pastified),
+            "pastified": None if facts.pastified is None else printed(facts.pastified),
             "program": None if facts.program is None else facts.program.disassemble().splitlines(),
             "memory": facts.memory,
             "offline_only": facts.offline_only,

@@ -8,9 +8,15 @@ import time
 from typing import TYPE_CHECKING, TextIO
 
 from rtamt.errors import UsageError, did_you_mean
+from rtamt.language.formula import size
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
+
+    from rtamt.language.formula import Formula
+
+#: Nodes of the largest formula that is written out.
+_PAGE = 5000
 
 COLOR_MODES = ("auto", "always", "never")
 
@@ -35,6 +41,21 @@ def paint(text: str, kind: str, color: bool) -> str:
     'ok'
     """
     return f"\x1b[{_CODES[kind]}m{text}\x1b[0m" if color and kind else text
+
+
+def printed(formula: Formula) -> str:
+    """Return a formula's text; of one that would fill pages, how large it is.
+
+    Named sub-formulas that use each other may be small in a file and astronomical when written out.
+    """
+    if is_printable(formula):
+        return str(formula)
+    return f"a formula of {size(formula):.6g} operators, variables and numbers"
+
+
+def is_printable(formula: Formula) -> bool:
+    """Tell whether a formula is small enough to be written out."""
+    return size(formula) <= _PAGE
 
 
 def table(

@@ -10,10 +10,11 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-from rtamt.engine.lower import LOWERINGS
+from rtamt.engine.lower import LOWERINGS, no_kernel
 from rtamt.language.formula import Apply, Formula, Interval, Var, fold, variables
-from rtamt.language.operators import STL, Window
+from rtamt.language.operators import STL, Until, Window
 from rtamt.rewrite.check import reads_unbounded_future, unbounded_future
+from rtamt.rewrite.horizon import horizon
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -59,12 +60,25 @@ def compile_program(
     the order of the inputs; by default the variables in order of appearance. ``clip`` is the number
     of samples of a finished trace: bounds beyond it are cut to it, which
     changes no value and saves memory.
+
+    >>> from fractions import Fraction
+    >>> from rtamt.language.parser import parse_formula
+    >>> from rtamt.rewrite.desugar import desugar
+    >>> program = compile_program([desugar(parse_formula("always[0:2](x >= 3)"))], Fraction(1))
+    >>> program.inputs, program.lags
+    (('x',), (2,))
     """
     if inputs is None:
         inputs = tuple(dict.fromkeys(name for formula in outputs for name in variables(formula)))
     lowering = LOWERINGS[domain](period, inputs, clip)
-    indices = tuple(lowering.lower(formula) for formula in outputs)
-    return lowering.program(indices)
+    indices = [lowering.lower(formula) for formula in outputs]
+    if clip is None:  # online: each output is known at its horizon, even where less would do
+        depths = (horizon(formula, period) for formula in outputs)
+        indices = [
+            index if depth is None else lowering.late(index, int(depth / period))
+            for index, depth in zip(indices, depths, strict=True)
+        ]
+    return lowering.program(tuple(indices))
 
 
 def compile_plan(
@@ -96,6 +110,8 @@ def _cut(
         if any(was_unbounded for _, was_unbounded in below) or not unbounded:
             return rebuilt, unbounded or any(was_unbounded for _, was_unbounded in below)
         kernel = node.op.kernel
+        if not isinstance(kernel, Window | Until):
+            raise no_kernel(node)
         kind = f"run_{kernel.reduce}" if isinstance(kernel, Window) else "until"
         key = (kind, tuple(operands.setdefault(arg, len(operands)) for arg in node.args))
         scan = scans.setdefault(key, Scan(f"#{number}.{len(scans)}", *key))

@@ -8,15 +8,12 @@ steps a closed window has, and in how until over [a, b] is put together where a 
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from dataclasses import replace
-from math import copysign, inf, isnan
+from math import copysign, inf
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from rtamt.engine.program import Instruction, Program
-from rtamt.errors import EvaluationError, UsageError
+from rtamt.errors import UsageError
 from rtamt.language.formula import Apply, Const, Formula, Var, postorder
 from rtamt.language.operators import Pointwise, Shift, Since, Tense, Until, Window
 
@@ -42,26 +39,16 @@ class Lowering(ABC):
         self.origins: list[Formula | None] = []
         self.index_of: dict[tuple[Instruction, float], int] = {}
         self.value_of: dict[Formula, int] = {}
-        self.partial: set[int] = set()
 
     def program(self, outputs: tuple[int, ...]) -> Program:
-        """Return what the outputs need, renumbered, and what can fail: an error is not optimised away."""
-        needed = {*outputs, *self.partial}
-        for i in reversed(range(len(self.instructions))):
-            if i in needed:
-                needed.update(j for j in (self.instructions[i].a, self.instructions[i].b) if j is not None)
-        new = {old: i for i, old in enumerate(sorted(needed))}
-        kept = [self.instructions[i] for i in new]
+        """Return the program; what no output needs stays, since it may fail and may be asked for."""
         return Program(
-            tuple(
-                replace(ins, a=None if ins.a is None else new[ins.a], b=None if ins.b is None else new[ins.b])
-                for ins in kept
-            ),
+            tuple(self.instructions),
             self.inputs,
-            tuple(new[i] for i in outputs),
+            outputs,
             self.period,
-            {formula: new[i] for formula, i in self.value_of.items() if i in new},
-            tuple(self.origins[i] for i in new),
+            self.value_of,
+            tuple(self.origins),
             self.domain,
         )
 
@@ -90,9 +77,7 @@ class Lowering(ABC):
             return self.since(node, *args)
         if isinstance(kernel, Until):
             return self.until(node, *args)
-        raise UsageError(
-            f"the operator '{node.op.name}' has a definition but no kernel; evaluate it with backend='python'"
-        )
+        raise no_kernel(node)
 
     # ---- emitting --------------------------------------------------------------------------------
 
@@ -121,8 +106,12 @@ class Lowering(ABC):
 
     def delayed(self, index: int, lag: int) -> int:
         """Return the same value known later: slots move, time does not."""
+        return index if self.is_const(index) else self.late(index, lag)
+
+    def late(self, index: int, lag: int) -> int:
+        """Return the same value known at ``lag``, a constant's too."""
         behind = lag - self.lag(index)
-        if behind == 0 or self.is_const(index):
+        if behind == 0:
             return index
         origin = self.origins[index]
         assert origin is not None
@@ -142,28 +131,18 @@ class Lowering(ABC):
         """Return the interval of an operator in steps; no interval is [0, inf)."""
         if node.interval is None:
             return 0, None
-        end = node.interval.end
-        return self.steps(node.interval.begin), None if end is None else self.steps(end)
+        begin, end = node.interval.begin, node.interval.end
+        first = self.steps(begin)
+        # The length is cut, not the end: precedes reads as far as the end, in a window of the length.
+        return first, None if end is None else first + self.steps(end - begin)
 
     # ---- one function for each shape of kernel -----------------------------------------------------
 
     def pointwise(self, node: Apply, kernel: Pointwise, args: list[int]) -> int:
         """Lower an operator on values at one instant."""
-        if all(self.is_const(i) for i in args):
-            return self.constant_folded(node, args)
         lag = max(self.lag(i) for i in args)
         a, b = (*args, None)[:2]
-        index = self.emit(Instruction(kernel.opcode, a, b, lag=lag), node)
-        if kernel.partial:
-            self.partial.add(index)
-        return index
-
-    def constant_folded(self, node: Apply, args: list[int]) -> int:
-        """Compute an operator whose operands are numbers."""
-        value = float(node.op.definition(*(np.array([self.instructions[i].x]) for i in args))[0])
-        if isnan(value):
-            raise EvaluationError(f"'{node}' has no value: change the formula so that it has one")
-        return self.emit(Instruction("const", x=value), node)
+        return self.emit(Instruction(kernel.opcode, a, b, lag=lag), node)
 
     def window(self, node: Apply, kernel: Window, x: int) -> int:
         """Lower the largest or smallest value in a window."""
@@ -252,7 +231,7 @@ class DiscreteLowering(Lowering):
         begin, end = bounds
         if begin:
             lag = max(self.lag(hold), self.lag(goal))
-            before = self.slid("min", hold, begin, lag, node)
+            before = self.late(self.slid("min", hold, begin, lag, node), lag)
             hold = self.moved(before, 1, inf, lag, node)
             goal = self.emit(Instruction("min", hold, goal, lag=lag), node)
         return self.chain(node, hold, goal, end - begin + 1, known)
@@ -283,6 +262,13 @@ class DenseLowering(Lowering):
         else:
             first = self.moved(self.slid("min", hold, begin, lag, node), width, inf, lag, node)
         return self.emit(Instruction("min", after, first, lag=known), node)
+
+
+def no_kernel(node: Apply) -> UsageError:
+    """Return the error for an operator that has a definition only."""
+    return UsageError(
+        f"the operator '{node.op.name}' has a definition but no kernel; evaluate it with backend='python'"
+    )
 
 
 LOWERINGS: Mapping[str, type[DiscreteLowering] | type[DenseLowering]] = MappingProxyType(

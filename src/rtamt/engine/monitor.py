@@ -10,17 +10,17 @@ import numpy as np
 
 from rtamt.engine import python_backend, signals
 from rtamt.engine.compile import compile_program
-from rtamt.engine.core import core
+from rtamt.engine.core import core, core_monitor
 from rtamt.engine.evaluate import undefined
 from rtamt.engine.signals import Signal
-from rtamt.errors import TraceError, UsageError
+from rtamt.errors import TraceError, UsageError, shown
 from rtamt.language.formula import variables
 from rtamt.rewrite.check import check_bounds, check_online
 from rtamt.rewrite.desugar import desugar
 from rtamt.rewrite.horizon import horizon
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Collection, Sequence
 
     from rtamt.language.formula import Formula
 
@@ -49,9 +49,11 @@ class Monitor:
         period: Fraction = Fraction(1),
         tolerance: float = signals.TOLERANCE,
         backend: str = "cpp",
+        known: Collection[str] = (),
     ) -> None:
         check_bounds(formula, period, text)
         check_online(formula, text)
+        signals.check_tolerance(tolerance)
         depth = horizon(formula, period)
         assert depth is not None
         self._period = period
@@ -59,6 +61,7 @@ class Monitor:
         self._depth = depth
         self._lag = int(depth / period)
         self.input_names: tuple[str, ...] = variables(formula)
+        self._known = frozenset(known)
         self._finished = False
         self._program = None
         if backend == "python":
@@ -68,9 +71,7 @@ class Monitor:
         else:
             _core = core()
             self._program = compile_program((desugar(formula),), period, self.input_names)
-            self._backend = _core.Monitor(
-                self._program.to_bytes(), list(self.input_names), float(period), tolerance
-            )
+            self._backend = core_monitor(self._program, float(period), tolerance)
             self._refused, self._undefined = _core.Refused, _core.Undefined
         self._update = self._backend.update
         self._step = self._backend.step
@@ -102,12 +103,17 @@ class Monitor:
         :class:`TraceError` for wrong data and :class:`EvaluationError` where an operation has no
         value; the monitor is then as it was. A formula that reads ``req.value`` takes an object
         with that field as ``req=``, or the number as ``**{"req.value": 3}``.
+
+        >>> import rtamt
+        >>> monitor = rtamt.parse("(req >= 3) -> eventually[0:1](gnt >= 3)").monitor()
+        >>> print(monitor.update(0.0, req=5, gnt=0), monitor.update(1.0, req=0, gnt=4))
+        None 1.0
         """
         try:
             return self._update(time, values)  # type: ignore[no-any-return]
         except self._refused:
-            flat = self._fields(values)
-            if flat is not None:
+            flat = self._read_by_formula(values)
+            if flat.keys() != values.keys():
                 return self.update(time, **flat)
             raise self._refusal(time, values) from None
         except self._undefined as error:
@@ -117,14 +123,21 @@ class Monitor:
         """Take one sample by position, in the order of ``input_names``, one period after the last.
 
         Returns and raises as :meth:`update` does; for loops in which a microsecond counts.
+
+        >>> import rtamt
+        >>> monitor = rtamt.parse("once[0:1](x >= y)").monitor(period=0.1)
+        >>> monitor.input_names
+        ('x', 'y')
+        >>> [monitor.step(5, 4), monitor.step(1, 4)]
+        [1.0, 1.0]
         """
         try:
             return self._step(*values)  # type: ignore[no-any-return]
         except self._refused:
             if len(values) != len(self.input_names):
                 raise TraceError(
-                    f"got {len(values)} values at sample {self.samples}, expected {len(self.input_names)}: "
-                    f"{', '.join(self.input_names) or 'the formula reads no variable'}"
+                    f"sample {self.samples} has the wrong number of values: expected {len(self.input_names)} "
+                    f"({', '.join(self.input_names) or 'the formula reads no variable'}), got {len(values)}"
                 ) from None
             time = self._next_time()
             raise self._refusal(time, dict(zip(self.input_names, values, strict=True))) from None
@@ -136,6 +149,11 @@ class Monitor:
 
         Returns what became known, a Signal of as many values. ``"time"`` may be left out; samples
         then follow one period after another. Raises as :meth:`update` does.
+
+        >>> import rtamt
+        >>> monitor = rtamt.parse("always[0:1](x >= 3)").monitor()
+        >>> monitor.update_many({"time": [0, 1, 2], "x": [5, 4, 6]})
+        Signal(times=array([0., 1.]), values=array([1., 1.]))
         """
         if self._finished:
             raise self._is_finished()
@@ -148,7 +166,14 @@ class Monitor:
         return Signal(np.concatenate((before, times))[: len(known)], known)
 
     def finish(self) -> Signal:
-        """Say that no more samples will come; returns the values that were still unknown."""
+        """Say that no more samples will come; returns the values that were still unknown.
+
+        >>> import rtamt
+        >>> monitor = rtamt.parse("always[0:1](x >= 3)").monitor()
+        >>> _ = monitor.update_many({"time": [0, 1, 2], "x": [5, 4, 6]})
+        >>> monitor.finish()
+        Signal(times=array([2.]), values=array([3.]))
+        """
         if self._finished:
             return Signal(np.empty(0), np.empty(0))
         try:
@@ -159,21 +184,28 @@ class Monitor:
         return Signal(self._backend.recent(len(values)), values)
 
     def reset(self) -> None:
-        """Forget the trace; the next sample is the first."""
+        """Forget the trace; the next sample is the first.
+
+        >>> import rtamt
+        >>> monitor = rtamt.parse("once(x >= 3)").monitor()
+        >>> monitor.update(0.0, x=9)
+        6.0
+        >>> monitor.reset()
+        >>> monitor.update(0.0, x=1)
+        -2.0
+        """
         self._backend.reset()
         self._finished = False
 
-    def _fields(self, values: dict[str, Any]) -> dict[str, Any] | None:
-        """Return the values with objects taken apart into the fields that the formula reads, if there are any."""
-        flat = dict(values)
+    def _read_by_formula(self, values: dict[str, Any]) -> dict[str, Any]:
+        """Return what the formula reads: objects taken apart, declared variables it does not read left out."""
+        heads = {name.split(".")[0] for name in self.input_names}
+        flat = {k: v for k, v in values.items() if k in self.input_names or k not in self._known | heads}
         for name in self.input_names:
             head, *path = name.split(".")
             if path and name not in values and head in values:
                 flat[name] = signals.field_of(values[head], head, path, self.samples)
-        if len(flat) == len(values):
-            return None
-        heads = {name.split(".")[0] for name in flat if name in self.input_names and name not in values}
-        return {name: value for name, value in flat.items() if name not in heads or name in self.input_names}
+        return flat
 
     def _next_time(self) -> float:
         return float(self._backend.last_time) + float(self._period) if self.samples else 0.0
@@ -182,7 +214,7 @@ class Monitor:
 
     def _chunk(self, data: Any) -> tuple[signals.FloatArray, list[signals.FloatArray]]:
         last = float(self._backend.last_time) if self.samples else None
-        times, columns, n = signals.columns_of(data, self.input_names)
+        times, columns, n = signals.columns_of(data, self.input_names, self._known)
         if times is None:
             times = np.array(self._next_time() + float(self._period) * np.arange(n), dtype=np.float64)
         signals.check_increasing(times, last, self.samples)
@@ -219,7 +251,7 @@ def refused_time(time: Any, index: int, last: float | None) -> TraceError | None
     """Return what is wrong with a sample's time stamp, if anything is."""
     if not signals.is_number(time):
         return TraceError(
-            f"time is {time!r} at sample {index}, expected a number of seconds", variable="time"
+            f"time is {shown(time)} at sample {index}, expected a number of seconds", variable="time"
         )
     if not isfinite(time):
         return TraceError(f"time is {float(time)} at sample {index}: give a finite number of seconds")
@@ -241,7 +273,7 @@ def refused_values(
         value = values[name]
         if not signals.is_number(value):
             return TraceError(
-                f"'{name}' is {value!r} at sample {index}, expected a number", variable=name, index=index
+                f"'{name}' is {shown(value)} at sample {index}, expected a number", variable=name, index=index
             )
         if isnan(value):
             return signals.nan_error(name, index, float(time))

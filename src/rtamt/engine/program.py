@@ -116,7 +116,17 @@ class Program:
         return body + struct.pack("<I", zlib.crc32(body))
 
     def disassemble(self) -> str:
-        """Return a listing: index, lag in samples, instruction."""
+        """Return a listing: index, lag in samples, instruction.
+
+        >>> from fractions import Fraction
+        >>> from rtamt.engine.compile import compile_program
+        >>> from rtamt.language.parser import parse_formula
+        >>> print(compile_program([parse_formula("always[0:2](x - 3)")], Fraction(1)).disassemble())
+        %0   lag 0    input x
+        %1   lag 0    const 3.0
+        %2   lag 0    sub %0 %1
+        %3   lag 2    slide_min %2 n=3  -> output
+        """
         lines = []
         for i, ins in enumerate(self.instructions):
             mark = "  -> output" if i in self.outputs else ""

@@ -7,6 +7,7 @@ definition. It says no (:class:`Refused`) where the compiled monitor does, and f
 from __future__ import annotations
 
 from collections import deque
+from fractions import Fraction
 from math import inf, isfinite, isnan
 from typing import TYPE_CHECKING, Any
 
@@ -17,8 +18,7 @@ from rtamt.engine.reference import ReferenceMonitor, history
 from rtamt.rewrite.horizon import horizon
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Mapping, Sequence
-    from fractions import Fraction
+    from collections.abc import Mapping, Sequence
 
     from rtamt.engine.signals import FloatArray
     from rtamt.language.formula import Formula
@@ -29,7 +29,10 @@ class Refused(Exception):  # noqa: N818 - the compiled monitor's word
 
 
 class PythonMonitor:
-    """One monitor over the definition; see ``_core.Monitor`` for what each method means."""
+    """One monitor over the definition; see ``_core.Monitor`` for what each method means.
+
+    ``period`` is in seconds, ``unit`` is how many seconds a unit of the time stamps has.
+    """
 
     def __init__(
         self,
@@ -38,7 +41,7 @@ class PythonMonitor:
         period: Fraction,
         tolerance: float = inf,
         strict: bool = True,
-        ignored: Collection[str] = (),
+        unit: Fraction = Fraction(1),
     ) -> None:
         depths = [horizon(formula, period) for formula in formulas]
         lags = [int(depth / period) for depth in depths if depth is not None]
@@ -52,13 +55,14 @@ class PythonMonitor:
             reach.append(behind)
         # A formula without variables still counts samples: one column that nothing reads.
         self._names = names
-        self._monitor = ReferenceMonitor(
-            formulas, names or ("#",), period, lags, max(reach) if reach else None
+        # One sample more than the next value needs, so that parts of the last one can still be asked for.
+        self._monitor = _Questioned(
+            formulas, names or ("#",), period, lags, max(reach) + 1 if reach else None
         )
-        self._period = float(period)
+        self._period = float(period / unit)
+        self._unit = float(unit)
         self._tolerance = tolerance
         self._strict = strict
-        self._ignored = frozenset(ignored)
         self._stamps: deque[float] = deque(maxlen=max(lags, default=0) + 1)
         self._values: dict[str, float] = {}
         self._finished = False
@@ -79,6 +83,10 @@ class PythonMonitor:
         """Bytes of signal kept; grows with the trace where the past is unbounded."""
         return self._monitor.state_bytes
 
+    def last(self, part: Formula) -> float:
+        """Return the value at the last sample of a past formula: one of the monitor's, or a part of one."""
+        return self._monitor.last(part)
+
     def recent(self, count: int) -> FloatArray:
         """Return the stamps of the last ``count`` samples."""
         return np.array(list(self._stamps)[len(self._stamps) - count :], dtype=np.float64)
@@ -93,10 +101,9 @@ class PythonMonitor:
         """Take one sample; a variable that is left out keeps its value."""
         values = dict(self._values)
         for name, value in pairs:
-            if name in self._names:
-                values[name] = _number(value)
-            elif name not in self._ignored:
+            if name not in self._names:
                 raise Refused("unknown variable")
+            values[name] = _number(value)
         if len(values) != len(self._names):
             raise Refused("missing variable")
         return self._take(time, values)
@@ -154,11 +161,22 @@ class PythonMonitor:
     def _begin(self, time: float) -> None:
         """Let the definition's messages count time from the first stamp."""
         if not self._stamps:
-            self._monitor.start = time
+            self._monitor.start = time * self._unit
 
     def _off(self, before: float | None, time: float) -> bool:
         """Tell whether a gap misses the period by more than the tolerance; the first sample has none."""
         return before is not None and abs(time - before - self._period) > self._tolerance * self._period
+
+
+class _Questioned(ReferenceMonitor):
+    """The definition's monitor, which also tells the last value of parts of its formulas."""
+
+    def last(self, part: Formula) -> float:
+        """Return the value of ``part`` at the last sample: that sample is taken once more, for the part alone."""
+        again = _Questioned((part,), self._inputs, self._period, (0,), None, self.start)
+        again._first, again._samples = self._first, self._samples - 1
+        again._kept = [column[:-1] for column in self._kept]
+        return float(again.push([column[-1:] for column in self._kept])[0][0])
 
 
 def _number(value: Any) -> float:

@@ -79,15 +79,16 @@ def history(formula: Formula, period: Fraction) -> int | None:
     return _reaches(formula, period, Tense.PAST)[id(formula)]
 
 
-def undefined(formula: Formula, index: int, time: float, operands: Sequence[float]) -> EvaluationError:
-    """Return the error that says that a sub-formula has no value at a sample.
+def undefined(formula: Formula, index: int | None, time: float, operands: Sequence[float]) -> EvaluationError:
+    """Return the error that says that a sub-formula has no value at a sample, or in dense time at an instant.
 
-    ``operands`` are the values of its operands there, ``time`` is seconds.
+    ``operands`` are the values of its operands there, ``time`` is seconds; ``index`` is None in dense time.
     """
+    sample = "" if index is None else f"sample {index}, "
     values = [repr(float(value)).removesuffix(".0") for value in operands]
     listed = f"operands are {' and '.join(values)}" if len(values) > 1 else f"operand is {values[0]}"
     return EvaluationError(
-        f"'{formula}' has no value at sample {index}, time {repr(float(time)).removesuffix('.0')} s, "
+        f"'{formula}' has no value at {sample}time {repr(float(time)).removesuffix('.0')} s, "
         f"where its {listed}; change the formula or the data so that this cannot happen"
     )
 
@@ -291,7 +292,7 @@ def _reaches(formula: Formula, period: Fraction, tense: Tense) -> dict[int, int 
     def step(node: Formula, below: tuple[int | None, ...]) -> int | None:
         own: int | None = 0
         if isinstance(node, Apply) and node.op.tense is tense:
-            own = 1 if node.op.bounds is Bounds.NONE else _window(node, period)[1]
+            own = node.op.reach if node.op.bounds is Bounds.NONE else _window(node, period)[1]
         deepest = None if None in below else max((b for b in below if b is not None), default=0)
         reaches[id(node)] = None if own is None or deepest is None else own + deepest
         return reaches[id(node)]

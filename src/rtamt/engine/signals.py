@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rtamt.errors import TraceError, did_you_mean
+from rtamt.errors import TraceError, UsageError, did_you_mean, shown
 from rtamt.language.units import format_duration
 
 if TYPE_CHECKING:
@@ -29,9 +29,15 @@ TIME = "time"
 TOLERANCE = 0.1
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Signal:
-    """Values over time: ``times`` in seconds, ``values``; float64 arrays of the same length."""
+    """Values over time: ``times`` in seconds, ``values``; float64 arrays of the same length.
+
+    >>> import rtamt
+    >>> signal = rtamt.parse("x >= 3").evaluate({"time": [0, 1, 2], "x": [5, 1, 4]}).signal
+    >>> len(signal), signal.times[signal.values < 0]
+    (3, array([1.]))
+    """
 
     times: FloatArray
     values: FloatArray
@@ -40,19 +46,27 @@ class Signal:
         return len(self.times)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Trace:
     """A finished recording in discrete time: one column of ``len(times)`` samples for each variable."""
 
     times: FloatArray
     columns: Mapping[str, FloatArray]
     period: Fraction
+    #: Whether the period was taken from the time stamps.
+    inferred: bool = False
 
     def __len__(self) -> int:
         return len(self.times)
 
 
-def trace(data: Any, names: Sequence[str], period: Fraction | None, known: Collection[str] = ()) -> Trace:
+def trace(
+    data: Any,
+    names: Sequence[str],
+    period: Fraction | None,
+    known: Collection[str] = (),
+    tolerance: float = TOLERANCE,
+) -> Trace:
     """Normalise a finished recording; the caller's data is never changed.
 
     ``data``: a mapping, or anything with columns (a pandas or polars frame), from variable to n
@@ -60,19 +74,22 @@ def trace(data: Any, names: Sequence[str], period: Fraction | None, known: Colle
     formula reads, ``known`` others that may be there. Without a ``period`` (seconds) it is taken
     from the stamps. Raises :class:`TraceError`.
     """
+    check_tolerance(tolerance)
     times, columns, n = columns_of(data, names, known)
     if n == 0:
         raise TraceError("the trace is empty: give at least one sample")
+    inferred = False
     if times is None:
         period = period or Fraction(1)
         times = np.arange(n, dtype=np.float64) * float(period)
     else:
         check_increasing(times)
+        inferred = period is None
         period = period or infer_period(times)
-        check_regular(times, period)
+        check_regular(times, period, tolerance)
     for name, column in columns.items():
         check_numbers(name, column, times)
-    return Trace(times, columns, period)
+    return Trace(times, columns, period, inferred)
 
 
 def columns_of(
@@ -81,7 +98,7 @@ def columns_of(
     """Return the time stamps (None if there are none), a column for each name, and their common length."""
     keys = _keys(data)
     if isinstance(data, Mapping):
-        _refuse_unknown(keys, names, known)
+        refuse_unknown(keys, names, known)
     columns = {name: _column(data, keys, name) for name in names}
     times = stamps(data[TIME]) if TIME in keys else None
     return times, columns, _common_length(columns, times, data, keys)
@@ -94,6 +111,8 @@ def array(values: Any, name: str) -> FloatArray:
     to the data by then.
     """
     try:
+        if isinstance(values, np.ma.MaskedArray) and values.mask.any():
+            values = np.ma.filled(values.astype(np.float64), np.nan)  # a masked value is a missing one
         raw = np.asarray(values)
         # numpy would read the text "1.5" as a number and None as NaN; both are more likely mistakes.
         numeric = raw.dtype.kind in "fiub" or (raw.dtype.kind == "O" and all(map(is_number, raw.flat)))
@@ -123,10 +142,19 @@ def is_number(value: Any) -> bool:
 def stamps(values: Any) -> FloatArray:
     """Return time stamps as seconds: numbers are seconds, datetimes count from 1970."""
     raw = np.asarray(values)
-    if raw.dtype.kind == "O" and len(raw) and isinstance(raw.flat[0], datetime):
+    if raw.dtype.kind == "O" and any(isinstance(value, datetime) for value in raw.flat):
+        for i, value in enumerate(raw.flat):
+            if not isinstance(value, datetime):
+                raise TraceError(
+                    f"'{TIME}' is {shown(value)} at sample {i}, expected a datetime like the others",
+                    variable=TIME,
+                    index=i,
+                )
         raw = np.array([value.timestamp() for value in raw.flat])
-    if raw.dtype.kind == "M":
-        raw = raw.astype("datetime64[ns]").astype(np.int64) / 1e9
+    if raw.dtype.kind in "mM":
+        missing = np.isnat(raw)
+        nanoseconds = raw.astype(f"{raw.dtype.kind}8[ns]").astype(np.int64)
+        raw = np.where(missing, np.nan, nanoseconds / 1e9)
     return array(raw, TIME)
 
 
@@ -181,15 +209,25 @@ def not_increasing(index: int, time: float, before: float) -> TraceError:
 
 
 def infer_period(times: FloatArray) -> Fraction:
-    """Return the median gap, as the shortest decimal within a millionth of it; 1 s for one sample."""
+    """Return the median gap, as the shortest decimal that it cannot be told from; 1 s for one sample.
+
+    Stamps that count from 1970 are doubles of some 0.2 µs precision, which the gaps inherit.
+    """
     if len(times) < 2:
         return Fraction(1)
     gap = float(np.median(np.diff(times)))
-    for digits in range(1, 10):
+    blur = max(1e-6 * gap, 2 * float(np.spacing(np.abs(times).max())))
+    for digits in range(1, 17):
         short = float(f"{gap:.{digits}g}")
-        if abs(short - gap) <= 1e-6 * gap:
+        if abs(short - gap) <= blur:
             return Fraction(repr(short))
     return Fraction(repr(gap))
+
+
+def check_tolerance(tolerance: Any) -> None:
+    """Raise :class:`UsageError` unless ``tolerance`` is a fraction of the period, 0 or more."""
+    if not is_number(tolerance) or not tolerance >= 0:
+        raise UsageError(f"the tolerance is {shown(tolerance)}; give a fraction of the period, 0 or more")
 
 
 def check_regular(
@@ -224,7 +262,7 @@ def unknown_variable(name: str, names: Collection[str]) -> TraceError:
     """Return the error for a variable that the formula does not read."""
     reads = ", ".join(names) or "no variable"
     return TraceError(
-        f"unknown variable '{name}' in the data{did_you_mean(name, names)}; the formula reads {reads}",
+        f"unknown variable '{name}' in the data; the formula reads {reads}{did_you_mean(name, names)}",
         variable=name,
     )
 
@@ -232,7 +270,7 @@ def unknown_variable(name: str, names: Collection[str]) -> TraceError:
 def missing_variable(name: str, keys: Collection[str]) -> TraceError:
     """Return the error for a variable that the formula reads and the data lacks."""
     has = ", ".join(str(key) for key in keys) or "nothing"
-    return TraceError(f"the data has no '{name}'{did_you_mean(name, keys)}; it has {has}", variable=name)
+    return TraceError(f"the data has no '{name}'; it has {has}{did_you_mean(name, keys)}", variable=name)
 
 
 def field(value: Any, path: Sequence[str]) -> Any:
@@ -252,7 +290,8 @@ def _keys(data: Any) -> list[str]:
     return list(columns)
 
 
-def _refuse_unknown(keys: Sequence[str], names: Sequence[str], known: Collection[str]) -> None:
+def refuse_unknown(keys: Sequence[str], names: Sequence[str], known: Collection[str]) -> None:
+    """Raise :class:`TraceError` at a key that is neither read, nor known, nor the time."""
     heads = {name.split(".")[0] for name in names}
     for key in keys:
         if key != TIME and key not in names and key not in known and key not in heads:
@@ -292,7 +331,7 @@ def _common_length(
         (a, n), (b, m) = next(
             ((a, n), (b, m)) for a, n in lengths.items() for b, m in lengths.items() if n != m
         )
-        raise TraceError(f"'{a}' has {n} samples but '{b}' has {m}: give one value of each at every sample")
+        raise TraceError(f"'{a}' has {n} and '{b}' has {m} samples: give one value of each at every sample")
     return next(iter(lengths.values()), 0)
 
 
@@ -300,10 +339,10 @@ def _not_numbers(values: Any, name: str) -> TraceError:
     try:
         items = enumerate(values)
     except TypeError:
-        return TraceError(f"'{name}' is {values!r}, expected a sequence of numbers", variable=name)
+        return TraceError(f"'{name}' is {shown(values)}, expected a sequence of numbers", variable=name)
     for i, value in items:
         if not is_number(value):
             return TraceError(
-                f"'{name}' is {value!r} at sample {i}, expected a number", variable=name, index=i
+                f"'{name}' is {shown(value)} at sample {i}, expected a number", variable=name, index=i
             )
     return TraceError(f"'{name}' cannot be read as a sequence of numbers", variable=name)

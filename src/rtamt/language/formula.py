@@ -53,6 +53,9 @@ class Formula:
 
     span: Span | None
 
+    def __repr__(self) -> str:
+        return f"<formula {self}>"
+
     def __str__(self) -> str:
         from rtamt.language.printer import to_text
 
@@ -65,7 +68,7 @@ class Formula:
         return to_latex(self)
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Const(Formula):
     """A number (IEEE double; never NaN). 0.0 and -0.0 are different numbers: 1/x tells them apart."""
 
@@ -81,7 +84,7 @@ class Const(Formula):
         return self.value == other.value and copysign(1.0, self.value) == copysign(1.0, other.value)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, repr=False)
 class Var(Formula):
     """A signal, by name; a field of a structured signal is part of the name (``req.value``)."""
 
@@ -89,7 +92,7 @@ class Var(Formula):
     span: Span | None = field(default=None, compare=False, repr=False)
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Apply(Formula):
     """An operator applied to formulas, with an interval where the operator takes one."""
 
@@ -158,6 +161,17 @@ def fold(formula: Formula, step: Callable[[Formula, tuple[T, ...]], T]) -> T:
     for node in postorder(formula):
         values[id(node)] = step(node, tuple(values[id(child)] for child in children(node)))
     return values[id(formula)]
+
+
+def size(formula: Formula) -> int:
+    """Return how many nodes the printed formula has: a shared sub-formula counts wherever it stands.
+
+    >>> x = Var("x")
+    >>> from rtamt.language.operators import STL
+    >>> size(STL["and"](x, x))
+    3
+    """
+    return fold(formula, lambda _node, below: 1 + sum(below))
 
 
 def variables(formula: Formula) -> tuple[str, ...]:

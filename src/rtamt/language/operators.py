@@ -21,6 +21,7 @@ from math import inf
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
+from rtamt.errors import UsageError
 from rtamt.language import definitions as d
 from rtamt.language import dense_definitions as dense
 from rtamt.language.formula import Apply, Const, Formula, Interval
@@ -126,11 +127,32 @@ class Operator:
     expansion: Expansion | None = None
     dense: Callable[..., float] | None = None
     discrete_only: bool = False
+    reach: int | None = 1  # of a past or future operator without bounds: samples away it reads, None for all
     dual: str | None = None
     twin: str | None = None
     guards: tuple[str | None, ...] = ()
     folds: bool = False  # a function that also takes more operands: f(a, b, c) is f(f(a, b), c)
     truth: Expansion | None = None  # of a predicate: the formula that is +inf where it holds, else -inf
+
+    def check(self) -> None:
+        """Raise :class:`UsageError` where the record cannot be an operator."""
+        arity = {Fixity.ATOM: 0, Fixity.PREFIX: 1, Fixity.LEFT: 2, Fixity.RIGHT: 2}.get(self.fixity)
+        if arity is not None and len(self.operands) != arity:
+            raise UsageError(
+                f"the operator '{self.name}' is written as {self.fixity.value} and needs {arity} operands, "
+                f"not {len(self.operands)}"
+            )
+        if not callable(self.definition):
+            raise UsageError(f"the operator '{self.name}' has no definition: give a function on arrays")
+        if not self.spellings:
+            raise UsageError(f"the operator '{self.name}' has no spelling: give at least one")
+        for spelling in self.spellings:
+            word = spelling.isidentifier()
+            if not word and (not spelling or spelling in _PUNCTUATION or any(map(_in_a_word, spelling))):
+                raise UsageError(
+                    f"the operator '{self.name}' cannot be spelled '{spelling}': use a word, or symbols "
+                    f"other than brackets and punctuation"
+                )
 
     def __call__(self, *args: Formula, interval: Interval | None = None) -> Apply:
         """Build the formula ``op[interval](*args)``."""
@@ -146,11 +168,19 @@ class Operator:
         return object.__reduce__(self)
 
 
+#: What separates things in the language, and spells no operator.
+_PUNCTUATION = frozenset("()[],;:=@")
+
+
+def _in_a_word(char: str) -> bool:
+    return char.isalnum() or char.isspace() or char in "_\""
+
+
 def _builtin(name: str) -> Operator:
     return STL[name]
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Language:
     """An immutable set of operators."""
 
@@ -165,18 +195,29 @@ class Language:
         names: dict[str, Operator] = {}
         spellings: dict[tuple[str, bool], Operator] = {}
         for op in table:
+            op.check()
             if op.name in names:
-                raise ValueError(f"two operators are named '{op.name}'")
+                raise UsageError(f"two operators are named '{op.name}': give each a name of its own")
             names[op.name] = op
             for spelling in op.spellings:
                 key = (spelling, op.fixity in (Fixity.LEFT, Fixity.RIGHT))
                 if key in spellings:
-                    raise ValueError(f"'{spelling}' spells both '{spellings[key].name}' and '{op.name}'")
+                    raise UsageError(f"'{spelling}' spells both '{spellings[key].name}' and '{op.name}'")
                 spellings[key] = op
         return cls(table, MappingProxyType(names), MappingProxyType(spellings))
 
     def extend(self, *operators: Operator) -> Language:
-        """Return a new language with these operators added."""
+        """Return a new language with these operators added.
+
+        >>> from dataclasses import replace
+        >>> import rtamt
+        >>> from rtamt.language.operators import STL
+        >>> within = dict(definition=lambda a, b: 1 - abs(a - b), expansion=None, truth=None, dual=None)
+        >>> near = replace(STL["ge"], name="near", spellings=("~~",), **within)
+        >>> spec = rtamt.parse("always(x ~~ 3)", language=STL.extend(near), backend="python")
+        >>> spec.evaluate({"x": [3, 3.5]}).robustness
+        0.5
+        """
         return Language.of((*self.operators, *operators))
 
     def __getitem__(self, name: str) -> Operator:
@@ -339,13 +380,16 @@ STL: Language = Language.of((
     # ---- windows -----------------------------------------------------------------------------
     _prefix("always", "always G", 75, "At every instant of the window ahead: the smallest value.",
             "always[0:5](x >= 3)", latex=r"\mathbf{{G}}_{I} {0}", tense=Tense.FUTURE, bounds=Bounds.OPTIONAL,
-            definition=d.always, dense=dense.always, kernel=Window("min"), dual="eventually", twin="historically"),
+            definition=d.always, dense=dense.always, kernel=Window("min"), dual="eventually",
+            twin="historically"),
     _prefix("eventually", "eventually F", 75, "At some instant of the window ahead: the largest value.",
             "eventually[0:5](x >= 3)", latex=r"\mathbf{{F}}_{I} {0}", tense=Tense.FUTURE, bounds=Bounds.OPTIONAL,
-            definition=d.eventually, dense=dense.eventually, kernel=Window("max"), dual="always", twin="once"),
+            definition=d.eventually, dense=dense.eventually, kernel=Window("max"), dual="always",
+            twin="once"),
     _prefix("historically", "historically H", 75, "At every instant of the window behind: the smallest value.",
             "historically[0:5](x >= 3)", latex=r"\mathbf{{H}}_{I} {0}", tense=Tense.PAST, bounds=Bounds.OPTIONAL,
-            definition=d.historically, dense=dense.historically, kernel=Window("min"), dual="once", guards=("implies",)),
+            definition=d.historically, dense=dense.historically, kernel=Window("min"), dual="once",
+            guards=("implies",)),
     _prefix("once", "once O", 75, "At some instant of the window behind: the largest value.",
             "once[0:5](x >= 3)", latex=r"\mathbf{{O}}_{I} {0}", tense=Tense.PAST, bounds=Bounds.OPTIONAL,
             definition=d.once, dense=dense.once, kernel=Window("max"), dual="historically", guards=("and",)),
@@ -365,7 +409,8 @@ STL: Language = Language.of((
     # ---- two operands in time ----------------------------------------------------------------
     _infix("until", "until U", 60, "The second within the window ahead, the first at every instant before it.",
            "x >= 3 until[0:5] y >= 3", latex=r"{0} \mathbin{{\mathbf{{U}}_{I}}} {1}",
-           tense=Tense.FUTURE, bounds=Bounds.OPTIONAL, definition=d.until, dense=dense.until, kernel=Until(), twin="precedes"),
+           tense=Tense.FUTURE, bounds=Bounds.OPTIONAL, definition=d.until, dense=dense.until, kernel=Until(),
+           twin="precedes"),
     _infix("precedes", "precedes", 58, "until, read from as far behind as the interval reaches.",
            "x >= 3 precedes[0:5] y >= 3", latex=r"{0} \mathbin{{\mathbf{{P}}_{I}}} {1}",
            tense=Tense.PAST, bounds=Bounds.REQUIRED, definition=d.precedes, dense=dense.precedes, kernel=Until(),
@@ -375,7 +420,8 @@ STL: Language = Language.of((
            tense=Tense.FUTURE, bounds=Bounds.OPTIONAL, definition=d.unless, dense=dense.unless, expansion=_unless),
     _infix("since", "since S", 50, "The second within the window behind, the first at every instant after it.",
            "x >= 3 since[0:5] y >= 3", latex=r"{0} \mathbin{{\mathbf{{S}}_{I}}} {1}",
-           tense=Tense.PAST, bounds=Bounds.OPTIONAL, definition=d.since, dense=dense.since, kernel=Since(), guards=(None, "and")),
+           tense=Tense.PAST, bounds=Bounds.OPTIONAL, definition=d.since, dense=dense.since, kernel=Since(),
+           guards=(None, "and")),
     # ---- edges -------------------------------------------------------------------------------
     _function("rise", 1, "Holds now and not one sample ago.", "rise(x >= 3)", operands=(F,), result=F,
               latex=r"\uparrow {0}", tense=Tense.PAST, discrete_only=True, definition=d.rise, expansion=_rise),

@@ -90,6 +90,9 @@ class Document:
     #: Every variable declared, here or for :func:`parse_document`; if there is none, all names are free.
     variables: tuple[str, ...] = ()
 
+    def __hash__(self) -> int:
+        return hash(self.text)
+
     @property
     def formula(self) -> Formula:
         """The formula of the last assertion: what the document requires."""

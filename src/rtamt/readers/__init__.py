@@ -26,7 +26,7 @@ def read(
     time_column: str | None = None,
     progress: Callable[[int], None] | None = None,
 ) -> Mapping[str, FloatArray]:
-    """Read a recording; what comes out is what ``Specification.evaluate`` takes.
+    r"""Read a recording; what comes out is what ``Specification.evaluate`` takes.
 
     ``names``: the columns that are wanted (default: all); others may hold anything. ``time_column``:
     the column of time stamps, by default the first that is called time, t, timestamp or stamp; ``""``
@@ -34,6 +34,14 @@ def read(
 
     Returns a mapping from name to n numbers (float64), with ``"time"`` in seconds where the file has
     time stamps. Raises :class:`TraceError` that names the file, the line and the column.
+
+    >>> import pathlib, tempfile
+    >>> from rtamt.readers import read
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     path = pathlib.Path(folder, "log.csv")
+    ...     _ = path.write_text("t [ms],x\n0,5\n100,4\n")
+    ...     read(path)
+    {'time': array([0. , 0.1]), 'x': array([5., 4.])}
     """
     suffix = Path(path).suffix.lower()
     reader = READERS.get(suffix)

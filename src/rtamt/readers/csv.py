@@ -74,10 +74,15 @@ def read_csv(
         with open(file, encoding="utf-8-sig", newline="") as lines:
             header, rows = read_header(lines, file)
             time = find_time(header, time_column)
-            wanted = header.names if names is None else names
+            wanted = header.names if names is None else list(names)
+            if names is not None and TIME in wanted and time is not None and time.name != TIME:
+                raise TraceError(
+                    f"the formula reads '{TIME}', but the time stamps of '{file}' are its column '{time.name}'; "
+                    f"name that column '{TIME}', or the variable something else"
+                )
             columns = [find(header, name) for name in dict.fromkeys(wanted) if time is None or name != TIME]
             if time is not None:
-                columns = [Column(TIME, time.position), *(c for c in columns if names or c != time)]
+                columns = [Column(TIME, time.position), *(c for c in columns if names is not None or c != time)]
             data = _read_rows(rows, header, columns, progress)
     except FileNotFoundError:
         raise TraceError(f"there is no file '{file}'") from None

@@ -12,6 +12,9 @@ from rtamt.language.units import format_duration
 if TYPE_CHECKING:
     from fractions import Fraction
 
+#: Periods of the longest bound; sums of many such lags still fit into an int64.
+_LONGEST = 2**44
+
 
 def check_bounds(formula: Formula, period: Fraction, text: str | None = None) -> None:
     """Raise :class:`BoundError` unless every bound is a whole multiple of ``period`` (seconds).
@@ -29,6 +32,13 @@ def check_bounds(formula: Formula, period: Fraction, text: str | None = None) ->
                     f"The operator bound must be a multiple of the sampling period: "
                     f"{format_duration(bound)} is not a whole number of periods of {format_duration(period)}; "
                     f"change the bound or the period",
+                    text,
+                    node.interval.span or node.span,
+                )
+            if bound is not None and bound / period > _LONGEST:
+                raise BoundError(
+                    f"{format_duration(bound)} is {float(bound / period):.3g} periods of {format_duration(period)}, "
+                    f"more than can be counted; shorten the bound, or leave it open with inf",
                     text,
                     node.interval.span or node.span,
                 )
@@ -68,11 +78,11 @@ def unbounded_future(formula: Formula) -> Apply | None:
 
 def reads_unbounded_future(node: Apply) -> bool:
     """Tell whether this operator itself, whatever its operands, reads an unbounded future."""
-    return (
-        node.op.tense is Tense.FUTURE
-        and node.op.bounds is not Bounds.NONE
-        and (node.interval is None or node.interval.end is None)
-    )
+    if node.op.tense is not Tense.FUTURE:
+        return False
+    if node.op.bounds is Bounds.NONE:
+        return node.op.reach is None
+    return node.interval is None or node.interval.end is None
 
 
 def has_future(formula: Formula) -> bool:

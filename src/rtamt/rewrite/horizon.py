@@ -28,7 +28,7 @@ def horizon(formula: Formula, period: Fraction = Fraction(1)) -> Fraction | None
         if not isinstance(node, Apply) or node.op.tense is not Tense.FUTURE:
             return deepest
         if node.op.bounds is Bounds.NONE:
-            return deepest + period
+            return None if node.op.reach is None else deepest + node.op.reach * period
         if node.interval is None or node.interval.end is None:
             return None
         return deepest + node.interval.end

@@ -13,17 +13,20 @@ from __future__ import annotations
 from dataclasses import replace
 from fractions import Fraction
 
-from rtamt.errors import BoundError
+from rtamt.errors import BoundError, SpecificationError
 from rtamt.language.formula import Apply, Formula, Interval, fold, postorder
 from rtamt.language.operators import STL, Tense
 from rtamt.rewrite.check import unbounded_future
 from rtamt.rewrite.horizon import horizon
 
 
-def pastify(formula: Formula, period: Fraction = Fraction(1), text: str | None = None) -> Formula:
+def pastify(
+    formula: Formula, period: Fraction = Fraction(1), text: str | None = None, unit: str = "s"
+) -> Formula:
     """Return Π(φ): only past operators, the same value H(φ) later.
 
-    ``period`` (seconds) is what ``next`` counts. Raises :class:`BoundError` at an operator whose
+    ``period`` (seconds) is what ``next`` counts. ``unit``: that of bounds without one, in the text from
+    which φ was read and in which Π(φ) is to be read again. Raises :class:`BoundError` at an operator whose
     future is unbounded.
 
     >>> from rtamt.language.parser import parse_formula
@@ -38,13 +41,13 @@ def pastify(formula: Formula, period: Fraction = Fraction(1), text: str | None =
             node.span,
         )
     formula = expand_future_shorthand(formula)
-    return _Pastifier(formula, period).delayed(formula, horizon(formula, period) or Fraction(0))
+    return _Pastifier(formula, period, text, unit).delayed(formula, horizon(formula, period) or Fraction(0))
 
 
 def expand_future_shorthand(formula: Formula) -> Formula:
     """Expand derived temporal operators (rise, unless, …) where the future is involved.
 
-    Their pastification is that of their meaning.
+    Their pastification is that of their meaning. Expansions may hold others, which are expanded too.
     """
 
     def step(node: Formula, below: tuple[tuple[Formula, bool], ...]) -> tuple[Formula, bool]:
@@ -53,7 +56,7 @@ def expand_future_shorthand(formula: Formula) -> Formula:
         args = tuple(arg for arg, _ in below)
         future = node.op.tense is Tense.FUTURE or any(ahead for _, ahead in below)
         if future and node.op.tense is not Tense.NONE and node.op.expansion is not None:
-            return node.op.expansion(*args, node.interval), True
+            return expand_future_shorthand(node.op.expansion(*args, node.interval)), True
         return replace(node, args=args), future
 
     return fold(formula, step)[0]
@@ -62,9 +65,10 @@ def expand_future_shorthand(formula: Formula) -> Formula:
 class _Pastifier:
     """One pastification: what is known of each node, and the results so far (shared nodes once)."""
 
-    def __init__(self, formula: Formula, period: Fraction) -> None:
+    def __init__(self, formula: Formula, period: Fraction, text: str | None, unit: str) -> None:
         self.period = period
-        self.unit = _unit(formula)
+        self.text = text
+        self.unit = _unit(formula) or ("" if unit == "s" else unit)
         self.has_future: dict[int, bool] = {}
         for node in postorder(formula):
             below = any(self.has_future[id(arg)] for arg in node.args) if isinstance(node, Apply) else False
@@ -94,7 +98,7 @@ class _Pastifier:
         if node.op.tense is not Tense.FUTURE:
             return delay
         if node.interval is None:
-            return delay - self.period
+            return delay - self.period * (node.op.reach or 0)
         assert node.interval.end is not None
         return delay - node.interval.end
 
@@ -103,8 +107,10 @@ class _Pastifier:
             return self._shifted(node, delay)
         assert isinstance(node, Apply)
         if node.op.tense is Tense.FUTURE:
-            return _past_twin(node, args)
+            return _past_twin(node, args, self.text)
         if node.op.tense is Tense.PAST:
+            if len(node.op.guards) != len(args):
+                raise _no_rule(node, "guards", self.text)
             args = tuple(
                 self._guarded(arg, how, delay) for arg, how in zip(args, node.op.guards, strict=True)
             )
@@ -130,10 +136,12 @@ def _unit(formula: Formula) -> str:
     return next(filter(None, units), "")
 
 
-def _past_twin(node: Apply, args: tuple[Formula, ...]) -> Formula:
-    if not node.op.twin:
+def _past_twin(node: Apply, args: tuple[Formula, ...], text: str | None) -> Formula:
+    if node.op.twin == "":
         return args[0]  # next: the delay of its operand is all
-    twin = STL[node.op.twin]
+    twin = STL.get(node.op.twin) if node.op.twin is not None else None
+    if twin is None:
+        raise _no_rule(node, "past twin", text)
     interval = node.interval
     assert interval is not None
     assert interval.end is not None
@@ -141,3 +149,12 @@ def _past_twin(node: Apply, args: tuple[Formula, ...]) -> Formula:
         unit = interval.end_unit
         interval = Interval(Fraction(0), interval.end - interval.begin, "", unit, interval.span)
     return Apply(twin, args, interval, node.span)
+
+
+def _no_rule(node: Apply, lacking: str, text: str | None) -> SpecificationError:
+    return SpecificationError(
+        f"Cannot pastify '{node.op.name}': its record names no {lacking}; monitor the formula as it is, "
+        f"which needs no pastification",
+        text,
+        node.span,
+    )

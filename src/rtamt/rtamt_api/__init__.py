@@ -10,6 +10,7 @@ options             Semantics, Language, TimeInterpretation, StlIOType
 declarations        what every class shares: names, types, topics, modules, the text
 discrete            discrete time: sampling period, values of sub-formulas, the offline class
 discrete_online     the online class, and the combined one
+backends            the compiled core, or the definition where it is not built
 associativity       the warning for chains that RTAMT read differently
 failures            every error leaves as an RTAMTException
 ==================  =====================================================================

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import builtins
 import importlib
 import math
 from abc import ABC, abstractmethod
@@ -14,7 +15,7 @@ from rtamt.errors import NameInFormulaError, StlError, UsageError, did_you_mean
 from rtamt.language.formula import Var, postorder, variables
 from rtamt.language.operators import STL, Language
 from rtamt.language.parser import parse_formula
-from rtamt.language.specfile import Document, parse_document
+from rtamt.language.specfile import TYPES, Document, parse_document
 from rtamt.language.units import check_unit
 from rtamt.rtamt_api.associativity import warn_of_chains
 from rtamt.rtamt_api.failures import raises_rtamt
@@ -25,8 +26,8 @@ if TYPE_CHECKING:
 
     from rtamt.language.formula import Formula
 
-#: The types of variables that need no import, and what their variables hold until they get a value.
-SCALARS: dict[str, type] = {"float": float, "int": int, "long": int, "complex": complex, "bool": bool}
+#: The types of variables that need no import, and their classes; ``long`` was Python 2's second int.
+SCALARS: dict[str, type] = {name: getattr(builtins, name, int) for name in TYPES}
 
 #: The name of the result of an assertion without one.
 UNNAMED = "out"
@@ -47,10 +48,11 @@ class Declarations(ABC):
         self.modules: dict[str, ModuleType] = {}
         #: From the name of a variable to its ROS topic.
         self.var_topic_dict: dict[str, str] = {}
+        #: From the name of a declared variable to its side of the interface, ``'input'`` or ``'output'``.
+        self.var_io_dict: dict[str, str] = {}
         self._unit = "s"
         self._sub_specs: list[str] = []
         self._types: dict[str, str] = {}
-        self._io_types: dict[str, str] = {}
         self._constants: dict[str, float] = {}
         self._objects: dict[str, Any] = {}
         self._document: Document | None = None
@@ -69,7 +71,7 @@ class Declarations(ABC):
             raise UsageError(f"'{var_name}' is a constant already; give the variable another name")
         self._objects[var_name] = self._new_object(var_name, var_type)
         self._types[var_name] = var_type
-        self._io_types[var_name] = "output"
+        self.var_io_dict[var_name] = "output"
         self.var_topic_dict.setdefault(var_name, f"rtamt/{var_name}")
 
     @raises_rtamt
@@ -96,7 +98,7 @@ class Declarations(ABC):
         self._require_declared(var_name)
         if var_iotype not in ("input", "output"):
             raise UsageError(f"the io type of '{var_name}' is {var_iotype!r}; choose 'input' or 'output'")
-        self._io_types[var_name] = var_iotype
+        self.var_io_dict[var_name] = var_iotype
 
     @raises_rtamt
     def set_var_topic(self, var_name: str, var_topic: str) -> None:

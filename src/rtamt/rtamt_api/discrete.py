@@ -4,20 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from fractions import Fraction
+from math import inf
 from numbers import Real
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from rtamt.engine import signals
-from rtamt.engine.evaluate import Evaluator
 from rtamt.engine.signals import TIME, Trace
-from rtamt.errors import StlError, TraceError, UsageError, did_you_mean
+from rtamt.errors import StlError, UsageError, did_you_mean
 from rtamt.language.formula import Formula, Var, postorder, variables
 from rtamt.language.printer import canonical
 from rtamt.language.units import UNITS, duration
 from rtamt.rewrite.check import check_bounds
-from rtamt.rewrite.desugar import desugar
+from rtamt.rtamt_api.backends import signal
 from rtamt.rtamt_api.declarations import Declarations
 from rtamt.rtamt_api.failures import raises_rtamt
 
@@ -176,27 +176,22 @@ class StlDiscreteTimeOfflineSpecification(DiscreteTimeSpecification):
         """
         formula = self._result
         stamps, trace = self._trace(dataset)
-        values = self._signal(formula, trace)
+        values = signal(formula, trace)
         gaps = np.diff(stamps)
         period = self._period_in_units
         self._violations = int(np.count_nonzero(np.abs(gaps - period) > self._tolerance * period))
-        self._value_of = lambda part: self._signal(part, trace).tolist()
+        self._value_of = lambda part: signal(part, trace).tolist()
         result: list[list[float]] = np.column_stack((stamps, values)).tolist()
         return result
 
     def _trace(self, dataset: Any) -> tuple[signals.FloatArray, Trace]:
-        """Return the stamps as given, and the trace in seconds."""
-        known = tuple(dataset) if isinstance(dataset, Mapping) else ()
-        stamps, columns, n = signals.columns_of(dataset, self._inputs, known)
+        """Return the stamps as given, and the trace in seconds, whatever the gaps between its samples."""
+        keys = dataset if isinstance(dataset, Mapping) else getattr(dataset, "columns", ())
+        columns = {key: dataset[key] for key in keys}
+        stamps = signals.stamps(columns[TIME]) if TIME in columns else None
+        if stamps is not None:
+            columns[TIME] = stamps * float(UNITS[self._unit])
+        trace = signals.trace(columns or dataset, self._inputs, self._period, tuple(columns), inf)
         if stamps is None:
-            raise signals.missing_variable(TIME, known)
-        if n == 0:
-            raise TraceError("the trace is empty: give at least one sample")
-        seconds = stamps * float(UNITS[self._unit])
-        signals.check_increasing(seconds)
-        for name, column in columns.items():
-            signals.check_numbers(name, column, seconds)
-        return stamps, Trace(seconds, columns, self._period)
-
-    def _signal(self, formula: Formula, trace: Trace) -> signals.FloatArray:
-        return Evaluator((desugar(formula),), self._period)(trace)[0]
+            raise signals.missing_variable(TIME, tuple(columns))
+        return stamps, trace

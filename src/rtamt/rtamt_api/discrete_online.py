@@ -6,16 +6,13 @@ from numbers import Real
 from typing import TYPE_CHECKING, Any
 
 from rtamt.engine import signals
-from rtamt.engine.compile import compile_program
-from rtamt.engine.core import core
-from rtamt.engine.evaluate import undefined
 from rtamt.engine.monitor import refused_time, refused_values
 from rtamt.errors import RTAMTException, SpecificationError, TraceError, UsageError
 from rtamt.language.formula import Apply, Formula, Var, postorder
 from rtamt.language.operators import Tense
 from rtamt.language.units import UNITS
-from rtamt.rewrite.desugar import desugar
 from rtamt.rewrite.pastify import pastify
+from rtamt.rtamt_api.backends import open_stream, require_core
 from rtamt.rtamt_api.declarations import head_of
 from rtamt.rtamt_api.discrete import DiscreteTimeSpecification, StlDiscreteTimeOfflineSpecification
 from rtamt.rtamt_api.failures import raises_rtamt
@@ -24,8 +21,8 @@ from rtamt.rtamt_api.options import Language, Semantics
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping
 
-    from rtamt.engine.program import Program
     from rtamt.language.specfile import Document
+    from rtamt.rtamt_api.backends import CompiledStream, DefinedStream
 
 
 class StlDiscreteTimeOnlineSpecification(DiscreteTimeSpecification):
@@ -48,8 +45,7 @@ class StlDiscreteTimeOnlineSpecification(DiscreteTimeSpecification):
         self._pastified = False
         # From a variable to what formulas read of it: itself, or its fields by full name.
         self._reads: dict[str, list[str]] = {}
-        self._monitor: Any = None  # the core's, made by the first update
-        self._program: Program | None = None
+        self._stream: CompiledStream | DefinedStream | None = None  # made by the first update
         self._refusals: tuple[type[Exception], ...] = ()
         self._take: Callable[[Any, Any], Any] = self._begin
         self._shared = False  # whether var_object_dict was handed out: values may come through it
@@ -62,7 +58,9 @@ class StlDiscreteTimeOnlineSpecification(DiscreteTimeSpecification):
         Raises :class:`RTAMTException` at an operator whose future is unbounded.
         """
         text = self._parsed_document.text
-        formulas = {name: pastify(formula, self._period, text) for name, formula in self._formulas.items()}
+        formulas = {
+            name: pastify(formula, self._period, text, self._unit) for name, formula in self._formulas.items()
+        }
         self._start_over(formulas)
         self._pastified = True
 
@@ -81,8 +79,8 @@ class StlDiscreteTimeOnlineSpecification(DiscreteTimeSpecification):
 
     def reset(self) -> None:
         """Forget the trace; the next sample is the first."""
-        if self._monitor is not None:
-            self._monitor.reset()
+        if self._stream is not None:
+            self._stream.monitor.reset()
         self._violations = 0
         self._value_of = None
         self._take = self._begin
@@ -90,7 +88,7 @@ class StlDiscreteTimeOnlineSpecification(DiscreteTimeSpecification):
     @property
     def sampling_violation_counter(self) -> int:
         """How many gaps between samples missed the period by more than the tolerance."""
-        online = 0 if self._monitor is None else int(self._monitor.violations)
+        online = 0 if self._stream is None else int(self._stream.monitor.violations)
         return self._violations + online
 
     @property
@@ -98,7 +96,7 @@ class StlDiscreteTimeOnlineSpecification(DiscreteTimeSpecification):
         """From each variable to its current value; what is assigned to an entry counts in the next update."""
         if not self._shared:
             self._shared = True
-            if self._monitor is not None and self._monitor.samples:
+            if self._stream is not None and self._stream.monitor.samples:
                 self._collect()
             self._seen = dict(self._objects)
             self._take = self._begin
@@ -122,16 +120,16 @@ class StlDiscreteTimeOnlineSpecification(DiscreteTimeSpecification):
 
     def _start_over(self, formulas: dict[str, Formula]) -> None:
         self._formulas = formulas
-        self._monitor = None
+        self._stream = None
         self._value_of = None
         self._take = self._begin
 
     def _begin(self, timestamp: Any, dataset: Any) -> Any:
         """Take a sample before which something has to be set up."""
-        self._require_monitor()
+        stream = self._require_stream()
         objects = self.out_var_field or any(name != head_of(name) for name in self._inputs)
-        plain = not self._shared and not objects
-        self._take = self._monitor.update_pairs if plain else self._update_carefully
+        quick = None if self._shared or objects else stream.quick
+        self._take = quick or self._update_carefully
         try:
             robustness = self.update(timestamp, dataset)
         except RTAMTException:
@@ -141,41 +139,29 @@ class StlDiscreteTimeOnlineSpecification(DiscreteTimeSpecification):
         return robustness
 
     @raises_rtamt
-    def _require_monitor(self) -> None:
-        if self._monitor is not None:
-            return
-        text = self._parsed_document.text
-        formulas = [self._result, *(f for f in self._formulas.values() if f is not self._result)]
-        for formula in formulas:
-            _require_past(formula, text)
-        _core = core()
-        self._program = compile_program(tuple(map(desugar, formulas)), self._period, self._inputs)
-        self._monitor = _core.Monitor(
-            self._program.to_bytes(),
-            list(self._inputs),
-            self._period_in_units,
-            self._tolerance,
-            strict=False,
-            ignored=frozenset(self._types),
-        )
-        self._refusals = (_core.Refused, _core.Undefined)
+    def _require_stream(self) -> CompiledStream | DefinedStream:
+        if self._stream is None:
+            text = self._parsed_document.text
+            formulas = [self._result, *(f for f in self._formulas.values() if f is not self._result)]
+            for formula in formulas:
+                _require_past(formula, text)
+            self._stream = open_stream(
+                formulas, self._inputs, self._period, self._unit, self._tolerance, frozenset(self._types)
+            )
+            self._refusals = self._stream.refusals
+        return self._stream
 
     # ---- the careful way: objects, values assigned from outside, any iterable, and errors ----------
 
     @raises_rtamt
     def _update_carefully(self, timestamp: Any, dataset: Any) -> Any:
+        stream = self._require_stream()
         given = self._pairs(dataset)
-        numbers = self._numbers(given)
-        index = self._monitor.samples
-        _core = core()
+        numbers = self._numbers(given, stream.monitor.samples)
         try:
-            robustness = self._monitor.update_pairs(timestamp, list(numbers.items()))
-        except _core.Refused:
-            raise self._refusal(timestamp, numbers, index) from None
-        except _core.Undefined as error:
-            assert self._program is not None
-            instruction, sample = error.args
-            raise undefined(self._program, instruction, sample, self._seconds(timestamp)) from None
+            robustness = stream.take(timestamp, numbers)
+        except stream.refused:
+            raise self._refusal(timestamp, numbers, stream.monitor) from None
         self._objects.update(given)
         published = self._publish(robustness)
         if self._shared:
@@ -191,8 +177,8 @@ class StlDiscreteTimeOnlineSpecification(DiscreteTimeSpecification):
                 f"expected pairs of a name and a value, such as [('x', 1.0)], got {dataset!r}"
             ) from None
 
-    def _numbers(self, given: Mapping[str, Any]) -> dict[str, Any]:
-        """Return the numbers of a sample, by the names that the formulas read."""
+    def _numbers(self, given: Mapping[str, Any], index: int) -> dict[str, Any]:
+        """Return the numbers of sample ``index``, by the names that the formulas read."""
         for name in given:
             if name not in self._reads and name not in self._types and name not in self._inputs:
                 raise signals.unknown_variable(name, tuple(self._reads))
@@ -205,29 +191,18 @@ class StlDiscreteTimeOnlineSpecification(DiscreteTimeSpecification):
             else:
                 continue
             for name in names:
-                numbers[name] = self._field(source, name)
+                numbers[name] = signals.field_of(source, head, name.split(".")[1:], index)
         return numbers | {name: given[name] for name in self._inputs if name in given}
 
     def _came_from_outside(self, head: str) -> bool:
         """Tell whether a variable's entry in var_object_dict has to be read: objects change in place."""
         return not isinstance(self._objects[head], Real) or self._changed(head)
 
-    def _field(self, source: Any, name: str) -> Any:
-        head, *path = name.split(".")
-        try:
-            return signals.field(source, path)
-        except AttributeError:
-            raise TraceError(
-                f"'{head}' has no field '{'.'.join(path)}' at sample {self._monitor.samples}: "
-                f"it is a {type(source).__name__}",
-                variable=head,
-                index=self._monitor.samples,
-            ) from None
-
-    def _refusal(self, timestamp: Any, numbers: dict[str, Any], index: int) -> Exception:
-        """Find out why the core took no sample, and say it."""
+    def _refusal(self, timestamp: Any, numbers: dict[str, Any], monitor: Any) -> Exception:
+        """Find out why the monitor took no sample, and say it."""
+        index = monitor.samples
         time = self._seconds(timestamp)
-        last = self._seconds(self._monitor.last_time) if index else None
+        last = self._seconds(monitor.last_time) if index else None
         error = refused_time(time, index, last)
         for name in self._inputs:
             if error is None and index == 0 and name not in numbers:
@@ -238,7 +213,7 @@ class StlDiscreteTimeOnlineSpecification(DiscreteTimeSpecification):
                     index=0,
                 )
         error = error or refused_values(numbers, tuple(numbers), index, time)
-        assert error is not None, "the core refuses for one of these reasons"
+        assert error is not None, "a sample is refused for one of these reasons"
         return error
 
     def _seconds(self, timestamp: Any) -> Any:
@@ -266,8 +241,7 @@ class StlDiscreteTimeOnlineSpecification(DiscreteTimeSpecification):
         return self._shared and self._objects[name] is not self._seen.get(name)
 
     def _latest(self, part: Formula) -> float:
-        assert self._program is not None
-        return float(self._monitor.last(self._program.value_of[desugar(part)]))
+        return self._require_stream().latest(part)
 
     def _collect(self) -> None:
         """Bring var_object_dict up to date with the updates that went past it."""
@@ -277,14 +251,20 @@ class StlDiscreteTimeOnlineSpecification(DiscreteTimeSpecification):
 
 
 class StlDiscreteTimeOnlineSpecificationCpp(StlDiscreteTimeOnlineSpecification):
-    """The same: the class that RTAMT offers for its C++ back end."""
+    """The same with RTAMT's C++ back end named: raises :class:`RTAMTException` where the core is not built."""
+
+    @raises_rtamt
+    def __init__(self) -> None:
+        require_core(type(self).__name__, StlDiscreteTimeOnlineSpecification.__name__)
+        super().__init__()
 
 
 class StlDiscreteTimeSpecification(StlDiscreteTimeOfflineSpecification, StlDiscreteTimeOnlineSpecification):
     """Evaluates finished traces and watches streams.
 
-    ``semantics``: how predicates are judged. ``language``: which back end RTAMT would run; here both
-    names mean the same compiled core.
+    ``semantics``: how predicates are judged. ``language``: which back end RTAMT would run. Here both
+    names mean the compiled core; where it cannot be loaded, ``Language.PYTHON`` runs the definition in
+    Python, with equal results, and ``Language.CPP`` raises :class:`RTAMTException`.
 
     >>> import rtamt
     >>> spec = rtamt.StlDiscreteTimeSpecification()
@@ -307,6 +287,8 @@ class StlDiscreteTimeSpecification(StlDiscreteTimeOfflineSpecification, StlDiscr
             raise UsageError(f"the semantics {semantics!r} is not supported; choose Semantics.STANDARD")
         if not isinstance(language, Language):
             raise UsageError(f"the language is {language!r}; choose Language.PYTHON or Language.CPP")
+        if language is Language.CPP:
+            require_core("Language.CPP", "Language.PYTHON")
 
     def evaluate(self, dataset: Mapping[str, Any]) -> list[list[float]]:
         """Evaluate a finished trace; see :class:`StlDiscreteTimeOfflineSpecification`."""
@@ -316,9 +298,11 @@ class StlDiscreteTimeSpecification(StlDiscreteTimeOfflineSpecification, StlDiscr
 
 
 class StlDiscreteTimeSpecificationCpp(StlDiscreteTimeSpecification):
-    """The same, with RTAMT's C++ back end named by the class."""
+    """The same with RTAMT's C++ back end named: raises :class:`RTAMTException` where the core is not built."""
 
+    @raises_rtamt
     def __init__(self, semantics: Semantics = Semantics.STANDARD) -> None:
+        require_core(type(self).__name__, StlDiscreteTimeSpecification.__name__)
         super().__init__(semantics, Language.CPP)
 
 

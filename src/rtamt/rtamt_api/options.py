@@ -19,7 +19,7 @@ class Semantics(Enum):
 
 
 class Language(Enum):
-    """Which back end RTAMT ran; here both run the same compiled core."""
+    """Which back end RTAMT ran; here both run the compiled core, and PYTHON can do without it."""
 
     PYTHON = "python"
     CPP = "C++"

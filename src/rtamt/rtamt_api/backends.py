@@ -1,0 +1,141 @@
+"""What runs the paper's classes in discrete time: the compiled core, or the definition where there is none."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from rtamt.engine import reference
+from rtamt.engine.compile import compile_program
+from rtamt.engine.core import core, core_monitor
+from rtamt.engine.evaluate import Evaluator, undefined
+from rtamt.engine.python_backend import PythonMonitor, Refused
+from rtamt.errors import UsageError
+from rtamt.language.formula import Const
+from rtamt.language.units import UNITS
+from rtamt.rewrite.desugar import desugar
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Collection, Mapping, Sequence
+    from fractions import Fraction
+
+    from rtamt.engine.signals import FloatArray, Trace
+    from rtamt.language.formula import Formula
+
+
+def is_compiled() -> bool:
+    """Tell whether the compiled core can be loaded."""
+    try:
+        core()
+    except UsageError:
+        return False
+    return True
+
+
+def require_core(what: str, instead: str) -> None:
+    """Raise :class:`UsageError` for ``what`` where the core cannot be loaded, naming what to use ``instead``."""
+    try:
+        core()
+    except UsageError as reason:
+        raise UsageError(
+            f"{what} needs the compiled core, which cannot be loaded; install the package with a C++ compiler "
+            f"at hand, or use {instead}, which gives the same results more slowly"
+        ) from reason
+
+
+def signal(formula: Formula, trace: Trace) -> FloatArray:
+    """Return the robustness of a formula at every sample of a finished trace."""
+    if is_compiled():
+        return Evaluator((desugar(formula),), trace.period)(trace)[0]
+    start = float(trace.times[0])
+    return reference.evaluate(formula, trace.columns, len(trace), trace.period, start)
+
+
+def open_stream(
+    formulas: Sequence[Formula],
+    inputs: tuple[str, ...],
+    period: Fraction,
+    unit: str,
+    tolerance: float,
+    ignored: Collection[str],
+) -> CompiledStream | DefinedStream:
+    """Return a stream of samples that has not begun.
+
+    ``formulas``: past formulas, that of the result first. ``inputs``: what they read. ``period``:
+    seconds from sample to sample. ``unit``: that of the time stamps. ``tolerance``: the fraction of the
+    period by which a gap may miss it before it is counted. ``ignored``: what a sample may hold besides.
+    """
+    if is_compiled():
+        return CompiledStream(formulas, inputs, period, unit, tolerance, ignored)
+    return DefinedStream(formulas, inputs, period, unit, tolerance)
+
+
+class CompiledStream:
+    """A stream through the compiled core; made by :func:`open_stream`."""
+
+    def __init__(
+        self,
+        formulas: Sequence[Formula],
+        inputs: tuple[str, ...],
+        period: Fraction,
+        unit: str,
+        tolerance: float,
+        ignored: Collection[str],
+    ) -> None:
+        compiled = core()
+        self._program = compile_program([desugar(formula) for formula in formulas], period, inputs)
+        self._unit = float(UNITS[unit])
+        self._undefined: type[Exception] = compiled.Undefined
+        in_units = float(period / UNITS[unit])
+        #: Counts samples and gaps, and forgets them.
+        self.monitor: Any = core_monitor(self._program, in_units, tolerance, strict=False, ignored=ignored)
+        #: Raised by :meth:`take` for a sample that cannot be taken.
+        self.refused: type[Exception] = compiled.Refused
+        #: A quick way in for whatever a caller has (None if there is none), and what it raises if that will not do.
+        self.quick: Callable[[Any, Any], Any] | None = self.monitor.update_pairs
+        self.refusals: tuple[type[Exception], ...] = (compiled.Refused, compiled.Undefined)
+
+    def take(self, timestamp: Any, numbers: Mapping[str, Any]) -> float:
+        """Take a sample and return the robustness.
+
+        Raises :attr:`refused`, or :class:`EvaluationError` where an operation has no value; nothing
+        has changed then.
+        """
+        try:
+            robustness: float = self.monitor.update_pairs(timestamp, list(numbers.items()))
+        except self._undefined as error:
+            instruction, sample = error.args
+            raise undefined(self._program, instruction, sample, timestamp * self._unit) from None
+        return robustness
+
+    def latest(self, part: Formula) -> float:
+        """Return the value of a formula, or of a part of one, at the latest sample."""
+        if isinstance(part, Const):
+            return part.value
+        return float(self.monitor.last(self._program.value_of[desugar(part)]))
+
+
+class DefinedStream:
+    """The same through the definition, in Python; see :class:`CompiledStream`."""
+
+    def __init__(
+        self,
+        formulas: Sequence[Formula],
+        inputs: tuple[str, ...],
+        period: Fraction,
+        unit: str,
+        tolerance: float,
+    ) -> None:
+        self.monitor = PythonMonitor(formulas, inputs, period, tolerance, strict=False, unit=UNITS[unit])
+        self.refused = Refused
+        self.quick = None
+        self.refusals: tuple[type[Exception], ...] = ()
+
+    def take(self, timestamp: Any, numbers: Mapping[str, Any]) -> float:
+        """Take a sample and return the robustness."""
+        robustness = self.monitor.update_pairs(timestamp, list(numbers.items()))
+        assert robustness is not None, "past formulas are known at once"
+        return robustness
+
+    def latest(self, part: Formula) -> float:
+        """Return the value of a formula, or of a part of one, at the latest sample."""
+        return self.monitor.last(part)

@@ -1,0 +1,184 @@
+"""Faults that reviews of our own engine found: each with the symptom in its name."""
+
+from __future__ import annotations
+
+import copy
+import pickle
+from typing import Any
+
+import numpy as np
+import pytest
+
+import rtamt
+from rtamt.language.operators import STL
+
+BACKENDS = ["cpp", "python"]
+
+
+@pytest.mark.parametrize("backend", BACKENDS)
+@pytest.mark.parametrize(
+    ("text", "x", "values"),
+    [
+        ("9 precedes[2:3] x", [5, 1], [5, 5]),
+        ("9 precedes[3:5] x", [5, 1, 0], [5, 5, 5]),
+        ("-3 precedes[1:2] (next x)", [1, -1, 1, 2, 2, 0, 2], [-1, -1, -3, -3, -3, -3, -3]),
+        ("false precedes[1:1] (next x)", [4, -1], [-1, -np.inf]),
+    ],
+)
+def test_precedes_over_short_traces_and_constants(
+    text: str, x: list[float], values: list[float], backend: str
+) -> None:
+    np.testing.assert_array_equal(rtamt.parse(text, backend=backend).evaluate({"x": x}).signal.values, values)
+
+
+@pytest.mark.parametrize("backend", BACKENDS)
+def test_an_answer_before_the_horizon_where_an_operand_does_not_matter(backend: str) -> None:
+    monitor = rtamt.parse("(always[0:2] x) until[0:0] 3", backend=backend).monitor()
+    assert [monitor.step(0.0) for _ in range(3)] == [None, None, 3.0]
+
+
+def test_masked_values_are_missing_values() -> None:
+    with pytest.raises(rtamt.TraceError) as info:
+        rtamt.parse("x >= 1").evaluate({"x": np.ma.array([1.0, 2.0, 3.0], mask=[0, 1, 0])})
+    assert str(info.value) == "'x' is NaN at sample 1, time 1 s: fill the gap or leave the sample out"
+
+
+def test_a_stamp_that_is_not_a_time() -> None:
+    with pytest.raises(rtamt.TraceError) as info:
+        rtamt.parse("x >= 1").evaluate({"time": np.array(["NaT"], "M8[ns]"), "x": [1.0]})
+    assert str(info.value) == "time is nan at sample 0: give a finite number of seconds"
+
+
+def test_stamps_that_count_from_1970_give_the_period_they_were_made_with() -> None:
+    times = 1.7e9 + 0.001 * np.arange(50)
+    result = rtamt.parse("always[0:5ms] x").evaluate({"time": times, "x": np.ones(50)})
+    assert result.robustness == 1
+    stamps = np.datetime64("2026-01-01T00:00:00", "ms") + np.arange(50)
+    assert rtamt.parse("always[0:5ms] x").evaluate({"time": stamps, "x": np.ones(50)}).robustness == 1
+
+
+@pytest.mark.parametrize("backend", BACKENDS)
+def test_a_bound_that_no_machine_can_keep(backend: str) -> None:
+    spec = rtamt.parse("once[0:1e30] x", backend=backend)
+    message = (
+        "1000000000000000000000000000000 s is 1e+30 periods of 1 s, more than can be counted; "
+        "shorten the bound, or leave it open with inf\n"
+        "  line 1, column 5:\n"
+        "    once[0:1e30] x\n"
+        "        ^^^^^^^^"
+    )
+    for call in (spec.monitor, lambda: spec.evaluate({"x": [1.0]})):
+        with pytest.raises(rtamt.BoundError) as info:
+            call()
+        assert str(info.value) == message
+
+
+def test_more_memory_than_there_is() -> None:
+    with pytest.raises(rtamt.UsageError) as info:
+        rtamt.parse("once[0:1e13] x").monitor()
+    assert str(info.value) == (
+        "the monitor needs 7.45e+04 GiB of memory, which this machine does not give; "
+        "shorten the longest bound or lengthen the period"
+    )
+
+
+@pytest.mark.parametrize("tolerance", [-1, float("nan"), "a", None])
+def test_a_tolerance_that_is_none(tolerance: Any) -> None:
+    for backend in BACKENDS:
+        with pytest.raises(rtamt.UsageError) as info:
+            rtamt.parse("x", backend=backend).monitor(tolerance=tolerance)
+        assert str(info.value) == f"the tolerance is {tolerance!r}; give a fraction of the period, 0 or more"
+
+
+@pytest.mark.parametrize("value", [float("nan"), "a", None])
+def test_a_constant_that_is_no_number(value: Any) -> None:
+    with pytest.raises(rtamt.UsageError) as info:
+        rtamt.parse("x >= c", constants={"c": value})
+    assert str(info.value) == f"the constant 'c' is {value!r}; give a number"
+
+
+def test_a_specification_can_be_copied_and_sent_to_another_process() -> None:
+    spec = rtamt.parse("const float c = 2; low = x <= c; always[0:5] low and x >= d", constants={"d": 1})
+    spec.evaluate({"x": [1, 2]})
+    for again in (pickle.loads(pickle.dumps(spec)), copy.deepcopy(spec)):  # noqa: S301 - our own bytes
+        assert again.formula == spec.formula
+        assert again.evaluate({"x": [1, 2]}).robustness == 0
+        assert hash(again) != 0
+
+
+def test_ten_thousand_conjuncts_can_be_shown_and_copied() -> None:
+    spec = rtamt.parse(" and ".join(["x >= 1"] * 10_000))
+    assert len(repr(spec)) > 10_000
+    assert pickle.loads(pickle.dumps(spec)).formula == spec.formula  # noqa: S301 - our own bytes
+
+
+def test_a_declared_variable_that_is_not_read_may_be_given() -> None:
+    spec = rtamt.parse("input float x; input float y; once x")
+    monitor = spec.monitor()
+    assert monitor.update(0, x=1, y=2) == 1
+    np.testing.assert_array_equal(monitor.update_many({"x": [0.0], "y": [1.0]}).values, [1.0])
+    assert spec.evaluate({"x": [1.0], "y": [2.0]}).robustness == 1
+
+
+def test_signals_and_results_can_be_compared() -> None:
+    result = rtamt.parse("x").evaluate({"x": [1.0, 2.0]})
+    assert result.signal == result.signal
+    assert result != rtamt.parse("x").evaluate({"x": [1.0, 2.0]})
+
+
+def test_a_sub_formula_over_what_was_not_read() -> None:
+    result = rtamt.parse("x").evaluate({"x": [1.0, 2.0]})
+    with pytest.raises(rtamt.UsageError) as info:
+        result["z >= 1"]
+    assert str(info.value) == (
+        "'z >= 1' reads 'z', which the formula does not; the recording was read for x only"
+    )
+
+
+def test_writing_into_a_result_changes_no_other() -> None:
+    result = rtamt.parse("x").evaluate({"time": [0.0, 1.0], "x": [1.0, 2.0]})
+    result.signal.times[:] = 99
+    np.testing.assert_array_equal(result["x"].times, [0.0, 1.0])
+
+
+@pytest.mark.parametrize("reads", [{}, {"guards": ()}])
+def test_what_has_no_rule_for_pastification_is_refused(reads: dict[str, Any]) -> None:
+    once, always = STL["once"], STL["always"]
+    ahead = type(always)(
+        "ahead", ("ahead",), always.fixity, 75, always.operands, always.result, "doc", "ahead x", "{0}",
+        always.definition, always.tense, always.bounds, **reads,
+    )  # fmt: skip
+    behind = type(once)(
+        "behind", ("behind",), once.fixity, 75, once.operands, once.result, "doc", "behind x", "{0}",
+        once.definition, once.tense, once.bounds, **reads,
+    )  # fmt: skip
+    language = STL.extend(ahead, behind)
+    with pytest.raises(rtamt.SpecificationError) as info:
+        rtamt.parse("ahead[0:2] x", language=language).pastified()
+    assert info.value.message == (
+        "Cannot pastify 'ahead': its record names no past twin; "
+        "monitor the formula as it is, which needs no pastification"
+    )
+    with pytest.raises(rtamt.SpecificationError) as info:
+        rtamt.parse("behind[0:2](next x)", language=language).pastified()
+    assert info.value.message == (
+        "Cannot pastify 'behind': its record names no guards; "
+        "monitor the formula as it is, which needs no pastification"
+    )
+
+
+def test_an_operator_with_a_definition_alone_says_so_on_the_core() -> None:
+    always = STL["always"]
+    ahead = type(always)(
+        "ahead", ("ahead",), always.fixity, 75, always.operands, always.result, "doc", "ahead x", "{0}",
+        always.definition, always.tense, always.bounds,
+    )  # fmt: skip
+    for text in ("ahead x", "ahead[0:2] x"):
+        spec = rtamt.parse(text, language=STL.extend(ahead))
+        with pytest.raises(rtamt.UsageError) as info:
+            spec.evaluate({"x": [3.0, 1.0]})
+        assert str(info.value) == (
+            "the operator 'ahead' has a definition but no kernel; evaluate it with backend='python'"
+        )
+        python = rtamt.parse(text, language=STL.extend(ahead), backend="python")
+        assert python.evaluate({"x": [3.0, 1.0]}).robustness == 1

@@ -1,0 +1,81 @@
+"""The engine is the definition on traces longer than its block of samples, with windows that span blocks."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+
+from rtamt.engine.monitor import Monitor
+from rtamt.language.formula import Apply, Formula, Interval, fold
+from rtamt.language.operators import STL, Bounds
+from tests.laws.test_engine_laws import by_definition, by_engine, online
+from tests.strategies import formulas
+
+BLOCK = 256
+CHUNKS = (0, 1, 2, 100, BLOCK - 1, BLOCK, BLOCK + 1, 2 * BLOCK, 700)
+
+
+@st.composite
+def long_traces(draw: st.DrawFn) -> dict[str, Any]:
+    """Draw two columns of 200 to 1200 samples: the seed and the number of distinct values are drawn."""
+    n = draw(st.integers(200, 1200))
+    distinct = draw(st.sampled_from((2, 5, 1000)))
+    rng = np.random.default_rng(draw(st.integers(0, 2**32 - 1)))
+    return {name: rng.integers(-distinct, distinct + 1, n) / 2 for name in ("x", "y")}
+
+
+@st.composite
+def long_windows(draw: st.DrawFn, **options: Any) -> Formula:
+    """Draw an operator with a window on small formulas, every bound up to 300 samples."""
+    bounds = st.sampled_from((0, 1, 2, 60, BLOCK - 1, BLOCK, BLOCK + 1, 300))
+
+    def widened(node: Formula, below: tuple[Formula, ...]) -> Formula:
+        if not isinstance(node, Apply):
+            return node
+        interval = node.interval
+        if interval is not None:
+            begin, end = sorted((draw(bounds), draw(bounds)))
+            interval = Interval(Fraction(begin), None if interval.end is None else Fraction(end))
+        return replace(node, args=below, interval=interval)
+
+    op = draw(st.sampled_from([op for op in STL if op.bounds is not Bounds.NONE]))
+    operands = (draw(formulas(max_depth=2, **options)) for _ in op.operands)
+    return fold(op(*operands, interval=Interval(Fraction(0), Fraction(1))), widened)
+
+
+@given(long_windows(unbounded_future=True), long_traces())
+def test_offline_engine_is_the_definition_beyond_one_block(formula: Formula, columns: dict[str, Any]) -> None:
+    expected = by_definition(formula, columns)
+    assume(expected is not None)
+    np.testing.assert_array_equal(by_engine(formula, columns), expected)
+
+
+@given(long_windows(), long_traces(), st.lists(st.sampled_from(CHUNKS), max_size=8))
+def test_online_in_chunks_beyond_one_block_is_the_definition(
+    formula: Formula, columns: dict[str, Any], sizes: list[int]
+) -> None:
+    expected = by_definition(formula, columns)
+    assume(expected is not None)
+    n = len(columns["x"])
+    ends = [*np.minimum(np.cumsum([0, *sizes]), n).tolist(), n]
+    monitor = Monitor(formula)
+    np.testing.assert_array_equal(online(monitor, columns, np.diff(ends).tolist()), expected)
+    assert monitor.samples == n
+
+
+@pytest.mark.parametrize("n", [BLOCK - 1, BLOCK, BLOCK + 1, 2 * BLOCK + 1])
+@settings(max_examples=30)
+@given(formula=long_windows(), seed=st.integers(0, 1000))
+def test_traces_that_end_at_a_block(n: int, formula: Formula, seed: int) -> None:
+    values = np.random.default_rng(seed).integers(-9, 10, (2, n)) / 2
+    columns = {"x": values[0], "y": values[1]}
+    expected = by_definition(formula, columns)
+    assume(expected is not None)
+    np.testing.assert_array_equal(by_engine(formula, columns), expected)
+    np.testing.assert_array_equal(online(Monitor(formula), columns, [n]), expected)

@@ -1,0 +1,105 @@
+"""What is printed is read again as the same formula, in every language; LaTeX is well formed."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import inf
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from rtamt.language.formula import Apply, Const, Interval, Var, variables
+from rtamt.language.operators import STL, Bounds, Fixity
+from rtamt.language.parser import parse_formula as parse
+from rtamt.language.printer import canonical, to_latex, to_text
+from rtamt.language.units import UNITS
+from tests.strategies import formulas
+
+# A language in which powers collide, symbols begin other symbols, and a prefix binds tightest.
+ODD = STL.extend(
+    replace(STL["until"], name="equal", spellings=("~>", "equal"), power=STL["always"].power),
+    replace(STL["implies"], name="right", spellings=("right",), power=STL["until"].power),
+    replace(STL["mul"], name="power", spellings=("^",), power=130, fixity=Fixity.RIGHT),
+    replace(STL["mul"], name="tight", spellings=("@@",), power=130),
+    replace(STL["ge"], name="near", spellings=("~",), power=95),
+    replace(STL["neg"], name="less", spellings=("--",)),
+    replace(STL["not"], name="no", spellings=("no",), power=60),
+    replace(STL["always"], name="box", spellings=("<>", "box"), power=140),
+)
+LANGUAGES = {"STL": STL, "odd": ODD}
+
+NUMBERS = [0.0, -0.0, 1.0, -1.0, 2.5, -2.5, 0.1, 1e16, 1e300, -1e-300, inf, -inf]
+NAMES = ["x", "req.value", "/ns/req", "a/b", "my col", 'the "x"', "", "1x", "x.", "inf", "$a", "é", "s"]
+NAMES += [spelling for operator in ODD for spelling in operator.spellings]
+
+
+@st.composite
+def intervals(draw, bounds):
+    if bounds is Bounds.NONE or (bounds is Bounds.OPTIONAL and draw(st.booleans())):
+        return None
+    begin = draw(st.fractions(0, 10, max_denominator=1000))
+    length = draw(st.fractions(0, 10, max_denominator=7))
+    unit = st.sampled_from(["", *UNITS])
+    if bounds is Bounds.OPTIONAL and draw(st.booleans()):
+        return Interval(begin, None, draw(unit))
+    return Interval(begin, begin + length, draw(unit), draw(unit))
+
+
+@st.composite
+def spelled(draw, language):
+    """Draw a formula of any names, numbers and units: it need have no value, only a text."""
+
+    @st.composite
+    def applied(inner, below):
+        operator = inner(st.sampled_from(language.operators))
+        args = tuple(inner(below) for _ in operator.operands)
+        return Apply(operator, args, inner(intervals(operator.bounds)))
+
+    leaf = st.sampled_from(NUMBERS).map(Const) | st.sampled_from(NAMES).map(Var)
+    return draw(st.recursive(leaf, applied, max_leaves=12))
+
+
+def balanced(latex):
+    """Tell whether every brace that groups is closed after it was opened."""
+    latex = latex.replace(r"\{", "").replace(r"\}", "")
+    depths = [latex[:k].count("{") - latex[:k].count("}") for k in range(len(latex) + 1)]
+    return min(depths) == 0 == depths[-1]
+
+
+@given(formulas(unbounded_future=True))
+def test_what_is_evaluated_can_be_printed_and_read_again(formula):
+    text = str(formula)
+    assert parse(text) == formula
+    assert str(parse(text)) == text
+    assert balanced(formula.latex())
+
+
+@pytest.mark.parametrize("name", LANGUAGES)
+@given(data=st.data())
+def test_printing_then_parsing_is_the_identity(name, data):
+    language = LANGUAGES[name]
+    formula = data.draw(spelled(language))
+    text = to_text(formula, language)
+    again = parse(text, language=language)
+    assert again == formula
+    assert to_text(again, language) == text
+
+
+@given(data=st.data())
+def test_canonical_text_parses_back_where_all_names_are_declared(data):
+    formula = data.draw(spelled(STL))
+    names = variables(formula)
+    # Const(inf) cannot be told from a declared variable of that name.
+    if "inf" not in names:
+        assert parse(canonical(formula), variables=names) == formula
+
+
+@given(data=st.data())
+def test_latex_braces_balance(data):
+    assert balanced(to_latex(data.draw(spelled(STL))))
+
+
+@pytest.mark.parametrize("latex", ["{", "}", "}{", "{{}"])
+def test_braces_that_do_not_balance_are_seen(latex):
+    assert not balanced(latex)
