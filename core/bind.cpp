@@ -1,20 +1,24 @@
 // The extension module rtamt.engine._core: what Python may call, and nothing else.
 //
-// Monitor.update, update_pairs and step are plain CPython functions of the METH_FASTCALL kind and
-// not nanobind's: they read a dict or a list of pairs in place, where nanobind would first build a
-// C++ container, and that would cost more than the sample does.
+// Monitor.update, update_pairs and step, and DenseMonitor.update, are plain CPython functions of
+// the METH_FASTCALL kind and not nanobind's: they read a dict or a list of pairs in place, where
+// nanobind would first build a C++ container, and that would cost more than the sample does.
 
+#include "dense/executor.hpp"
+#include "dense/scan.hpp"
 #include "discrete/executor.hpp"
 #include "discrete/scan.hpp"
 #include "discrete/stamps.hpp"
 #include "opcodes.hpp"
 #include "program.hpp"
 #include "python/arrays.hpp"
+#include "python/dense_monitor.hpp"
 #include "python/monitor.hpp"
 
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/string_view.h>
 #include <nanobind/stl/vector.h>
@@ -30,19 +34,24 @@ namespace nb = nanobind;
 
 namespace {
 
+using rtamt::Domain;
 using rtamt::Program;
+using rtamt::dense::EventList;
 using rtamt::discrete::Executor;
 using rtamt::python::Column;
+using rtamt::python::DenseMonitor;
+using rtamt::python::EventColumn;
 using rtamt::python::Exceptions;
 using rtamt::python::Monitor;
 using rtamt::python::Result;
 using rtamt::python::Results;
 
-Program parse(const nb::bytes& bytes) {
-    return Program::parse({static_cast<const std::uint8_t*>(bytes.data()), bytes.size()});
+Program parse(const nb::bytes& bytes, Domain domain = Domain::discrete) {
+    return Program::parse({static_cast<const std::uint8_t*>(bytes.data()), bytes.size()}, domain);
 }
 
 // The method descriptor has checked that self is a Monitor, but not that __init__ has run.
+template <class Monitor>
 Monitor*
 self_of(PyObject* self) noexcept { // NOLINT(misc-const-correctness): CPython hands it over so
     if (nb::inst_ready(self)) [[likely]] {
@@ -53,24 +62,30 @@ self_of(PyObject* self) noexcept { // NOLINT(misc-const-correctness): CPython ha
 }
 
 PyObject* wrong_count(const char* method, Py_ssize_t count) noexcept {
-    return PyErr_Format(PyExc_TypeError, "Monitor.%s takes 2 arguments, got %zd.", method, count);
+    return PyErr_Format(PyExc_TypeError, "%s takes 2 arguments, got %zd.", method, count);
 }
 
 PyObject* update(PyObject* self, PyObject* const* args, Py_ssize_t count) noexcept {
-    if (count != 2) return wrong_count("update", count);
-    Monitor* monitor = self_of(self);
+    if (count != 2) return wrong_count("Monitor.update", count);
+    auto* monitor = self_of<Monitor>(self);
     return monitor != nullptr ? monitor->update(args[0], args[1]) : nullptr;
 }
 
 PyObject* update_pairs(PyObject* self, PyObject* const* args, Py_ssize_t count) noexcept {
-    if (count != 2) return wrong_count("update_pairs", count);
-    Monitor* monitor = self_of(self);
+    if (count != 2) return wrong_count("Monitor.update_pairs", count);
+    auto* monitor = self_of<Monitor>(self);
     return monitor != nullptr ? monitor->update_pairs(args[0], args[1]) : nullptr;
 }
 
 PyObject* step(PyObject* self, PyObject* const* args, Py_ssize_t count) noexcept {
-    Monitor* monitor = self_of(self);
+    auto* monitor = self_of<Monitor>(self);
     return monitor != nullptr ? monitor->step({args, static_cast<std::size_t>(count)}) : nullptr;
+}
+
+PyObject* dense_update(PyObject* self, PyObject* const* args, Py_ssize_t count) noexcept {
+    if (count != 2) return wrong_count("DenseMonitor.update", count);
+    auto* monitor = self_of<DenseMonitor>(self);
+    return monitor != nullptr ? monitor->update(args[0], args[1]) : nullptr;
 }
 
 // CPython stores every kind of method as a PyCFunction and calls it by its METH_ flags.
@@ -94,6 +109,19 @@ PyMethodDef hot_methods[] = {
 
 PyType_Slot monitor_slots[] = {
     {Py_tp_methods, static_cast<void*>(hot_methods)},
+    {0, nullptr},
+};
+
+PyMethodDef dense_hot_methods[] = {
+    {"update", erased(dense_update), METH_FASTCALL,
+     "update($self, t, values, /)\n--\n\n"
+     "Take a dict of any inputs at tick t; return the new events of the first output, times and "
+     "values, or None."},
+    {nullptr, nullptr, 0, nullptr},
+};
+
+PyType_Slot dense_monitor_slots[] = {
+    {Py_tp_methods, static_cast<void*>(dense_hot_methods)},
     {0, nullptr},
 };
 
@@ -132,6 +160,44 @@ Result scan(std::string_view kind, const Column& a, const std::optional<Column>&
     return std::move(results.hand_over().front());
 }
 
+nb::list dense_evaluate(const nb::bytes& bytes, const std::vector<EventColumn>& columns,
+                        std::int64_t extra, const Exceptions& exceptions) {
+    Program program = parse(bytes, Domain::dense);
+    const auto inputs = rtamt::python::events_of(columns, program.inputs);
+    if (extra < 0) throw std::invalid_argument("The extra ticks cannot be fewer than 0.");
+    std::size_t count = 0;
+    for (const auto& events : inputs)
+        count += events.count;
+    std::vector<EventList> outputs(program.outputs.size());
+    const auto failure = rtamt::python::without_gil(count, [&] {
+        return rtamt::dense::Executor::evaluate(std::move(program), inputs, extra, outputs);
+    });
+    if (failure) rtamt::python::raise_undefined(exceptions, *failure);
+    return rtamt::python::hand_over(outputs);
+}
+
+nb::tuple dense_scan(std::string_view kind, const EventColumn& a,
+                     const std::optional<EventColumn>& b) {
+    std::vector<EventColumn> columns{a};
+    if (b) columns.push_back(*b);
+    const auto events = rtamt::python::events_of(columns, columns.size());
+    if (kind == "until" && !b) {
+        throw std::invalid_argument("The scan 'until' takes two signals.");
+    }
+    EventList result;
+    if (kind == "run_max") {
+        result = rtamt::dense::scan<rtamt::Max>(events[0]);
+    } else if (kind == "run_min") {
+        result = rtamt::dense::scan<rtamt::Min>(events[0]);
+    } else if (kind == "until") {
+        result = rtamt::dense::scan_until(events[0], events[1]);
+    } else {
+        throw std::invalid_argument("There is no scan '" + std::string(kind) +
+                                    "': it is run_max, run_min or until.");
+    }
+    return rtamt::python::hand_over(result);
+}
+
 std::vector<std::string_view> opcode_names() {
     std::vector<std::string_view> names;
     names.reserve(rtamt::opcodes.size());
@@ -152,12 +218,14 @@ nb::object new_exception(const nb::module_& module, const char* name, const char
 } // namespace
 
 NB_MODULE(_core, m) {
-    m.doc() = "The compiled back end: runs serialised programs over samples in discrete time.";
+    m.doc() =
+        "The compiled back end: runs serialised programs over samples, in discrete or dense time.";
 
     const Exceptions exceptions{
         new_exception(m, "Refused", "An update was refused; the monitor is as it was."),
         new_exception(m, "Undefined",
-                      "An operation made NaN; args are the instruction and the sample.")};
+                      "An operation made NaN; args are the instruction and the sample, or "
+                      "the tick in dense time.")};
 
     nb::class_<Monitor>(m, "Monitor", nb::type_slots(monitor_slots),
                         "Runs a program online, one sample or one chunk at a time.")
@@ -184,6 +252,33 @@ NB_MODULE(_core, m) {
         .def_prop_ro("last_time", &Monitor::last_time, "The time of the last sample, or NaN.")
         .def_prop_ro("state_bytes", &Monitor::state_bytes, "Bytes of state.");
 
+    nb::class_<DenseMonitor>(m, "DenseMonitor", nb::type_slots(dense_monitor_slots),
+                             "Runs a program online in dense time, one instant or one chunk at a "
+                             "time; times are ticks.")
+        .def(
+            "__init__",
+            [exceptions](DenseMonitor* self, const nb::bytes& program,
+                         const std::vector<nb::str>& names, const nb::object& ignored) {
+                new (self) DenseMonitor(parse(program, Domain::dense), names, ignored, exceptions);
+            },
+            nb::arg("program"), nb::arg("names"), nb::arg("ignored") = nb::none())
+        .def("push", &DenseMonitor::push, nb::arg("columns"),
+             "Take a chunk, times and values of each input; return the new events of each output, "
+             "times and values.")
+        .def("finish", &DenseMonitor::finish, "End the trace; return the rest of each output.")
+        .def("reset", &DenseMonitor::reset, "Forget every sample.")
+        .def("known", &DenseMonitor::known, nb::arg("output"),
+             "The last tick at which an output is known, or None.")
+        .def_prop_ro(
+            "known_until", [](const DenseMonitor& self) { return self.known(0); },
+            "The last tick at which the first output is known, or None.")
+        .def_prop_ro("start", &DenseMonitor::start, "The tick at which the trace begins, or None.")
+        .def_prop_ro("last_times", &DenseMonitor::last_times,
+                     "The tick of the last sample of each input, or None.")
+        .def_prop_ro("last_possible", &DenseMonitor::last_possible,
+                     "The latest tick that a sample may have.")
+        .def_prop_ro("state_bytes", &DenseMonitor::state_bytes, "Bytes of state by now.");
+
     m.def("opcode_names", &opcode_names, "The names of the opcodes, in the order of their codes.");
     m.def(
         "evaluate",
@@ -197,4 +292,15 @@ NB_MODULE(_core, m) {
     m.def(
         "memory", [](const nb::bytes& program) { return Executor::memory(parse(program)); },
         nb::arg("program"), "Bytes of state of a new monitor of this program.");
+    m.def(
+        "dense_evaluate",
+        [exceptions](const nb::bytes& program, const std::vector<EventColumn>& columns,
+                     std::int64_t extra) {
+            return dense_evaluate(program, columns, extra, exceptions);
+        },
+        nb::arg("program"), nb::arg("columns"), nb::arg("extra") = 0,
+        "Run a program over whole signals, times and values of each, up to their last time and "
+        "extra ticks more; return the events of each output.");
+    m.def("dense_scan", &dense_scan, nb::arg("kind"), nb::arg("a"), nb::arg("b") = nb::none(),
+          "Unbounded future over whole step functions: run_max, run_min, or until.");
 }

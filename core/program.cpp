@@ -98,7 +98,7 @@ class Checker {
   public:
     Checker(const Program& program, std::size_t index)
         : program_(program), index_(index), instruction_(program.instructions[index]),
-          info_(info(instruction_.opcode)) {}
+          info_(info(instruction_.opcode)), dense_(program.domain == Domain::dense) {}
 
     void check() const {
         operands();
@@ -111,10 +111,18 @@ class Checker {
     std::size_t index_;
     const Instruction& instruction_;
     const OpcodeInfo& info_;
+    bool dense_;
 
     [[noreturn]] void fail(const std::string& reason) const {
         refuse("instruction " + std::to_string(index_) + " (" + std::string(info_.name) + ") " +
                reason);
+    }
+
+    // Fails unless a distance, width or lag lies between `least` and the longest that is possible.
+    void bounded(const char* what, std::int64_t value, std::int64_t least) const {
+        if (value >= least && value <= (dense_ ? longest_dense : longest)) return;
+        fail("has the " + std::string(what) + " " + std::to_string(value) + ", outside " +
+             std::to_string(least) + " to " + (dense_ ? "2^62" : "2^48"));
     }
 
     void operands() const {
@@ -142,23 +150,17 @@ class Checker {
             }
             break;
         case Count::distance:
-            if (n < 0 || n > longest) {
-                fail("has the distance " + std::to_string(n) + ", outside 0 to 2^48");
-            }
+            bounded("distance", n, 0);
             break;
         case Count::width:
-            if (n < 1 || n > longest) {
-                fail("has the width " + std::to_string(n) + ", outside 1 to 2^48");
-            }
+            bounded("width", n, dense_ ? 0 : 1);
             break;
         }
     }
 
     void lags() const {
         const std::int64_t lag = instruction_.lag;
-        if (lag < 0 || lag > longest) {
-            fail("has the lag " + std::to_string(lag) + ", outside 0 to 2^48");
-        }
+        bounded("lag", lag, 0);
         if (info_.operands == 0 && lag != 0) {
             fail("has the lag " + std::to_string(lag) + " where only 0 makes sense");
         }
@@ -203,20 +205,24 @@ Instruction read_instruction(Reader& reader, std::size_t index) {
 
 } // namespace
 
-Program Program::parse(std::span<const std::uint8_t> bytes) {
+Program Program::parse(std::span<const std::uint8_t> bytes, Domain domain) {
     Reader reader(bytes);
     const Header header = read_header(reader, bytes.size());
     const auto body = bytes.first(bytes.size() - checksum_size);
     if (Reader(bytes.last(checksum_size)).take<std::uint32_t>() != crc32(body)) {
         refuse("its checksum does not match, so it was damaged on the way");
     }
-    if (header.domain == 1) refuse("it is for dense time, and this core runs discrete time only");
-    if (header.domain != 0) {
+    if (header.domain > 1) {
         refuse("it is for the unknown time domain " + std::to_string(header.domain));
+    }
+    if (static_cast<Domain>(header.domain) != domain) {
+        refuse(domain == Domain::dense ? "it is for discrete time, and dense time is wanted here"
+                                       : "it is for dense time, and discrete time is wanted here");
     }
     if (header.outputs == 0) refuse("it has no output");
 
     Program program;
+    program.domain = domain;
     program.inputs = header.inputs;
     program.instructions.reserve(header.instructions);
     for (std::size_t index = 0; index < header.instructions; ++index) {

@@ -18,7 +18,8 @@
 //                    the note: bytes for whoever carries the program (JSON), not interpreted
 //                    u32 CRC-32 of everything before it
 //
-// An instruction with lag L yields, at slot s, the value for time (sample index) s - L.
+// An instruction with lag L yields, at slot s, the value for time (sample index) s - L. In dense
+// time slots are ticks, and a window of width w is closed: it holds the last w ticks and its ends.
 #pragma once
 
 #include "opcodes.hpp"
@@ -32,8 +33,12 @@ namespace rtamt {
 
 inline constexpr std::uint32_t no_operand = 0xFFFFFFFFU;
 
-// Widths, distances and lags stay below this, so that sums of a few of them cannot overflow.
-inline constexpr std::int64_t longest = 281'474'976'710'656; // 2^48
+// Widths, distances and lags in samples stay below this, so that sums of a few of them cannot
+// overflow. In ticks they may be longer, and sums are guarded.
+inline constexpr std::int64_t longest = 281'474'976'710'656;             // 2^48
+inline constexpr std::int64_t longest_dense = 4'611'686'018'427'387'904; // 2^62
+
+enum class Domain : std::uint8_t { discrete, dense };
 
 struct Instruction {
     Opcode opcode{};
@@ -49,9 +54,12 @@ struct Program {
     std::vector<std::uint32_t> outputs;
     std::uint32_t inputs = 0;
     std::string note;
+    Domain domain = Domain::discrete;
 
-    // Reads and checks a serialised program; throws std::invalid_argument with one sentence.
-    [[nodiscard]] static Program parse(std::span<const std::uint8_t> bytes);
+    // Reads and checks a serialised program for this time domain; throws std::invalid_argument with
+    // one sentence.
+    [[nodiscard]] static Program parse(std::span<const std::uint8_t> bytes,
+                                       Domain domain = Domain::discrete);
 
     // The lag shared by the operands of an instruction; constants have no time and do not count.
     [[nodiscard]] std::int64_t operand_lag(const Instruction& instruction) const noexcept;

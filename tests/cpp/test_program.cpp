@@ -10,6 +10,7 @@
 using programs::Builder;
 using programs::bytes_of;
 using programs::sealed;
+using rtamt::Domain;
 using rtamt::Opcode;
 using rtamt::Program;
 using Bytes = std::vector<std::uint8_t>;
@@ -107,7 +108,7 @@ TEST(header_is_checked) {
     };
     CHECK(with(0, 'X') == refused("it does not begin with \"RTAMTPRG\""));
     CHECK(with(8, 2) == refused("its format has version 2, this core reads version 1"));
-    CHECK(with(10, 1) == refused("it is for dense time, and this core runs discrete time only"));
+    CHECK(with(10, 1) == refused("it is for dense time, and discrete time is wanted here"));
     CHECK(with(10, 7) == refused("it is for the unknown time domain 7"));
     CHECK(with(11, 1) == refused("a reserved byte of its header is not zero"));
     CHECK(with(28, 1) == refused("a reserved byte of its header is not zero"));
@@ -157,6 +158,34 @@ TEST(numbers_are_checked) {
     CHECK(refusal_of([](Program& p) {
               p.instructions[2].x = std::numeric_limits<double>::quiet_NaN();
           }) == refused("instruction 2 (const) holds a number that is NaN"));
+}
+
+TEST(in_dense_time_windows_may_be_points_and_bounds_are_longer) {
+    const auto dense = [](const std::function<void(Program&)>& change) {
+        Program program = example();
+        change(program);
+        Bytes bytes = bytes_of(program);
+        bytes[10] = 1;
+        return sealed(bytes);
+    };
+    const auto refusal_in_dense = [&](const std::function<void(Program&)>& spoil) {
+        return check::message<std::invalid_argument>(
+            [&] { (void)Program::parse(dense(spoil), Domain::dense); });
+    };
+    const Program read = Program::parse(dense([](Program& p) {
+                                            p.instructions[5].n = 0;
+                                            p.instructions[5].lag = rtamt::longest_dense;
+                                        }),
+                                        Domain::dense);
+    CHECK(read.domain == Domain::dense && read.latest() == rtamt::longest_dense);
+    CHECK(Program::parse(bytes_of(example())).domain == Domain::discrete);
+    CHECK(refusal_in_dense([](Program& p) { p.instructions[5].n = -1; }) ==
+          refused("instruction 5 (slide_min) has the width -1, outside 0 to 2^62"));
+    CHECK(refusal_in_dense([](Program& p) { p.instructions[5].lag = rtamt::longest_dense + 1; }) ==
+          refused("instruction 5 (slide_min) has the lag 4611686018427387905, outside 0 to 2^62"));
+    CHECK(check::message<std::invalid_argument>([] {
+              (void)Program::parse(bytes_of(example()), Domain::dense);
+          }) == refused("it is for discrete time, and dense time is wanted here"));
 }
 
 TEST(lags_are_checked) {

@@ -1,16 +1,18 @@
-"""The compiled back end: runs serialised programs over samples in discrete time."""
+"""The compiled back end: runs serialised programs over samples, in discrete or dense time."""
 
 from collections.abc import Collection, Mapping, Sequence
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
+
+_Events: TypeAlias = tuple[NDArray[np.int64], NDArray[np.float64]]
 
 class Refused(Exception):  # noqa: N818 - a word that reads well after except
     """An update was refused; the monitor is as it was."""
 
 class Undefined(Exception):  # noqa: N818
-    """An operation made NaN; args are the instruction and the sample."""
+    """An operation made NaN; args are the instruction and the sample, or the tick in dense time."""
 
     args: tuple[int, int]
 
@@ -68,6 +70,50 @@ class Monitor:
     def state_bytes(self) -> int:
         """Bytes of state."""
 
+class DenseMonitor:
+    """Runs a program online in dense time, one instant or one chunk at a time; times are ticks."""
+
+    def __init__(
+        self, program: bytes, names: Sequence[str], ignored: Collection[str] | None = None
+    ) -> None: ...
+    def update(self, t: int, values: Mapping[str, Any], /) -> tuple[list[int], list[float]] | None:
+        """Take a dict of any inputs at tick t.
+
+        Return the new events of the first output, times and values, or None.
+        """
+
+    def push(self, columns: Sequence[_Events]) -> list[_Events]:
+        """Take a chunk, times and values of each input; return the new events of each output."""
+
+    def finish(self) -> list[_Events]:
+        """End the trace; return the rest of each output."""
+
+    def reset(self) -> None:
+        """Forget every sample."""
+
+    def known(self, output: int) -> int | None:
+        """The last tick at which an output is known, or None."""
+
+    @property
+    def known_until(self) -> int | None:
+        """The last tick at which the first output is known, or None."""
+
+    @property
+    def start(self) -> int | None:
+        """The tick at which the trace begins, or None."""
+
+    @property
+    def last_times(self) -> list[int | None]:
+        """The tick of the last sample of each input, or None."""
+
+    @property
+    def last_possible(self) -> int:
+        """The latest tick that a sample may have."""
+
+    @property
+    def state_bytes(self) -> int:
+        """Bytes of state by now."""
+
 def opcode_names() -> list[str]:
     """The names of the opcodes, in the order of their codes."""
 
@@ -79,3 +125,9 @@ def scan(kind: str, a: NDArray[np.float64], b: NDArray[np.float64] | None = None
 
 def memory(program: bytes) -> int:
     """Bytes of state of a new monitor of this program."""
+
+def dense_evaluate(program: bytes, columns: Sequence[_Events], extra: int = 0) -> list[_Events]:
+    """Run a program over whole signals, up to their last time and extra ticks more."""
+
+def dense_scan(kind: str, a: _Events, b: _Events | None = None) -> _Events:
+    """Unbounded future over whole step functions: run_max, run_min, or until."""

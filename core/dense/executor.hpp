@@ -1,0 +1,140 @@
+// Runs a program over events in dense time: online in chunks of any size, offline in one.
+//
+// A trace begins at the latest first time of all inputs. Its frontier is the earliest last time: so
+// far every input is known. An update moves the frontier, in steps of at most a block of samples an
+// input, and every kernel brings its events up to it (kernel.hpp). finish() lets every input hold
+// its last value and moves the frontier on until the outputs are known at the latest last time.
+//
+// The *guarded* group is every instruction that can make NaN and everything such an instruction is
+// computed from; the rest cannot fail. An update runs the guarded group first and looks for NaN;
+// when there is one, it takes the guarded kernels back to where they were, and the rest has not
+// moved. So a failed update leaves no trace. An update of more than one block runs the guarded
+// group over the whole chunk once to look, takes it back, and then runs everything.
+//
+// Cost: a virtual call an instruction and block, and O(1) an event, amortised. Memory: the events
+// inside the windows, and the samples that wait for other inputs. When memory runs out in the
+// middle of an update (std::bad_alloc), only reset() helps.
+#pragma once
+
+#include "../program.hpp"
+#include "events.hpp"
+#include "feed.hpp"
+#include "kernel.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace rtamt::dense {
+
+// An operation made NaN: which instruction, and the time of the value.
+struct Failure {
+    std::uint32_t instruction;
+    std::int64_t time;
+};
+
+class Executor {
+  public:
+    explicit Executor(Program program);
+    ~Executor() = default;
+    Executor(const Executor&) = delete;
+    Executor& operator=(const Executor&) = delete;
+    Executor(Executor&&) = delete; // kernels point to inputs
+    Executor& operator=(Executor&&) = delete;
+
+    // New samples, one list an input, each later than the last time of its input and not later than
+    // last_possible(). What becomes known of each output is appended to its list: equal neighbours
+    // merged, also over updates. Nothing is appended by an update that fails.
+    [[nodiscard]] std::optional<Failure> push(std::span<const Events> inputs,
+                                              std::span<EventList> outputs);
+
+    // No more samples: the rest of each output, up to the last time of all inputs. Then only
+    // reset() helps.
+    [[nodiscard]] std::optional<Failure> finish(std::span<EventList> outputs);
+
+    void reset() noexcept;
+
+    // A whole trace at once, the last values held for `extra` ticks more; what a failure leaves
+    // behind is unspecified.
+    [[nodiscard]] static std::optional<Failure> evaluate(Program program,
+                                                         std::span<const Events> inputs,
+                                                         std::int64_t extra,
+                                                         std::span<EventList> outputs);
+
+    [[nodiscard]] const Program& program() const noexcept { return program_; }
+    [[nodiscard]] bool finished() const noexcept { return finished_; }
+
+    // When the trace begins, once every input has come so far.
+    [[nodiscard]] std::optional<std::int64_t> start() const noexcept;
+
+    // Until when an output is known, that instant included.
+    [[nodiscard]] std::optional<std::int64_t> known_until(std::size_t output) const noexcept;
+
+    [[nodiscard]] std::optional<std::int64_t> last_time(std::size_t input) const noexcept {
+        return feeds_[input].last();
+    }
+
+    // The latest time a sample may have, so that the end of the trace is within the range of ticks.
+    [[nodiscard]] std::int64_t last_possible() const noexcept {
+        return never - 1 - program_.latest();
+    }
+
+    [[nodiscard]] std::size_t state_bytes() const noexcept;
+
+  private:
+    struct Unit {
+        Kernel* kernel;
+        std::uint32_t instruction;
+        std::int64_t reach; // how long after the end of the trace an output depends on it
+    };
+    struct Output {
+        const Events* events = nullptr;
+        std::int64_t lag = 0;
+        bool told = false; // whether it has a value yet
+        double last = 0.0; // and which
+    };
+    using Lists = std::span<EventList>;
+
+    Program program_;
+    std::vector<std::unique_ptr<Kernel>> kernels_; // by instruction; none for inputs and constants
+    std::map<std::pair<std::uint32_t, std::int64_t>, std::unique_ptr<Kernel>> constants_; // and lag
+    std::vector<Unit> guarded_;
+    std::vector<Unit> free_;
+    std::vector<Feed> feeds_; // by input
+    std::vector<Output> outputs_;
+    std::int64_t origin_ = 0;     // when the trace begins
+    std::int64_t frontier_ = 0;   // how far it is known
+    std::int64_t stride_ = never; // longest step of the frontier
+    std::int64_t end_ = never;    // until when outputs are told
+    bool started_ = false;        // origin_ is known
+    bool fresh_ = false;          // and nothing has run yet
+    bool finished_ = false;
+    Failure failure_{};
+
+    [[nodiscard]] std::vector<bool> guarded() const;
+    [[nodiscard]] std::vector<std::int64_t> reaches() const;
+    [[nodiscard]] const Events* operand(std::uint32_t index, std::int64_t lag) const;
+    void add_constants(const std::vector<bool>& guarded);
+
+    [[nodiscard]] bool open() noexcept;
+    [[nodiscard]] std::int64_t earliest_last() const noexcept;
+    [[nodiscard]] std::int64_t latest_last() const noexcept;
+    [[nodiscard]] std::int64_t step(std::int64_t target) noexcept;
+    [[nodiscard]] bool run_guarded(std::int64_t frontier);
+    void run_free(std::int64_t frontier);
+    void deliver(Lists outputs);
+    [[nodiscard]] bool advance(std::int64_t target, Lists outputs);
+    [[nodiscard]] bool look(std::int64_t target);
+    [[nodiscard]] bool survey(std::int64_t target, std::int64_t tail);
+    [[nodiscard]] bool one_block() const noexcept;
+    [[nodiscard]] std::int64_t stride_to(std::int64_t target) const noexcept;
+    [[nodiscard]] bool update(Lists outputs);
+    [[nodiscard]] bool complete(std::int64_t extra, bool checked, Lists outputs);
+};
+
+} // namespace rtamt::dense

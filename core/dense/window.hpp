@@ -1,0 +1,94 @@
+// Extremum over the last w ticks, the closed window [s - w, s]: bounded once, historically,
+// eventually, always.
+//
+// A segment [p, q) of the operand counts for s in [p, q + w). A monotonic wedge (D. Lemire,
+// "Streaming maximum-minimum filter using no more than three comparisons per element", 2006) with
+// expiry times: segments in the order of time, each better than all after it, so that the first is
+// the extremum. A new segment outlives those before it and removes the ones that are no better.
+//
+// Cost: amortised O(1) an event whatever w. Memory: at most the segments inside the window.
+#pragma once
+
+#include "../algebra.hpp"
+#include "kernel.hpp"
+#include "ring.hpp"
+
+namespace rtamt::dense {
+
+template <class Algebra>
+class Slide final : public Temporal {
+  public:
+    Slide(std::int64_t lag, std::int64_t width) noexcept
+        : Temporal(lag, Algebra::identity), width_(width) {}
+
+    std::int64_t run(std::int64_t frontier) override {
+        const Events a = this->a();
+        const std::size_t due =
+            wedge_.count_while([&](std::size_t i) { return wedge_[i].expiry <= frontier; });
+        Writer out = open(due + 2 * a.count); // what arrives may leave again
+        for (std::size_t i = 0; i < a.count; ++i) {
+            const std::int64_t time = a.times[i];
+            while (!wedge_.empty() && wedge_.front().expiry < time)
+                expire(out);
+            arrive(time, a.values[i]);
+            if (wedge_.front().expiry <= time) wedge_.pop_front();
+            out.put(time, wedge_.front().value);
+        }
+        while (!wedge_.empty() && wedge_.front().expiry <= frontier)
+            expire(out);
+        close(out, frontier);
+        return never;
+    }
+
+    void checkpoint() noexcept override {
+        Temporal::checkpoint();
+        wedge_.checkpoint();
+    }
+    void rollback() noexcept override {
+        Temporal::rollback();
+        wedge_.rollback();
+    }
+
+    [[nodiscard]] std::size_t pending() const noexcept override { return wedge_.size(); }
+    [[nodiscard]] std::size_t bytes() const noexcept override {
+        return Temporal::bytes() + wedge_.bytes();
+    }
+
+  protected:
+    void reset() noexcept override {
+        Temporal::reset();
+        wedge_.clear();
+    }
+
+  private:
+    struct Segment {
+        std::int64_t expiry; // when it leaves the window; never, as long as it lasts
+        double value;
+    };
+    std::int64_t width_;
+    Ring<Segment> wedge_;
+
+    // The first segment leaves; the one that lasts never does, so there is another.
+    void expire(Writer& out) noexcept {
+        const std::int64_t time = wedge_.front().expiry;
+        wedge_.pop_front();
+        out.put(time, wedge_.front().value);
+    }
+
+    void arrive(std::int64_t time, double value) {
+        if (!wedge_.empty()) {
+            const double last = wedge_.back().value;
+            if (last == value) return; // the segment goes on
+            if (Algebra::join(last, value) != value) {
+                wedge_.edit(wedge_.size() - 1).expiry = later(time, width_);
+            } else {
+                do {
+                    wedge_.pop_back();
+                } while (!wedge_.empty() && Algebra::join(wedge_.back().value, value) == value);
+            }
+        }
+        wedge_.push_back({never, value});
+    }
+};
+
+} // namespace rtamt::dense

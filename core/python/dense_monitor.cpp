@@ -1,0 +1,264 @@
+#include "dense_monitor.hpp"
+
+#include <algorithm>
+#include <initializer_list>
+#include <memory>
+#include <new>
+#include <stdexcept>
+#include <string>
+
+namespace rtamt::python {
+
+using dense::EventList;
+using dense::Events;
+using dense::Failure;
+
+namespace {
+
+constexpr const char* in_use =
+    "The monitor is in use by another thread: give each thread a monitor of its own.";
+
+template <class Item>
+[[nodiscard]] nb::ndarray<nb::numpy, Item, nb::ndim<1>> array(Item* items, std::size_t count,
+                                                              const nb::capsule& owner) {
+    static Item none{}; // an empty array points somewhere, too
+    return {items == nullptr ? &none : items, std::initializer_list<std::size_t>{count}, owner};
+}
+
+// How many samples a call brings.
+[[nodiscard]] std::size_t samples(const std::vector<Events>& inputs) noexcept {
+    std::size_t count = 0;
+    for (const Events& events : inputs)
+        count += events.count;
+    return count;
+}
+
+} // namespace
+
+std::vector<Events> events_of(const std::vector<EventColumn>& columns, std::size_t inputs) {
+    if (columns.size() != inputs) {
+        throw std::invalid_argument("Got " + std::to_string(columns.size()) +
+                                    " signals for a program with " + std::to_string(inputs) +
+                                    " inputs.");
+    }
+    std::vector<Events> events;
+    events.reserve(columns.size());
+    for (const auto& [times, values] : columns) {
+        if (times.shape(0) != values.shape(0)) {
+            throw std::invalid_argument("A signal has " + std::to_string(times.shape(0)) +
+                                        " times and " + std::to_string(values.shape(0)) +
+                                        " values.");
+        }
+        events.push_back({times.data(), values.data(), times.shape(0)});
+    }
+    return events;
+}
+
+nb::tuple hand_over(EventList& list) {
+    auto kept = std::make_unique<EventList>();
+    std::swap(*kept, list);
+    const nb::capsule owner(kept.get(),
+                            [](void* memory) noexcept { delete static_cast<EventList*>(memory); });
+    EventList* events = kept.release();
+    return nb::make_tuple(array(events->times(), events->count(), owner),
+                          array(events->values(), events->count(), owner));
+}
+
+nb::list hand_over(std::vector<EventList>& lists) {
+    nb::list result;
+    for (EventList& list : lists)
+        result.append(hand_over(list));
+    return result;
+}
+
+void raise_undefined(const Exceptions& exceptions, const Failure& failure) {
+    const nb::object arguments = nb::make_tuple(failure.instruction, failure.time);
+    PyErr_SetObject(exceptions.undefined.ptr(), arguments.ptr());
+    throw nb::python_error();
+}
+
+DenseMonitor::DenseMonitor(Program program, const std::vector<nb::str>& names,
+                           const nb::object& ignored, Exceptions exceptions)
+    : executor_(std::move(program)), names_(names, executor_.program().inputs, ignored),
+      exceptions_(std::move(exceptions)), row_(names.size()), events_(names.size()),
+      results_(executor_.program().outputs.size()) {}
+
+// ---- one instant --------------------------------------------------------------------------------
+
+PyObject* DenseMonitor::update(PyObject* time, PyObject* values) noexcept {
+    if (!ready()) return nullptr;
+    busy_ = true;
+    const char* reason = read_time(time) ? read_values(values) : "time";
+    busy_ = false;
+    if (reason != nullptr) return refuse(reason);
+    for (EventList& list : results_)
+        list.resize(0);
+    try {
+        const auto failure = executor_.push(events_, results_);
+        return failure ? fail(*failure) : known_events();
+    } catch (const std::bad_alloc&) {
+        return PyErr_NoMemory();
+    }
+}
+
+PyObject* DenseMonitor::fail(const Failure& failure) const noexcept {
+    PyObject* arguments =
+        Py_BuildValue("(IL)", failure.instruction, static_cast<long long>(failure.time));
+    if (arguments != nullptr) PyErr_SetObject(exceptions_.undefined.ptr(), arguments);
+    Py_XDECREF(arguments);
+    return nullptr;
+}
+
+// An int, or what stands for one, that a sample may have.
+bool DenseMonitor::read_time(PyObject* time) noexcept {
+    int overflow = 0;
+    if (PyLong_Check(time)) [[likely]] {
+        time_ = PyLong_AsLongLongAndOverflow(time, &overflow);
+    } else {
+        const nb::object index = nb::steal(PyNumber_Index(time));
+        if (!index.is_valid()) {
+            if (PyErr_ExceptionMatches(PyExc_Exception) != 0) PyErr_Clear();
+            return false;
+        }
+        time_ = PyLong_AsLongLongAndOverflow(index.ptr(), &overflow);
+    }
+    return overflow == 0 && time_ >= -dense::never && time_ <= executor_.last_possible();
+}
+
+// Answers what is wrong, or null.
+const char* DenseMonitor::read_values(PyObject* values) noexcept {
+    if (!PyDict_Check(values)) return "names";
+    std::ranges::fill(events_, Events{});
+    Py_ssize_t position = 0;
+    std::size_t guess = 0;
+    PyObject* name = nullptr;
+    PyObject* value = nullptr;
+    while (PyDict_Next(values, &position, &name, &value) != 0) {
+        const auto index = names_.place(name, guess);
+        if (!index) {
+            if (names_.ignored(name)) continue;
+            return "names";
+        }
+        if (!numbers_.read(value, row_[*index])) return "value";
+        if (time_ <= executor_.last_time(*index).value_or(-dense::never - 1)) return "time";
+        events_[*index] = {&time_, &row_[*index], 1};
+        guess = *index + 1;
+    }
+    return nullptr;
+}
+
+PyObject* DenseMonitor::known_events() const noexcept {
+    const Events events = results_.front().view();
+    if (events.count == 0) Py_RETURN_NONE;
+    const auto count = static_cast<Py_ssize_t>(events.count);
+    const nb::object times = nb::steal(PyList_New(count));
+    const nb::object values = nb::steal(PyList_New(count));
+    if (!times.is_valid() || !values.is_valid()) return nullptr;
+    for (Py_ssize_t i = 0; i < count; ++i) {
+        PyObject* time = PyLong_FromLongLong(events.times[i]);
+        PyObject* value = PyFloat_FromDouble(events.values[i]);
+        PyList_SET_ITEM(times.ptr(), i, time);
+        PyList_SET_ITEM(values.ptr(), i, value);
+        if (time == nullptr || value == nullptr) return nullptr;
+    }
+    return PyTuple_Pack(2, times.ptr(), values.ptr());
+}
+
+PyObject* DenseMonitor::refuse(const char* reason) const noexcept {
+    if (PyErr_Occurred() == nullptr) PyErr_SetString(exceptions_.refused.ptr(), reason);
+    return nullptr;
+}
+
+// Whether an update may come now; if not, a Python exception is set.
+bool DenseMonitor::ready() const noexcept {
+    if (!busy_ && !executor_.finished()) [[likely]] {
+        return true;
+    }
+    if (busy_) PyErr_SetString(PyExc_RuntimeError, in_use);
+    (void)refuse("finished");
+    return false;
+}
+
+// ---- many samples -------------------------------------------------------------------------------
+
+nb::list DenseMonitor::push(const std::vector<EventColumn>& columns) {
+    require_idle();
+    if (!ready()) throw nb::python_error();
+    const std::vector<Events> inputs = events_of(columns, names_.count());
+    for (std::size_t i = 0; i < inputs.size(); ++i) {
+        const Events& events = inputs[i];
+        if (events.count == 0) continue;
+        if (events.times[0] <= executor_.last_time(i).value_or(-dense::never - 1) ||
+            events.times[events.count - 1] > executor_.last_possible()) {
+            (void)refuse("time");
+            throw nb::python_error();
+        }
+    }
+    std::vector<EventList> results(results_.size());
+    std::optional<Failure> failure;
+    exclusively(samples(inputs), [&] { failure = executor_.push(inputs, results); });
+    if (failure) raise_undefined(exceptions_, *failure);
+    return hand_over(results);
+}
+
+nb::list DenseMonitor::finish() {
+    require_idle();
+    std::vector<EventList> results(results_.size());
+    std::optional<Failure> failure;
+    exclusively(executor_.state_bytes(), [&] { failure = executor_.finish(results); });
+    if (failure) raise_undefined(exceptions_, *failure);
+    return hand_over(results);
+}
+
+void DenseMonitor::reset() {
+    require_idle();
+    executor_.reset();
+}
+
+std::optional<std::int64_t> DenseMonitor::start() const {
+    require_idle();
+    return executor_.start();
+}
+
+std::optional<std::int64_t> DenseMonitor::known(std::size_t output) const {
+    require_idle();
+    if (output >= results_.size()) {
+        throw std::out_of_range("There is no output " + std::to_string(output) + ".");
+    }
+    return executor_.known_until(output);
+}
+
+std::vector<std::optional<std::int64_t>> DenseMonitor::last_times() const {
+    require_idle();
+    std::vector<std::optional<std::int64_t>> times;
+    times.reserve(names_.count());
+    for (std::size_t input = 0; input < names_.count(); ++input)
+        times.push_back(executor_.last_time(input));
+    return times;
+}
+
+std::size_t DenseMonitor::state_bytes() const {
+    require_idle();
+    return executor_.state_bytes();
+}
+
+void DenseMonitor::require_idle() const {
+    if (busy_) throw std::runtime_error(in_use);
+}
+
+template <class Work>
+void DenseMonitor::exclusively(std::size_t count, Work&& work) {
+    struct Busy {
+        bool& flag;
+        explicit Busy(bool& busy) noexcept : flag(busy) { flag = true; }
+        ~Busy() { flag = false; }
+        Busy(const Busy&) = delete;
+        Busy& operator=(const Busy&) = delete;
+        Busy(Busy&&) = delete;
+        Busy& operator=(Busy&&) = delete;
+    };
+    const Busy busy(busy_);
+    without_gil(count, std::forward<Work>(work));
+}
+
+} // namespace rtamt::python

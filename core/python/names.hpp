@@ -1,0 +1,68 @@
+// The names of a program's inputs, looked up by the Python strings that a caller passes.
+#pragma once
+
+#include <nanobind/nanobind.h>
+
+#include <cstddef>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace rtamt::python {
+
+namespace nb = nanobind;
+
+class Names {
+  public:
+    // `ignored` are names of variables that exist and are not read: a collection, or None.
+    Names(const std::vector<nb::str>& names, std::size_t inputs, const nb::object& ignored) {
+        if (names.size() != inputs) {
+            throw std::invalid_argument("Got " + std::to_string(names.size()) +
+                                        " names for a program with " + std::to_string(inputs) +
+                                        " inputs.");
+        }
+        for (const nb::str& name : names) {
+            if (places_.contains(name)) {
+                throw std::invalid_argument("Two inputs are called '" + std::string(name.c_str()) +
+                                            "'.");
+            }
+            places_[name] = nb::int_(names_.size());
+            PyObject* interned = nb::object(name).release().ptr();
+            PyUnicode_InternInPlace(&interned);
+            names_.push_back(nb::steal<nb::str>(interned));
+        }
+        ignored_ =
+            nb::steal<nb::object>(PyFrozenSet_New(ignored.is_none() ? nullptr : ignored.ptr()));
+        if (!ignored_.is_valid()) throw nb::python_error();
+    }
+
+    [[nodiscard]] std::size_t count() const noexcept { return names_.size(); }
+
+    // The index of the input of this name, which is probably the one guessed; or nothing.
+    [[nodiscard]] std::optional<std::size_t> place(PyObject* name,
+                                                   std::size_t guess) const noexcept {
+        if (guess < names_.size() && names_[guess].ptr() == name) [[likely]] {
+            return guess;
+        }
+        PyObject* index = PyDict_GetItemWithError(places_.ptr(), name);
+        if (index == nullptr) {
+            PyErr_Clear(); // what cannot be hashed is no name
+            return std::nullopt;
+        }
+        return PyLong_AsSize_t(index);
+    }
+
+    [[nodiscard]] bool ignored(PyObject* name) const noexcept {
+        const int found = PySet_Contains(ignored_.ptr(), name);
+        if (found < 0) PyErr_Clear(); // what cannot be hashed is no name
+        return found > 0;
+    }
+
+  private:
+    std::vector<nb::str> names_; // interned, in the order of the inputs
+    nb::dict places_;            // from name to index
+    nb::object ignored_;
+};
+
+} // namespace rtamt::python

@@ -1,0 +1,72 @@
+#include "dense/kernel.hpp"
+
+#include "ways.hpp"
+
+using dense_oracle::signal_of;
+using rtamt::dense::Events;
+using rtamt::dense::never;
+using rtamt::dense::Temporal;
+using ways::Signal;
+
+namespace {
+
+// Tells what it reads.
+class Echo final : public Temporal {
+  public:
+    explicit Echo(std::int64_t lag) : Temporal(lag, -1.0) {}
+
+    std::int64_t run(std::int64_t frontier) override {
+        Writer out = open(a().count);
+        for (std::size_t i = 0; i < a().count; ++i)
+            out.put(a().times[i], a().values[i]);
+        close(out, frontier);
+        return never;
+    }
+};
+
+Signal told(Echo& echo, const Signal& signal, std::int64_t frontier) {
+    const Events events = signal.events(0, signal.size());
+    echo.connect(&events, nullptr);
+    CHECK(echo.run(frontier) == never);
+    return signal_of(echo.out());
+}
+
+} // namespace
+
+TEST(what_comes_before_the_start_is_one_event_at_the_start) {
+    Echo echo(5);
+    echo.begin(10);
+    CHECK((told(echo, {{10, 11}, {1, 2}}, 12) == Signal{}));
+    CHECK((told(echo, {{14}, {3}}, 14) == Signal{}));
+    CHECK((told(echo, {{18}, {4}}, 20) == Signal{{15, 18}, {3, 4}}));
+    echo.begin(10);
+    CHECK((told(echo, {{15}, {7}}, 15) == Signal{{15}, {7}}));
+    echo.begin(10);
+    CHECK((told(echo, {}, 20) == Signal{{15}, {-1}}));
+}
+
+TEST(what_changes_nothing_is_not_told) {
+    Echo echo(0);
+    echo.begin(0);
+    CHECK((told(echo, {{0, 1, 2}, {-1, -1, 3}}, 2) == Signal{{0, 2}, {-1, 3}}));
+    CHECK((told(echo, {{3, 4}, {3, 5}}, 4) == Signal{{4}, {5}}));
+}
+
+TEST(an_update_that_is_taken_back_was_never_told) {
+    Echo echo(0);
+    echo.begin(0);
+    echo.checkpoint();
+    CHECK((told(echo, {{0}, {1}}, 0) == Signal{{0}, {1}}));
+    echo.rollback();
+    CHECK((told(echo, {{0}, {2}}, 0) == Signal{{0}, {2}}));
+    echo.checkpoint();
+    CHECK((told(echo, {{1}, {3}}, 1) == Signal{{1}, {3}}));
+    echo.rollback();
+    CHECK((told(echo, {{1, 2}, {2, 3}}, 2) == Signal{{2}, {3}}));
+}
+
+TEST(a_start_beyond_the_last_tick_never_comes) {
+    Echo echo(100);
+    echo.begin(never - 50);
+    CHECK((told(echo, {{never - 40}, {2}}, never - 1) == Signal{}));
+}
