@@ -11,6 +11,7 @@ import subprocess
 import sys
 import time
 from dataclasses import dataclass, field
+from fractions import Fraction
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -57,7 +58,7 @@ def offline(text: str) -> Callable[[], float]:
     n = 1_000_000
     random = np.random.default_rng(1)
     columns = {name: random.normal(size=n) for name in ("a", "b")}
-    program = compile_program((desugar(parse_formula(text)),), rtamt.parse("a", period=1).period or 1, clip=n)
+    program = compile_program((desugar(parse_formula(text)),), Fraction(1), clip=n)
     code, inputs = program.to_bytes(), [columns[name] for name in program.inputs]
     return lambda: per(n, lambda: core().evaluate(code, inputs, n))
 
@@ -121,6 +122,39 @@ def online_positional(k: int) -> Callable[[], float]:
     return lambda: per(calls, run)
 
 
+def dense_offline(text: str) -> Callable[[], float]:
+    """Evaluate a formula over 10^6 events a variable, 100 ms apart on average, through the core: ns an event."""
+    n = 1_000_000
+    random = np.random.default_rng(1)
+    tick = Fraction(1, 10**9)
+    program = compile_program((desugar(parse_formula(text)),), tick, domain="dense")
+    code = program.to_bytes()
+    columns = [
+        (np.cumsum(random.integers(1, 2 * 10**8, size=n)), random.normal(size=n)) for _ in program.inputs
+    ]
+    return lambda: per(n * len(columns), lambda: core().dense_evaluate(code, columns))
+
+
+def dense_online(text: str) -> Callable[[], float]:
+    """``monitor.update(t, x=v)`` in dense time, one event an update: ns a call."""
+    monitor = rtamt.parse(text).monitor(time="dense")
+    name = monitor.input_names[-1]
+    for other in monitor.input_names:  # the others hold a value far ahead
+        if other != name:
+            monitor.update(1e9, **{other: 1.0})
+    calls = 20_000
+    at = [0]
+
+    def run() -> None:
+        first = at[0]
+        update = monitor.update
+        for i in range(first, first + calls):
+            update(i * 0.1, **{name: float(i % 17)})
+        at[0] = first + calls
+
+    return lambda: per(calls, run)
+
+
 def parsing() -> float:
     """Parse a formula of 1 000 characters: ms."""
     unit = "always[0:5]((req >= 3) -> eventually[0:5](gnt >= 3))"
@@ -138,14 +172,21 @@ def importing() -> float:
 
 def memory(text: str) -> float:
     """State of an online monitor: doubles a sample of its window of 10^5 samples."""
-    program = compile_program((desugar(parse_formula(text)),), rtamt.parse("a", period=1).period or 1)
+    program = compile_program((desugar(parse_formula(text)),), Fraction(1))
     return float(core().memory(program.to_bytes())) / 8 / 100_000
 
 
 def rows() -> list[Row]:
     """Return everything that is measured."""
     always = "always[0:{}](a + b >= -2)"
-    memories = ("always[0:99999](x)", "a until[0:99999] b", "a until[1:99999] b", "a since[1:99999] b")
+    memories = (
+        "always[0:99999](x)",
+        "a until[0:99999] b",
+        "a until[1:99999] b",
+        "a since[1:99999] b",
+        "a unless[0:99999] b",
+        "a or (b until[0:99999] a)",
+    )
     return [
         *(Row(f"offline {always.format(k)}", "ns/sample", 15, offline(always.format(k))) for k in WINDOWS),
         *(Row(f"offline a until[0:{k}] b", "ns/sample", 30, offline(f"a until[0:{k}] b")) for k in WINDOWS),
@@ -156,6 +197,20 @@ def rows() -> list[Row]:
         ),
         *(Row(f"online update(t, a=x, b=y), k={k}", "ns/call", 250, online_named(k)) for k in WINDOWS),
         *(Row(f"online step(x, y), k={k}", "ns/call", 150, online_positional(k)) for k in WINDOWS),
+        *(
+            Row(f"dense offline {text}", "ns/event", target, dense_offline(text))
+            for text, target in (
+                ("a >= 0", 30),
+                ("always[0:5](a >= 0)", 80),
+                ("once[0:5](a >= 0)", 80),
+                ("a since[0:100] b", 150),
+                ("a until[0:100] b", 150),
+            )
+        ),
+        *(
+            Row(f"dense online update(t, a=x), {text}", "ns/call", 600, dense_online(text))
+            for text in ("always[0:5](a >= 0)", "always[0:1000](a >= 0)", "b until[0:100] a")
+        ),
         *(Row(f"memory {text}", "doubles/sample", 2.5, partial(memory, text)) for text in memories),
         Row("parse 1 000 characters", "ms", 1, parsing),
         Row("import rtamt beyond numpy", "s", 0.15, importing),

@@ -1,5 +1,6 @@
 """Runtime monitors for Signal Temporal Logic: requirement and signal in, robustness out."""
 
+from rtamt.engine.dense_monitor import DenseMonitor
 from rtamt.engine.monitor import Monitor
 from rtamt.engine.signals import Signal
 from rtamt.errors import (
@@ -18,6 +19,11 @@ from rtamt.language.operators import STL
 from rtamt.rtamt_api import (
     Language,
     Semantics,
+    STLCTSpecification,
+    StlDenseTimeOfflineSpecification,
+    StlDenseTimeOnlineSpecification,
+    STLDenseTimeSpecification,
+    StlDenseTimeSpecification,
     StlDiscreteTimeOfflineSpecification,
     StlDiscreteTimeOnlineSpecification,
     StlDiscreteTimeOnlineSpecificationCpp,
@@ -35,6 +41,7 @@ __version__ = "1.0.0.dev0"
 __all__ = [
     "STL",
     "BoundError",
+    "DenseMonitor",
     "EvaluationError",
     "Language",
     "Monitor",
@@ -42,6 +49,8 @@ __all__ = [
     "ParseError",
     "RTAMTException",
     "Result",
+    "STLCTSpecification",
+    "STLDenseTimeSpecification",
     "STLDiscreteTimeSpecification",
     "STLParseException",
     "STLSpecification",
@@ -49,6 +58,9 @@ __all__ = [
     "Signal",
     "Specification",
     "SpecificationError",
+    "StlDenseTimeOfflineSpecification",
+    "StlDenseTimeOnlineSpecification",
+    "StlDenseTimeSpecification",
     "StlDiscreteTimeOfflineSpecification",
     "StlDiscreteTimeOnlineSpecification",
     "StlDiscreteTimeOnlineSpecificationCpp",

@@ -7,9 +7,11 @@ from fractions import Fraction
 from functools import cached_property
 from math import isnan
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal, overload
 
-from rtamt.engine import reference, signals
+from rtamt.engine import dense_evaluate, dense_reference, reference, signals
+from rtamt.engine.dense_monitor import DenseMonitor
+from rtamt.engine.dense_signals import NANOSECOND
 from rtamt.engine.evaluate import Evaluator
 from rtamt.engine.monitor import Monitor
 from rtamt.engine.signals import Signal, Trace
@@ -21,7 +23,7 @@ from rtamt.language.printer import to_text
 from rtamt.language.specfile import Document, parse_document
 from rtamt.language.units import duration
 from rtamt.rewrite import interface
-from rtamt.rewrite.check import check_bounds
+from rtamt.rewrite.check import check_bounds, check_dense
 from rtamt.rewrite.desugar import desugar
 from rtamt.rewrite.horizon import horizon
 from rtamt.rewrite.pastify import pastify
@@ -30,9 +32,11 @@ if TYPE_CHECKING:
     import os
     from collections.abc import Mapping
 
+    from rtamt.engine.dense_evaluate import DenseTrace
     from rtamt.engine.signals import FloatArray
 
 BACKENDS = ("cpp", "python")
+TIMES = ("discrete", "dense")
 
 Duration = str | float | Fraction
 
@@ -49,6 +53,8 @@ class Specification:
     unit: str = "s"
     backend: str = "cpp"
     language: Language = field(default=STL, repr=False)
+    time: str = "discrete"
+    resolution: Fraction = NANOSECOND
 
     @property
     def formula(self) -> Formula:
@@ -86,7 +92,13 @@ class Specification:
         return pastify(self.formula, self._period(period) or Fraction(1), self.text, self.unit)
 
     def evaluate(
-        self, data: Any, *, period: Duration | None = None, tolerance: float = signals.TOLERANCE
+        self,
+        data: Any,
+        *,
+        time: str | None = None,
+        period: Duration | None = None,
+        tolerance: float = signals.TOLERANCE,
+        resolution: Duration | None = None,
     ) -> Result:
         """Compute the robustness of a finished recording at every sample.
 
@@ -94,6 +106,11 @@ class Specification:
         (or datetimes), may be left out. ``period``: seconds, or text such as ``"100ms"``; by default
         that of the specification, else the median gap of the stamps, else 1 s. ``tolerance``: the
         fraction of the period by which a gap between samples may miss it.
+
+        With ``time="dense"`` signals change at any instant, each on its own clock: ``data`` maps a
+        variable to (times, values), or to a list of [time, value] pairs; numbers are seconds, arrays
+        of integers nanoseconds, and datetimes are what they are. ``resolution``: the length of a tick,
+        in which time is counted (default 1 ns); bounds must be multiples of it.
 
         Raises :class:`TraceError` where the data is wrong, :class:`BoundError` where an interval is
         no multiple of the period, :class:`EvaluationError` where an operation has no value.
@@ -103,17 +120,37 @@ class Specification:
         >>> result.robustness, result.satisfied, result.signal.values
         (1.0, True, array([1., 1., 3.]))
         """
+        if self._time(time) == "dense":
+            tick = self._resolution(resolution)
+            check_dense(self.formula, self.text)
+            check_bounds(self.formula, tick, self.text, "resolution")
+            recording = dense_evaluate.trace(data, self.input_names, tick, self._declared)
+            return Result(self, recording, self.signal_of(self.formula, recording))
         trace = signals.trace(data, self.input_names, self._period(period), self._declared, tolerance)
         self._check_bounds(trace)
-        return Result(self, trace, Signal(trace.times.copy(), self.robustness_of(self.formula, trace)))
+        return Result(self, trace, self.signal_of(self.formula, trace))
+
+    @overload
+    def monitor(
+        self,
+        *,
+        time: Literal["discrete"] | None = None,
+        period: Duration | None = None,
+        tolerance: float = signals.TOLERANCE,
+    ) -> Monitor: ...
+
+    @overload
+    def monitor(self, *, time: Literal["dense"], resolution: Duration | None = None) -> DenseMonitor: ...
 
     def monitor(
         self,
         *,
+        time: str | None = None,
         period: Duration | None = None,
         tolerance: float = signals.TOLERANCE,
-    ) -> Monitor:
-        """Return an online monitor.
+        resolution: Duration | None = None,
+    ) -> Monitor | DenseMonitor:
+        """Return an online monitor; of dense time where that is asked for here or in :func:`parse`.
 
         ``period`` as in :meth:`evaluate`, by default 1 s. ``tolerance``: the fraction of the period
         by which a gap between samples may miss it. Raises :class:`BoundError` for unbounded future.
@@ -123,6 +160,14 @@ class Specification:
         >>> [monitor.update(t, x=5) for t in (0.0, 0.1, 0.2)]
         [None, None, 2.0]
         """
+        if self._time(time) == "dense":
+            return DenseMonitor(
+                self.formula,
+                text=self.text,
+                resolution=self._resolution(resolution),
+                backend=self.backend,
+                known=self._declared,
+            )
         return Monitor(
             self.formula,
             text=self.text,
@@ -132,8 +177,16 @@ class Specification:
             known=self._declared,
         )
 
-    def robustness_of(self, formula: Formula, trace: Trace) -> FloatArray:
-        """Return the robustness signal of any formula over a normalised trace: n values."""
+    def signal_of(self, formula: Formula, trace: Trace | DenseTrace) -> Signal:
+        """Return the robustness signal of any formula over a normalised recording."""
+        if isinstance(trace, Trace):
+            return Signal(trace.times.copy(), self._robustness_of(formula, trace))
+        if self.backend == "python":
+            steps = dense_reference.evaluate(formula, trace.columns, trace.scale.tick)
+            return trace.signal(steps.times, steps.values)
+        return dense_evaluate.evaluate(desugar(formula), trace)
+
+    def _robustness_of(self, formula: Formula, trace: Trace) -> FloatArray:
         if self.backend == "python":
             start = float(trace.times[0])
             return reference.evaluate(formula, trace.columns, len(trace), trace.period, start)
@@ -174,6 +227,12 @@ class Specification:
     def _period(self, period: Duration | None) -> Fraction | None:
         return self.period if period is None else positive_period(period)
 
+    def _time(self, time: str | None) -> str:
+        return self.time if time is None else time_domain(time)
+
+    def _resolution(self, resolution: Duration | None) -> Fraction:
+        return self.resolution if resolution is None else positive_period(resolution)
+
     def _check_bounds(self, trace: Trace) -> None:
         try:
             check_bounds(self.formula, trace.period, self.text)
@@ -190,7 +249,8 @@ class Specification:
         # The text says it all, and is read without recursion however long it is.
         declared = {declaration.name for declaration in self.document.declarations}
         given = {name: v for name, v in self.document.constants.items() if name not in declared}
-        return _parse_again, (self.text, self.period, self.unit, self.backend, given, self.language)
+        settings = (self.period, self.unit, self.backend, given, self.language, self.time, self.resolution)
+        return _parse_again, (self.text, *settings)
 
     def __str__(self) -> str:
         return to_text(self.formula, self.language)
@@ -201,8 +261,8 @@ class Result:
     """What an evaluation gives: numbers and a verdict at the first instant, and the whole signal."""
 
     specification: Specification
-    trace: Trace
-    #: ρ at every sample: ``.times`` (seconds) and ``.values``, n each.
+    trace: Trace | DenseTrace
+    #: ρ at every sample, in dense time at every change and at the end: ``.times`` and ``.values``.
     signal: Signal
 
     @property
@@ -221,7 +281,7 @@ class Result:
         [True, False]
         """
         lowered = interface.boolean(self.specification.formula)
-        return bool(self.specification.robustness_of(lowered, self.trace)[0] > 0)
+        return bool(self.specification.signal_of(lowered, self.trace).values[0] > 0)
 
     def __getitem__(self, name: str) -> Signal:
         """Return the signal of a named sub-specification, or of any formula over the same variables.
@@ -241,8 +301,12 @@ class Result:
                     f"'{name}' reads '{variable}', which the formula does not{did_you_mean(variable, names)}; "
                     f"the recording was read for {', '.join(names)} only"
                 )
-        check_bounds(formula, self.trace.period, name)
-        return Signal(self.trace.times.copy(), self.specification.robustness_of(formula, self.trace))
+        if isinstance(self.trace, Trace):
+            check_bounds(formula, self.trace.period, name)
+        else:
+            check_dense(formula, name)
+            check_bounds(formula, self.trace.scale.tick, name, "resolution")
+        return self.specification.signal_of(formula, self.trace)
 
 
 def parse(
@@ -253,12 +317,16 @@ def parse(
     backend: str = "cpp",
     constants: Mapping[str, float] | None = None,
     language: Language = STL,
+    time: str = "discrete",
+    resolution: Duration = NANOSECOND,
 ) -> Specification:
     """Read a requirement: a formula, or the whole text of a specification file.
 
     ``period``: the sampling period, seconds or text such as ``"100ms"``; if it is given, every bound
     must be a multiple of it. ``unit``: of bounds without one. ``backend``: ``"cpp"`` or ``"python"``.
-    ``constants``: named numbers. Raises :class:`SpecificationError` with the place in the text.
+    ``constants``: named numbers. ``time``: ``"discrete"``, or ``"dense"`` with ticks of ``resolution``
+    seconds, for evaluations and monitors that say nothing else. Raises :class:`SpecificationError`
+    with the place in the text.
 
     >>> import rtamt
     >>> spec = rtamt.parse("always((req >= 3) -> eventually[0:5](gnt >= 3))")
@@ -274,7 +342,12 @@ def parse(
             raise UsageError(f"the constant '{name}' is {shown(value)}; give a number")
     document = parse_document(text, language=language, unit=unit, constants=constants)
     exact = None if period is None else positive_period(period)
-    spec = Specification(document, exact, unit, backend, language)
+    tick = positive_period(resolution)
+    spec = Specification(document, exact, unit, backend, language, time_domain(time), tick)
+    if spec.time == "dense":
+        for assertion in document.assertions:
+            check_dense(assertion.formula, text)
+            check_bounds(assertion.formula, tick, text, "resolution")
     if exact is not None:
         for assertion in document.assertions:
             check_bounds(assertion.formula, exact, text)
@@ -288,8 +361,19 @@ def _parse_again(
     backend: str,
     constants: Mapping[str, float],
     language: Language,
+    time: str,
+    resolution: Fraction,
 ) -> Specification:
-    return parse(text, period=period, unit=unit, backend=backend, constants=constants, language=language)
+    return parse(
+        text,
+        period=period,
+        unit=unit,
+        backend=backend,
+        constants=constants,
+        language=language,
+        time=time,
+        resolution=resolution,
+    )
 
 
 def load(
@@ -300,6 +384,8 @@ def load(
     backend: str = "cpp",
     constants: Mapping[str, float] | None = None,
     language: Language = STL,
+    time: str = "discrete",
+    resolution: Duration = NANOSECOND,
 ) -> Specification:
     """Read a specification file (``.stl``); settings and errors as for :func:`parse`.
 
@@ -319,7 +405,16 @@ def load(
         raise UsageError(
             f"'{path}' is not UTF-8 text (byte {error.start}); is it a specification?"
         ) from error
-    return parse(text, period=period, unit=unit, backend=backend, constants=constants, language=language)
+    return parse(
+        text,
+        period=period,
+        unit=unit,
+        backend=backend,
+        constants=constants,
+        language=language,
+        time=time,
+        resolution=resolution,
+    )
 
 
 def robustness(
@@ -330,6 +425,8 @@ def robustness(
     unit: str = "s",
     backend: str = "cpp",
     constants: Mapping[str, float] | None = None,
+    time: str = "discrete",
+    resolution: Duration = NANOSECOND,
 ) -> float:
     """Return the robustness of a recording at its first instant; settings and errors as for :func:`parse`.
 
@@ -337,8 +434,25 @@ def robustness(
     >>> rtamt.robustness("eventually(x >= 3)", {"x": [1, 2, 5]})
     2.0
     """
-    spec = parse(text, period=period, unit=unit, backend=backend, constants=constants)
+    spec = parse(
+        text,
+        period=period,
+        unit=unit,
+        backend=backend,
+        constants=constants,
+        time=time,
+        resolution=resolution,
+    )
     return spec.evaluate(data).robustness
+
+
+def time_domain(time: str) -> str:
+    """Return a time domain's name; raise :class:`UsageError` for any other text."""
+    if time not in TIMES:
+        raise UsageError(
+            f"unknown time domain '{time}'; choose from {', '.join(TIMES)}{did_you_mean(time, TIMES)}"
+        )
+    return time
 
 
 def positive_period(period: Duration) -> Fraction:

@@ -182,3 +182,15 @@ def test_an_operator_with_a_definition_alone_says_so_on_the_core() -> None:
         )
         python = rtamt.parse(text, language=STL.extend(ahead), backend="python")
         assert python.evaluate({"x": [3.0, 1.0]}).robustness == 1
+
+
+@pytest.mark.parametrize("time", ["discrete", "dense"])
+def test_an_inner_name_in_a_message(time: str) -> None:
+    data: Any = {"time": [0.0, 1.0], "x": [-1.0, -2.0]}
+    with pytest.raises(rtamt.EvaluationError) as info:
+        rtamt.parse("always(sqrt(eventually x) >= 0)").evaluate(data, time=time)
+    where = "sample 0, time 0 s" if time == "discrete" else "time 0 s"
+    assert str(info.value) == (
+        f"'sqrt(eventually x)' has no value at {where}: it is 0/0, inf - inf, 0 * inf, or a root or logarithm of "
+        "a negative number; change the formula or the data so that this cannot happen"
+    )

@@ -20,6 +20,7 @@ from rtamt.cli.command import (
     short,
 )
 from rtamt.cli.terminal import Progress, printed, table, use_color
+from rtamt.engine.signals import TIME, Trace
 from rtamt.errors import StlError
 from rtamt.language.units import format_duration
 from rtamt.readers import read
@@ -27,6 +28,7 @@ from rtamt.readers import read
 if TYPE_CHECKING:
     import argparse
 
+    from rtamt.engine.dense_evaluate import DenseTrace
     from rtamt.specification import Result, Specification
 
 _DESCRIPTION = """\
@@ -40,13 +42,18 @@ A trace is a CSV file whose header names the columns. Time stamps (seconds, or t
 header: 't [ms]') are in the column called time, t, timestamp or stamp; without one, samples are
 one period apart. Columns that the formula does not read may hold anything.
 
+With --time dense a value holds until the next one, and time stamps may lie anywhere; then -o
+writes the robustness where it changes, and at the end.
+
 --json prints one object a line: {"trace", "satisfied", "robustness", "samples", "period"}, or
-{"trace", "error"}. JSON has no infinities: they are the strings "inf" and "-inf".
+{"trace", "error"}. The period of dense time is null. JSON has no infinities: they are the
+strings "inf" and "-inf".
 
 examples:
   rtamt check examples/request_grant/spec.stl examples/request_grant/*.csv
   rtamt check "always((req >= 3) -> eventually[0:5](gnt >= 3))" log.csv --json
-  rtamt check "always[0:500ms](speed <= 30)" drive.csv --period 100ms -o robustness.csv"""
+  rtamt check "always[0:500ms](speed <= 30)" drive.csv --period 100ms -o robustness.csv
+  rtamt check "always(alarm -> eventually[0:70ms](stop))" events.csv --time dense"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,6 +76,12 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.epilog = _EPILOG
     add_specification_options(parser)
     parser.add_argument("traces", metavar="TRACE", nargs="+", help="a CSV file")
+    parser.add_argument(
+        "--time",
+        default="discrete",
+        metavar="{discrete,dense}",
+        help="dense: signals change at any instant, not once a period (default: discrete)",
+    )
     parser.add_argument("--time-column", metavar="NAME", help="the column of time stamps; '' for none")
     parser.add_argument("-o", "--output", metavar="FILE", help="write the robustness at every sample as CSV")
     parser.add_argument("--json", action="store_true", help="print JSON, one object a line")
@@ -83,7 +96,7 @@ def run(args: argparse.Namespace) -> int:
     color = use_color(args.color, sys.stdout)
     if args.output is not None and len(args.traces) > 1:
         raise CommandError(f"--output takes the robustness of one trace, got {len(args.traces)} traces")
-    spec = read_specification(args)
+    spec = read_specification(args, args.time)
     outcomes: list[Outcome] = []
     with Progress() as progress:
         for number, trace in enumerate(args.traces, 1):
@@ -116,6 +129,9 @@ def _evaluate(
         )
     except StlError as error:
         return Outcome(trace, "error", error=str(error))
+    if spec.time == "dense" and TIME not in data:
+        problem = "dense time needs a column of time stamps: call it 'time', or name it with --time-column"
+        return Outcome(trace, "error", error=f"{trace}: {problem}")
     try:
         result = spec.evaluate(data)
         return Outcome(trace, "satisfied" if result.satisfied else "violated", result)
@@ -132,8 +148,8 @@ def _as_json(outcome: Outcome) -> str:
             "trace": outcome.trace,
             "satisfied": outcome.verdict == "satisfied",
             "robustness": json_number(result.robustness),
-            "samples": len(result.trace),
-            "period": float(result.trace.period),
+            "samples": _samples(result.trace),
+            "period": float(result.trace.period) if isinstance(result.trace, Trace) else None,
         }
     )
 
@@ -144,7 +160,8 @@ def _as_table(spec: Specification, outcomes: list[Outcome], color: bool) -> str:
         cells = ("-", "-", "-")
         if outcome.result is not None:
             trace = outcome.result.trace
-            cells = (str(len(trace)), format_duration(trace.period), short(outcome.result.robustness))
+            period = format_duration(trace.period) if isinstance(trace, Trace) else "dense"
+            cells = (str(_samples(trace)), period, short(outcome.result.robustness))
         rows.append((outcome.trace, *cells, outcome.verdict))
     kinds = [_KINDS[outcome.verdict] for outcome in outcomes]
     formula = printed(spec.formula)
@@ -155,6 +172,11 @@ def _as_table(spec: Specification, outcomes: list[Outcome], color: bool) -> str:
         counts = [f"{verdicts.count(verdict)} {verdict}" for verdict in _CODES if verdict in verdicts]
         text += f"\n\n{', '.join(counts)}"
     return text
+
+
+def _samples(trace: Trace | DenseTrace) -> int:
+    """Return the number of rows that were read: all columns share the stamps, also in dense time."""
+    return len(trace) if isinstance(trace, Trace) else max(len(ticks) for ticks, _ in trace.columns.values())
 
 
 def _write(result: Result, path: str) -> None:

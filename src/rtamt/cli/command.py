@@ -69,19 +69,21 @@ def add_specification_options(parser: argparse.ArgumentParser) -> None:
         "--backend",
         default="cpp",
         metavar="{cpp,python}",
-        help="cpp: the compiled core (default); python: the definition itself, slow, needs no compiler",
+        help="cpp: the compiled core (default); python: the definition itself, slow",
     )
 
 
-def read_specification(args: argparse.Namespace) -> Specification:
-    """Read SPEC: the file of that name, else the text itself."""
+def read_specification(args: argparse.Namespace, time: str = "discrete") -> Specification:
+    """Read SPEC: the file of that name, else the text itself; ``time``: discrete or dense."""
     spec: str = args.spec
     if args.backend == "cpp":
         try:
             core()
         except UsageError as error:
             raise CommandError(f"{error}; on the command line: --backend python") from None
-    options = {"period": args.period, "unit": args.unit, "backend": args.backend}
+    if time == "dense" and args.period is not None:
+        raise CommandError("dense time has no sampling period: leave out --period, or --time dense")
+    options = {"period": args.period, "unit": args.unit, "backend": args.backend, "time": time}
     if os.path.isfile(spec):
         if os.path.splitext(spec)[1].lower() in set(READERS) - {".txt"}:
             raise CommandError(f"'{spec}' is a trace; the specification comes before the traces")

@@ -29,6 +29,7 @@ class Scan:
     name: str
     kind: str  # run_max, run_min or until
     outputs: tuple[int, ...]
+    meaning: Formula  # what the result stands for
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,6 +46,20 @@ class Plan:
 
     stages: tuple[Stage, ...]
     program: Program
+
+    def original(self, formula: Formula) -> Formula:
+        """Return a formula of this plan with the scans in it replaced by what they stand for: for messages."""
+        meanings: dict[str, Formula] = {}
+
+        def put_back(node: Formula, args: tuple[Formula, ...]) -> Formula:
+            if isinstance(node, Var):
+                return meanings.get(node.name, node)
+            return replace(node, args=args) if isinstance(node, Apply) else node
+
+        for stage in self.stages:
+            for scan in stage.scans:
+                meanings[scan.name] = fold(scan.meaning, put_back)
+        return fold(formula, put_back)
 
 
 def compile_program(
@@ -69,7 +84,7 @@ def compile_program(
     (('x',), (2,))
     """
     if inputs is None:
-        inputs = tuple(dict.fromkeys(name for formula in outputs for name in variables(formula)))
+        inputs = _read_by(outputs)
     lowering = LOWERINGS[domain](period, inputs, clip)
     indices = [lowering.lower(formula) for formula in outputs]
     if clip is None:  # online: each output is known at its horizon, even where less would do
@@ -87,14 +102,28 @@ def compile_plan(
     """Compile core formulas for an offline evaluation; arguments as for :func:`compile_program`."""
     stages: list[Stage] = []
     formulas = tuple(outputs)
+    # Every stage reads every variable, so that all of them begin and end together.
+    names = _read_by(formulas)
     while any(unbounded_future(formula) for formula in formulas):
-        formulas, stage = _cut(formulas, period, clip, domain, len(stages))
+        formulas, stage = _cut(formulas, names, period, clip, domain, len(stages))
         stages.append(stage)
-    return Plan(tuple(stages), compile_program(formulas, period, clip=clip, domain=domain))
+    inputs = _read_by(formulas, names)
+    return Plan(tuple(stages), compile_program(formulas, period, inputs, clip, domain))
+
+
+def _read_by(formulas: Sequence[Formula], names: tuple[str, ...] = ()) -> tuple[str, ...]:
+    """Return ``names`` and the variables of the formulas, each once."""
+    found = (name for formula in formulas for name in variables(formula))
+    return tuple(dict.fromkeys((*names, *found)))
 
 
 def _cut(
-    formulas: tuple[Formula, ...], period: Fraction, clip: int | None, domain: str, number: int
+    formulas: tuple[Formula, ...],
+    names: tuple[str, ...],
+    period: Fraction,
+    clip: int | None,
+    domain: str,
+    number: int,
 ) -> tuple[tuple[Formula, ...], Stage]:
     """Replace the innermost operators of unbounded future by inputs that a new stage computes."""
     operands: dict[Formula, int] = {}
@@ -114,11 +143,11 @@ def _cut(
             raise no_kernel(node)
         kind = f"run_{kernel.reduce}" if isinstance(kernel, Window) else "until"
         key = (kind, tuple(operands.setdefault(arg, len(operands)) for arg in node.args))
-        scan = scans.setdefault(key, Scan(f"#{number}.{len(scans)}", *key))
+        scan = scans.setdefault(key, Scan(f"#{number}.{len(scans)}", *key, replace(node, interval=None)))
         return _after_scan(node, Var(scan.name, node.span), just_before), True
 
     rest = tuple(fold(formula, cut)[0] for formula in formulas)
-    program = compile_program(tuple(operands), period, clip=clip, domain=domain)
+    program = compile_program(tuple(operands), period, _read_by(tuple(operands), names), clip, domain)
     return rest, Stage(program, tuple(scans.values()))
 
 

@@ -38,10 +38,10 @@ class Evaluator:
             plan = self._plans[clip] = compile_plan(self._formulas, self._period, clip)
         columns = dict(trace.columns)
         for stage in plan.stages:
-            values = run(stage.program, columns, trace)
+            values = run(stage.program, columns, trace, plan)
             for scan in stage.scans:
                 columns[scan.name] = core().scan(scan.kind, *(values[i] for i in scan.outputs))
-        return run(plan.program, columns, trace)
+        return run(plan.program, columns, trace, plan)
 
 
 def longest_bound(formulas: Sequence[Formula], period: Fraction) -> int:
@@ -55,22 +55,24 @@ def longest_bound(formulas: Sequence[Formula], period: Fraction) -> int:
     return longest
 
 
-def run(program: Program, columns: Mapping[str, FloatArray], trace: Trace) -> list[FloatArray]:
-    """Run one program over whole columns."""
+def run(program: Program, columns: Mapping[str, FloatArray], trace: Trace, plan: Plan) -> list[FloatArray]:
+    """Run one program of a plan over whole columns."""
     _core = core()
     inputs = [columns[name] for name in program.inputs]
     try:
         values: list[FloatArray] = _core.evaluate(program.to_bytes(), inputs, len(trace))
     except _core.Undefined as error:
         instruction, sample = error.args
-        raise undefined(program, instruction, sample, float(trace.times[sample])) from None
+        formula = program.origins[instruction]
+        assert formula is not None
+        raise undefined(plan.original(formula), sample, float(trace.times[sample])) from None
     return values
 
 
-def undefined(program: Program, instruction: int, sample: int, time: float) -> EvaluationError:
+def undefined(formula: Formula | None, sample: int, time: float) -> EvaluationError:
     """Return the error for a value that does not exist (0/0, inf - inf, …)."""
     return EvaluationError(
-        f"'{program.origins[instruction]}' has no value at sample {sample}, time {time:g} s: it is 0/0, inf - inf, "
+        f"'{formula}' has no value at sample {sample}, time {time:g} s: it is 0/0, inf - inf, "
         f"0 * inf, or a root or logarithm of a negative number; "
         f"change the formula or the data so that this cannot happen"
     )

@@ -244,7 +244,7 @@ class Monitor:
         assert self._program is not None
         stamps = np.concatenate((self._backend.recent(min(self._lag, self.samples)), new))
         first = self.samples + len(new) - len(stamps)
-        return undefined(self._program, instruction, sample, float(stamps[sample - first]))
+        return undefined(self._program.origins[instruction], sample, float(stamps[sample - first]))
 
 
 def refused_time(time: Any, index: int, last: float | None) -> TraceError | None:

@@ -97,7 +97,7 @@ class Program:
             _HEADER.pack(
                 b"RTAMTPRG",
                 1,
-                0,
+                DOMAINS.index(self.domain),
                 0,
                 len(self.instructions),
                 len(self.inputs),

@@ -29,9 +29,10 @@ TIME = "time"
 TOLERANCE = 0.1
 
 
-@dataclass(frozen=True, slots=True, eq=False)
 class Signal:
     """Values over time: ``times`` in seconds, ``values``; float64 arrays of the same length.
+
+    In dense time a point for every change and one at the end; times come as the caller gave them.
 
     >>> import rtamt
     >>> signal = rtamt.parse("x >= 3").evaluate({"time": [0, 1, 2], "x": [5, 1, 4]}).signal
@@ -39,11 +40,27 @@ class Signal:
     (3, array([1.]))
     """
 
-    times: FloatArray
-    values: FloatArray
+    __slots__ = ("_times", "_values")
+
+    def __init__(self, times: NDArray[Any], values: FloatArray) -> None:
+        self._times = times
+        self._values = values
+
+    @property
+    def times(self) -> NDArray[Any]:
+        """When: seconds, or in dense time what the caller tells time in."""
+        return self._times
+
+    @property
+    def values(self) -> FloatArray:
+        """What: one value for each time."""
+        return self._values
 
     def __len__(self) -> int:
         return len(self.times)
+
+    def __repr__(self) -> str:
+        return f"Signal(times={self.times!r}, values={self.values!r})"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -104,11 +121,12 @@ def columns_of(
     return times, columns, _common_length(columns, times, data, keys)
 
 
-def array(values: Any, name: str) -> FloatArray:
+def array(values: Any, name: str, first: int = 0) -> FloatArray:
     """Return ``values`` as a contiguous one-dimensional float64 array.
 
-    Always a copy: sub-formulas are evaluated when they are asked for, whatever the caller has done
-    to the data by then.
+    ``first`` is the index of ``values[0]`` in the recording, for messages. Always a copy:
+    sub-formulas are evaluated when they are asked for, whatever the caller has done to the data
+    by then.
     """
     try:
         if isinstance(values, np.ma.MaskedArray) and values.mask.any():
@@ -117,10 +135,10 @@ def array(values: Any, name: str) -> FloatArray:
         # numpy would read the text "1.5" as a number and None as NaN; both are more likely mistakes.
         numeric = raw.dtype.kind in "fiub" or (raw.dtype.kind == "O" and all(map(is_number, raw.flat)))
         if raw.ndim == 0 or not numeric:
-            raise _not_numbers(values, name)
+            raise _not_numbers(values, name, first)
         result = np.array(raw, dtype=np.float64, order="C")
     except (TypeError, ValueError):
-        raise _not_numbers(values, name) from None
+        raise _not_numbers(values, name, first) from None
     if raw.ndim != 1:
         raise TraceError(
             f"'{name}' has {raw.ndim} dimensions, expected 1: give one number a sample", variable=name
@@ -335,9 +353,9 @@ def _common_length(
     return next(iter(lengths.values()), 0)
 
 
-def _not_numbers(values: Any, name: str) -> TraceError:
+def _not_numbers(values: Any, name: str, first: int) -> TraceError:
     try:
-        items = enumerate(values)
+        items = enumerate(values, first)
     except TypeError:
         return TraceError(f"'{name}' is {shown(values)}, expected a sequence of numbers", variable=name)
     for i, value in items:

@@ -173,7 +173,7 @@ _PUNCTUATION = frozenset("()[],;:=@")
 
 
 def _in_a_word(char: str) -> bool:
-    return char.isalnum() or char.isspace() or char in "_\""
+    return char.isalnum() or char.isspace() or char in '_"'
 
 
 def _builtin(name: str) -> Operator:

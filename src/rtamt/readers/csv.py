@@ -82,7 +82,10 @@ def read_csv(
                 )
             columns = [find(header, name) for name in dict.fromkeys(wanted) if time is None or name != TIME]
             if time is not None:
-                columns = [Column(TIME, time.position), *(c for c in columns if names is not None or c != time)]
+                columns = [
+                    Column(TIME, time.position),
+                    *(c for c in columns if names is not None or c != time),
+                ]
             data = _read_rows(rows, header, columns, progress)
     except FileNotFoundError:
         raise TraceError(f"there is no file '{file}'") from None

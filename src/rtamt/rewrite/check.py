@@ -12,32 +12,39 @@ from rtamt.language.units import format_duration
 if TYPE_CHECKING:
     from fractions import Fraction
 
-#: Periods of the longest bound; sums of many such lags still fit into an int64.
-_LONGEST = 2**44
+#: The longest bound; sums of many such lags still fit into an int64.
+_MOST_PERIODS = 2**44
+_MOST_TICKS = 2**56
 
 
-def check_bounds(formula: Formula, period: Fraction, text: str | None = None) -> None:
+def check_bounds(
+    formula: Formula, period: Fraction, text: str | None = None, what: str = "sampling period"
+) -> None:
     """Raise :class:`BoundError` unless every bound is a whole multiple of ``period`` (seconds).
+
+    ``what`` is how the message calls the period: in dense time it is the resolution.
 
     >>> from fractions import Fraction
     >>> from rtamt.language.parser import parse_formula
     >>> check_bounds(parse_formula("always[0:1] x"), Fraction(1, 10))
     """
+    discrete = what == "sampling period"
+    steps, most = ("periods", _MOST_PERIODS) if discrete else ("ticks", _MOST_TICKS)
     for node in postorder(formula):
         if not isinstance(node, Apply) or node.interval is None:
             continue
         for bound in (node.interval.begin, node.interval.end):
             if bound is not None and (bound / period).denominator != 1:
                 raise BoundError(
-                    f"The operator bound must be a multiple of the sampling period: "
-                    f"{format_duration(bound)} is not a whole number of periods of {format_duration(period)}; "
-                    f"change the bound or the period",
+                    f"The operator bound must be a multiple of the {what}: "
+                    f"{format_duration(bound)} is not a whole number of {steps} of {format_duration(period)}; "
+                    f"change the bound or the {steps[:-1]}",
                     text,
                     node.interval.span or node.span,
                 )
-            if bound is not None and bound / period > _LONGEST:
+            if bound is not None and bound / period > most:
                 raise BoundError(
-                    f"{format_duration(bound)} is {float(bound / period):.3g} periods of {format_duration(period)}, "
+                    f"{format_duration(bound)} is {float(bound / period):.3g} {steps} of {format_duration(period)}, "
                     f"more than can be counted; shorten the bound, or leave it open with inf",
                     text,
                     node.interval.span or node.span,

@@ -8,14 +8,22 @@ module              what it holds
 ==================  =====================================================================
 options             Semantics, Language, TimeInterpretation, StlIOType
 declarations        what every class shares: names, types, topics, modules, the text
-discrete            discrete time: sampling period, values of sub-formulas, the offline class
+formulas            the formulas that were read: canonical text, values of sub-formulas
+online              pastification, and where the result goes
+discrete            discrete time: sampling period, the offline class
 discrete_online     the online class, and the combined one
+dense               dense time: the offline class, the online one, and the combined one
 backends            the compiled core, or the definition where it is not built
 associativity       the warning for chains that RTAMT read differently
 failures            every error leaves as an RTAMTException
 ==================  =====================================================================
 """
 
+from rtamt.rtamt_api.dense import (
+    StlDenseTimeOfflineSpecification,
+    StlDenseTimeOnlineSpecification,
+    StlDenseTimeSpecification,
+)
 from rtamt.rtamt_api.discrete import StlDiscreteTimeOfflineSpecification
 from rtamt.rtamt_api.discrete_online import (
     StlDiscreteTimeOnlineSpecification,
@@ -28,12 +36,19 @@ from rtamt.rtamt_api.options import Language, Semantics, StlIOType, TimeInterpre
 #: Spellings of older programs and of the paper's ROS code.
 STLSpecification = StlDiscreteTimeSpecification
 STLDiscreteTimeSpecification = StlDiscreteTimeSpecification
+STLCTSpecification = StlDenseTimeSpecification
+STLDenseTimeSpecification = StlDenseTimeSpecification
 
 __all__ = [
     "Language",
+    "STLCTSpecification",
+    "STLDenseTimeSpecification",
     "STLDiscreteTimeSpecification",
     "STLSpecification",
     "Semantics",
+    "StlDenseTimeOfflineSpecification",
+    "StlDenseTimeOnlineSpecification",
+    "StlDenseTimeSpecification",
     "StlDiscreteTimeOfflineSpecification",
     "StlDiscreteTimeOnlineSpecification",
     "StlDiscreteTimeOnlineSpecificationCpp",

@@ -1,10 +1,10 @@
-"""What runs the paper's classes in discrete time: the compiled core, or the definition where there is none."""
+"""What runs the paper's classes: the compiled core, or the definition where there is none."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from rtamt.engine import reference
+from rtamt.engine import dense_evaluate, dense_reference, reference
 from rtamt.engine.compile import compile_program
 from rtamt.engine.core import core, core_monitor
 from rtamt.engine.evaluate import Evaluator, undefined
@@ -13,12 +13,14 @@ from rtamt.errors import UsageError
 from rtamt.language.formula import Const
 from rtamt.language.units import UNITS
 from rtamt.rewrite.desugar import desugar
+from rtamt.rtamt_api.options import Language, Semantics
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Mapping, Sequence
     from fractions import Fraction
 
-    from rtamt.engine.signals import FloatArray, Trace
+    from rtamt.engine.dense_evaluate import DenseTrace
+    from rtamt.engine.signals import FloatArray, Signal, Trace
     from rtamt.language.formula import Formula
 
 
@@ -40,6 +42,24 @@ def require_core(what: str, instead: str) -> None:
             f"{what} needs the compiled core, which cannot be loaded; install the package with a C++ compiler "
             f"at hand, or use {instead}, which gives the same results more slowly"
         ) from reason
+
+
+def check_choices(semantics: Semantics, language: Language) -> None:
+    """Raise :class:`UsageError` for what the combined classes cannot be made with."""
+    if semantics is not Semantics.STANDARD:
+        raise UsageError(f"the semantics {semantics!r} is not supported; choose Semantics.STANDARD")
+    if not isinstance(language, Language):
+        raise UsageError(f"the language is {language!r}; choose Language.PYTHON or Language.CPP")
+    if language is Language.CPP:
+        require_core("Language.CPP", "Language.PYTHON")
+
+
+def dense_signal(formula: Formula, recording: DenseTrace) -> Signal:
+    """Return the robustness of a formula over a finished recording in dense time."""
+    if is_compiled():
+        return dense_evaluate.evaluate(desugar(formula), recording)
+    steps = dense_reference.evaluate(formula, recording.columns, recording.scale.tick)
+    return recording.signal(steps.times, steps.values)
 
 
 def signal(formula: Formula, trace: Trace) -> FloatArray:
@@ -104,7 +124,7 @@ class CompiledStream:
             robustness: float = self.monitor.update_pairs(timestamp, list(numbers.items()))
         except self._undefined as error:
             instruction, sample = error.args
-            raise undefined(self._program, instruction, sample, timestamp * self._unit) from None
+            raise undefined(self._program.origins[instruction], sample, timestamp * self._unit) from None
         return robustness
 
     def latest(self, part: Formula) -> float:

@@ -7,25 +7,23 @@ from typing import TYPE_CHECKING, Any
 
 from rtamt.engine import signals
 from rtamt.engine.monitor import refused_time, refused_values
-from rtamt.errors import RTAMTException, SpecificationError, TraceError, UsageError
-from rtamt.language.formula import Apply, Formula, Var, postorder
-from rtamt.language.operators import Tense
+from rtamt.errors import RTAMTException, TraceError
+from rtamt.language.formula import Formula, Var
 from rtamt.language.units import UNITS
-from rtamt.rewrite.pastify import pastify
-from rtamt.rtamt_api.backends import open_stream, require_core
+from rtamt.rtamt_api.backends import check_choices, open_stream, require_core
 from rtamt.rtamt_api.declarations import head_of
 from rtamt.rtamt_api.discrete import DiscreteTimeSpecification, StlDiscreteTimeOfflineSpecification
 from rtamt.rtamt_api.failures import raises_rtamt
+from rtamt.rtamt_api.online import OnlineSpecification, require_past
 from rtamt.rtamt_api.options import Language, Semantics
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping
 
-    from rtamt.language.specfile import Document
     from rtamt.rtamt_api.backends import CompiledStream, DefinedStream
 
 
-class StlDiscreteTimeOnlineSpecification(DiscreteTimeSpecification):
+class StlDiscreteTimeOnlineSpecification(OnlineSpecification, DiscreteTimeSpecification):
     """Watches a stream of samples.
 
     A formula with future operators must be rewritten by :meth:`pastify`; its robustness then comes
@@ -42,27 +40,11 @@ class StlDiscreteTimeOnlineSpecification(DiscreteTimeSpecification):
 
     def __init__(self) -> None:
         super().__init__()
-        self._pastified = False
-        # From a variable to what formulas read of it: itself, or its fields by full name.
-        self._reads: dict[str, list[str]] = {}
         self._stream: CompiledStream | DefinedStream | None = None  # made by the first update
         self._refusals: tuple[type[Exception], ...] = ()
         self._take: Callable[[Any, Any], Any] = self._begin
         self._shared = False  # whether var_object_dict was handed out: values may come through it
         self._seen: dict[str, Any] = {}  # what was in it after the latest update
-
-    @raises_rtamt
-    def pastify(self) -> None:
-        """Rewrite the formulas into past operators, equal one horizon later (the paper's Definition 4).
-
-        Raises :class:`RTAMTException` at an operator whose future is unbounded.
-        """
-        text = self._parsed_document.text
-        formulas = {
-            name: pastify(formula, self._period, text, self._unit) for name, formula in self._formulas.items()
-        }
-        self._start_over(formulas)
-        self._pastified = True
 
     def update(self, timestamp: float, dataset: Iterable[tuple[str, Any]]) -> Any:
         """Take one sample and return the robustness.
@@ -104,24 +86,9 @@ class StlDiscreteTimeOnlineSpecification(DiscreteTimeSpecification):
 
     # ---- starting --------------------------------------------------------------------------------
 
-    def _parsed(self, document: Document) -> None:
-        super()._parsed(document)
-        self._reads = {}
-        for name in self._inputs:
-            self._reads.setdefault(head_of(name), []).append(name)
-        self._start_over(self._formulas)
-        self._pastified = False
-
-    def _settings_changed(self) -> None:
-        pastified = self._pastified
-        super()._settings_changed()
-        if pastified:
-            self.pastify()
-
     def _start_over(self, formulas: dict[str, Formula]) -> None:
-        self._formulas = formulas
+        super()._start_over(formulas)
         self._stream = None
-        self._value_of = None
         self._take = self._begin
 
     def _begin(self, timestamp: Any, dataset: Any) -> Any:
@@ -144,7 +111,7 @@ class StlDiscreteTimeOnlineSpecification(DiscreteTimeSpecification):
             text = self._parsed_document.text
             formulas = [self._result, *(f for f in self._formulas.values() if f is not self._result)]
             for formula in formulas:
-                _require_past(formula, text)
+                require_past(formula, text)
             self._stream = open_stream(
                 formulas, self._inputs, self._period, self._unit, self._tolerance, frozenset(self._types)
             )
@@ -221,16 +188,6 @@ class StlDiscreteTimeOnlineSpecification(DiscreteTimeSpecification):
 
     # ---- values ----------------------------------------------------------------------------------
 
-    def _publish(self, robustness: float) -> Any:
-        """Write the result where the specification says, and return it."""
-        head, field = self._out_name
-        if not field:
-            self._objects[head] = robustness
-            return robustness
-        *path, last = field.split(".")
-        setattr(signals.field(self._objects[head], path), last, robustness)
-        return self._objects[head]
-
     def _holds(self, name: str) -> bool:
         # Once var_object_dict is handed out, every update writes into it.
         written = self._shared and self._value_of == self._latest
@@ -283,12 +240,7 @@ class StlDiscreteTimeSpecification(StlDiscreteTimeOfflineSpecification, StlDiscr
         self, semantics: Semantics = Semantics.STANDARD, language: Language = Language.PYTHON
     ) -> None:
         super().__init__()
-        if semantics is not Semantics.STANDARD:
-            raise UsageError(f"the semantics {semantics!r} is not supported; choose Semantics.STANDARD")
-        if not isinstance(language, Language):
-            raise UsageError(f"the language is {language!r}; choose Language.PYTHON or Language.CPP")
-        if language is Language.CPP:
-            require_core("Language.CPP", "Language.PYTHON")
+        check_choices(semantics, language)
 
     def evaluate(self, dataset: Mapping[str, Any]) -> list[list[float]]:
         """Evaluate a finished trace; see :class:`StlDiscreteTimeOfflineSpecification`."""
@@ -304,15 +256,3 @@ class StlDiscreteTimeSpecificationCpp(StlDiscreteTimeSpecification):
     def __init__(self, semantics: Semantics = Semantics.STANDARD) -> None:
         require_core(type(self).__name__, StlDiscreteTimeSpecification.__name__)
         super().__init__(semantics, Language.CPP)
-
-
-def _require_past(formula: Formula, text: str) -> None:
-    """Raise at the outermost operator that reads the future: an online monitor cannot."""
-    future = [n for n in postorder(formula) if isinstance(n, Apply) and n.op.tense is Tense.FUTURE]
-    if future:
-        name = future[-1].op.name
-        message = (
-            f"{name[0].upper()}{name[1:]} operator is not implemented in the STL online monitor. "
-            f"Call pastify() after parse(), or evaluate the finished trace offline"
-        )
-        raise RTAMTException(str(SpecificationError(message, text, future[-1].span)))

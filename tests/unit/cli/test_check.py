@@ -155,3 +155,61 @@ def test_a_specification_file_without_the_suffix_is_read_too(run, write):
 def test_a_specification_file_may_begin_with_a_byte_order_mark(run, write):
     write("spec.stl", "\ufeffalways(x >= 3)")
     assert run("check", "spec.stl", write("a.csv", GOOD), "--quiet") == (0, "", "")
+
+
+# ---- dense time --------------------------------------------------------------------------------------
+
+DENSE = "time,x,y\n0,1,0\n0.1,0,0\n0.37,0,1\n2,0,1\n"
+
+
+def test_dense_time_has_no_period(run, write):
+    write("events.csv", DENSE)
+    formula = "always(x > 0.5 -> eventually[0:370ms](y > 0.5))"
+    assert run("check", formula, "events.csv", "--time", "dense", "-o", "rho.csv") == (
+        0,
+        f"{formula}\n"
+        "\n"
+        "trace       samples  period  robustness  verdict\n"
+        "events.csv        4   dense         0.5  satisfied\n",
+        "",
+    )
+    assert Path("rho.csv").read_text() == "time,robustness\n0.0,0.5\n2.0,0.5\n"
+    answer = run("check", formula, "events.csv", "--time", "dense", "--json")
+    assert json.loads(answer.out) == {
+        "trace": "events.csv",
+        "satisfied": True,
+        "robustness": 0.5,
+        "samples": 4,
+        "period": None,
+    }
+
+
+@pytest.mark.parametrize(
+    ("args", "message"),
+    [
+        (
+            ("x", "--time", "dens"),
+            "unknown time domain 'dens'; choose from discrete, dense; did you mean 'dense'?",
+        ),
+        (
+            ("x", "--time", "dense", "--period", "1"),
+            "dense time has no sampling period: leave out --period, or --time dense",
+        ),
+        (
+            ("x", "--time", "dense", "--time-column", ""),
+            "events.csv: dense time needs a column of time stamps: call it 'time', or name it with --time-column",
+        ),
+        (
+            ("prev(x)", "--time", "dense"),
+            "'prev' means one sample away, which dense time does not have; "
+            "use a window such as once[0:1], or discrete time\n"
+            "  line 1, column 1:\n"
+            "    prev(x)\n"
+            "    ^^^^^^^",
+        ),
+    ],
+)
+def test_what_dense_time_cannot_do(run, write, args, message):
+    formula, *options = args
+    answer = run("check", formula, write("events.csv", DENSE), *options)
+    assert answer == (2, "", f"rtamt: {message}\n")

@@ -51,7 +51,7 @@ def test_nothing_is_computed_twice(text: str, count: int) -> None:
 def test_unbounded_future_is_cut_into_stages() -> None:
     plan = compile_plan((desugar(parse_formula("always(x -> eventually[1:inf] y)")),), ONE, 10)
     assert [[scan.kind for scan in stage.scans] for stage in plan.stages] == [["run_max"], ["run_min"]]
-    assert plan.program.inputs == ("#1.0",)
+    assert plan.program.inputs == ("x", "y", "#1.0")
 
 
 def test_bounds_beyond_the_trace_are_cut_to_it() -> None:

@@ -1,0 +1,123 @@
+"""Offline in dense time: formulas and finished signals, each on its own clock, to robustness signals."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rtamt.engine import dense_signals, signals
+from rtamt.engine.compile import compile_plan
+from rtamt.engine.core import core
+from rtamt.engine.dense_signals import TimeScale
+from rtamt.engine.signals import Signal
+from rtamt.errors import EvaluationError, TraceError, UsageError
+from rtamt.language.formula import Apply, fold
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Mapping, Sequence
+    from fractions import Fraction
+
+    from rtamt.engine.compile import Plan
+    from rtamt.engine.dense_signals import Samples
+    from rtamt.engine.program import Program
+    from rtamt.language.formula import Formula
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class DenseTrace:
+    """A finished recording in dense time: for each variable its ticks and values, none of them empty."""
+
+    columns: Mapping[str, Samples]
+    scale: TimeScale
+
+    @property
+    def start(self) -> int:
+        """The latest first tick: before it, not every variable has a value."""
+        return max(int(ticks[0]) for ticks, _ in self.columns.values())
+
+    @property
+    def end(self) -> int:
+        """The latest last tick."""
+        return max(int(ticks[-1]) for ticks, _ in self.columns.values())
+
+    def signal(self, ticks: dense_signals.TickArray, values: signals.FloatArray) -> Signal:
+        """Return events as a signal up to the end: a point for every change, and one at the end."""
+        inside = ticks <= self.end
+        ticks, values = ticks[inside], values[inside]
+        if len(ticks) and ticks[-1] < self.end:
+            ticks, values = np.append(ticks, self.end), np.append(values, values[-1])
+        return Signal(self.scale.times(ticks), values)
+
+
+def trace(data: Any, names: Sequence[str], tick: Fraction, known: Collection[str] = ()) -> DenseTrace:
+    """Normalise a finished recording; the caller's data is never changed.
+
+    ``data``: a mapping from variable to (times, values) or to a list of [time, value] pairs; with a
+    key ``"time"`` all variables share its stamps. ``tick``: seconds. Raises :class:`TraceError`.
+    """
+    if not names:
+        raise UsageError("the formula reads no variable, so in dense time nothing says when to evaluate it")
+    columns = dense_signals.columns_of(data, names, known)
+    for name in names:
+        if name not in columns:
+            raise signals.missing_variable(name, [str(key) for key in getattr(data, "columns", data)])
+        if not np.size(columns[name][0]):
+            raise TraceError(f"'{name}' has no samples: give at least one", variable=name)
+    scale = TimeScale(tick, dense_signals.kind_of(columns[names[0]][0]))
+    samples = {name: dense_signals.samples_of(columns[name], name, scale) for name in names}
+    result = DenseTrace(samples, scale)
+    if result.start > result.end:
+        raise TraceError("the signals have no instant in common")
+    return result
+
+
+def evaluate(formula: Formula, recording: DenseTrace) -> Signal:
+    """Return the robustness of a core formula (see ``desugar``) from the recording's start to its end."""
+    plan = compile_plan((formula,), recording.scale.tick, domain="dense")
+    columns = dict(recording.columns)
+    # What unbounded future reads must have settled: past windows slide on after the last sample.
+    settled = reach(formula, recording.scale.tick) if plan.stages else 0
+    for stage in plan.stages:
+        values = run(stage.program, columns, recording.scale, plan, settled)
+        for scan in stage.scans:
+            columns[scan.name] = core().dense_scan(scan.kind, *(values[i] for i in scan.outputs))
+    return recording.signal(*run(plan.program, columns, recording.scale, plan)[0])
+
+
+def reach(formula: Formula, tick: Fraction) -> int:
+    """Return the most ticks after its operands' last change for which a formula can still change."""
+
+    def step(node: Formula, below: tuple[int, ...]) -> int:
+        own = 0
+        if isinstance(node, Apply) and node.interval is not None:
+            own = int((node.interval.end or node.interval.begin) / tick)
+        return own + max(below, default=0)
+
+    return fold(formula, step)
+
+
+def run(
+    program: Program, columns: Mapping[str, Samples], scale: TimeScale, plan: Plan, extra: int = 0
+) -> list[Samples]:
+    """Run one program of a plan over whole signals, and ``extra`` ticks on."""
+    _core = core()
+    try:
+        values: list[Samples] = _core.dense_evaluate(
+            program.to_bytes(), [columns[name] for name in program.inputs], extra
+        )
+    except _core.Undefined as error:
+        instruction, tick = error.args
+        formula = program.origins[instruction]
+        assert formula is not None
+        raise undefined(plan.original(formula), scale.show(tick)) from None
+    return values
+
+
+def undefined(formula: Formula | None, time: str) -> EvaluationError:
+    """Return the error for a value that does not exist (0/0, inf - inf, …)."""
+    return EvaluationError(
+        f"'{formula}' has no value at time {time}: it is 0/0, inf - inf, 0 * inf, or a root "
+        f"or logarithm of a negative number; change the formula or the data so that this cannot happen"
+    )

@@ -1,0 +1,238 @@
+"""The paper's API in dense time: signals are lists of [time, value], and so is the robustness."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rtamt.engine import dense_evaluate, signals
+from rtamt.engine.dense_monitor import DenseMonitor
+from rtamt.engine.dense_signals import NANOSECOND
+from rtamt.errors import NameInFormulaError, TraceError, UsageError, shown
+from rtamt.language.formula import Var, postorder, variables
+from rtamt.language.units import UNITS
+from rtamt.rewrite.check import check_bounds, check_dense
+from rtamt.rtamt_api.backends import check_choices, dense_signal, is_compiled
+from rtamt.rtamt_api.declarations import head_of
+from rtamt.rtamt_api.failures import raises_rtamt
+from rtamt.rtamt_api.formulas import Formulas
+from rtamt.rtamt_api.online import OnlineSpecification, require_past
+from rtamt.rtamt_api.options import Language, Semantics
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from rtamt.engine.signals import FloatArray, Signal
+    from rtamt.language.formula import Formula
+
+    Samples = tuple[list[Any], list[Any]]  # times and values, as given
+
+
+class DenseTimeSpecification(Formulas):
+    """What the classes for dense time share: how signals come in and go out. Not made by users."""
+
+    def _check(self, formula: Formula, text: str) -> None:
+        check_dense(formula, text)
+        check_bounds(formula, NANOSECOND, text, "resolution")
+        for node in postorder(formula):
+            if isinstance(node, Var) and node.name == signals.TIME:
+                # The engine's recordings keep their stamps under this name.
+                raise NameInFormulaError(
+                    f"'{signals.TIME}' means the time stamps; give the variable another name", text, node.span
+                )
+
+    @property
+    def _units_per_second(self) -> float:
+        return float(1 / UNITS[self._unit])
+
+    def _columns(
+        self, given: dict[str, Samples], names: Sequence[str]
+    ) -> dict[str, tuple[FloatArray, FloatArray]]:
+        """Return times in seconds and values for those of ``names`` that are given."""
+        columns = {}
+        for name in names:
+            head, *path = (name,) if name in given else name.split(".")
+            if head not in given:
+                continue
+            times, values = given[head]
+            if path:
+                values = [signals.field_of(value, head, path, i) for i, value in enumerate(values)]
+            # Divided by a whole number, which rounds once: 100 ms become 0.1 s.
+            stamps = signals.array(times, f"time of {head}") / self._units_per_second
+            columns[name] = stamps, signals.array(values, name)
+        return columns
+
+    def _points(self, signal: Signal) -> list[list[float]]:
+        times = signal.times
+        if self._unit != "s":
+            # Ticks first: as seconds times a thousand, 1.1 s would come back as 1100.0000000000002 ms.
+            per_second = float(1 / NANOSECOND)
+            times = np.rint(times * per_second) / (per_second / self._units_per_second)
+        points: list[list[float]] = np.column_stack((times, signal.values)).tolist()
+        return points
+
+
+class StlDenseTimeOfflineSpecification(DenseTimeSpecification):
+    """Evaluates finished signals, each on its own clock.
+
+    >>> import rtamt
+    >>> spec = rtamt.StlDenseTimeOfflineSpecification()
+    >>> spec.declare_var("req", "float")
+    >>> spec.spec = "always[0:1](req >= 3)"
+    >>> spec.parse()
+    >>> spec.evaluate(["req", [[0, 5], [2.5, 4], [6, 6]]])
+    [[0.0, 2.0], [1.5, 1.0], [6.0, 3.0]]
+    """
+
+    @raises_rtamt
+    def evaluate(self, *dataset: Sequence[Any]) -> list[list[float]]:
+        """Return the robustness as ``[[time, value], ...]``: a point for every change, and one at the end.
+
+        ``dataset``: for every variable ``[name, [[time, value], ...]]``, times in :attr:`unit`, later
+        from sample to sample, counted in nanoseconds; a value holds until the next one. A value is a
+        number, or an object where the specification reads fields. Other names are ignored, and nothing
+        is changed. Raises :class:`RTAMTException` for wrong data.
+        """
+        formula = self._result
+        given = _by_name(dataset)
+        # Only what the result reads: variables of other assertions would move the start and the end.
+        names = variables(formula)
+        for name in names:
+            if name not in given and head_of(name) not in given:
+                raise signals.missing_variable(name, tuple(given))
+        columns = self._columns(given, self._inputs)
+
+        def value_of(part: Formula) -> list[list[float]]:
+            read = tuple(dict.fromkeys((*names, *variables(part))))
+            held = {name: columns[name] for name in read if name in columns}
+            return self._points(dense_signal(part, dense_evaluate.trace(held, read, NANOSECOND)))
+
+        robustness = value_of(formula)
+        self._value_of = value_of
+        return robustness
+
+
+class StlDenseTimeOnlineSpecification(OnlineSpecification, DenseTimeSpecification):
+    """Watches signals, each on its own clock.
+
+    A formula with future operators must be rewritten by :meth:`pastify`; its robustness then comes
+    one horizon late.
+
+    >>> import rtamt
+    >>> spec = rtamt.StlDenseTimeOnlineSpecification()
+    >>> spec.declare_var("req", "float")
+    >>> spec.spec = "historically[0:1](req >= 3)"
+    >>> spec.parse()
+    >>> spec.update(["req", [[0, 5], [2.5, 4]]])
+    [[0.0, 2.0], [2.5, 1.0]]
+    >>> spec.update(["req", [[6, 6]]])
+    [[6.0, 1.0]]
+    """
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._monitor: DenseMonitor | None = None  # made by the first update
+
+    @raises_rtamt
+    def update(self, *dataset: Sequence[Any]) -> list[list[float]]:
+        """Take the next samples and return what became known, in the form of ``evaluate``.
+
+        ``dataset``: as for ``evaluate``; a variable may have no samples (``[]``) or be left out. The
+        robustness is known up to the earliest last time of the variables: a point for every change
+        since the update before, and one at that time. Raises :class:`RTAMTException` for wrong data,
+        and the monitor is then as it was.
+        """
+        monitor = self._require_monitor()
+        given = _by_name(dataset)
+        for name in given:
+            if name not in self._reads and name not in self._types and name not in self._inputs:
+                raise signals.unknown_variable(name, tuple(self._reads))
+        signal = monitor.update_many(self._columns(given, monitor.input_names))
+        self._objects.update({name: values[-1] for name, (_, values) in given.items() if values})
+        if len(signal):
+            self._publish(float(signal.values[-1]))
+        self._value_of = None
+        return self._points(signal)
+
+    def reset(self) -> None:
+        """Forget the signals; the next samples are the first."""
+        self._value_of = None
+        if self._monitor is not None:
+            self._monitor.reset()
+
+    @raises_rtamt
+    def get_value(self, var_name: str) -> Any:
+        """Return the latest value of a variable or of the result, as a number (or object).
+
+        Values of sub-formulas are not kept online: each would be known up to a time of its own. After
+        ``evaluate``, where the class has it, they are there as ``[[time, value], ...]``.
+        """
+        if self._value_of is None and self._monitor is not None and var_name not in self._objects:
+            raise UsageError(
+                f"'{var_name}' is not kept while signals are watched in dense time; ask for "
+                f"{', '.join(self._objects)}, or evaluate the finished signals offline"
+            )
+        return super().get_value(var_name)
+
+    def _start_over(self, formulas: dict[str, Formula]) -> None:
+        super()._start_over(formulas)
+        self._monitor = None
+
+    def _require_monitor(self) -> DenseMonitor:
+        if self._monitor is None:
+            formula, text = self._result, self._parsed_document.text
+            require_past(formula, text)
+            self._monitor = DenseMonitor(formula, text=text, backend="cpp" if is_compiled() else "python")
+        return self._monitor
+
+
+class StlDenseTimeSpecification(StlDenseTimeOfflineSpecification, StlDenseTimeOnlineSpecification):
+    """Evaluates finished signals and watches streams.
+
+    ``semantics`` and ``language`` as for :class:`StlDiscreteTimeSpecification`.
+
+    >>> import rtamt
+    >>> spec = rtamt.StlDenseTimeSpecification()
+    >>> spec.declare_var("x", "float")
+    >>> spec.spec = "eventually[0:1](x >= 3)"
+    >>> spec.parse()
+    >>> spec.evaluate(["x", [[0, 5], [2, 4]]])
+    [[0.0, 2.0], [2.0, 1.0]]
+    >>> spec.pastify()
+    >>> spec.update(["x", [[0, 5], [2, 4]]])
+    [[0.0, 2.0], [2.0, 2.0]]
+    """
+
+    @raises_rtamt
+    def __init__(
+        self, semantics: Semantics = Semantics.STANDARD, language: Language = Language.PYTHON
+    ) -> None:
+        super().__init__()
+        check_choices(semantics, language)
+
+
+def _by_name(dataset: tuple[Any, ...]) -> dict[str, Samples]:
+    """Return the times and the values of each variable by its name."""
+    given: dict[str, Samples] = {}
+    for entry in dataset:
+        if not (isinstance(entry, (list, tuple)) and len(entry) == 2 and isinstance(entry[0], str)):
+            raise TraceError(
+                f"expected a name and samples for each variable, such as ['x', [[0.0, 5.0], [2.5, 1.0]]], "
+                f"got {shown(entry)}"
+            )
+        if entry[0] in given:
+            raise TraceError(f"'{entry[0]}' is given twice: give all its samples at once", variable=entry[0])
+        given[entry[0]] = _split(entry[1], entry[0])
+    return given
+
+
+def _split(samples: Any, name: str) -> Samples:
+    try:
+        pairs = [(time, value) for time, value in samples]
+    except (TypeError, ValueError):
+        raise TraceError(
+            f"'{name}' is no dense signal: give a list of [time, value] pairs, such as [[0.0, 5.0], [2.5, 1.0]]",
+            variable=name,
+        ) from None
+    return [time for time, _ in pairs], [value for _, value in pairs]

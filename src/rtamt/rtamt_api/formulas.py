@@ -1,0 +1,94 @@
+"""The formulas of a specification that has been read: their text, and the values of their parts."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from numbers import Real
+from typing import TYPE_CHECKING, Any
+
+from rtamt.errors import UsageError, did_you_mean
+from rtamt.language.formula import Formula, Var, postorder, variables
+from rtamt.language.printer import canonical
+from rtamt.rtamt_api.declarations import Declarations
+from rtamt.rtamt_api.failures import raises_rtamt
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from rtamt.language.specfile import Document
+
+
+class Formulas(Declarations):
+    """What the classes of both time domains share once the text has been read. Not made by users."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._formulas: dict[str, Formula] = {}  # by name, the result last
+        self._inputs: tuple[str, ...] = ()  # the variables they read, fields by full name
+        self._value_of: Callable[[Formula], Any] | None = None  # of the latest evaluation or update
+
+    def _parsed(self, document: Document) -> None:
+        formulas = self._assertions(document)
+        for formula in formulas.values():
+            self._check(formula, document.text)
+        self._formulas = formulas
+        self._inputs = tuple(dict.fromkeys(name for f in formulas.values() for name in variables(f)))
+        self._value_of = None
+
+    @abstractmethod
+    def _check(self, formula: Formula, text: str) -> None:
+        """Raise :class:`SpecificationError` where a formula has no meaning in this time domain."""
+
+    @raises_rtamt
+    def spec_print(self) -> str:
+        """Return the formula in RTAMT's canonical text; after ``pastify`` the pastified one.
+
+        >>> import rtamt
+        >>> spec = rtamt.StlDiscreteTimeSpecification()
+        >>> spec.spec = "eventually[0,1] (a >= b)"
+        >>> spec.parse()
+        >>> spec.spec_print()
+        'eventually[0,1]((a)>=(b))'
+        """
+        return canonical(self._result)
+
+    @property
+    def _result(self) -> Formula:
+        """The formula of the last assertion."""
+        _ = self._parsed_document
+        return list(self._formulas.values())[-1]
+
+    # ---- values ----------------------------------------------------------------------------------
+
+    @raises_rtamt
+    def get_value(self, var_name: str) -> Any:
+        """Return what a variable, an assertion or a sub-formula is worth now.
+
+        ``var_name``: the name of a variable or assertion, or the text of a formula, such as its
+        canonical text ``'(a)>=(2.0)'``. After ``evaluate`` the value is a list: one number a sample,
+        in dense time ``[[time, value], ...]``. After ``update`` it is the latest number; before both
+        it is what was declared. A variable of a message class gives its object.
+        """
+        if var_name in self._objects and (self._value_of is None or self._holds(var_name)):
+            return self._objects[var_name]
+        if self._value_of is None:
+            hint = did_you_mean(var_name, [*self._objects, *self._formulas])
+            raise UsageError(f"'{var_name}' has no value yet{hint}; call update() or evaluate() first")
+        return self._value_of(self._formula_named(var_name))
+
+    def _holds(self, name: str) -> bool:
+        """Tell whether what is held for a variable is its value: objects are kept, numbers need not be."""
+        return not isinstance(self._objects[name], Real)
+
+    def _formula_named(self, text: str) -> Formula:
+        if text in self._formulas:
+            return self._formulas[text]
+        if text in self._inputs:
+            return Var(text)
+        if text in self._types:
+            raise UsageError(f"the specification does not read '{text}', so that its values are not kept")
+        formula = self._read_formula(text)
+        parts = {node for part in self._formulas.values() for node in postorder(part)}
+        if formula not in parts:
+            raise UsageError(f"'{text}' is no part of the specification {self.spec_print()}")
+        return formula

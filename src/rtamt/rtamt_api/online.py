@@ -1,0 +1,85 @@
+"""What the online classes of both time domains share: pastification, and where the result goes."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import TYPE_CHECKING, Any
+
+from rtamt.engine import signals
+from rtamt.errors import RTAMTException, SpecificationError
+from rtamt.language.formula import Apply, Formula, postorder
+from rtamt.language.operators import Tense
+from rtamt.rewrite.pastify import pastify
+from rtamt.rtamt_api.declarations import head_of
+from rtamt.rtamt_api.failures import raises_rtamt
+from rtamt.rtamt_api.formulas import Formulas
+
+if TYPE_CHECKING:
+    from rtamt.language.specfile import Document
+
+
+class OnlineSpecification(Formulas):
+    """A specification that is watched while samples come. Not made by users."""
+
+    #: Seconds, what ``next`` counts; dense time has no ``next``.
+    _period = Fraction(1)
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._pastified = False
+        # From a variable to what formulas read of it: itself, or its fields by full name.
+        self._reads: dict[str, list[str]] = {}
+
+    @raises_rtamt
+    def pastify(self) -> None:
+        """Rewrite the formulas into past operators, equal one horizon later (the paper's Definition 4).
+
+        Raises :class:`RTAMTException` at an operator whose future is unbounded.
+        """
+        text = self._parsed_document.text
+        formulas = {
+            name: pastify(formula, self._period, text, self._unit) for name, formula in self._formulas.items()
+        }
+        self._start_over(formulas)
+        self._pastified = True
+
+    def _parsed(self, document: Document) -> None:
+        super()._parsed(document)
+        self._reads = {}
+        for name in self._inputs:
+            self._reads.setdefault(head_of(name), []).append(name)
+        self._start_over(self._formulas)
+        self._pastified = False
+
+    def _settings_changed(self) -> None:
+        pastified = self._pastified
+        super()._settings_changed()
+        if pastified:
+            self.pastify()
+
+    def _start_over(self, formulas: dict[str, Formula]) -> None:
+        """Watch other formulas from now on, from the first sample."""
+        self._formulas = formulas
+        self._value_of = None
+
+    def _publish(self, robustness: float) -> Any:
+        """Write the result where the specification says, and return it."""
+        head, field = self._out_name
+        if not field:
+            self._objects[head] = robustness
+            return robustness
+        *path, last = field.split(".")
+        setattr(signals.field(self._objects[head], path), last, robustness)
+        return self._objects[head]
+
+
+def require_past(formula: Formula, text: str) -> None:
+    """Raise at the outermost operator that reads the future: an online monitor cannot."""
+    future = [n for n in postorder(formula) if isinstance(n, Apply) and n.op.tense is Tense.FUTURE]
+    if future:
+        name = future[-1].op.name
+        message = (
+            f"{name[0].upper()}{name[1:]} operator is not implemented in the STL online monitor. "
+            f"Call pastify() after parse(), or evaluate the finished trace offline"
+        )
+        raise RTAMTException(str(SpecificationError(message, text, future[-1].span)))

@@ -1,0 +1,208 @@
+"""Every sentence about wrong data in dense time, in full; and what an error leaves behind."""
+
+from __future__ import annotations
+
+from datetime import datetime, timezone
+from typing import Any
+
+import numpy as np
+import pytest
+
+import rtamt
+
+NAN, INF = float("nan"), float("inf")
+BACKENDS = ["cpp", "python"]
+
+WRONG: list[tuple[Any, str]] = [
+    ({"x": [[0.0, 1.0]]}, "the data has no 'y'; it has x"),
+    (
+        {"x": [[0.0, 1.0]], "y": [[0.0, 1.0]], "yy": [[0.0, 1.0]]},
+        "unknown variable 'yy' in the data; the formula reads x, y; did you mean 'y'?",
+    ),
+    ({"x": [], "y": [[0.0, 1.0]]}, "'x' has no samples: give at least one"),
+    (
+        {"x": [[0.0, 1.0], [2.0, 1.0], [1.0, 1.0]], "y": [[0.0, 1.0]]},
+        "the time of 'x' does not increase at sample 2: 1 s comes after 2 s; sort the samples",
+    ),
+    (
+        {"x": [[0.0, 1.0], [0.0, 2.0]], "y": [[0.0, 1.0]]},
+        "'x' has two samples at 0 s (sample 1 and the one before, with ticks of 1 ns): keep one of them",
+    ),
+    (
+        {"x": [[0.0, 1.0], [1.0, NAN]], "y": [[0.0, 1.0]]},
+        "'x' is NaN at sample 1, time 1 s: fill the gap or leave the sample out",
+    ),
+    (
+        {"x": [[0.0, 1.0], [NAN, 1.0]], "y": [[0.0, 1.0]]},
+        "the time of 'x' is nan at sample 1: give a finite time",
+    ),
+    (
+        {"x": [[0.0, 1.0], [INF, 1.0]], "y": [[0.0, 1.0]]},
+        "the time of 'x' is inf at sample 1: give a finite time",
+    ),
+    (
+        {"x": ([0.0, 1.0], [1.0]), "y": [[0.0, 1.0]]},
+        "'x' has 2 times but 1 values: give one of each for every sample",
+    ),
+    ({"x": [[0.0, "a"]], "y": [[0.0, 1.0]]}, "'x' is 'a' at sample 0, expected a number"),
+    (
+        {"x": 5, "y": [[0.0, 1.0]]},
+        "'x' is no dense signal: give (times, values), or a list of [time, value] pairs",
+    ),
+    (
+        {"x": (np.array([0], np.int64), [1.0]), "y": [[0.0, 1.0]]},
+        "'y' tells time in seconds, but others in ns: use one of them for all",
+    ),
+    (
+        {"x": [[1e30, 1.0]], "y": [[0.0, 1.0]]},
+        "'x' has a time too far from 0 for ticks of 1 ns: subtract a start time, or choose a coarser resolution",
+    ),
+    (
+        [1, 2],
+        "expected a mapping from variable to (times, values), such as {'x': ([0.0, 1.5], [3, 4])}, got list",
+    ),
+]
+
+
+@pytest.mark.parametrize("backend", BACKENDS)
+@pytest.mark.parametrize(("data", "message"), WRONG)
+def test_wrong_recording(data: Any, message: str, backend: str) -> None:
+    with pytest.raises(rtamt.TraceError) as info:
+        rtamt.parse("x >= 3 and y >= 3", backend=backend).evaluate(data, time="dense")
+    assert str(info.value) == message
+
+
+UPDATES: list[tuple[Any, dict[str, Any], str]] = [
+    (1.0, {"x": 1.0}, "'x' has two samples at 1 s (sample 2 and the one before, with ticks of 1 ns): keep one of them"),
+    (0.5, {"x": 1.0}, "the time of 'x' does not increase at sample 2: 0.5 s comes after 1 s; sort the samples"),
+    (2.0, {"z": 1.0}, "unknown variable 'z' in the data; the formula reads x, y"),
+    (2.0, {"x": NAN}, "'x' is NaN at sample 2, time 2 s: fill the gap or leave the sample out"),
+    (2.0, {"x": "a"}, "'x' is 'a' at sample 2, expected a number"),
+    (NAN, {"x": 1.0}, "the time of 'x' is nan at sample 2: give a finite time"),
+    (INF, {"x": 1.0}, "the time of 'x' is inf at sample 2: give a finite time"),
+    (
+        1e30,
+        {"x": 1.0},
+        "'x' has a time too far from 0 for ticks of 1 ns: subtract a start time, or choose a coarser resolution",
+    ),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("backend", BACKENDS)
+@pytest.mark.parametrize(("time", "values", "message"), UPDATES)
+def test_wrong_update_leaves_the_monitor_as_it_was(
+    time: Any, values: dict[str, Any], message: str, backend: str
+) -> None:
+    monitor = rtamt.parse("once(x + y >= 3)", backend=backend).monitor(time="dense")
+    monitor.update(0.0, x=5.0, y=1.0)
+    monitor.update(1.0, x=0.0)
+    with pytest.raises(rtamt.TraceError) as info:
+        monitor.update(time, **values)
+    assert str(info.value) == message
+    told = monitor.update(2.0, y=2.0, x=9.0)
+    np.testing.assert_array_equal(told.times, [2.0])
+    np.testing.assert_array_equal(told.values, [8.0])
+
+
+@pytest.mark.parametrize("backend", BACKENDS)
+def test_a_variable_that_never_appears(backend: str) -> None:
+    monitor = rtamt.parse("x and y", backend=backend).monitor(time="dense")
+    assert len(monitor.update(0.0, x=5.0)) == 0
+    with pytest.raises(rtamt.TraceError) as info:
+        monitor.finish()
+    assert str(info.value) == "'y' never had a sample, so that there is nothing to tell"
+
+
+@pytest.mark.parametrize("backend", BACKENDS)
+def test_a_finished_monitor(backend: str) -> None:
+    monitor = rtamt.parse("x", backend=backend).monitor(time="dense")
+    monitor.update(0.0, x=5.0)
+    assert len(monitor.finish()) == 0
+    with pytest.raises(rtamt.UsageError) as info:
+        monitor.update(1.0, x=1.0)
+    assert str(info.value) == "the monitor has finished its trace; call reset() before the next sample"
+    monitor.reset()
+    np.testing.assert_array_equal(monitor.update(0.0, x=2.0).values, [2.0])
+
+
+def test_operators_that_dense_time_does_not_have() -> None:
+    for call in (
+        lambda: rtamt.parse("once(prev x)", time="dense"),
+        lambda: rtamt.parse("once(prev x)").evaluate({"x": [[0.0, 1.0]]}, time="dense"),
+        lambda: rtamt.parse("once(prev x)").monitor(time="dense"),
+    ):
+        with pytest.raises(rtamt.SpecificationError) as info:
+            call()
+        assert str(info.value) == (
+            "'prev' means one sample away, which dense time does not have; use a window such as once[0:1], "
+            "or discrete time\n"
+            "  line 1, column 6:\n"
+            "    once(prev x)\n"
+            "         ^^^^^^"
+        )
+
+
+def test_wrong_settings() -> None:
+    with pytest.raises(rtamt.UsageError) as info:
+        rtamt.parse("x", time="dens")
+    assert str(info.value) == "unknown time domain 'dens'; choose from discrete, dense; did you mean 'dense'?"
+    with pytest.raises(rtamt.UsageError) as info:
+        rtamt.parse("3 >= 2").evaluate({}, time="dense")
+    assert str(info.value) == (
+        "the formula reads no variable, so in dense time nothing says when to evaluate it"
+    )
+    with pytest.raises(rtamt.BoundError) as bound:
+        rtamt.parse("once[0:1/3] x").monitor(time="dense")
+    assert bound.value.message == (
+        "The operator bound must be a multiple of the resolution: 1/3 s is not a whole number of ticks of 1 ns; "
+        "change the bound or the tick"
+    )
+
+
+def test_a_value_that_does_not_exist_leaves_the_monitor_as_it_was() -> None:
+    monitor = rtamt.parse("once(x / y >= 1)").monitor(time="dense")
+    monitor.update(0.0, x=4.0, y=1.0)
+    for _ in range(2):
+        with pytest.raises(rtamt.EvaluationError) as info:
+            monitor.update(1.5, x=0.0, y=0.0)
+        assert str(info.value) == (
+            "'x / y' has no value at time 1.5 s: it is 0/0, inf - inf, 0 * inf, or a root or logarithm of a "
+            "negative number; change the formula or the data so that this cannot happen"
+        )
+    np.testing.assert_array_equal(monitor.update(1.5, x=1.0, y=1.0).values, [3.0])
+
+
+def test_exact_at_stamps_of_a_billion_seconds() -> None:
+    start = 10**18
+    x = (np.array([start, start + 1, start + 100_000_001]), [1.0, 0.0, 1.0])
+    result = rtamt.parse("once[100ms:100ms] x").evaluate({"x": x}, time="dense")
+    np.testing.assert_array_equal(result.signal.times, start + np.array([0, 100_000_000, 100_000_001]))
+    np.testing.assert_array_equal(result.signal.values, [-INF, 1.0, 0.0])
+
+
+@pytest.mark.parametrize("backend", BACKENDS)
+def test_no_sliver_where_tenths_meet(backend: str) -> None:
+    # In doubles 0.3 - 0.1 misses 0.2 by a hair, and a window of exactly 0.2 s would see the dip.
+    times = [0.1 * k for k in range(10)]
+    values = [1.0 if k % 3 else -1.0 for k in range(10)]
+    result = rtamt.parse("eventually[0:0.2] x", backend=backend).evaluate(
+        {"x": (times, values)}, time="dense"
+    )
+    np.testing.assert_array_equal(result.signal.values, [1.0, -1.0])
+    np.testing.assert_array_equal(result.signal.times, [0.0, 0.9])
+
+
+@pytest.mark.parametrize("backend", BACKENDS)
+def test_datetimes_come_back_as_datetimes(backend: str) -> None:
+    noon = np.datetime64("2026-01-01T12:00:00", "ns")
+    times = noon + np.array([0, 1, 2], "m8[s]")
+    signal = rtamt.parse("x", backend=backend).evaluate({"x": (times, [1, 2, 2])}, time="dense").signal
+    np.testing.assert_array_equal(signal.times, times)
+    stamp = datetime(2026, 1, 1, 12, tzinfo=timezone.utc).replace(tzinfo=None)
+    monitor = rtamt.parse("x", backend=backend).monitor(time="dense")
+    np.testing.assert_array_equal(monitor.update(stamp, x=1.0).times, [noon])
+
+
+def test_a_coarser_resolution_rounds_stamps_to_it() -> None:
+    result = rtamt.parse("x").evaluate({"x": [[0.0, 1.0], [0.0149, 2.0]]}, time="dense", resolution="10ms")
+    np.testing.assert_array_equal(result.signal.times, [0.0, 0.01])
