@@ -180,7 +180,9 @@ class Specification:
     def signal_of(self, formula: Formula, trace: Trace | DenseTrace) -> Signal:
         """Return the robustness signal of any formula over a normalised recording."""
         if isinstance(trace, Trace):
-            return Signal(trace.times.copy(), self._robustness_of(formula, trace))
+            times = trace.times.view()
+            times.flags.writeable = False  # all signals of a recording share its times
+            return Signal(times, self._robustness_of(formula, trace))
         if self.backend == "python":
             steps = dense_reference.evaluate(formula, trace.columns, trace.scale.tick)
             return trace.signal(steps.times, steps.values)

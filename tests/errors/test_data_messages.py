@@ -173,7 +173,8 @@ def test_the_callers_data_is_never_changed() -> None:
     before = {"time": [0, 1, 2], "x": np.array([1.0, 2.0, 3.0]), "y": [3, 2, 1]}
     result = rtamt.parse("x >= y").evaluate(data)
     result.signal.values[:] = 99
-    result.signal.times[:] = 99
+    with pytest.raises(ValueError, match="read-only"):
+        result.signal.times[:] = 99
     monitor = rtamt.parse("x >= y").monitor()
     monitor.update_many(data).values[:] = 99
     assert data["time"] == before["time"]
@@ -184,7 +185,9 @@ def test_the_callers_data_is_never_changed() -> None:
 def test_the_callers_time_stamps_are_never_changed() -> None:
     times = np.array([0.0, 1.0])
     result = rtamt.parse("x >= 1").evaluate({"time": times, "x": [1, 2]})
-    result.signal.times[:] = 99
+    with pytest.raises(ValueError, match="read-only"):
+        result.signal.times[:] = 99
+    times[:] = [0.0, 1.0]
     np.testing.assert_array_equal(times, [0.0, 1.0])
     signal = rtamt.parse("x").monitor().update_many({"time": times, "x": np.array([1.0, 2.0])})
     signal.times[:] = 99

@@ -137,7 +137,8 @@ def test_a_sub_formula_over_what_was_not_read() -> None:
 
 def test_writing_into_a_result_changes_no_other() -> None:
     result = rtamt.parse("x").evaluate({"time": [0.0, 1.0], "x": [1.0, 2.0]})
-    result.signal.times[:] = 99
+    with pytest.raises(ValueError, match="read-only"):
+        result.signal.times[:] = 99
     np.testing.assert_array_equal(result["x"].times, [0.0, 1.0])
 
 

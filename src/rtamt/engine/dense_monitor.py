@@ -114,6 +114,8 @@ class DenseMonitor:
                 for name in values:
                     self._count[name] += 1
                     self._last[name] = tick
+                if known is None and self._backend.known_until == self._told_until:
+                    return self._nothing
                 return self._quick_signal(known, scale)
         times = np.array([time]) if isinstance(time, (np.integer, np.datetime64)) else [time]
         return self.update_many({name: (times, [value]) for name, value in values.items()})
@@ -132,7 +134,9 @@ class DenseMonitor:
         scale = self._scale or TimeScale(self._tick, dense_signals.kind_of(given[0][0]))
         chunk = self._chunk(columns, scale)
         known, until = self._push(chunk, scale)
-        self._scale = scale
+        if self._scale is None:
+            self._scale = scale
+            self._nothing = TickSignal(scale, (), ())
         for name, (ticks, _) in zip(self.input_names, chunk, strict=True):
             if len(ticks):
                 self._last[name] = int(ticks[-1])
@@ -166,12 +170,12 @@ class DenseMonitor:
         self._count = dict.fromkeys(self.input_names, 0)
         self._told_until: int | None = None
         self._value = float("nan")  # the last value told
+        self._nothing = TickSignal(TimeScale(self._tick, "seconds"), (), ())
 
     def _quick_signal(self, known: tuple[list[int], list[float]] | None, scale: TimeScale) -> Signal:
         """Return what one instant made known: as :meth:`_signal`, from lists."""
         until = self._backend.known_until
-        if until is None or until == self._told_until:
-            return TickSignal(scale, (), ())
+        assert until is not None
         self._told_until = until
         if known is None:
             return TickSignal(scale, (until,), (self._value,))

@@ -33,6 +33,7 @@ class Signal:
     """Values over time: ``times`` in seconds, ``values``; float64 arrays of the same length.
 
     In dense time a point for every change and one at the end; times come as the caller gave them.
+    The times of a discrete recording are shared by its signals and cannot be written.
 
     >>> import rtamt
     >>> signal = rtamt.parse("x >= 3").evaluate({"time": [0, 1, 2], "x": [5, 1, 4]}).signal
@@ -178,9 +179,8 @@ def stamps(values: Any) -> FloatArray:
 
 def check_numbers(name: str, column: FloatArray, times: FloatArray, first: int = 0) -> None:
     """Raise :class:`TraceError` at the first NaN; ``first`` is the index of ``column[0]`` in the recording."""
-    bad = np.isnan(column)
-    if bad.any():
-        i = int(bad.argmax())
+    if len(column) and np.isnan(column.min()):  # the least of numbers and a NaN is NaN
+        i = int(np.isnan(column).argmax())
         raise nan_error(name, first + i, float(times[i]))
 
 
