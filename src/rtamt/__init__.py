@@ -16,6 +16,7 @@ from rtamt.errors import (
     UsageError,
 )
 from rtamt.language.operators import STL
+from rtamt.results import Result
 from rtamt.rtamt_api import (
     Language,
     Semantics,
@@ -34,7 +35,7 @@ from rtamt.rtamt_api import (
     STLSpecification,
     TimeInterpretation,
 )
-from rtamt.specification import Result, Specification, load, parse, robustness
+from rtamt.specification import Specification, load, parse, robustness
 
 __version__ = "1.0.0.dev0"
 

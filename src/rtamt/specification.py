@@ -22,7 +22,7 @@ from rtamt.language.parser import parse_formula
 from rtamt.language.printer import to_text
 from rtamt.language.specfile import Document, parse_document
 from rtamt.language.units import duration
-from rtamt.rewrite import interface
+from rtamt.results import Result
 from rtamt.rewrite.check import check_bounds, check_dense
 from rtamt.rewrite.desugar import desugar
 from rtamt.rewrite.horizon import horizon
@@ -256,59 +256,6 @@ class Specification:
 
     def __str__(self) -> str:
         return to_text(self.formula, self.language)
-
-
-@dataclass(frozen=True, eq=False)
-class Result:
-    """What an evaluation gives: numbers and a verdict at the first instant, and the whole signal."""
-
-    specification: Specification
-    trace: Trace | DenseTrace
-    #: ρ at every sample, in dense time at every change and at the end: ``.times`` and ``.values``.
-    signal: Signal
-
-    @property
-    def robustness(self) -> float:
-        """ρ at the first instant: how far the recording is from violating (or satisfying)."""
-        return float(self.signal.values[0])
-
-    @cached_property
-    def satisfied(self) -> bool:
-        """Whether the formula holds at the first instant: Boolean semantics, evaluated on its own.
-
-        Where the robustness is 0, only this has a verdict.
-
-        >>> import rtamt
-        >>> [rtamt.parse(text).evaluate({"x": [3]}).satisfied for text in ("x >= 3", "x > 3")]
-        [True, False]
-        """
-        lowered = interface.boolean(self.specification.formula)
-        return bool(self.specification.signal_of(lowered, self.trace).values[0] > 0)
-
-    def __getitem__(self, name: str) -> Signal:
-        """Return the signal of a named sub-specification, or of any formula over the same variables.
-
-        >>> import rtamt
-        >>> result = rtamt.parse("low = x <= 3; always(low)").evaluate({"time": [0, 1], "x": [1, 2]})
-        >>> result["low"]
-        Signal(times=array([0., 1.]), values=array([2., 1.]))
-        >>> result["x + 1"].values
-        array([2., 3.])
-        """
-        formula = self.specification.named(name)
-        names = tuple(self.trace.columns)
-        for variable in variables(formula):
-            if variable not in self.trace.columns:
-                raise UsageError(
-                    f"'{name}' reads '{variable}', which the formula does not{did_you_mean(variable, names)}; "
-                    f"the recording was read for {', '.join(names)} only"
-                )
-        if isinstance(self.trace, Trace):
-            check_bounds(formula, self.trace.period, name)
-        else:
-            check_dense(formula, name)
-            check_bounds(formula, self.trace.scale.tick, name, "resolution")
-        return self.specification.signal_of(formula, self.trace)
 
 
 def parse(

@@ -29,7 +29,8 @@ if TYPE_CHECKING:
     import argparse
 
     from rtamt.engine.dense_evaluate import DenseTrace
-    from rtamt.specification import Result, Specification
+    from rtamt.results import Result
+    from rtamt.specification import Specification
 
 _DESCRIPTION = """\
 Evaluate recordings against a requirement: the robustness at the first instant (how far

@@ -26,7 +26,7 @@ from rtamt.errors import NameInFormulaError, ParseError, did_you_mean
 from rtamt.language import complaints
 from rtamt.language.formula import Formula, Span
 from rtamt.language.grammar import INFINITY
-from rtamt.language.lexer import unquoted
+from rtamt.language.lexer import Token, unquoted
 from rtamt.language.operators import STL, Fixity, Language
 from rtamt.language.parser import FormulaParser
 from rtamt.language.scope import Scope
@@ -35,7 +35,6 @@ if TYPE_CHECKING:
     from collections.abc import Collection, Mapping
 
     from rtamt.errors import SpecificationError
-    from rtamt.language.lexer import Token
 
 #: The types that need no import.
 TYPES = ("float", "int", "long", "complex", "bool")
@@ -206,6 +205,7 @@ class _DocumentParser(FormulaParser):
                 type_name.span,
             )
         name = self._taken("the name of a constant" if constant else "the name of a variable", quotes=True)
+        name = self._with_slashes(name)
         self._declare(name, type_name.text, role, constant=constant)
         self.accept(";")
         return True
@@ -377,6 +377,17 @@ class _DocumentParser(FormulaParser):
             return False
         third = self._at(2)
         return third.text in ("@", "=") or (third.kind == "name" and self.language.infix(third.text) is None)
+
+    def _with_slashes(self, token: Token) -> Token:
+        """Take what follows a name without a space, if it is a slash and a name: ``robot/speed`` is one name."""
+        while token.kind == "name" and self.token.text == "/" and self._at(1).kind == "name":
+            slash, tail = self.token, self._at(1)
+            if slash.start != token.end or tail.start != slash.end:
+                break
+            self.next()
+            self.next()
+            token = Token("name", f"{token.text}/{tail.text}", token.start, tail.end)
+        return token
 
     # ---- errors ----------------------------------------------------------------------------------
 

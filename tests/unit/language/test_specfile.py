@@ -164,3 +164,10 @@ def test_a_document_cannot_be_changed_through_its_tables():
     for table in (document.topics, document.constants, document.definitions):
         with pytest.raises(TypeError):
             table["x"] = None
+
+
+def test_a_declared_name_may_hold_slashes_and_only_an_undeclared_one_divides():
+    document = parse_document("input float robot/speed; input float limit; robot/speed >= limit / 2")
+    assert document.variables == ("robot/speed", "limit")
+    assert str(document.formula) == '"robot/speed" >= limit / 2'
+    assert str(parse_document("input float a; input float b; a/b >= 2").formula) == "a / b >= 2"
