@@ -56,6 +56,7 @@ format: $(VENV)/.group-lint ## format Python and C++
 
 bench: $(VENV)/.core ## what a sample costs, beside the figures to reach
 	$(RUN) benchmarks/run.py
+	$(RUN) benchmarks/dense_memory.py
 
 clean: ## remove all that was made here, .venv too
 	rm -rf $(VENV) build dist

@@ -14,6 +14,7 @@ from rtamt.cli.command import (
     Command,
     CommandError,
     add_specification_options,
+    add_time_option,
     complain,
     json_number,
     read_specification,
@@ -77,12 +78,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.epilog = _EPILOG
     add_specification_options(parser)
     parser.add_argument("traces", metavar="TRACE", nargs="+", help="a CSV file")
-    parser.add_argument(
-        "--time",
-        default="discrete",
-        metavar="{discrete,dense}",
-        help="dense: signals change at any instant, not once a period (default: discrete)",
-    )
+    add_time_option(parser)
     parser.add_argument("--time-column", metavar="NAME", help="the column of time stamps; '' for none")
     parser.add_argument("-o", "--output", metavar="FILE", help="write the robustness at every sample as CSV")
     parser.add_argument("--json", action="store_true", help="print JSON, one object a line")

@@ -73,6 +73,16 @@ def add_specification_options(parser: argparse.ArgumentParser) -> None:
     )
 
 
+def add_time_option(parser: argparse.ArgumentParser) -> None:
+    """Add the choice of the time domain."""
+    parser.add_argument(
+        "--time",
+        default="discrete",
+        metavar="{discrete,dense}",
+        help="dense: signals change at any instant, not once a period (default: discrete)",
+    )
+
+
 def read_specification(args: argparse.Namespace, time: str = "discrete") -> Specification:
     """Read SPEC: the file of that name, else the text itself; ``time``: discrete or dense."""
     spec: str = args.spec

@@ -13,6 +13,7 @@ from rtamt.cli.command import (
     Command,
     CommandError,
     add_specification_options,
+    add_time_option,
     complain,
     json_number,
     read_specification,
@@ -24,7 +25,9 @@ from rtamt.errors import StlError, TraceError
 if TYPE_CHECKING:
     import argparse
 
+    from rtamt.engine.dense_monitor import DenseMonitor
     from rtamt.engine.monitor import Monitor
+    from rtamt.engine.signals import Signal
 
 _DESCRIPTION = """\
 Watch a stream of samples. Each line of input is one sample; each line of output is the robustness
@@ -35,6 +38,9 @@ _EPILOG = """\
 input: JSON objects, one a line, or CSV with a header row. What the formula does not read is left
 out of account. Time stamps (seconds) are in time, t, timestamp or stamp; without one, samples are
 one period apart (--period, default 1 s). Fields: {"req": {"value": 3}} or {"req.value": 3}.
+
+With --time dense signals change at any instant, each on its own clock: a JSON object may hold some of
+the variables, and a line of output is printed for every change and at the last known instant.
 
 output: {"time": 0.0, "robustness": 3.0}. JSON has no infinities: they are the strings "inf" and
 "-inf", here and in the input.
@@ -54,6 +60,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.description = _DESCRIPTION
     parser.epilog = _EPILOG
     add_specification_options(parser)
+    add_time_option(parser)
     parser.add_argument("--time-column", metavar="NAME", help="the key or column of time stamps; '' for none")
     parser.add_argument(
         "--tolerance",
@@ -69,8 +76,12 @@ def run(args: argparse.Namespace) -> int:
     """Read samples until the end of input, print what becomes known."""
     if not args.tolerance >= 0:
         raise CommandError(f"the tolerance is {args.tolerance:g}; give a fraction of the period, such as 0.1")
-    watched = Watched(read_specification(args).monitor(tolerance=args.tolerance))
-    samples = Samples(watched.monitor.input_names, args.time_column)
+    spec = read_specification(args, args.time)
+    dense = spec.time == "dense"
+    watched: Watched | DenseWatched = (
+        DenseWatched(spec.monitor(time="dense")) if dense else Watched(spec.monitor(tolerance=args.tolerance))
+    )
+    samples = Samples(watched.monitor.input_names, args.time_column, partial=dense)
     if sys.stdin.isatty():
         complain("reading samples from the terminal, one JSON object a line; Ctrl-D ends")
     code = OK
@@ -115,9 +126,33 @@ class Watched:
 
     def finish(self) -> None:
         """End the trace; print what was not known yet."""
-        signal = self.monitor.finish()
-        for time, robustness in zip(signal.times.tolist(), signal.values.tolist(), strict=True):
-            _print(time, robustness)
+        _print_all(self.monitor.finish())
+
+
+class DenseWatched:
+    """A monitor in dense time: a sample may hold some of the variables, a result any number of points."""
+
+    def __init__(self, monitor: DenseMonitor) -> None:
+        self.monitor = monitor
+
+    def take(self, time: float | None, values: dict[str, float], line: int) -> str:
+        """Take a sample and print what became known; return what is wrong with the sample, if anything is."""
+        if time is None:
+            return f"{STDIN}, line {line}: in dense time every sample needs its time"
+        try:
+            _print_all(self.monitor.update(time, **values))
+        except StlError as error:
+            return f"{STDIN}, line {line}: {error}"
+        return ""
+
+    def finish(self) -> None:
+        """End the signals; print what was not known yet."""
+        _print_all(self.monitor.finish())
+
+
+def _print_all(signal: Signal) -> None:
+    for time, robustness in zip(signal.times.tolist(), signal.values.tolist(), strict=True):
+        _print(time, robustness)
 
 
 def _print(time: float, robustness: float) -> None:

@@ -22,9 +22,13 @@ _INFINITIES = ("inf", "-inf")
 
 
 class Samples:
-    """Reads one sample from each line: its time stamp (None if there are none) and the values wanted."""
+    """Reads one sample from each line: its time stamp (None if there are none) and the values wanted.
 
-    def __init__(self, names: Sequence[str], time_name: str | None = None) -> None:
+    ``partial``: a JSON object may hold some of the values only, as in dense time.
+    """
+
+    def __init__(self, names: Sequence[str], time_name: str | None = None, *, partial: bool = False) -> None:
+        self._partial = partial
         self._names = tuple(names)
         self._time_name = time_name
         self._read: Callable[[str, int], Sample] | None = None
@@ -43,7 +47,7 @@ class Samples:
         if self._read is not None:
             return self._read(text, number)
         if text.lstrip().startswith("{"):
-            reader = JsonSamples(self._names, self._time_name)
+            reader = JsonSamples(self._names, self._time_name, self._partial)
             sample = reader.read(text, number)
             self._read = reader.read
             return sample
@@ -54,8 +58,9 @@ class Samples:
 class JsonSamples:
     """Samples as JSON objects; the first one tells where the time stamp is."""
 
-    def __init__(self, names: tuple[str, ...], time_name: str | None) -> None:
+    def __init__(self, names: tuple[str, ...], time_name: str | None, partial: bool) -> None:
         self._names = names
+        self._partial = partial
         self._time_name = time_name
 
     def read(self, text: str, number: int) -> Sample:
@@ -72,7 +77,8 @@ class JsonSamples:
             lowered = {key.lower(): key for key in reversed(data)}
             self._time_name = next((lowered[name] for name in TIME_NAMES if name in lowered), "")
         time = _number(data, self._time_name, number) if self._time_name else None
-        return time, {name: _number(data, name, number) for name in self._names}
+        names = [name for name in self._names if not self._partial or _has(data, name)]
+        return time, {name: _number(data, name, number) for name in names}
 
 
 class CsvSamples:
@@ -119,6 +125,14 @@ def _number(data: dict[str, Any], name: str, number: int) -> float:
     if value in _INFINITIES:
         return float(value)
     raise _error(number, f"'{name}' is {_shown(value)}, expected a number", name)
+
+
+def _has(data: dict[str, Any], name: str) -> bool:
+    try:
+        _member(data, name)
+    except KeyError:
+        return False
+    return True
 
 
 def _member(data: dict[str, Any], name: str) -> Any:

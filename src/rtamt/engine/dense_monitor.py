@@ -91,6 +91,11 @@ class DenseMonitor:
         return float(self._depth)
 
     @property
+    def samples(self) -> int:
+        """How many samples of any variable the monitor has taken since the start or the last reset."""
+        return sum(self._count.values())
+
+    @property
     def memory(self) -> int:
         """Bytes of state: that of the events inside the windows."""
         return int(self._backend.state_bytes)

@@ -1,6 +1,8 @@
 """``rtamt monitor``: what goes in, what comes out, and when."""
 
 import json
+import subprocess
+import sys
 
 import pytest
 
@@ -112,3 +114,33 @@ def test_a_sample_that_is_left_out_leaves_a_gap_which_the_tolerance_may_allow(ru
 
 def test_a_formula_without_variables_counts_samples(run):
     assert lines(run("monitor", "true", stdin=jsonl({"a": 1}, {"a": 2})).out) == [(0.0, "inf"), (1.0, "inf")]
+
+
+def test_dense_samples_may_hold_some_of_the_variables():
+    lines = [
+        '{"time": 0, "x": 5}',
+        '{"time": 0.5, "y": 1}',
+        '{"time": 2.5, "x": 4}',
+        '{"time": 3, "y": 0}',
+    ]
+    done = subprocess.run(
+        [sys.executable, "-m", "rtamt", "monitor", "--time", "dense", "always[0:1](x >= 3) and y >= 0"],
+        input="\n".join(lines),
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    told = [json.loads(line) for line in done.stdout.splitlines()]
+    assert [(point["time"], point["robustness"]) for point in told] == [(0.5, 1.0), (1.5, 1.0), (3.0, 0.0)]
+
+
+def test_a_dense_sample_without_a_time():
+    done = subprocess.run(
+        [sys.executable, "-m", "rtamt", "monitor", "--time", "dense", "x >= 0"],
+        input='{"x": 5}',
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr == "rtamt: stdin, line 1: in dense time every sample needs its time\n"
