@@ -105,6 +105,16 @@ def test_wrong_update_leaves_the_monitor_as_it_was(
 
 
 @pytest.mark.parametrize("backend", BACKENDS)
+def test_nanoseconds_after_seconds(backend: str) -> None:
+    monitor = rtamt.parse("x", backend=backend).monitor(time="dense")
+    monitor.update(0.0, x=5.0)
+    with pytest.raises(rtamt.TraceError) as info:
+        monitor.update(np.int64(10**9), x=5.0)
+    assert str(info.value) == "'x' tells time in ns, but others in seconds: use one of them for all"
+    assert len(monitor.update(np.float64(1.0), x=5.0)) == 1
+
+
+@pytest.mark.parametrize("backend", BACKENDS)
 def test_a_variable_that_never_appears(backend: str) -> None:
     monitor = rtamt.parse("x and y", backend=backend).monitor(time="dense")
     assert len(monitor.update(0.0, x=5.0)) == 0

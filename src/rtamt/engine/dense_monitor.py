@@ -107,7 +107,9 @@ class DenseMonitor:
         :class:`EvaluationError` where an operation has no value; the monitor is then as it was.
         """
         scale = self._scale
-        if scale is not None and scale.kind == "seconds" and self._quick is not None:
+        # Plain numbers are seconds, and nothing else is: integers of numpy would be nanoseconds.
+        plain = time.__class__ is float or time.__class__ is int
+        if plain and scale is not None and scale.kind == "seconds" and self._quick is not None:
             try:
                 tick = round(time * self._ticks_a_second)
                 known = self._quick(tick, values)
