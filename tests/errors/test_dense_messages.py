@@ -216,3 +216,43 @@ def test_datetimes_come_back_as_datetimes(backend: str) -> None:
 def test_a_coarser_resolution_rounds_stamps_to_it() -> None:
     result = rtamt.parse("x").evaluate({"x": [[0.0, 1.0], [0.0149, 2.0]]}, time="dense", resolution="10ms")
     np.testing.assert_array_equal(result.signal.times, [0.0, 0.01])
+
+
+@pytest.mark.parametrize(
+    "times",
+    [
+        [datetime(3000, 1, 1), datetime(3000, 1, 2)],
+        np.array(["1500-01-01", "1600-01-02"], "M8[D]"),
+        np.array([2**63, 2**63 + 5], np.uint64),
+        np.array([2**62, 2**63 - 1], np.int64),
+        np.array([-(2**63), 0], np.int64),
+    ],
+    ids=str,
+)
+def test_times_that_ticks_cannot_hold_do_not_wrap(times: Any) -> None:
+    message = "'x' has a time too far from 0 for ticks of 1 ns: subtract a start time, or choose a coarser resolution"
+    spec = rtamt.parse("always[0:1](x >= 3)")
+    for call in (
+        lambda: spec.evaluate({"x": (times, [5.0, 4.0])}, time="dense"),
+        lambda: spec.monitor(time="dense").update_many({"x": (times, [5.0, 4.0])}),
+    ):
+        with pytest.raises(rtamt.TraceError) as info:
+            call()
+        assert str(info.value) == message
+
+
+def test_the_limit_of_time_is_the_same_on_every_path() -> None:
+    monitor = rtamt.parse("x").monitor(time="dense")
+    monitor.update(0.0, x=1.0)
+    with pytest.raises(rtamt.TraceError) as info:
+        monitor.update(4.7e9, x=1.0)
+    assert str(info.value) == (
+        "'x' has a time too far from 0 for ticks of 1 ns: subtract a start time, or choose a coarser resolution"
+    )
+
+
+def test_a_value_without_a_time() -> None:
+    monitor = rtamt.parse("x and y").monitor(time="dense")
+    with pytest.raises(rtamt.TraceError) as info:
+        monitor.update_many({"x": ([], [1.0]), "y": [[0.0, 1.0]]})
+    assert str(info.value) == "'x' has 0 times but 1 values: give one of each for every sample"

@@ -11,7 +11,7 @@ from rtamt.engine.compile import compile_program
 from rtamt.engine.core import core
 from rtamt.engine.dense_evaluate import undefined
 from rtamt.engine.dense_reference import DenseReferenceMonitor
-from rtamt.engine.dense_signals import TickSignal, TimeScale
+from rtamt.engine.dense_signals import FARTHEST, TickSignal, TimeScale
 from rtamt.engine.signals import Signal
 from rtamt.errors import TraceError, UsageError
 from rtamt.language.formula import variables
@@ -112,6 +112,8 @@ class DenseMonitor:
         if plain and scale is not None and scale.kind == "seconds" and self._quick is not None:
             try:
                 tick = round(time * self._ticks_a_second)
+                if not -FARTHEST < tick < FARTHEST:
+                    raise OverflowError
                 known = self._quick(tick, values)
             except (self._refused, TypeError, ValueError, OverflowError):
                 pass  # the long way finds out what is wrong, and says it
@@ -197,7 +199,7 @@ class DenseMonitor:
         empty = (np.empty(0, np.int64), np.empty(0))
         return [
             dense_signals.samples_of(columns[name], name, scale, self._count[name], self._last[name])
-            if name in columns and np.size(columns[name][0])
+            if name in columns
             else empty
             for name in self.input_names
         ]

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 NANOSECOND = Fraction(1, 10**9)
 
 #: Stamps stay this far from the ends of int64, so that bounds can be added to them.
-_LIMIT = 2**62
+FARTHEST = 2**62
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,20 +62,31 @@ class TimeScale:
             raw = np.asarray(times)
             if raw.dtype.kind == "O":
                 raw = raw.astype("datetime64[us]")
-            if np.isnat(raw).any() if raw.dtype.kind == "M" else False:
-                raise not_finite(name, first + int(np.isnat(raw).argmax()), raw[np.isnat(raw)][0])
-            nanoseconds = raw.astype("datetime64[ns]").astype(np.int64) if raw.dtype.kind == "M" else raw
+            if raw.dtype.kind == "M":
+                missing = np.isnat(raw)
+                if missing.any():
+                    raise not_finite(name, first + int(missing.argmax()), raw[missing][0])
+                # Looked at in seconds first, which every date fits into.
+                far = np.abs(raw.astype("datetime64[s]").astype(np.int64)) >= FARTHEST // 10**9
+                if far.any():
+                    raise self._too_far(name)
+                raw = raw.astype("datetime64[ns]").astype(np.int64)
+            if len(raw) and max(abs(int(raw.min())), abs(int(raw.max()))) >= FARTHEST:
+                raise self._too_far(name)
             per_tick = self.tick / NANOSECOND
             if per_tick == 1:
-                return np.array(nanoseconds, dtype=np.int64)
-            exact = np.array([round(Fraction(int(t)) / per_tick) for t in nanoseconds], dtype=object)
-        if len(exact) and max(abs(float(exact.min())), abs(float(exact.max()))) >= _LIMIT:
-            raise TraceError(
-                f"'{name}' has a time too far from 0 for ticks of {format_duration(self.tick)}: "
-                f"subtract a start time, or choose a coarser resolution",
-                variable=name,
-            )
+                return np.array(raw, dtype=np.int64)
+            exact = np.array([round(Fraction(int(t)) / per_tick) for t in raw], dtype=object)
+        if len(exact) and max(abs(float(exact.min())), abs(float(exact.max()))) >= FARTHEST:
+            raise self._too_far(name)
         return exact.astype(np.int64)
+
+    def _too_far(self, name: str) -> TraceError:
+        return TraceError(
+            f"'{name}' has a time too far from 0 for ticks of {format_duration(self.tick)}: "
+            f"subtract a start time, or choose a coarser resolution",
+            variable=name,
+        )
 
     def times(self, ticks: TickArray) -> NDArray[Any]:
         """Return ticks as the caller tells time: float64 seconds, int64 nanoseconds or datetime64[ns]."""
