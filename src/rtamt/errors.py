@@ -53,12 +53,6 @@ class SpecificationError(StlError):
             return self.message
         return f"{self.message}\n{caret(self.text, self.span)}"
 
-    def located(self, text: str | None, span: Span | None) -> SpecificationError:
-        """Return this error with a place in ``text``; a place that is already known stays."""
-        if self.text is not None and self.span is not None:
-            return self
-        return type(self)(self.message, text, self.span or span)
-
 
 class ParseError(SpecificationError):
     """The text is not a formula or specification file."""
