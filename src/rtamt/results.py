@@ -6,14 +6,14 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from rtamt.engine.signals import Signal, Trace
+from rtamt.engine.signals import Recording, Signal
 from rtamt.errors import UsageError, did_you_mean
 from rtamt.language.formula import variables
 from rtamt.rewrite import interface
 from rtamt.rewrite.check import check_bounds, check_dense
 
 if TYPE_CHECKING:
-    from rtamt.engine.dense_evaluate import DenseTrace
+    from rtamt.engine.dense_evaluate import DenseRecording
     from rtamt.specification import Specification
 
 
@@ -22,7 +22,7 @@ class Result:
     """What an evaluation gives: numbers and a verdict at the first instant, and the whole signal."""
 
     specification: Specification
-    trace: Trace | DenseTrace
+    trace: Recording | DenseRecording
     #: ρ at every sample, in dense time at every change and at the end: ``.times`` and ``.values``.
     signal: Signal
 
@@ -62,7 +62,7 @@ class Result:
                     f"'{name}' reads '{variable}', which the formula does not{did_you_mean(variable, names)}; "
                     f"the recording was read for {', '.join(names)} only"
                 )
-        if isinstance(self.trace, Trace):
+        if isinstance(self.trace, Recording):
             check_bounds(formula, self.trace.period, name)
         else:
             check_dense(formula, name)

@@ -14,7 +14,7 @@ from rtamt.engine.dense_monitor import DenseMonitor
 from rtamt.engine.dense_signals import NANOSECOND
 from rtamt.engine.evaluate import Evaluator
 from rtamt.engine.monitor import Monitor
-from rtamt.engine.signals import Signal, Trace
+from rtamt.engine.signals import Recording, Signal
 from rtamt.errors import BoundError, UsageError, did_you_mean, shown
 from rtamt.language.formula import Formula, variables
 from rtamt.language.operators import STL, Language
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     import os
     from collections.abc import Mapping
 
-    from rtamt.engine.dense_evaluate import DenseTrace
+    from rtamt.engine.dense_evaluate import DenseRecording
     from rtamt.engine.signals import FloatArray
 
 BACKENDS = ("cpp", "python")
@@ -177,9 +177,9 @@ class Specification:
             known=self._declared,
         )
 
-    def signal_of(self, formula: Formula, trace: Trace | DenseTrace) -> Signal:
+    def signal_of(self, formula: Formula, trace: Recording | DenseRecording) -> Signal:
         """Return the robustness signal of any formula over a normalised recording."""
-        if isinstance(trace, Trace):
+        if isinstance(trace, Recording):
             times = trace.times.view()
             times.flags.writeable = False  # all signals of a recording share its times
             return Signal(times, self._robustness_of(formula, trace))
@@ -188,7 +188,7 @@ class Specification:
             return trace.signal(steps.times, steps.values)
         return dense_evaluate.evaluate(desugar(formula), trace)
 
-    def _robustness_of(self, formula: Formula, trace: Trace) -> FloatArray:
+    def _robustness_of(self, formula: Formula, trace: Recording) -> FloatArray:
         if self.backend == "python":
             start = float(trace.times[0])
             return reference.evaluate(formula, trace.columns, len(trace), trace.period, start)
@@ -235,7 +235,7 @@ class Specification:
     def _resolution(self, resolution: Duration | None) -> Fraction:
         return self.resolution if resolution is None else positive_period(resolution)
 
-    def _check_bounds(self, trace: Trace) -> None:
+    def _check_bounds(self, trace: Recording) -> None:
         try:
             check_bounds(self.formula, trace.period, self.text)
         except BoundError as error:

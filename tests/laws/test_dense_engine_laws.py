@@ -39,7 +39,7 @@ def by_definition(formula: Formula, trace: dict[str, Any]) -> list[tuple[int, fl
     return stepped(steps.times, steps.values)
 
 
-def recording(formula: Formula, trace: dict[str, Any]) -> dense_evaluate.DenseTrace:
+def recording(formula: Formula, trace: dict[str, Any]) -> dense_evaluate.DenseRecording:
     data = {
         name: (np.array(trace[name][0], dtype=np.int64) * 10**9, trace[name][1])
         for name in variables(formula)

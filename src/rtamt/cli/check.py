@@ -21,7 +21,7 @@ from rtamt.cli.command import (
     short,
 )
 from rtamt.cli.terminal import Progress, printed, table, use_color
-from rtamt.engine.signals import TIME, Trace
+from rtamt.engine.signals import TIME, Recording
 from rtamt.errors import StlError
 from rtamt.language.units import format_duration
 from rtamt.readers import read
@@ -29,7 +29,7 @@ from rtamt.readers import read
 if TYPE_CHECKING:
     import argparse
 
-    from rtamt.engine.dense_evaluate import DenseTrace
+    from rtamt.engine.dense_evaluate import DenseRecording
     from rtamt.results import Result
     from rtamt.specification import Specification
 
@@ -146,7 +146,7 @@ def _as_json(outcome: Outcome) -> str:
             "satisfied": outcome.verdict == "satisfied",
             "robustness": json_number(result.robustness),
             "samples": _samples(result.trace),
-            "period": float(result.trace.period) if isinstance(result.trace, Trace) else None,
+            "period": float(result.trace.period) if isinstance(result.trace, Recording) else None,
         }
     )
 
@@ -157,7 +157,7 @@ def _as_table(spec: Specification, outcomes: list[Outcome], color: bool) -> str:
         cells = ("-", "-", "-")
         if outcome.result is not None:
             trace = outcome.result.trace
-            period = format_duration(trace.period) if isinstance(trace, Trace) else "dense"
+            period = format_duration(trace.period) if isinstance(trace, Recording) else "dense"
             cells = (str(_samples(trace)), period, short(outcome.result.robustness))
         rows.append((outcome.trace, *cells, outcome.verdict))
     kinds = [_KINDS[outcome.verdict] for outcome in outcomes]
@@ -171,9 +171,11 @@ def _as_table(spec: Specification, outcomes: list[Outcome], color: bool) -> str:
     return text
 
 
-def _samples(trace: Trace | DenseTrace) -> int:
+def _samples(trace: Recording | DenseRecording) -> int:
     """Return the number of rows that were read: all columns share the stamps, also in dense time."""
-    return len(trace) if isinstance(trace, Trace) else max(len(ticks) for ticks, _ in trace.columns.values())
+    return (
+        len(trace) if isinstance(trace, Recording) else max(len(ticks) for ticks, _ in trace.columns.values())
+    )
 
 
 def _write(result: Result, path: str) -> None:

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class DenseTrace:
+class DenseRecording:
     """A finished recording in dense time: for each variable its ticks and values, none of them empty."""
 
     columns: Mapping[str, Samples]
@@ -51,7 +51,7 @@ class DenseTrace:
         return Signal(self.scale.times(ticks), values)
 
 
-def trace(data: Any, names: Sequence[str], tick: Fraction, known: Collection[str] = ()) -> DenseTrace:
+def trace(data: Any, names: Sequence[str], tick: Fraction, known: Collection[str] = ()) -> DenseRecording:
     """Normalise a finished recording; the caller's data is never changed.
 
     ``data``: a mapping from variable to (times, values) or to a list of [time, value] pairs; with a
@@ -67,13 +67,13 @@ def trace(data: Any, names: Sequence[str], tick: Fraction, known: Collection[str
             raise TraceError(f"'{name}' has no samples: give at least one", variable=name)
     scale = TimeScale(tick, dense_signals.kind_of(columns[names[0]][0]))
     samples = {name: dense_signals.samples_of(columns[name], name, scale) for name in names}
-    result = DenseTrace(samples, scale)
+    result = DenseRecording(samples, scale)
     if result.start > result.end:
         raise TraceError("the signals have no instant in common")
     return result
 
 
-def evaluate(formula: Formula, recording: DenseTrace) -> Signal:
+def evaluate(formula: Formula, recording: DenseRecording) -> Signal:
     """Return the robustness of a core formula (see ``desugar``) from the recording's start to its end."""
     plan = compile_plan((formula,), recording.scale.tick, domain="dense")
     columns = dict(recording.columns)

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from fractions import Fraction
 
     from rtamt.engine.program import Program
-    from rtamt.engine.signals import FloatArray, Trace
+    from rtamt.engine.signals import FloatArray, Recording
     from rtamt.language.formula import Formula
 
 
@@ -27,7 +27,7 @@ class Evaluator:
         self._longest = longest_bound(formulas, period)
         self._plans: dict[int, Plan] = {}
 
-    def __call__(self, trace: Trace) -> list[FloatArray]:
+    def __call__(self, trace: Recording) -> list[FloatArray]:
         """Return the robustness of each formula at each of the n samples of the trace."""
         n = len(trace)
         # A trace longer than every bound needs no clipping, so that one plan serves all such traces.
@@ -55,7 +55,9 @@ def longest_bound(formulas: Sequence[Formula], period: Fraction) -> int:
     return longest
 
 
-def run(program: Program, columns: Mapping[str, FloatArray], trace: Trace, plan: Plan) -> list[FloatArray]:
+def run(
+    program: Program, columns: Mapping[str, FloatArray], trace: Recording, plan: Plan
+) -> list[FloatArray]:
     """Run one program of a plan over whole columns."""
     _core = core()
     inputs = [columns[name] for name in program.inputs]

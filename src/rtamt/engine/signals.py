@@ -65,7 +65,7 @@ class Signal:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Trace:
+class Recording:
     """A finished recording in discrete time: one column of ``len(times)`` samples for each variable."""
 
     times: FloatArray
@@ -84,7 +84,7 @@ def trace(
     period: Fraction | None,
     known: Collection[str] = (),
     tolerance: float = TOLERANCE,
-) -> Trace:
+) -> Recording:
     """Normalise a finished recording; the caller's data is never changed.
 
     ``data``: a mapping, or anything with columns (a pandas or polars frame), from variable to n
@@ -107,7 +107,7 @@ def trace(
         check_regular(times, period, tolerance)
     for name, column in columns.items():
         check_numbers(name, column, times)
-    return Trace(times, columns, period, inferred)
+    return Recording(times, columns, period, inferred)
 
 
 def columns_of(

@@ -19,8 +19,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Mapping, Sequence
     from fractions import Fraction
 
-    from rtamt.engine.dense_evaluate import DenseTrace
-    from rtamt.engine.signals import FloatArray, Signal, Trace
+    from rtamt.engine.dense_evaluate import DenseRecording
+    from rtamt.engine.signals import FloatArray, Recording, Signal
     from rtamt.language.formula import Formula
 
 
@@ -54,7 +54,7 @@ def check_choices(semantics: Semantics, language: Language) -> None:
         require_core("Language.CPP", "Language.PYTHON")
 
 
-def dense_signal(formula: Formula, recording: DenseTrace) -> Signal:
+def dense_signal(formula: Formula, recording: DenseRecording) -> Signal:
     """Return the robustness of a formula over a finished recording in dense time."""
     if is_compiled():
         return dense_evaluate.evaluate(desugar(formula), recording)
@@ -62,7 +62,7 @@ def dense_signal(formula: Formula, recording: DenseTrace) -> Signal:
     return recording.signal(steps.times, steps.values)
 
 
-def signal(formula: Formula, trace: Trace) -> FloatArray:
+def signal(formula: Formula, trace: Recording) -> FloatArray:
     """Return the robustness of a formula at every sample of a finished trace."""
     if is_compiled():
         return Evaluator((desugar(formula),), trace.period)(trace)[0]

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rtamt.engine import signals
-from rtamt.engine.signals import TIME, Trace
+from rtamt.engine.signals import TIME, Recording
 from rtamt.errors import StlError, UsageError
 from rtamt.language.units import UNITS, duration
 from rtamt.rewrite.check import check_bounds
@@ -121,7 +121,7 @@ class StlDiscreteTimeOfflineSpecification(DiscreteTimeSpecification):
         result: list[list[float]] = np.column_stack((stamps, values)).tolist()
         return result
 
-    def _trace(self, dataset: Any) -> tuple[signals.FloatArray, Trace]:
+    def _trace(self, dataset: Any) -> tuple[signals.FloatArray, Recording]:
         """Return the stamps as given, and the trace in seconds, whatever the gaps between its samples."""
         keys = dataset if isinstance(dataset, Mapping) else getattr(dataset, "columns", ())
         columns = {key: dataset[key] for key in keys}
