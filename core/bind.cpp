@@ -115,8 +115,7 @@ PyType_Slot monitor_slots[] = {
 PyMethodDef dense_hot_methods[] = {
     {"update", erased(dense_update), METH_FASTCALL,
      "update($self, t, values, /)\n--\n\n"
-     "Take a dict of any inputs at tick t; return the new events of the first output, times and "
-     "values, or None."},
+     "Take a dict of any inputs at a time as tell() says; return what became known."},
     {nullptr, nullptr, 0, nullptr},
 };
 
@@ -262,16 +261,23 @@ NB_MODULE(_core, m) {
                 new (self) DenseMonitor(parse(program, Domain::dense), names, ignored, exceptions);
             },
             nb::arg("program"), nb::arg("names"), nb::arg("ignored") = nb::none())
+        .def("tell", &DenseMonitor::tell, nb::arg("signal"), nb::arg("scale"),
+             nb::arg("rate").none(),
+             "Say how update() tells time: in seconds of so many ticks, or (None) by integers that "
+             "are ticks; and of which class its answers are, with which scale.")
         .def("push", &DenseMonitor::push, nb::arg("columns"),
-             "Take a chunk, times and values of each input; return the new events of each output, "
-             "times and values.")
-        .def("finish", &DenseMonitor::finish, "End the trace; return the rest of each output.")
+             "Take a chunk, times and values of each input; return what became known of the first "
+             "output, times and values.")
+        .def("finish", &DenseMonitor::finish, "End the trace; return the rest of the first output.")
+        .def("told", &DenseMonitor::told, nb::arg("output"),
+             "What the last update made known of an output, times and values.")
         .def("reset", &DenseMonitor::reset, "Forget every sample.")
         .def("known", &DenseMonitor::known, nb::arg("output"),
              "The last tick at which an output is known, or None.")
         .def_prop_ro(
             "known_until", [](const DenseMonitor& self) { return self.known(0); },
             "The last tick at which the first output is known, or None.")
+        .def_prop_ro("counts", &DenseMonitor::counts, "How many samples of each input came.")
         .def_prop_ro("start", &DenseMonitor::start, "The tick at which the trace begins, or None.")
         .def_prop_ro("last_times", &DenseMonitor::last_times,
                      "The tick of the last sample of each input, or None.")

@@ -75,6 +75,9 @@ class Executor {
     // Until when an output is known, that instant included.
     [[nodiscard]] std::optional<std::int64_t> known_until(std::size_t output) const noexcept;
 
+    // What an output is worth there; any number while it is known nowhere.
+    [[nodiscard]] double value(std::size_t output) const noexcept { return outputs_[output].last; }
+
     [[nodiscard]] std::optional<std::int64_t> last_time(std::size_t input) const noexcept {
         return feeds_[input].last();
     }

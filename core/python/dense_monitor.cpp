@@ -1,6 +1,8 @@
 #include "dense_monitor.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <cstring>
 #include <initializer_list>
 #include <memory>
 #include <new>
@@ -25,12 +27,21 @@ template <class Item>
     return {items == nullptr ? &none : items, std::initializer_list<std::size_t>{count}, owner};
 }
 
+// Times stay this far from the ends of their range, so that bounds can be added to them.
+constexpr double farthest = 0x1p62;
+
 // How many samples a call brings.
 [[nodiscard]] std::size_t samples(const std::vector<Events>& inputs) noexcept {
     std::size_t count = 0;
     for (const Events& events : inputs)
         count += events.count;
     return count;
+}
+
+// Drops a Python exception that only says that a time is not plain; KeyboardInterrupt stays set.
+bool forget() noexcept {
+    if (PyErr_ExceptionMatches(PyExc_Exception) != 0) PyErr_Clear();
+    return false;
 }
 
 } // namespace
@@ -81,23 +92,54 @@ DenseMonitor::DenseMonitor(Program program, const std::vector<nb::str>& names,
                            const nb::object& ignored, Exceptions exceptions)
     : executor_(std::move(program)), names_(names, executor_.program().inputs, ignored),
       exceptions_(std::move(exceptions)), row_(names.size()), events_(names.size()),
-      results_(executor_.program().outputs.size()) {}
+      results_(executor_.program().outputs.size()), spare_(results_.size()),
+      until_(results_.size()), counts_(names.size()), scale_name_("_scale"),
+      events_name_("_events") {}
+
+void DenseMonitor::tell(const nb::type_object& signal, const nb::object& scale,
+                        std::optional<double> rate) {
+    require_idle();
+    signal_ = signal;
+    scale_ = scale;
+    rate_ = rate.value_or(0.0);
+    nothing_ = signal_of({});
+    if (!nothing_.is_valid()) throw nb::python_error();
+    told_ = true;
+}
 
 // ---- one instant --------------------------------------------------------------------------------
 
 PyObject* DenseMonitor::update(PyObject* time, PyObject* values) noexcept {
     if (!ready()) return nullptr;
     busy_ = true;
-    const char* reason = read_time(time) ? read_values(values) : "time";
+    const char* reason = told_ && read_time(time) ? read_values(values) : "time";
     busy_ = false;
     if (reason != nullptr) return refuse(reason);
-    for (EventList& list : results_)
+    for (EventList& list : spare_)
         list.resize(0);
     try {
-        const auto failure = executor_.push(events_, results_);
-        return failure ? fail(*failure) : known_events();
+        const auto failure = executor_.push(events_, spare_);
+        if (failure) return fail(*failure);
+        std::swap(results_, spare_);
+        for (std::size_t input = 0; input < events_.size(); ++input)
+            counts_[input] += static_cast<std::int64_t>(events_[input].count);
+        close();
     } catch (const std::bad_alloc&) {
         return PyErr_NoMemory();
+    }
+    return answer();
+}
+
+// Puts a point at the last instant that is known of each output, unless it was told before.
+void DenseMonitor::close() {
+    for (std::size_t output = 0; output < results_.size(); ++output) {
+        const auto until = executor_.known_until(output);
+        if (!until || until_[output] == until) continue;
+        until_[output] = until;
+        EventList& list = results_[output];
+        if (list.count() == 0 || list.times()[list.count() - 1] != *until) {
+            list.append(*until, executor_.value(output));
+        }
     }
 }
 
@@ -109,20 +151,31 @@ PyObject* DenseMonitor::fail(const Failure& failure) const noexcept {
     return nullptr;
 }
 
-// An int, or what stands for one, that a sample may have.
+// The tick of a plain time: of a float or an int in seconds, rounded to the nearest and halves to
+// the even one; or of an integer of another kind, in ticks.
 bool DenseMonitor::read_time(PyObject* time) noexcept {
-    int overflow = 0;
-    if (PyLong_Check(time)) [[likely]] {
-        time_ = PyLong_AsLongLongAndOverflow(time, &overflow);
-    } else {
-        const nb::object index = nb::steal(PyNumber_Index(time));
-        if (!index.is_valid()) {
-            if (PyErr_ExceptionMatches(PyExc_Exception) != 0) PyErr_Clear();
+    if (rate_ != 0.0) {
+        double seconds = 0.0;
+        if (PyFloat_Check(time)) {
+            seconds = PyFloat_AS_DOUBLE(time);
+        } else if (PyLong_CheckExact(time)) {
+            seconds = PyLong_AsDouble(time);
+            if (PyErr_Occurred() != nullptr) return forget();
+        } else {
             return false;
         }
-        time_ = PyLong_AsLongLongAndOverflow(index.ptr(), &overflow);
+        const double tick = std::nearbyint(seconds * rate_);
+        if (!(std::fabs(tick) < farthest)) return false;
+        time_ = static_cast<std::int64_t>(tick);
+    } else {
+        if (PyLong_Check(time) || PyIndex_Check(time) == 0) return false;
+        const nb::object index = nb::steal(PyNumber_Index(time));
+        if (!index.is_valid()) return forget();
+        time_ = PyLong_AsLongLong(index.ptr());
+        if (time_ == -1 && PyErr_Occurred() != nullptr) return forget();
+        if (!(std::fabs(static_cast<double>(time_)) < farthest)) return false;
     }
-    return overflow == 0 && time_ >= -dense::never && time_ <= executor_.last_possible();
+    return time_ <= executor_.last_possible();
 }
 
 // Answers what is wrong, or null.
@@ -147,21 +200,31 @@ const char* DenseMonitor::read_values(PyObject* values) noexcept {
     return nullptr;
 }
 
-PyObject* DenseMonitor::known_events() const noexcept {
+PyObject* DenseMonitor::answer() const noexcept {
     const Events events = results_.front().view();
-    if (events.count == 0) Py_RETURN_NONE;
-    const auto count = static_cast<Py_ssize_t>(events.count);
-    const nb::object times = nb::steal(PyList_New(count));
-    const nb::object values = nb::steal(PyList_New(count));
-    if (!times.is_valid() || !values.is_valid()) return nullptr;
-    for (Py_ssize_t i = 0; i < count; ++i) {
-        PyObject* time = PyLong_FromLongLong(events.times[i]);
-        PyObject* value = PyFloat_FromDouble(events.values[i]);
-        PyList_SET_ITEM(times.ptr(), i, time);
-        PyList_SET_ITEM(values.ptr(), i, value);
-        if (time == nullptr || value == nullptr) return nullptr;
+    nb::object signal = events.count == 0 ? nothing_ : signal_of(events);
+    return signal.release().ptr();
+}
+
+// An object of the class of the answers; invalid, with a Python exception set, where memory ends.
+nb::object DenseMonitor::signal_of(const Events& events) const noexcept {
+    auto* type = reinterpret_cast<PyTypeObject*>(signal_.ptr());
+    const std::size_t times = events.count * sizeof(*events.times);
+    const std::size_t values = events.count * sizeof(*events.values);
+    const auto signal = nb::steal(type->tp_alloc(type, 0));
+    const auto bytes =
+        nb::steal(PyBytes_FromStringAndSize(nullptr, static_cast<Py_ssize_t>(times + values)));
+    if (!signal.is_valid() || !bytes.is_valid()) return {};
+    if (events.count != 0) {
+        char* memory = PyBytes_AS_STRING(bytes.ptr());
+        std::memcpy(memory, events.times, times);
+        std::memcpy(memory + times, events.values, values);
     }
-    return PyTuple_Pack(2, times.ptr(), values.ptr());
+    if (PyObject_SetAttr(signal.ptr(), scale_name_.ptr(), scale_.ptr()) != 0 ||
+        PyObject_SetAttr(signal.ptr(), events_name_.ptr(), bytes.ptr()) != 0) {
+        return {};
+    }
+    return signal;
 }
 
 PyObject* DenseMonitor::refuse(const char* reason) const noexcept {
@@ -181,7 +244,7 @@ bool DenseMonitor::ready() const noexcept {
 
 // ---- many samples -------------------------------------------------------------------------------
 
-nb::list DenseMonitor::push(const std::vector<EventColumn>& columns) {
+nb::tuple DenseMonitor::push(const std::vector<EventColumn>& columns) {
     require_idle();
     if (!ready()) throw nb::python_error();
     const std::vector<Events> inputs = events_of(columns, names_.count());
@@ -198,21 +261,48 @@ nb::list DenseMonitor::push(const std::vector<EventColumn>& columns) {
     std::optional<Failure> failure;
     exclusively(samples(inputs), [&] { failure = executor_.push(inputs, results); });
     if (failure) raise_undefined(exceptions_, *failure);
-    return hand_over(results);
+    for (std::size_t i = 0; i < inputs.size(); ++i)
+        counts_[i] += static_cast<std::int64_t>(inputs[i].count);
+    return take(results);
 }
 
-nb::list DenseMonitor::finish() {
+nb::tuple DenseMonitor::finish() {
     require_idle();
     std::vector<EventList> results(results_.size());
     std::optional<Failure> failure;
     exclusively(executor_.state_bytes(), [&] { failure = executor_.finish(results); });
     if (failure) raise_undefined(exceptions_, *failure);
-    return hand_over(results);
+    return take(results);
+}
+
+nb::tuple DenseMonitor::take(std::vector<EventList>& results) {
+    std::swap(results_, results);
+    close();
+    return hand_over(results_.front());
+}
+
+nb::tuple DenseMonitor::told(std::size_t output) const {
+    require_idle();
+    require_output(output);
+    const Events events = results_[output].view();
+    EventList copy;
+    copy.append(events);
+    return hand_over(copy);
 }
 
 void DenseMonitor::reset() {
     require_idle();
     executor_.reset();
+    for (EventList& list : results_)
+        list.resize(0);
+    std::ranges::fill(until_, std::nullopt);
+    std::ranges::fill(counts_, 0);
+    told_ = false;
+}
+
+std::vector<std::int64_t> DenseMonitor::counts() const {
+    require_idle();
+    return counts_;
 }
 
 std::optional<std::int64_t> DenseMonitor::start() const {
@@ -222,9 +312,7 @@ std::optional<std::int64_t> DenseMonitor::start() const {
 
 std::optional<std::int64_t> DenseMonitor::known(std::size_t output) const {
     require_idle();
-    if (output >= results_.size()) {
-        throw std::out_of_range("There is no output " + std::to_string(output) + ".");
-    }
+    require_output(output);
     return executor_.known_until(output);
 }
 
@@ -244,6 +332,12 @@ std::size_t DenseMonitor::state_bytes() const {
 
 void DenseMonitor::require_idle() const {
     if (busy_) throw std::runtime_error(in_use);
+}
+
+void DenseMonitor::require_output(std::size_t output) const {
+    if (output >= results_.size()) {
+        throw std::out_of_range("There is no output " + std::to_string(output) + ".");
+    }
 }
 
 template <class Work>

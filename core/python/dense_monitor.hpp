@@ -1,8 +1,9 @@
 // The online monitor of dense time as Python sees it: names, times and numbers checked, then the
 // executor.
 //
-// update refuses what is wrong with a short Refused and changes nothing; the Python caller looks
-// again and writes the sentence.
+// What an update makes known is told as events, and a point at the last instant that is known, so
+// that a reader sees how far. update refuses what is wrong, or not plain, with a short Refused and
+// changes nothing; the Python caller goes the long way, and writes the sentence.
 #pragma once
 
 #include "../dense/executor.hpp"
@@ -42,15 +43,26 @@ class DenseMonitor {
     DenseMonitor(Program program, const std::vector<nb::str>& names, const nb::object& ignored,
                  Exceptions exceptions);
 
-    // Any variables at one instant. Two lists, the times and the values that became known of the
-    // first output, or None where it has no new event; null, with a Python exception set, is a
-    // refusal.
+    // How update() tells time until the next reset(): in seconds of so many ticks, or by integers
+    // of whatever kind that are ticks. It answers with objects of this class, whose `_scale` is the
+    // given one and whose `_events` are bytes: the times, then the values.
+    void tell(const nb::type_object& signal, const nb::object& scale, std::optional<double> rate);
+
+    // Any variables at one instant. What became known of the first output; null, with a Python
+    // exception set, is a refusal.
     [[nodiscard]] PyObject* update(PyObject* time, PyObject* values) noexcept;
 
-    [[nodiscard]] nb::list push(const std::vector<EventColumn>& columns);
-    [[nodiscard]] nb::list finish();
+    // What became known of the first output, times and values.
+    [[nodiscard]] nb::tuple push(const std::vector<EventColumn>& columns);
+    [[nodiscard]] nb::tuple finish();
+
+    // What the last update made known of an output; of the first one, update() and push() have
+    // handed it over.
+    [[nodiscard]] nb::tuple told(std::size_t output) const;
+
     void reset();
 
+    [[nodiscard]] std::vector<std::int64_t> counts() const;
     [[nodiscard]] std::optional<std::int64_t> start() const;
     [[nodiscard]] std::optional<std::int64_t> known(std::size_t output) const;
     [[nodiscard]] std::vector<std::optional<std::int64_t>> last_times() const;
@@ -62,19 +74,33 @@ class DenseMonitor {
     Names names_;
     Numbers numbers_;
     Exceptions exceptions_;
-    std::int64_t time_ = 0;             // of the instant that is being read
-    std::vector<double> row_;           // its values
-    std::vector<dense::Events> events_; // one for each input that has a value then
-    std::vector<dense::EventList> results_;
+    std::int64_t time_ = 0;                          // of the instant that is being read
+    std::vector<double> row_;                        // its values
+    std::vector<dense::Events> events_;              // one for each input that has a value then
+    std::vector<dense::EventList> results_;          // of the last update, an output each
+    std::vector<dense::EventList> spare_;            // of the next one, which may fail
+    std::vector<std::optional<std::int64_t>> until_; // how far each output was told
+    std::vector<std::int64_t> counts_;               // samples of each input
+    nb::object signal_;                              // the class of the answers
+    nb::object scale_;
+    nb::object nothing_; // the answer without events
+    nb::str scale_name_; // of the attributes of an answer
+    nb::str events_name_;
+    bool told_ = false; // whether update() knows how time is told
+    double rate_ = 0.0; // ticks a second; 0: times are ticks
     bool busy_ = false; // another thread is inside, or a number's own __float__ came back
 
     void require_idle() const;
+    void require_output(std::size_t output) const;
     PyObject* refuse(const char* reason) const noexcept;
     [[nodiscard]] PyObject* fail(const dense::Failure& failure) const noexcept;
     [[nodiscard]] bool ready() const noexcept;
     [[nodiscard]] bool read_time(PyObject* time) noexcept;
     [[nodiscard]] const char* read_values(PyObject* values) noexcept;
-    [[nodiscard]] PyObject* known_events() const noexcept;
+    void close();
+    [[nodiscard]] PyObject* answer() const noexcept;
+    [[nodiscard]] nb::object signal_of(const dense::Events& events) const noexcept;
+    [[nodiscard]] nb::tuple take(std::vector<dense::EventList>& results);
 
     template <class Work>
     void exclusively(std::size_t count, Work&& work);

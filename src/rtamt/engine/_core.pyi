@@ -76,17 +76,24 @@ class DenseMonitor:
     def __init__(
         self, program: bytes, names: Sequence[str], ignored: Collection[str] | None = None
     ) -> None: ...
-    def update(self, t: int, values: Mapping[str, Any], /) -> tuple[list[int], list[float]] | None:
-        """Take a dict of any inputs at tick t.
+    def tell(self, signal: type, scale: Any, rate: float | None) -> None:
+        """Say how update() tells time: in seconds of so many ticks, or (None) by integers that are ticks.
 
-        Return the new events of the first output, times and values, or None.
+        Its answers are of the class ``signal``, their ``_scale`` is the given one and their ``_events``
+        are bytes: the ticks, then the values.
         """
 
-    def push(self, columns: Sequence[_Events]) -> list[_Events]:
-        """Take a chunk, times and values of each input; return the new events of each output."""
+    def update(self, t: Any, values: Mapping[str, Any], /) -> Any:
+        """Take a dict of any inputs at a time as tell() says; return what became known."""
 
-    def finish(self) -> list[_Events]:
-        """End the trace; return the rest of each output."""
+    def push(self, columns: Sequence[_Events]) -> _Events:
+        """Take a chunk, times and values of each input; return what became known of the first output."""
+
+    def finish(self) -> _Events:
+        """End the trace; return the rest of the first output."""
+
+    def told(self, output: int) -> _Events:
+        """What the last update made known of an output."""
 
     def reset(self) -> None:
         """Forget every sample."""
@@ -97,6 +104,10 @@ class DenseMonitor:
     @property
     def known_until(self) -> int | None:
         """The last tick at which the first output is known, or None."""
+
+    @property
+    def counts(self) -> list[int]:
+        """How many samples of each input came."""
 
     @property
     def start(self) -> int | None:

@@ -111,27 +111,36 @@ class TimeScale:
 
 
 class TickSignal(Signal):
-    """A signal whose arrays are made when they are asked for: most online updates tell a point or none."""
+    """A signal whose arrays are made when they are asked for: most online updates tell a point or none.
 
-    __slots__ = ("_scale", "_ticks", "_told")
+    Made by the compiled monitor, which sets ``_events``: the ticks, int64, then the values, float64.
+    """
 
-    def __init__(self, scale: TimeScale, ticks: Sequence[int], told: Sequence[float]) -> None:
+    __slots__ = ("_events", "_scale")
+
+    _events: bytes
+    _scale: TimeScale
+
+    def __init__(self, scale: TimeScale, ticks: TickArray, values: FloatArray) -> None:
         self._scale = scale
-        self._ticks = ticks
-        self._told = told
+        self._events = ticks.tobytes() + values.tobytes()
 
     def __len__(self) -> int:
-        return len(self._ticks)
+        return len(self._events) // 16
 
     @property
     def times(self) -> NDArray[Any]:
         """Times as the caller tells them."""
-        return self._scale.times(np.array(self._ticks, dtype=np.int64))
+        if not hasattr(self, "_times"):
+            self._times = self._scale.times(np.frombuffer(self._events, np.int64, len(self)).copy())
+        return self._times
 
     @property
     def values(self) -> FloatArray:
         """Robustness at these times."""
-        return np.array(self._told, dtype=np.float64)
+        if not hasattr(self, "_values"):
+            self._values = np.frombuffer(self._events, np.float64, len(self), 8 * len(self)).copy()
+        return self._values
 
 
 def kind_of(times: Any) -> str:
