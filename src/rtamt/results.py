@@ -14,6 +14,7 @@ from rtamt.rewrite.check import check_bounds, check_dense
 
 if TYPE_CHECKING:
     from rtamt.engine.dense_evaluate import DenseRecording
+    from rtamt.rewrite.interface import Judge
     from rtamt.specification import Specification
 
 
@@ -25,6 +26,8 @@ class Result:
     trace: Recording | DenseRecording
     #: ρ at every sample, in dense time at every change and at the end: ``.times`` and ``.values``.
     signal: Signal
+    #: What predicates were worth: a name, or the function that was given.
+    semantics: str | Judge = "standard"
 
     @property
     def robustness(self) -> float:
@@ -35,7 +38,7 @@ class Result:
     def satisfied(self) -> bool:
         """Whether the formula holds at the first instant: Boolean semantics, evaluated on its own.
 
-        Where the robustness is 0, only this has a verdict.
+        The same under every semantics. Where the robustness is 0, only this has a verdict.
 
         >>> import rtamt
         >>> [rtamt.parse(text).evaluate({"x": [3]}).satisfied for text in ("x >= 3", "x > 3")]
@@ -46,6 +49,8 @@ class Result:
 
     def __getitem__(self, name: str) -> Signal:
         """Return the signal of a named sub-specification, or of any formula over the same variables.
+
+        Under the semantics of the evaluation; numbers (``x + 1``) are what they are under each.
 
         >>> import rtamt
         >>> result = rtamt.parse("low = x <= 3; always(low)").evaluate({"time": [0, 1], "x": [1, 2]})
@@ -67,4 +72,6 @@ class Result:
         else:
             check_dense(formula, name)
             check_bounds(formula, self.trace.scale.tick, name, "resolution")
+        if not interface.is_number(formula):
+            formula = self.specification.judged(formula, self.semantics)
         return self.specification.signal_of(formula, self.trace)

@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cached_property
-from math import isnan
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, overload
 
@@ -15,30 +14,36 @@ from rtamt.engine.dense_signals import NANOSECOND
 from rtamt.engine.evaluate import Evaluator
 from rtamt.engine.monitor import Monitor
 from rtamt.engine.signals import Recording, Signal
-from rtamt.errors import BoundError, UsageError, did_you_mean, shown
+from rtamt.errors import BoundError, UsageError
 from rtamt.language.formula import Formula, variables
 from rtamt.language.operators import STL, Language
 from rtamt.language.parser import parse_formula
 from rtamt.language.printer import to_text
 from rtamt.language.specfile import Document, parse_document
-from rtamt.language.units import duration
 from rtamt.results import Result
+from rtamt.rewrite import interface
 from rtamt.rewrite.check import check_bounds, check_dense
 from rtamt.rewrite.desugar import desugar
 from rtamt.rewrite.horizon import horizon
 from rtamt.rewrite.pastify import pastify
+from rtamt.settings import (
+    check_backend,
+    check_constants,
+    positive_period,
+    roles_of,
+    time_domain,
+)
 
 if TYPE_CHECKING:
     import os
     from collections.abc import Mapping
 
+    from typing_extensions import Unpack
+
     from rtamt.engine.dense_evaluate import DenseRecording
     from rtamt.engine.signals import FloatArray
-
-BACKENDS = ("cpp", "python")
-TIMES = ("discrete", "dense")
-
-Duration = str | float | Fraction
+    from rtamt.rewrite.interface import Judge
+    from rtamt.settings import Duration, Semantics, Settings
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,6 +60,9 @@ class Specification:
     language: Language = field(default=STL, repr=False)
     time: str = "discrete"
     resolution: Fraction = NANOSECOND
+    semantics: str | Judge = "standard"
+    #: From a variable to ``"input"`` or ``"output"``: what the text declares, and what was given.
+    roles: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def formula(self) -> Formula:
@@ -79,11 +87,13 @@ class Specification:
     @property
     def horizon(self) -> float:
         """Seconds after t at which ρ at t is known online; inf if never. The paper's Definition 3."""
-        depth = horizon(self.formula, self.period or Fraction(1))
+        depth = horizon(self.judged(self.formula), self.period or Fraction(1))
         return float("inf") if depth is None else float(depth)
 
     def pastified(self, period: Duration | None = None) -> Formula:
         """Return Π(φ): past operators only, the same value one horizon later (Definition 4).
+
+        That holds under every semantics, since predicates stay what they are.
 
         >>> import rtamt
         >>> print(rtamt.parse("x >= 3 -> eventually[0:5](y >= 3)").pastified())
@@ -99,6 +109,7 @@ class Specification:
         period: Duration | None = None,
         tolerance: float = signals.TOLERANCE,
         resolution: Duration | None = None,
+        semantics: Semantics | None = None,
     ) -> Result:
         """Compute the robustness of a finished recording at every sample.
 
@@ -112,6 +123,8 @@ class Specification:
         of integers nanoseconds, and datetimes are what they are. ``resolution``: the length of a tick,
         in which time is counted (default 1 ns); bounds must be multiples of it.
 
+        ``semantics``: as for :func:`parse`, by default that of the specification.
+
         Raises :class:`TraceError` where the data is wrong, :class:`BoundError` where an interval is
         no multiple of the period, :class:`EvaluationError` where an operation has no value.
 
@@ -120,15 +133,17 @@ class Specification:
         >>> result.robustness, result.satisfied, result.signal.values
         (1.0, True, array([1., 1., 3.]))
         """
+        chosen = self._semantics(semantics)
+        formula = self.judged(self.formula, chosen)
         if self._time(time) == "dense":
             tick = self._resolution(resolution)
-            check_dense(self.formula, self.text)
-            check_bounds(self.formula, tick, self.text, "resolution")
+            check_dense(formula, self.text)
+            check_bounds(formula, tick, self.text, "resolution")
             recording = dense_evaluate.trace(data, self.input_names, tick, self._declared)
-            return Result(self, recording, self.signal_of(self.formula, recording))
+            return Result(self, recording, self.signal_of(formula, recording), chosen)
         trace = signals.trace(data, self.input_names, self._period(period), self._declared, tolerance)
-        self._check_bounds(trace)
-        return Result(self, trace, self.signal_of(self.formula, trace))
+        self._check_bounds(formula, trace)
+        return Result(self, trace, self.signal_of(formula, trace), chosen)
 
     @overload
     def monitor(
@@ -137,10 +152,17 @@ class Specification:
         time: Literal["discrete"] | None = None,
         period: Duration | None = None,
         tolerance: float = signals.TOLERANCE,
+        semantics: Semantics | None = None,
     ) -> Monitor: ...
 
     @overload
-    def monitor(self, *, time: Literal["dense"], resolution: Duration | None = None) -> DenseMonitor: ...
+    def monitor(
+        self,
+        *,
+        time: Literal["dense"],
+        resolution: Duration | None = None,
+        semantics: Semantics | None = None,
+    ) -> DenseMonitor: ...
 
     def monitor(
         self,
@@ -149,33 +171,47 @@ class Specification:
         period: Duration | None = None,
         tolerance: float = signals.TOLERANCE,
         resolution: Duration | None = None,
+        semantics: Semantics | None = None,
     ) -> Monitor | DenseMonitor:
         """Return an online monitor; of dense time where that is asked for here or in :func:`parse`.
 
         ``period`` as in :meth:`evaluate`, by default 1 s. ``tolerance``: the fraction of the period
-        by which a gap between samples may miss it. Raises :class:`BoundError` for unbounded future.
+        by which a gap between samples may miss it. ``semantics``: as for :func:`parse`; under
+        ``"boolean"`` the monitor gives verdicts, +inf where the formula holds and -inf where it does
+        not, also where the robustness is 0. Raises :class:`BoundError` for unbounded future.
 
         >>> import rtamt
         >>> monitor = rtamt.parse("always[0:200ms](x >= 3)").monitor(period="100ms")
         >>> [monitor.update(t, x=5) for t in (0.0, 0.1, 0.2)]
         [None, None, 2.0]
+        >>> verdict = rtamt.parse("x > 3").monitor(semantics="boolean")
+        >>> [verdict.update(t, x=x) > 0 for t, x in enumerate([4, 3])]
+        [True, False]
         """
+        formula = self.judged(self.formula, self._semantics(semantics))
         if self._time(time) == "dense":
             return DenseMonitor(
-                self.formula,
+                formula,
                 text=self.text,
                 resolution=self._resolution(resolution),
                 backend=self.backend,
                 known=self._declared,
             )
         return Monitor(
-            self.formula,
+            formula,
             text=self.text,
             period=self._period(period) or Fraction(1),
             tolerance=tolerance,
             backend=self.backend,
             known=self._declared,
         )
+
+    def judged(self, formula: Formula, semantics: str | Judge | None = None) -> Formula:
+        """Return the formula whose robustness is the value of ``formula`` under a semantics.
+
+        ``semantics``: by default that of the specification; see :func:`rtamt.rewrite.interface.lower`.
+        """
+        return interface.lower(formula, self._semantics(semantics), self.roles)
 
     def signal_of(self, formula: Formula, trace: Recording | DenseRecording) -> Signal:
         """Return the robustness signal of any formula over a normalised recording."""
@@ -235,9 +271,12 @@ class Specification:
     def _resolution(self, resolution: Duration | None) -> Fraction:
         return self.resolution if resolution is None else positive_period(resolution)
 
-    def _check_bounds(self, trace: Recording) -> None:
+    def _semantics(self, semantics: Semantics | None) -> str | Judge:
+        return self.semantics if semantics is None else interface.semantics_of(semantics)
+
+    def _check_bounds(self, formula: Formula, trace: Recording) -> None:
         try:
-            check_bounds(self.formula, trace.period, self.text)
+            check_bounds(formula, trace.period, self.text)
         except BoundError as error:
             if not trace.inferred:
                 raise
@@ -251,8 +290,18 @@ class Specification:
         # The text says it all, and is read without recursion however long it is.
         declared = {declaration.name for declaration in self.document.declarations}
         given = {name: v for name, v in self.document.constants.items() if name not in declared}
-        settings = (self.period, self.unit, self.backend, given, self.language, self.time, self.resolution)
-        return _parse_again, (self.text, *settings)
+        settings: Settings = {
+            "period": self.period,
+            "unit": self.unit,
+            "backend": self.backend,
+            "constants": given,
+            "language": self.language,
+            "time": self.time,
+            "resolution": self.resolution,
+            "semantics": self.semantics,
+            "roles": dict(self.roles),
+        }
+        return _parse_again, (self.text, settings)
 
     def __str__(self) -> str:
         return to_text(self.formula, self.language)
@@ -268,6 +317,8 @@ def parse(
     language: Language = STL,
     time: str = "discrete",
     resolution: Duration = NANOSECOND,
+    semantics: Semantics = "standard",
+    roles: Mapping[str, str] | None = None,
 ) -> Specification:
     """Read a requirement: a formula, or the whole text of a specification file.
 
@@ -277,22 +328,37 @@ def parse(
     seconds, for evaluations and monitors that say nothing else. Raises :class:`SpecificationError`
     with the place in the text.
 
+    ``semantics``: what a predicate is worth. By name: ``"standard"``, its robustness; ``"boolean"``,
+    +inf or -inf by its truth; and, relative to the interface (the paper's section 2.3),
+    ``"output_robustness"``, ``"input_vacuity"``, ``"input_robustness"``, ``"output_vacuity"``. Or a
+    function of a predicate and roles that returns the formula to put in its place. ``roles``: from a
+    variable to ``"input"`` or ``"output"``, before what the text declares; without a role it is an
+    output.
+
     >>> import rtamt
-    >>> spec = rtamt.parse("always((req >= 3) -> eventually[0:5](gnt >= 3))")
+    >>> spec = rtamt.parse("always((req >= 3) -> eventually[0:5](gnt >= 3))", roles={"req": "input"})
     >>> spec.input_names
     ('req', 'gnt')
+    >>> never_asked = {"req": [1, 2], "gnt": [0, 0]}
+    >>> [spec.evaluate(never_asked, semantics=s).robustness for s in ("standard", "output_robustness")]
+    [1.0, inf]
     """
-    if backend not in BACKENDS:
-        raise UsageError(
-            f"unknown backend '{backend}'{did_you_mean(backend, BACKENDS)}; choose from {', '.join(BACKENDS)}"
-        )
-    for name, value in (constants or {}).items():
-        if not signals.is_number(value) or isnan(value):
-            raise UsageError(f"the constant '{name}' is {shown(value)}; give a number")
+    check_backend(backend)
+    check_constants(constants or {})
     document = parse_document(text, language=language, unit=unit, constants=constants)
     exact = None if period is None else positive_period(period)
     tick = positive_period(resolution)
-    spec = Specification(document, exact, unit, backend, language, time_domain(time), tick)
+    spec = Specification(
+        document,
+        exact,
+        unit,
+        backend,
+        language,
+        time_domain(time),
+        tick,
+        interface.semantics_of(semantics),
+        roles_of(document, roles or {}),
+    )
     if spec.time == "dense":
         for assertion in document.assertions:
             check_dense(assertion.formula, text)
@@ -303,39 +369,11 @@ def parse(
     return spec
 
 
-def _parse_again(
-    text: str,
-    period: Fraction | None,
-    unit: str,
-    backend: str,
-    constants: Mapping[str, float],
-    language: Language,
-    time: str,
-    resolution: Fraction,
-) -> Specification:
-    return parse(
-        text,
-        period=period,
-        unit=unit,
-        backend=backend,
-        constants=constants,
-        language=language,
-        time=time,
-        resolution=resolution,
-    )
+def _parse_again(text: str, settings: Settings) -> Specification:
+    return parse(text, **settings)
 
 
-def load(
-    path: str | os.PathLike[str],
-    *,
-    period: Duration | None = None,
-    unit: str = "s",
-    backend: str = "cpp",
-    constants: Mapping[str, float] | None = None,
-    language: Language = STL,
-    time: str = "discrete",
-    resolution: Duration = NANOSECOND,
-) -> Specification:
+def load(path: str | os.PathLike[str], **settings: Unpack[Settings]) -> Specification:
     """Read a specification file (``.stl``); settings and errors as for :func:`parse`.
 
     >>> import pathlib, tempfile
@@ -354,59 +392,14 @@ def load(
         raise UsageError(
             f"'{path}' is not UTF-8 text (byte {error.start}); is it a specification?"
         ) from error
-    return parse(
-        text,
-        period=period,
-        unit=unit,
-        backend=backend,
-        constants=constants,
-        language=language,
-        time=time,
-        resolution=resolution,
-    )
+    return parse(text, **settings)
 
 
-def robustness(
-    text: str,
-    data: Any,
-    *,
-    period: Duration | None = None,
-    unit: str = "s",
-    backend: str = "cpp",
-    constants: Mapping[str, float] | None = None,
-    time: str = "discrete",
-    resolution: Duration = NANOSECOND,
-) -> float:
+def robustness(text: str, data: Any, **settings: Unpack[Settings]) -> float:
     """Return the robustness of a recording at its first instant; settings and errors as for :func:`parse`.
 
     >>> import rtamt
     >>> rtamt.robustness("eventually(x >= 3)", {"x": [1, 2, 5]})
     2.0
     """
-    spec = parse(
-        text,
-        period=period,
-        unit=unit,
-        backend=backend,
-        constants=constants,
-        time=time,
-        resolution=resolution,
-    )
-    return spec.evaluate(data).robustness
-
-
-def time_domain(time: str) -> str:
-    """Return a time domain's name; raise :class:`UsageError` for any other text."""
-    if time not in TIMES:
-        raise UsageError(
-            f"unknown time domain '{time}'; choose from {', '.join(TIMES)}{did_you_mean(time, TIMES)}"
-        )
-    return time
-
-
-def positive_period(period: Duration) -> Fraction:
-    """Return a sampling period in seconds, exact."""
-    exact = duration(period)
-    if exact <= 0:
-        raise UsageError(f"the sampling period is {period!r}; it must be positive")
-    return exact
+    return parse(text, **settings).evaluate(data).robustness

@@ -16,6 +16,7 @@ import numpy as np
 from rtamt.language.formula import Apply, Const, Formula, Var, fold, postorder
 from rtamt.language.operators import Bounds, Sort
 from tests.oracle.boolean import ATOMS, COMPARISONS, POINTWISE
+from tests.oracle.interface import is_predicate
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -82,11 +83,17 @@ IN_TIME: dict[str, Callable[..., Any]] = {
 
 
 def on_grid(
-    formula: Formula, signals: Mapping[str, Any], tick: Fraction, *, truth: bool
+    formula: Formula,
+    signals: Mapping[str, Any],
+    tick: Fraction,
+    *,
+    truth: bool,
+    case: Callable[[Formula], str] | None = None,
 ) -> tuple[int, Gapped]:
     """Return the first tick and, from there to the last, the value at each tick and in each gap.
 
-    With ``truth`` a formula is satisfied or not, and a number is satisfied where it is positive.
+    With ``truth`` a formula is satisfied or not, and a number is satisfied where it is positive. With
+    ``case`` a predicate is worth 0 (``"zero"``), its truth, +inf or -inf, or its ordinary value.
     """
     start = max(int(times[0]) for times, _ in signals.values())
     last = max(int(times[-1]) for times, _ in signals.values())
@@ -119,9 +126,21 @@ def on_grid(
             return [ATOMS[name]] * size
         return [v > 0 for v in _in_time(node, below, tick)]
 
+    def judged(node: Formula, below: tuple[Gapped, ...]) -> Gapped:
+        assert case is not None
+        if is_predicate(node):
+            which = case(node)
+            if which == "truth":
+                return [TOP if v else BOTTOM for v in holds(node, ())]
+            return [0.0] * size if which == "zero" else numbers[id(node)]
+        assert isinstance(node, Apply)
+        return _in_time(node, below, tick) or _by_definition(node, below, size)
+
     value = fold(formula, number)
     if truth:
         value = fold(formula, holds)
+    if case is not None:
+        value = fold(formula, judged)
     return start, value[: 2 * (last - start) + 1]
 
 

@@ -1,39 +1,206 @@
 """Semantics other than robustness, as a lowering of predicates: everything else stays as it is.
 
-The Boolean semantics replaces each predicate by its truth, +inf or -inf; min and max then compute
-Boolean satisfaction, for every operator, in every engine.
+A semantics is one function: it is shown a predicate and the roles of the variables, and returns the
+formula whose robustness stands in the predicate's place. :data:`SEMANTICS` is the table of those that
+have a name; :func:`lower` applies any of them, the user's own too. What comes out is a formula like any
+other, so that every engine, online or offline, gives each semantics without knowing of it.
+
+A predicate is a comparison, or a number used as a formula, which holds where it is positive. What it is
+made of is one thing: in ``(x >= 3) + y >= 2`` the formula ``x >= 3`` is read as a number, its robustness
+under every semantics, and the predicate's variables are x and y. ``true`` and ``false`` are no
+predicates.
 """
 
 from __future__ import annotations
 
-from dataclasses import replace
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from enum import Enum
+from types import MappingProxyType
+from typing import TypeAlias
 
-from rtamt.language.formula import Apply, Const, Formula, fold
-from rtamt.language.operators import Sort, holds
+from rtamt.errors import UsageError, did_you_mean, shown
+from rtamt.language.formula import Apply, Const, Formula, fold, variables
+from rtamt.language.operators import STL, Sort, holds
+from rtamt.rewrite.desugar import rebuilt
+
+#: From a variable to its side of the interface: ``"input"`` or ``"output"``.
+Roles: TypeAlias = Mapping[str, str]
+
+#: What judges predicates: from a predicate and the roles of its variables to what stands in its place.
+Judge: TypeAlias = Callable[[Formula, Roles], Formula]
+
+ROLES = ("input", "output")
+
+
+def truth(predicate: Formula) -> Formula:
+    """Return the formula that is +inf where a predicate holds and -inf where it does not.
+
+    ``>`` and ``>=`` differ at equality; a number holds where it is positive.
+
+    >>> from rtamt.language.parser import parse_formula
+    >>> truth(parse_formula("x >= 3")), truth(parse_formula("x + 1"))
+    (<formula holds_ge(x, 3)>, <formula holds_gt(x + 1, 0)>)
+    """
+    if isinstance(predicate, Apply) and predicate.op.truth is not None:
+        return predicate.op.truth(*predicate.args, predicate.interval)
+    return holds(predicate)
+
+
+def standard(predicate: Formula, _roles: Roles) -> Formula:
+    """Judge by robustness: a predicate is worth its ordinary value.
+
+    To the letter of relative robustness a predicate without variables (3 >= 2) would be infinite here
+    too, because no variables are a subset of none that are fixed; but this one is the definition itself.
+    """
+    return predicate
+
+
+@dataclass(frozen=True, slots=True)
+class Relative:
+    """U-robustness relative to V (the paper's section 2.3).
+
+    ``measured`` (U) and ``fixed`` (V) are the roles of the variables whose change is measured, and of
+    those that cannot change. A predicate that reads any others is worth 0: the least change may
+    overturn it. One that reads no variable but fixed ones (or none at all) is worth its truth, +inf or
+    -inf. The rest have their ordinary value.
+    """
+
+    measured: frozenset[str] = frozenset()
+    fixed: frozenset[str] = frozenset()
+
+    def __call__(self, predicate: Formula, roles: Roles) -> Formula:
+        """Return what stands in the place of a predicate."""
+        read = {roles[name] for name in variables(predicate)}
+        if not read <= self.measured | self.fixed:
+            return Const(0.0)
+        return truth(predicate) if read <= self.fixed else predicate
+
+
+_INPUTS, _OUTPUTS = (frozenset({role}) for role in ROLES)
+
+#: Every semantics that has a name.
+SEMANTICS: Mapping[str, Judge] = MappingProxyType(
+    {
+        "standard": standard,
+        "output_robustness": Relative(measured=_OUTPUTS, fixed=_INPUTS),
+        "input_vacuity": Relative(measured=_INPUTS),
+        "input_robustness": Relative(measured=_INPUTS, fixed=_OUTPUTS),
+        "output_vacuity": Relative(measured=_OUTPUTS),
+        "boolean": Relative(fixed=_INPUTS | _OUTPUTS),
+    }
+)
+
+
+def semantics_of(semantics: object) -> str | Judge:
+    """Return the name in :data:`SEMANTICS` of a semantics, or the function that it is.
+
+    Dashes are as good as underscores, and a member of an enumeration as good as its text.
+
+    >>> semantics_of("output-robustness")
+    'output_robustness'
+    """
+    if callable(semantics):
+        return semantics
+    name = str(semantics).replace("-", "_")
+    if not isinstance(semantics, str | Enum) or name not in SEMANTICS:
+        raise UsageError(
+            f"unknown semantics {shown(semantics)}{did_you_mean(name, SEMANTICS)}; "
+            f"choose from {', '.join(SEMANTICS)}, or give a function of a predicate and roles"
+        )
+    return name
+
+
+def lower(formula: Formula, semantics: str | Judge, roles: Roles) -> Formula:
+    """Return the formula whose robustness is the value of ``formula`` under a semantics.
+
+    ``semantics``: a name in :data:`SEMANTICS`, or a function that is called as
+    ``judge(predicate, roles)`` for every predicate. ``roles``: those that are known; a variable without
+    one is an output, and a field has the role of its variable. The result reads the same variables in
+    the same order, and computes the operands of every predicate, so that an operation on numbers that
+    has no value (0/0) is an error under every semantics.
+
+    Raises :class:`UsageError` where the function returns something else than a formula over the
+    predicate's variables.
+
+    >>> from rtamt.language.parser import parse_formula
+    >>> formula = parse_formula("always(req >= 3 -> gnt >= 3)")
+    >>> lower(formula, "output_robustness", {"req": "input"})
+    <formula always(holds_ge(req, 3) -> gnt >= 3)>
+    """
+    judge = SEMANTICS[semantics] if isinstance(semantics, str) else semantics
+    if judge is standard:
+        return formula
+    all_roles = MappingProxyType({name: role_of(name, roles) for name in variables(formula)})
+
+    def step(node: Formula, below: tuple[tuple[Formula, Formula], ...]) -> tuple[Formula, Formula]:
+        """Return the node read as a number, and read as a formula."""
+        if not isinstance(node, Apply) or is_predicate(node):
+            return node, _judged(node, judge, all_roles)
+        args = tuple(
+            as_formula if sort is Sort.FORMULA else as_number
+            for sort, (as_number, as_formula) in zip(node.op.operands, below, strict=True)
+        )
+        return node, rebuilt(node, args)
+
+    return fold(formula, step)[1]
 
 
 def boolean(formula: Formula) -> Formula:
     """Return the formula whose robustness is +inf where ``formula`` holds and -inf where it does not.
 
-    ``>`` and ``>=`` differ at equality; a number used as a formula holds where it is positive.
-
     >>> from rtamt.language.parser import parse_formula
     >>> str(boolean(parse_formula("always(x >= 3)")))
     'always holds_ge(x, 3)'
     """
+    return lower(formula, "boolean", {})
 
-    def lower(node: Formula, below: tuple[tuple[Formula, Formula], ...]) -> tuple[Formula, Formula]:
-        """Return the node read as a number, and read as a formula."""
-        if isinstance(node, Const) and abs(node.value) == float("inf"):
-            return node, node
-        if not isinstance(node, Apply) or node.op.result is Sort.NUMBER:
-            return node, replace(holds(node), span=node.span)  # type: ignore[type-var]
-        if node.op.truth is not None:
-            return node, replace(node.op.truth(*node.args, None), span=node.span)  # type: ignore[type-var]
-        args = tuple(
-            as_formula if sort is Sort.FORMULA else as_number
-            for sort, (as_number, as_formula) in zip(node.op.operands, below, strict=True)
+
+def is_number(formula: Formula) -> bool:
+    """Tell whether a formula is a number by itself: a variable, a constant or arithmetic."""
+    return not isinstance(formula, Apply) or formula.op.result is Sort.NUMBER
+
+
+def is_predicate(formula: Formula) -> bool:
+    """Tell whether a formula, where a formula is expected, is a predicate: a comparison, or a number."""
+    if not isinstance(formula, Apply) or is_number(formula) or formula.op.truth is not None:
+        return True
+    sorts = formula.op.operands
+    return bool(sorts) and all(sort is Sort.NUMBER for sort in sorts)
+
+
+def role_of(name: str, roles: Roles) -> str:
+    """Return the role of a variable, or of the field of one; without one it is an output.
+
+    >>> role_of("req.value", {"req": "input"}), role_of("gnt", {"req": "input"})
+    ('input', 'output')
+    """
+    return roles.get(name) or roles.get(name.partition(".")[0], "output")
+
+
+def _judged(predicate: Formula, judge: Judge, roles: Roles) -> Formula:
+    """Return what a semantics puts in the place of a predicate, which still reads what the predicate reads."""
+    judged = judge(predicate, roles)
+    if not isinstance(judged, Formula):
+        raise UsageError(
+            f"the semantics {_name(judge)} returned {shown(judged)} for the predicate '{predicate}'; "
+            f"return a formula"
         )
-        return node, replace(node, args=args)
+    if judged is predicate:
+        return predicate
+    holding = replace(truth(predicate), span=predicate.span)  # type: ignore[type-var]
+    if judged == holding:
+        return holding
+    known = set(variables(predicate))
+    for name in variables(judged):
+        if name not in known:
+            raise UsageError(
+                f"the semantics {_name(judge)} returned '{judged}' for the predicate '{predicate}', which "
+                f"does not read '{name}'; use the predicate's own variables"
+            )
+    # min(inf, v) is v, to the sign of a zero; the truth, +inf or -inf, is computed for its operands.
+    return STL["and"](STL["or"](holding, STL["true"]()), judged)
 
-    return fold(formula, lower)[1]
+
+def _name(judge: Judge) -> str:
+    return f"'{getattr(judge, '__name__', None) or judge!r}'"
