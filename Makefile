@@ -72,6 +72,14 @@ $(VENV)/.group-%: pyproject.toml $(VENV)/.made
 	$(RUN) -m pip install --quiet --group $*
 	@touch $@
 
+# What readers and adapters need is tested as users install it: with the extras. Installed already, rtamt
+# itself is left as it is.
+EXTRAS := data
+$(VENV)/.group-test: $(VENV)/.extras
+$(VENV)/.extras: $(VENV)/.core
+	$(RUN) -m pip install --quiet "rtamt[$(EXTRAS)]"
+	@touch $@
+
 # Written only when it differs: an editable install knows each module by its name.
 MODULES := find src -name '*.py' | sort
 $(VENV)/.modules: $(VENV)/.made FORCE

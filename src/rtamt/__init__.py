@@ -3,6 +3,7 @@
 from rtamt.engine.dense_monitor import DenseMonitor
 from rtamt.engine.monitor import Monitor
 from rtamt.engine.signals import Signal
+from rtamt.engine.trace import Channel, Trace
 from rtamt.errors import (
     BoundError,
     EvaluationError,
@@ -16,6 +17,7 @@ from rtamt.errors import (
     UsageError,
 )
 from rtamt.language.operators import STL
+from rtamt.readers.reading import read
 from rtamt.results import Result
 from rtamt.rtamt_api import (
     Language,
@@ -42,6 +44,7 @@ __version__ = "1.0.0.dev0"
 __all__ = [
     "STL",
     "BoundError",
+    "Channel",
     "DenseMonitor",
     "EvaluationError",
     "Language",
@@ -70,9 +73,11 @@ __all__ = [
     "StlError",
     "StlIOType",
     "TimeInterpretation",
+    "Trace",
     "TraceError",
     "UsageError",
     "load",
     "parse",
+    "read",
     "robustness",
 ]

@@ -178,6 +178,8 @@ def columns_of(data: Any, names: Sequence[str], known: Collection[str] = ()) -> 
 
     With a key ``"time"`` all variables share its stamps.
     """
+    if isinstance(data, signals.Clocked):
+        data = data.on_own_clocks(names)
     if not isinstance(data, Mapping):
         if not hasattr(data, "columns"):
             raise TraceError(

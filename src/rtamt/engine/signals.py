@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass
 from datetime import datetime
@@ -27,6 +28,20 @@ TIME = "time"
 
 #: How far, as a fraction of the period, the gap between two samples may be from the period.
 TOLERANCE = 0.1
+
+
+class Clocked(ABC):
+    """Data that knows its clocks: see ``trace.py``."""
+
+    __slots__ = ()
+
+    @abstractmethod
+    def on_one_clock(self, names: Collection[str]) -> Mapping[str, Any]:
+        """Return n values for each name, and ``"time"`` in seconds where there are stamps."""
+
+    @abstractmethod
+    def on_own_clocks(self, names: Collection[str]) -> Mapping[str, tuple[Any, Any]]:
+        """Return times and values for each name."""
 
 
 class Signal:
@@ -114,6 +129,8 @@ def columns_of(
     data: Any, names: Sequence[str], known: Collection[str] = ()
 ) -> tuple[FloatArray | None, dict[str, FloatArray], int]:
     """Return the time stamps (None if there are none), a column for each name, and their common length."""
+    if isinstance(data, Clocked):
+        data = data.on_one_clock(names)
     keys = _keys(data)
     if isinstance(data, Mapping):
         refuse_unknown(keys, names, known)

@@ -1,0 +1,123 @@
+"""Parquet and Arrow files (Feather, IPC), and arrow tables in memory, with pyarrow."""
+
+from __future__ import annotations
+
+from itertools import chain
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rtamt.readers.frames import field_of
+from rtamt.readers.source import CHUNK, Field, Source, Table, library, opening
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Sequence
+
+    from rtamt.readers.source import Raw
+
+
+def open_parquet(path: str) -> Source:
+    """Open a Parquet file; its row groups are read one after another where chunks are asked for."""
+    parquet, arrow = library("pyarrow.parquet", "Parquet"), library("pyarrow", "Parquet")
+    with opening(path, "Parquet", arrow.ArrowException):
+        file = parquet.ParquetFile(path)
+    fields = _fields(file.schema_arrow.empty_table().flatten().schema, arrow)
+
+    def load(wanted: Sequence[Field]) -> list[Raw]:
+        with opening(path, "Parquet", arrow.ArrowException):
+            return _raws(file.read(columns=_columns(wanted)).flatten(), wanted)
+
+    def chunks(wanted: Sequence[Field]) -> Iterator[list[Raw]]:
+        with opening(path, "Parquet", arrow.ArrowException):
+            yield from _of_batches(file.iter_batches(CHUNK, columns=_columns(wanted)), wanted, arrow)
+
+    return Source(path, (Table(fields, load, chunks),), close=file.close)
+
+
+def open_arrow(path: str) -> Source:
+    """Open an Arrow file (Feather is one), or a stream that was written into a file."""
+    arrow, ipc = library("pyarrow", "Arrow files"), library("pyarrow.ipc", "Arrow files")
+    with opening(path, "an Arrow file", arrow.ArrowException):
+        file = arrow.memory_map(path)
+        try:
+            reader = ipc.open_file(file)
+            batches: Iterable[Any] = (reader.get_batch(i) for i in range(reader.num_record_batches))
+        except arrow.ArrowInvalid:
+            file.seek(0)
+            batches = reader = ipc.open_stream(file)
+    fields = _fields(reader.schema.empty_table().flatten().schema, arrow)
+
+    def chunks(wanted: Sequence[Field]) -> Iterator[list[Raw]]:
+        with opening(path, "an Arrow file", arrow.ArrowException):
+            yield from _of_batches(batches, wanted, arrow)
+
+    def load(wanted: Sequence[Field]) -> list[Raw]:
+        with opening(path, "an Arrow file", arrow.ArrowException):
+            whole = arrow.Table.from_batches(list(batches), schema=reader.schema)
+            return _raws(whole.flatten(), wanted)
+
+    return Source(path, (Table(fields, load, chunks),), close=file.close)
+
+
+def table_of_arrow(table: Any) -> Table:
+    """Return an arrow table; a struct is a column for each of its fields, called ``struct.field``."""
+    arrow = library("pyarrow", "arrow tables")
+    flat = table.flatten()
+    return Table(_fields(flat.schema, arrow), lambda wanted: _raws(flat, wanted))
+
+
+def _of_batches(batches: Iterable[Any], wanted: Sequence[Field], arrow: Any) -> Iterator[list[Raw]]:
+    for batch in batches:
+        flat = arrow.Table.from_batches([batch]).flatten()
+        for start in range(0, len(flat), CHUNK):
+            yield _raws(flat.slice(start, CHUNK), wanted)
+
+
+def _columns(wanted: Sequence[Field]) -> list[str]:
+    return list(dict.fromkeys(field.column for field in wanted))
+
+
+def _fields(schema: Any, arrow: Any) -> tuple[Field, ...]:
+    types = arrow.types
+    fields = []
+    for column in schema:
+        kind = ""
+        if types.is_temporal(column.type) and not types.is_time(column.type):
+            kind = "time"
+        elif any(
+            test(column.type)
+            for test in (types.is_integer, types.is_floating, types.is_decimal, types.is_boolean)
+        ):
+            kind = "number"
+        elif not types.is_null(column.type):
+            kind = "text"
+        field = field_of(column.name, kind)
+        said = column.metadata or {}
+        unit = (said.get(b"unit") or said.get(b"units") or b"").decode()
+        fields.append(Field(field.column, field.name, unit or field.unit, kind))
+    return tuple(fields)
+
+
+def _raws(table: Any, wanted: Sequence[Field]) -> list[Raw]:
+    return [_raw(table.column(field.column)) for field in wanted]
+
+
+def _raw(column: Any) -> Raw:
+    kind = str(column.type)
+    if kind.startswith("decimal"):
+        column = column.cast("float64")
+    missing = column.is_null().to_numpy() if column.null_count else None
+    if kind.startswith(("timestamp", "date", "duration")):
+        raw = column.to_numpy()
+        return raw.astype(f"{raw.dtype.kind}8[ns]")  # type: ignore[no-any-return]
+    if kind == "bool":
+        column = column.cast("uint8")
+    elif kind in {"null", "string", "large_string"} or not _is_plain(column):
+        return np.array(list(chain(column.to_pylist(), [None])), dtype=object)[:-1]
+    if missing is None:
+        return column.to_numpy()  # type: ignore[no-any-return]
+    return np.ma.masked_array(column.fill_null(0).to_numpy(), missing)
+
+
+def _is_plain(column: Any) -> bool:
+    return bool(np.issubdtype(column.type.to_pandas_dtype(), np.number))

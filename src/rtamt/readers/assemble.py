@@ -1,0 +1,302 @@
+"""From a source to a trace: which columns, under which names, on which clock."""
+
+from __future__ import annotations
+
+import dataclasses
+from dataclasses import dataclass
+from decimal import Decimal
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rtamt.engine.signals import TIME, is_number
+from rtamt.engine.trace import Channel, Trace
+from rtamt.errors import TraceError, did_you_mean, shown
+from rtamt.readers import clocks
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping, Sequence
+
+    from rtamt.readers.clocks import Clock
+    from rtamt.readers.source import Field, Raw, Source, Table
+
+
+@dataclass(frozen=True, slots=True)
+class Choice:
+    """What the caller asks for; see :func:`rtamt.read`."""
+
+    time: str | None = None
+    columns: tuple[str, ...] | None = None
+    names: Mapping[str, str] = dataclasses.field(default_factory=dict)
+    units: Mapping[str, str] = dataclasses.field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True)
+class Selection:
+    """Of one table: the field of time stamps, and the fields to read with the names of their signals."""
+
+    table: Table
+    clock: Field | None
+    guessed: bool
+    signals: tuple[tuple[str, Field], ...]
+    #: Whether the caller named the columns, so that one that is no number is an error.
+    named: bool
+
+    @property
+    def fields(self) -> tuple[Field, ...]:
+        """What to ask of the table: the stamps first."""
+        first = () if self.clock is None else (self.clock,)
+        return first + tuple(field for _, field in self.signals)
+
+
+def trace_of(source: Source, choice: Choice) -> Trace:
+    """Read a source whole."""
+    channels: dict[str, Channel] = {}
+    notes = list(source.notes)
+    for selection in select(source, choice):
+        raws = selection.table.load(selection.fields)
+        clock = _clock(selection, raws, choice)
+        notes += [] if clock is None else [note for note in clock.notes if note not in notes]
+        made, left_out = _channels(source, selection, clock, raws, choice)
+        channels.update(made)
+        if choice.columns is None:
+            taken = {clock.field if clock else None, *(f for _, f in selection.signals)}
+            left_out += [f.column for f in selection.table.fields if f.kind == "text" and f not in taken]
+        notes += [] if not left_out else [f"left out, not numbers: {', '.join(left_out)}"]
+    if choice.columns is not None:  # in the caller's order, whatever the tables'
+        channels = {name: channels[name] for name in choice.columns if name in channels}
+    return Trace(_one_kind(channels, source.name), source=source.name, notes=notes, origin=source.origin)
+
+
+def chunks_of(source: Source, choice: Choice) -> Iterator[Trace]:
+    """Read a source in chunks: traces that follow one another."""
+    (selection,) = select(source, choice)
+    assert selection.table.chunks is not None
+    clock: Clock | None = None
+    before = 0
+    for raws in selection.table.chunks(selection.fields):
+        clock = clock or _clock(selection, raws, choice)
+        made, _ = _channels(source, selection, clock, raws, choice, before)
+        before += len(raws[0]) if raws else 0
+        notes = () if clock is None else clock.notes
+        yield Trace(made, source=source.name, notes=(*source.notes, *notes), origin=source.origin)
+
+
+# ---- which columns -------------------------------------------------------------------------------
+
+
+def select(source: Source, choice: Choice) -> list[Selection]:
+    """Find the columns that the caller asks for, and the one of time stamps."""
+    if choice.time:
+        everything = [(table, field) for table in source.tables for field in table.fields]
+        if not any(choice.time in (field.name, field.column) for _, field in everything):
+            _find(source, choice.time, everything)  # raises
+    wanted = _wanted(source, choice)
+    found = []
+    for table in source.tables:
+        clock, guessed = _time_field(source, table, choice)
+        mine = [(name, f) for name, t, f in wanted if t is table]
+        if choice.columns is None:
+            mine = [(name, f) for name, f in mine if f != clock or name in choice.names]
+        if mine or len(source.tables) == 1:
+            found.append(Selection(table, clock, guessed, tuple(mine), choice.columns is not None))
+    return found
+
+
+def _wanted(source: Source, choice: Choice) -> list[tuple[str, Table, Field]]:
+    everything = [(table, field) for table in source.tables for field in table.fields]
+    if choice.columns is None:
+        for name in choice.names:
+            _find(source, choice.names[name], everything)
+        new = {column: name for name, column in choice.names.items()}
+        result = [
+            (new.get(field.column, new.get(field.name, field.name)), table, field)
+            for table, field in everything
+            if field.kind != "text" or field.column in new
+        ]
+        _check_unique(source, result)
+        return result
+    found = []
+    for name in dict.fromkeys(choice.columns):
+        if name == TIME and name not in choice.names and _has_clock_called_otherwise(source, choice):
+            continue
+        found.append((name, *_find(source, choice.names.get(name, name), everything)))
+    return found
+
+
+def _has_clock_called_otherwise(source: Source, choice: Choice) -> bool:
+    """Tell whether 'time' means the stamps; the engine reads them under that name."""
+    fields = [field for table in source.tables for field in table.fields]
+    if any(TIME in (field.column, field.name) for field in fields):
+        return any(_time_field(source, table, choice)[0] is not None for table in source.tables)
+    for table in source.tables:
+        clock, _ = _time_field(source, table, choice)
+        if clock is not None:
+            raise TraceError(
+                f"the formula reads '{TIME}', but the time stamps of {source.name} are its column "
+                f"'{clock.column}'; name that column '{TIME}', or the variable something else",
+                variable=TIME,
+            )
+    return False
+
+
+def _find(source: Source, column: str, everything: Sequence[tuple[Table, Field]]) -> tuple[Table, Field]:
+    exact = [(table, field) for table, field in everything if field.column == column]
+    found = exact or [(table, field) for table, field in everything if field.name == column]
+    if len(found) == 1:
+        return found[0]
+    if found:
+        raise TraceError(
+            f"{source.name} has {len(found)} columns called '{column}'; rename all but one of them",
+            variable=column,
+        )
+    names = [field.name for _, field in everything]
+    more = f" and {len(names) - 12} more" if len(names) > 12 else ""
+    hint = did_you_mean(column, names)
+    raise TraceError(
+        f"{source.name} has no column '{column}', only {', '.join(names[:12])}{more}{hint}", variable=column
+    )
+
+
+def _check_unique(source: Source, found: Sequence[tuple[str, Table, Field]]) -> None:
+    seen: set[str] = set()
+    for name, _, field in found:
+        if name in seen:
+            same = [f.column for n, _, f in found if n == name]
+            if len(set(same)) > 1:
+                listing = ", ".join(f"'{column}'" for column in same)
+                raise TraceError(
+                    f"{source.name} has several columns for '{name}': {listing}; say which are meant "
+                    f"with columns= or names="
+                )
+            raise TraceError(
+                f"{source.name} has {len(same)} columns called '{field.column}'; rename all but one"
+            )
+        seen.add(name)
+
+
+def _time_field(source: Source, table: Table, choice: Choice) -> tuple[Field | None, bool]:
+    """Return the field of time stamps, and whether it was guessed."""
+    if choice.time == "":
+        return None, False
+    if choice.time is not None:
+        if table.clock is not None and all(choice.time not in (f.name, f.column) for f in table.fields):
+            return table.clock, False
+        return _find(source, choice.time, [(table, field) for field in table.fields])[1], False
+    if table.clock is not None:
+        return table.clock, False
+    wanted = [choice.names.get(name, name) for name in choice.columns or ()]
+    return clocks.guess_field(table.fields, source.name, [*wanted, *choice.names.values()]), True
+
+
+# ---- values --------------------------------------------------------------------------------------
+
+
+def _clock(selection: Selection, raws: Sequence[Raw], choice: Choice) -> Clock | None:
+    if selection.clock is None:
+        return None
+    unit = choice.units.get(selection.clock.column, choice.units.get(TIME))
+    guessed = selection.guessed and selection.clock.column.lower() != TIME
+    return clocks.clock_of(selection.clock, _dated(raws[0], selection.clock.column), unit, guessed)
+
+
+def _channels(
+    source: Source,
+    selection: Selection,
+    clock: Clock | None,
+    raws: Sequence[Raw],
+    choice: Choice,
+    before: int = 0,
+) -> tuple[dict[str, Channel], list[str]]:
+    """Return the signals of a table, and the columns that were left out."""
+    times = None
+    if clock is not None:
+        times = clocks.times_of(clock, _dated(raws[0], clock.field.column), source.name)
+    values = raws if clock is None else raws[1:]
+    made, left_out = {}, []
+    for (name, field), raw in zip(selection.signals, values, strict=True):
+        try:
+            numbers, missing = numbers_of(raw, field, source.name, before)
+        except TraceError:
+            if selection.named or name in choice.names:
+                raise
+            left_out.append(field.column)
+            continue
+        mine = times
+        if missing is not None and missing.any():
+            if times is None:
+                row = before + int(missing.argmax())
+                raise TraceError(
+                    f"'{name}' is missing at sample {row} of {source.name}: fill the gap, or name the "
+                    f"column of time stamps, so that each signal has a clock of its own",
+                    variable=name,
+                    index=row,
+                )
+            numbers, mine = numbers[~missing], times[~missing]
+        unit = choice.units.get(name, choice.units.get(field.column, field.unit))
+        made[name] = Channel(mine, numbers, unit, field.column)
+    return made, left_out
+
+
+def numbers_of(raw: Raw, field: Field, source: str, before: int = 0) -> tuple[Any, Any]:
+    """Return float64 values and a mask of the missing ones (None: none); raise :class:`TraceError` at no number."""
+    missing = np.ma.getmaskarray(raw) if np.ma.isMaskedArray(raw) else None
+    plain = raw.data if isinstance(raw, np.ma.MaskedArray) else np.asarray(raw)
+    if plain.dtype.kind in "fiub":
+        return np.array(plain, dtype=np.float64), missing
+    if plain.dtype.kind != "O":
+        raise _no_number(plain[0] if len(plain) else plain.dtype, field, source, before)
+    absent = np.array([value is None for value in plain], dtype=bool)
+    missing = absent if missing is None else missing | absent
+    values = np.zeros(len(plain))
+    for i in np.flatnonzero(~missing):
+        value = plain[i]
+        if not is_number(value) and not isinstance(value, Decimal):
+            raise _no_number(value, field, source, before + int(i))
+        values[i] = value
+    return values, missing
+
+
+def _no_number(value: Any, field: Field, source: str, row: int) -> TraceError:
+    return TraceError(
+        f"'{field.column}' of {source} is {shown(value)} at sample {row}, expected a number",
+        variable=field.name,
+        index=row,
+    )
+
+
+def _dated(raw: Raw, column: str) -> Raw:
+    """Return stamps with dates, if that is what the objects are, as numpy's dates."""
+    if raw.dtype.kind not in "OUS":
+        return raw
+    values = raw.filled(None).tolist() if isinstance(raw, np.ma.MaskedArray) else raw.tolist()
+    dates = clocks.from_objects(values)
+    if dates is not None and any(value is not None for value in values):
+        return dates
+    for value in values:
+        if not (value is None or is_number(value) or isinstance(value, Decimal)):
+            raise TraceError(
+                f"the time column '{column}' has {shown(value)}, expected a number, or dates such as "
+                f"2024-05-01T12:00:00"
+            )
+    whole = all(value is None or isinstance(value, int) for value in values)
+    plain = np.array([value or 0 for value in values], dtype=np.int64 if whole else np.float64)
+    missing = np.array([value is None for value in values], dtype=bool)
+    return np.ma.masked_array(plain, missing) if missing.any() else plain
+
+
+def _one_kind(channels: dict[str, Channel], source: str) -> dict[str, Channel]:
+    """Return channels that all tell time in one way: nanoseconds where one of them needs them."""
+    kinds = {c.times.dtype.kind for c in channels.values() if c.times is not None}
+    if len(kinds) < 2:
+        return channels
+    if "M" in kinds:
+        raise TraceError(
+            f"some signals of {source} have dates for times and others numbers: use one of them for all"
+        )
+    return {
+        name: c
+        if c.times is None or c.times.dtype.kind != "f"
+        else Channel(np.rint(c.times * 1e9).astype(np.int64), c.values, c.unit, c.column)
+        for name, c in channels.items()
+    }

@@ -1,0 +1,50 @@
+"""THE LIST of file formats: a row for each kind of file, and what opens it."""
+
+from __future__ import annotations
+
+import importlib
+import os
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from rtamt.errors import TraceError, did_you_mean
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from rtamt.readers.source import Source
+
+
+@dataclass(frozen=True, slots=True)
+class Format:
+    """A kind of file. ``opener``: module and function, imported when such a file is read."""
+
+    name: str
+    suffixes: tuple[str, ...]
+    opener: str
+
+    def open(self, path: str) -> Source:
+        """Open a file of this kind."""
+        module, function = self.opener.split(":")
+        opener: Callable[[str], Source] = getattr(
+            importlib.import_module(f"rtamt.readers.{module}"), function
+        )
+        return opener(path)
+
+
+FORMATS = (
+    Format("CSV", (".csv", ".tsv", ".txt"), "text:open_csv"),
+    Format("Parquet", (".parquet", ".pq"), "arrow:open_parquet"),
+    Format("Arrow", (".arrow", ".feather", ".ipc"), "arrow:open_arrow"),
+)
+
+SUFFIXES = {suffix: known for known in FORMATS for suffix in known.suffixes}
+
+
+def format_of(path: str) -> Format:
+    """Return the format that a file's name tells; raise :class:`TraceError` where it tells none."""
+    suffix = os.path.splitext(path)[1].lower()
+    if suffix not in SUFFIXES:
+        known, hint = ", ".join(SUFFIXES), did_you_mean(suffix, SUFFIXES) if suffix else ""
+        raise TraceError(f"cannot tell how to read '{path}': its name ends in none of {known}{hint}")
+    return SUFFIXES[suffix]

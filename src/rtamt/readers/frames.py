@@ -1,0 +1,223 @@
+"""Data that is in memory already: pandas, polars and xarray objects, arrow tables, numpy arrays, dicts.
+
+No library is imported for them: who has such an object has imported it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rtamt.engine import dense_signals
+from rtamt.engine.signals import TIME
+from rtamt.errors import TraceError
+from rtamt.readers.clocks import looks_like_stamps
+from rtamt.readers.csv import split_unit
+from rtamt.readers.source import Field, Source, Table
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from rtamt.readers.source import Raw
+
+
+def source_of(data: Any) -> Source | None:
+    """Return the object as a source; None where it is of no kind that is known here."""
+    for base in type(data).__mro__:  # first: an xarray dataset is a mapping as well
+        opener = _OPENERS.get((base.__module__.split(".")[0], base.__name__))
+        if opener is not None:
+            return opener(data)
+    if isinstance(data, Mapping):
+        return _dict(data)
+    return _structured(data) if isinstance(data, np.ndarray) else None
+
+
+def field_of(column: str, kind: str = "") -> Field:
+    """Return a field called ``column``, with the unit that is written behind its name."""
+    name, unit = split_unit(column)
+    return Field(column, name, unit, kind)
+
+
+def kind_of(raw: Raw) -> str:
+    """Tell what a column holds."""
+    return {"f": "number", "i": "number", "u": "number", "b": "number", "M": "time", "m": "time"}.get(
+        raw.dtype.kind, "text" if raw.dtype.kind in "US" else ""
+    )
+
+
+def table_of(
+    columns: Mapping[str, Raw], clock: str | None = None, units: Mapping[str, str] | None = None
+) -> Table:
+    """Return arrays of one length as a table; ``clock``: the column that is known to hold the stamps."""
+    fields = {}
+    for column, raw in columns.items():
+        field = field_of(str(column), kind_of(raw))
+        unit = (units or {}).get(column, field.unit)
+        fields[field.column] = Field(field.column, field.name, unit, field.kind)
+    by_column = {str(column): raw for column, raw in columns.items()}
+    _check_lengths(by_column)
+    return Table(
+        tuple(fields.values()),
+        lambda wanted: [by_column[field.column] for field in wanted],
+        clock=None if clock is None else fields[clock],
+    )
+
+
+def _check_lengths(columns: Mapping[str, Raw]) -> None:
+    lengths = {column: len(raw) for column, raw in columns.items()}
+    if len(set(lengths.values())) > 1:
+        (a, n), *rest = lengths.items()
+        b, m = next((b, m) for b, m in rest if m != n)
+        raise TraceError(f"'{a}' has {n} and '{b}' has {m} samples: give one value of each at every sample")
+
+
+def _array(values: Any, name: str) -> Raw:
+    raw = values if isinstance(values, np.ma.MaskedArray) else np.asarray(values)
+    if raw.dtype.kind in "US" and not isinstance(values, np.ndarray):
+        raw = np.asarray(values, dtype=object)  # numpy would make text of numbers beside a text
+    if raw.ndim != 1:
+        raise TraceError(
+            f"'{name}' has {raw.ndim} dimensions, expected 1: give one number a sample", variable=name
+        )
+    return raw
+
+
+# ---- one function for each kind ------------------------------------------------------------------
+
+
+def _dict(data: Mapping[Any, Any]) -> Source:
+    if TIME not in data and data and all(_is_dense(value) for value in data.values()):
+        tables = []
+        for name, samples in data.items():
+            times, values = dense_signals.split(samples, str(name))
+            columns = {TIME: _array(times, TIME), str(name): _array(values, str(name))}
+            # As everywhere: integers in an array are nanoseconds, other numbers seconds.
+            shared = table_of(columns, TIME, {TIME: "ns"} if dense_signals.kind_of(times) == "ns" else None)
+            assert shared.clock is not None
+            # Each has a column of stamps of its own, which nobody asks for by its name.
+            tables.append(Table(shared.fields[1:], shared.load, clock=shared.clock))
+        return Source("a dict", tuple(tables))
+    return Source("a dict", (table_of({str(k): _array(v, str(k)) for k, v in data.items()}),))
+
+
+def _is_dense(value: Any) -> bool:
+    if isinstance(value, tuple):
+        return len(value) == 2 and all(np.ndim(part) == 1 for part in value)
+    return isinstance(value, (list, np.ndarray)) and np.ndim(value) == 2 and np.shape(value)[1:] == (2,)
+
+
+def _structured(data: np.ndarray[Any, Any]) -> Source:
+    if data.dtype.names is None:
+        raise TraceError(
+            f"an array of {data.ndim} dimensions does not say what is in it: give a dict from name to values, "
+            f"or an array with named fields"
+        )
+    return Source("an array", (table_of({name: _array(data[name], name) for name in data.dtype.names}),))
+
+
+def _pandas(frame: Any) -> Source:
+    columns = {str(column): _pandas_column(frame.iloc[:, i]) for i, column in enumerate(frame.columns)}
+    if len(columns) < len(frame.columns):
+        twice = next(str(c) for i, c in enumerate(frame.columns) if c in list(frame.columns[:i]))
+        raise TraceError(f"the pandas frame has two columns called '{twice}'; rename one of them")
+    index, clock = frame.index, None
+    if getattr(index, "nlevels", 1) == 1 and type(index).__name__ != "RangeIndex":
+        name = str(index.name) if index.name is not None else "index"
+        dated = type(index).__name__ in {"DatetimeIndex", "TimedeltaIndex"}
+        if name not in columns:
+            columns = {name: _pandas_column(index.to_series()), **columns}
+            clock = name if dated or looks_like_stamps(field_of(name)) else None
+    return Source("a pandas frame", (table_of(columns, clock),))
+
+
+def _pandas_column(series: Any) -> Raw:
+    if getattr(series.dtype, "tz", None) is not None:
+        series = series.dt.tz_convert("UTC").dt.tz_localize(None)
+    # NaN is how pandas writes that a value is missing.
+    missing = series.isna().to_numpy()
+    kind = series.dtype.kind
+    if kind in "Mm":
+        return series.to_numpy(dtype=f"{kind}8[ns]")  # type: ignore[no-any-return]
+    if kind in "fiub":
+        values = series.to_numpy(dtype=np.float64, na_value=np.nan) if missing.any() else series.to_numpy()
+    else:
+        values = series.astype(object).to_numpy()
+    return np.ma.masked_array(values, missing) if missing.any() else values
+
+
+def _pandas_series(series: Any) -> Source:
+    return _pandas(series.to_frame(series.name if series.name is not None else "x"))
+
+
+def _polars(frame: Any) -> Source:
+    return Source("a polars frame", (table_of({s.name: _polars_column(s) for s in frame.get_columns()}),))
+
+
+def _polars_column(series: Any) -> Raw:
+    missing = series.is_null().to_numpy() if series.null_count() else None
+    kind = type(series.dtype).__name__
+    if kind == "Datetime":
+        zoned = series if series.dtype.time_zone is None else series.dt.convert_time_zone("UTC")
+        return zoned.dt.replace_time_zone(None).to_numpy().astype("datetime64[ns]")  # type: ignore[no-any-return]
+    if kind in {"Date", "Duration"}:
+        raw = series.to_numpy()
+        return raw.astype(f"{raw.dtype.kind}8[ns]")  # type: ignore[no-any-return]
+    if not series.dtype.is_numeric() and kind != "Boolean":
+        return np.array([*series.to_list(), None], dtype=object)[:-1]
+    if missing is None and kind != "Decimal":
+        return series.to_numpy()  # type: ignore[no-any-return]
+    values = np.array([0.0 if value is None else float(value) for value in series.to_list()])
+    return values if missing is None else np.ma.masked_array(values, missing)
+
+
+def _arrow(table: Any) -> Source:
+    from rtamt.readers.arrow import table_of_arrow
+
+    return Source("an arrow table", (table_of_arrow(table),))
+
+
+def _xarray(data: Any) -> Source:
+    """Return a table for each dimension: the variables along it, and its coordinate for a clock."""
+    tables, left_out = [], [str(name) for name, v in data.data_vars.items() if v.ndim != 1]
+    for dim in data.dims:
+        along = {str(name): v for name, v in data.data_vars.items() if v.dims == (dim,)}
+        if not along:
+            continue
+        columns = {name: _floats(v.values) for name, v in along.items()}
+        units = {name: str(v.attrs.get("units", "")) for name, v in along.items()}
+        clock = None
+        if dim in data.coords:
+            columns[str(dim)] = data.coords[dim].values
+            units[str(dim)] = str(data.coords[dim].attrs.get("units", ""))
+            timed = kind_of(columns[str(dim)]) == "time" or looks_like_stamps(field_of(str(dim)))
+            clock = str(dim) if timed else None
+        tables.append(table_of(columns, clock, {name: unit for name, unit in units.items() if unit}))
+    notes = (f"left out, not one-dimensional: {', '.join(left_out)}",) if left_out else ()
+    return Source("an xarray dataset", tuple(tables), notes=notes)
+
+
+def _floats(raw: Raw) -> Raw:
+    """Return values with NaN masked: it is how xarray writes that a value is missing."""
+    missing = np.isnan(raw) if raw.dtype.kind == "f" else np.zeros(raw.shape, dtype=bool)
+    return np.ma.masked_array(raw, missing) if missing.any() else raw
+
+
+def _xarray_array(data: Any) -> Source:
+    return _xarray(data.to_dataset(name=data.name if data.name is not None else "x"))
+
+
+_OPENERS: dict[tuple[str, str], Callable[[Any], Source]] = {
+    ("pandas", "DataFrame"): _pandas,
+    ("pandas", "Series"): _pandas_series,
+    ("polars", "DataFrame"): _polars,
+    ("pyarrow", "Table"): _arrow,
+    ("xarray", "Dataset"): _xarray,
+    ("xarray", "DataArray"): _xarray_array,
+}
+
+
+def known_kinds() -> Sequence[str]:
+    """Return what can be read from memory, for messages."""
+    return ["a dict", "a structured numpy array", *(f"{a}.{b}" for a, b in _OPENERS)]

@@ -1,0 +1,94 @@
+"""``rtamt.read``: one way to read a recording, whatever it is kept in."""
+
+from __future__ import annotations
+
+import os
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any
+
+from rtamt.errors import UsageError
+from rtamt.readers import frames
+from rtamt.readers.assemble import Choice, trace_of
+from rtamt.readers.formats import FORMATS, format_of
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Mapping
+
+    from rtamt.engine.trace import Trace
+    from rtamt.readers.source import Source
+
+
+def read(
+    source: Any,
+    *,
+    time: str | None = None,
+    columns: Iterable[str] | None = None,
+    names: Mapping[str, str] | None = None,
+    units: Mapping[str, str] | None = None,
+) -> Trace:
+    r"""Read a recording; ``Specification.evaluate`` and ``update_many`` take what comes out.
+
+    ``source``: a file, whose suffix tells its format; a dict, pandas, polars, xarray or arrow object,
+    or structured numpy array. ``columns``: the signals that are wanted (default: all that are
+    numbers). ``names``: for signals that are to be called otherwise than their columns, from the name
+    to the column: ``{"v": "battery_status[1].voltage_v"}``. ``time``: the column of time stamps, ``""``
+    for none; by default the one called time, t, timestamp, stamp or datetime, perhaps with a unit
+    (``Time [ms]``, ``time_ms``), else the one column of dates. ``units``: from column to unit, where
+    the source does not say it; ``"time"`` stands for the column of time stamps, which otherwise are
+    seconds, or, where they are integers too large for that, ms, us or ns since 1970.
+
+    A value that is missing (an empty cell, null, pandas' NaN) is no sample: the signal then has a
+    clock of its own. What was guessed is in ``Trace.notes``, and printed with it.
+
+    Raises :class:`TraceError` where the data is wrong or columns cannot be told apart, and
+    :class:`UsageError` where a library is missing: ``pip install 'rtamt[data]'``.
+
+    >>> import pathlib, tempfile
+    >>> import rtamt
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     path = pathlib.Path(folder, "log.csv")
+    ...     _ = path.write_text("t [ms],speed [m/s],note\n0,5,go\n100,4,stop\n")
+    ...     trace = rtamt.read(path)
+    >>> trace["speed"]
+    Signal(times=array([0. , 0.1]), values=array([5., 4.]))
+    >>> trace.channel("speed").unit, trace.notes
+    ('m/s', ("time is 't [ms]', by its name", 'left out, not numbers: note'))
+    """
+    with opened(source) as found:
+        return trace_of(found, choice(time, columns, names, units))
+
+
+def choice(
+    time: str | None,
+    columns: Iterable[str] | None,
+    names: Mapping[str, str] | None,
+    units: Mapping[str, str] | None,
+) -> Choice:
+    """Return the arguments of :func:`read` as one record."""
+    if isinstance(columns, str):
+        raise UsageError(f"columns is the text '{columns}'; give a list of names, such as ['{columns}']")
+    return Choice(time, None if columns is None else tuple(columns), dict(names or {}), dict(units or {}))
+
+
+@contextmanager
+def opened(source: Any) -> Iterator[Source]:
+    """Open whatever can be read, and close it at the end."""
+    found = _open(source)
+    try:
+        yield found
+    finally:
+        if found.close is not None:
+            found.close()
+
+
+def _open(source: Any) -> Source:
+    if isinstance(source, (str, os.PathLike)):
+        path = os.fspath(source)
+        return format_of(path).open(path)
+    found = frames.source_of(source)
+    if found is None:
+        kinds = ", ".join(known.name for known in FORMATS)
+        raise UsageError(
+            f"cannot read a {type(source).__name__}: give a file ({kinds}) or {', '.join(frames.known_kinds())}"
+        )
+    return found

@@ -1,0 +1,92 @@
+"""Parquet and Arrow files."""
+
+import sys
+
+import numpy as np
+import pyarrow as pa
+import pytest
+from pyarrow import feather, parquet
+
+import rtamt
+
+TABLE = pa.table(
+    {
+        "t": pa.array([0, 100, 200], pa.int64()),
+        "x": pa.array([5.0, None, 6.0]),
+        "req": [{"value": 1}, {"value": 2}, {"value": 3}],
+        "mode": pa.array(["a", "b", "a"]).dictionary_encode(),
+    },
+    schema=pa.schema(
+        [
+            pa.field("t", pa.int64(), metadata={"unit": "ms"}),
+            pa.field("x", pa.float32(), metadata={"unit": "V"}),
+            pa.field("req", pa.struct([("value", pa.int16())])),
+            pa.field("mode", pa.dictionary(pa.int32(), pa.string())),
+        ]
+    ),
+)
+
+
+def stream(table, path):
+    with pa.OSFile(str(path), "wb") as file, pa.ipc.new_stream(file, table.schema) as writer:
+        writer.write_table(table)
+
+
+@pytest.mark.parametrize(
+    ("name", "write"),
+    [
+        ("log.parquet", parquet.write_table),
+        ("log.pq", lambda table, path: parquet.write_table(table, path, row_group_size=1)),
+        ("log.feather", feather.write_feather),
+        ("log.arrow", lambda table, path: feather.write_feather(table, str(path), chunksize=2)),
+        ("log.ipc", stream),
+    ],
+)
+def test_a_file_is_read_with_its_units_gaps_and_fields(tmp_path, name, write):
+    write(TABLE, tmp_path / name)
+    trace = rtamt.read(tmp_path / name)
+    assert trace.names == ("x", "req.value")
+    assert trace["x"].times.tolist() == [0, 0.2]
+    assert trace["req.value"].times.tolist() == [0, 0.1, 0.2]
+    assert trace.channel("x").unit == "V"
+    assert trace.notes == ("time is 't', by its name", "left out, not numbers: mode")
+    assert rtamt.read(tmp_path / name, columns=["req.value"])["req.value"].values.tolist() == [1, 2, 3]
+
+
+def test_dates_of_nanoseconds(tmp_path):
+    dates = np.array(["2024-05-01T10:00:00.000000001", "2024-05-01T10:00:00.000000003"], dtype="M8[ns]")
+    parquet.write_table(pa.table({"when": dates, "x": [1, 2]}), tmp_path / "log.parquet")
+    assert rtamt.read(tmp_path / "log.parquet")["x"].times.tolist() == dates.tolist()
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "message"),
+    [
+        ("a.parquet", None, "there is no file '{path}'"),
+        ("a.parquet", b"PAR1 nonsense", "'{path}' cannot be read as Parquet: "),
+        ("a.arrow", b"nonsense", "'{path}' cannot be read as an Arrow file: "),
+        (
+            "a.parket",
+            b"",
+            "cannot tell how to read '{path}': its name ends in none of .csv, .tsv, .txt, .parquet",
+        ),
+    ],
+)
+def test_what_is_no_such_file(tmp_path, name, content, message):
+    path = tmp_path / name
+    if content is not None:
+        path.write_bytes(content)
+    with pytest.raises(rtamt.TraceError) as error:
+        rtamt.read(path)
+    assert str(error.value).startswith(message.format(path=path))
+    assert "\n" not in str(error.value)
+
+
+def test_without_the_extra_one_sentence_says_what_to_install(tmp_path, monkeypatch):
+    monkeypatch.setitem(sys.modules, "pyarrow.parquet", None)
+    (tmp_path / "a.parquet").touch()
+    with pytest.raises(rtamt.UsageError) as error:
+        rtamt.read(tmp_path / "a.parquet")
+    assert str(error.value) == (
+        "reading Parquet needs the package 'pyarrow', which is not installed: pip install 'rtamt[data]'"
+    )

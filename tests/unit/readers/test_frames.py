@@ -1,0 +1,205 @@
+"""``rtamt.read`` of what is in memory: pandas, polars, xarray, arrow, numpy, dicts."""
+
+import datetime as dt
+
+import numpy as np
+import pandas as pd
+import polars as pl
+import pyarrow as pa
+import pytest
+import xarray as xr
+
+import rtamt
+
+X = [5.0, 4.0, 6.0]
+STAMPS = [0.0, 0.1, 0.2]
+DATES = np.array(["2024-05-01T10:00:00", "2024-05-01T10:00:01", "2024-05-01T10:00:02"], dtype="M8[ns]")
+
+
+@pytest.mark.parametrize(
+    "data",
+    [
+        {"time": STAMPS, "x": X},
+        {"x": (STAMPS, X)},
+        {"x": [[t, v] for t, v in zip(STAMPS, X, strict=True)]},
+        {"time_ms": [0, 100, 200], "x": X},
+        {"Time [us]": np.array([0, 100_000, 200_000]), "x [V]": X},
+        np.array(list(zip(STAMPS, X, strict=True)), dtype=[("t", float), ("x", float)]),
+        pd.DataFrame({"timestamp": STAMPS, "x": X}),
+        pd.DataFrame({"x": X}, index=pd.Index(STAMPS, name="t")),
+        pd.Series(X, index=pd.to_timedelta([0, 100, 200], unit="ms"), name="x"),
+        pl.DataFrame({"t": STAMPS, "x": X}),
+        pl.DataFrame({"t": [dt.timedelta(milliseconds=ms) for ms in (0, 100, 200)], "x": X}),
+        pa.table({"stamp (ms)": [0, 100, 200], "x": X}),
+        xr.DataArray(X, coords={"t": STAMPS}, dims="t", name="x"),
+        xr.Dataset({"x": ("i", X)}, coords={"i": ("i", [0, 100, 200], {"units": "ms"})}).rename(i="time"),
+    ],
+    ids=lambda data: type(data).__name__,
+)
+def test_every_kind_of_data_gives_the_same_signal(data):
+    trace = rtamt.read(data)
+    assert trace.names == ("x",)
+    assert trace["x"].times.tolist() == STAMPS
+    assert trace["x"].values.tolist() == X
+    assert trace["x"].values.dtype == np.float64
+    assert rtamt.parse("always(x >= 3)", period="100ms").evaluate(trace).robustness == 1
+
+
+@pytest.mark.parametrize(
+    "data",
+    [
+        {"t": DATES, "x": X},
+        {"t": ["2024-05-01T10:00:00Z", "2024-05-01T12:00:01+02:00", "2024-05-01 10:00:02"], "x": X},
+        pd.DataFrame({"x": X}, index=pd.DatetimeIndex(DATES)),
+        pd.DataFrame({"x": X}, index=pd.DatetimeIndex(DATES).tz_localize("UTC").tz_convert("Asia/Tokyo")),
+        pl.DataFrame({"when": DATES, "x": X}),
+        pl.DataFrame({"when": DATES, "x": X}).with_columns(
+            pl.col("when").dt.replace_time_zone("UTC").dt.convert_time_zone("Asia/Tokyo")
+        ),
+        pa.table({"when": pa.array(DATES, pa.timestamp("ns", "UTC")), "x": X}),
+        xr.Dataset({"x": ("when", X)}, coords={"when": DATES}),
+    ],
+    ids=lambda data: type(data).__name__,
+)
+def test_dates_are_utc_whatever_holds_them(data):
+    trace = rtamt.read(data)
+    assert trace["x"].times.dtype == np.dtype("M8[ns]")
+    assert trace["x"].times.tolist() == DATES.tolist()
+    assert rtamt.parse("always[0:2](x >= 3)").evaluate(trace, time="dense").robustness == 1
+    assert rtamt.parse("always[0:2](x >= 3)").evaluate(trace).robustness == 1
+
+
+@pytest.mark.parametrize(
+    "data",
+    [
+        pd.DataFrame({"time": [0.0, 1.0, 2.0], "x": [1.0, np.nan, 3.0], "y": [1, 2, 3]}),
+        pd.DataFrame({"time": [0.0, 1.0, 2.0], "x": pd.array([1, None, 3], dtype="Int64"), "y": [1, 2, 3]}),
+        pl.DataFrame({"time": [0.0, 1.0, 2.0], "x": [1, None, 3], "y": [1, 2, 3]}),
+        pl.DataFrame({"time": [0.0, 1.0, 2.0], "x": [True, None, True], "y": [1, 2, 3]}),
+        pa.table({"time": [0.0, 1.0, 2.0], "x": [1, None, 3], "y": [1, 2, 3]}),
+        pa.table({"time": [0.0, 1.0, 2.0], "x": [True, None, True], "y": [1, 2, 3]}),
+        {"time": [0.0, 1.0, 2.0], "x": [1, None, 3], "y": [1, 2, 3]},
+        {"time": [0.0, 1.0, 2.0], "x": np.ma.masked_equal([1, 9, 3], 9), "y": [1, 2, 3]},
+        xr.Dataset(
+            {"x": ("time", [1.0, np.nan, 3.0]), "y": ("time", [1, 2, 3])}, coords={"time": [0.0, 1.0, 2.0]}
+        ),
+    ],
+    ids=lambda data: type(data).__name__,
+)
+def test_a_missing_value_is_no_sample(data):
+    trace = rtamt.read(data)
+    assert trace["x"].times.tolist() == [0, 2]
+    assert trace["y"].times.tolist() == [0, 1, 2]
+    assert rtamt.parse("always(y >= x)").evaluate(trace, time="dense").robustness == 0
+    with pytest.raises(rtamt.TraceError, match=r"^'y' and 'x' are on different clocks"):
+        rtamt.parse("always(y >= x)").evaluate(trace)
+
+
+def test_nan_that_is_no_missing_value_is_an_error_as_ever():
+    trace = rtamt.read({"time": [0.0, 1.0], "x": [1.0, float("nan")]})
+    with pytest.raises(rtamt.TraceError, match=r"^'x' is NaN at sample 1, time 1 s: fill the gap"):
+        rtamt.parse("x").evaluate(trace)
+
+
+def test_columns_names_and_units():
+    data = pa.table({"time": [0, 1], "Motor speed [rpm]": [3, 4], "x": [1, 2], "note": ["a", "b"]})
+    trace = rtamt.read(data, columns=["speed"], names={"speed": "Motor speed"}, units={"time": "ms"})
+    assert trace.names == ("speed",)
+    assert (trace.channel("speed").unit, trace.channel("speed").column) == ("rpm", "Motor speed [rpm]")
+    assert trace["speed"].times.tolist() == [0, 0.001]
+    assert rtamt.read(data).names == ("Motor speed", "x")
+    assert rtamt.read(data, names={"v": "x"}, units={"v": "m/s"}).names == ("Motor speed", "v")
+    assert rtamt.read(data, units={"x": "V"}).channel("x").unit == "V"
+
+
+def test_fields_of_structures_are_columns():
+    table = pa.table({"t": [0, 1], "req": [{"value": 3, "ok": True}, {"value": 4, "ok": False}]})
+    trace = rtamt.read(table)
+    assert trace.names == ("req.value", "req.ok")
+    assert rtamt.parse("always(req.value >= 3)").evaluate(trace).robustness == 0
+
+
+def test_every_guess_is_visible():
+    frame = pl.DataFrame({"stamp_us": [0, 10], "x [V]": [1, 2], "mode": ["a", "b"]})
+    assert repr(rtamt.read(frame)) == (
+        "Trace of a polars frame: 1 signal, 0 s to 1e-05 s\n"
+        "  time is 'stamp_us', by its name\n"
+        "  left out, not numbers: mode\n"
+        "  x [V]  2 samples, 0 s to 1e-05 s"
+    )
+    epoch = rtamt.read({"timestamp": np.array([1_700_000_000_123, 1_700_000_000_223]), "x": [1, 2]})
+    assert epoch.notes == (
+        "time is 'timestamp', by its name",
+        "its integers are taken as ms since 1970, by their size",
+    )
+    assert epoch["x"].times.tolist() == [1_700_000_000_123_000_000, 1_700_000_000_223_000_000]
+    assert rtamt.read(pl.DataFrame({"when": DATES, "x": X})).notes == (
+        "time is 'when', the one column of dates",
+    )
+
+
+def test_dimensions_of_a_dataset_are_clocks_of_their_own():
+    data = xr.Dataset(
+        {
+            "x": ("time", [1.0, 2.0], {"units": "V"}),
+            "y": ("t", [1, 2, 3]),
+            "image": (("time", "t"), np.zeros((2, 3))),
+        },
+        coords={"time": [0.0, 1.0], "t": [0, 1, 2]},
+    )
+    trace = rtamt.read(data)
+    assert (trace["x"].times.tolist(), trace["y"].times.tolist()) == ([0, 1], [0, 1, 2])
+    assert (trace.channel("x").unit, trace.notes) == ("V", ("left out, not one-dimensional: image",))
+
+
+def test_the_data_of_the_caller_is_not_shared():
+    x = np.array(X)
+    trace = rtamt.read({"x": x})
+    x[0] = 99
+    assert trace["x"].values.tolist() == X
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (lambda: rtamt.read(5),
+         "cannot read a int: give a file (CSV, Parquet, Arrow) or a dict, a structured numpy array, "
+         "pandas.DataFrame, pandas.Series, polars.DataFrame, pyarrow.Table, xarray.Dataset, xarray.DataArray"),
+        (lambda: rtamt.read(np.zeros((2, 2))),
+         "an array of 2 dimensions does not say what is in it: give a dict from name to values, "
+         "or an array with named fields"),
+        (lambda: rtamt.read({"time": [0, 1], "stamp": [0, 1], "x": [1, 2]}),
+         "a dict has several columns that may hold the time stamps: 'time', 'stamp'; "
+         "choose one with time=, or on the command line --time-column"),
+        (lambda: rtamt.read({"time": [0, 1], "x": [1]}),
+         "'time' has 2 and 'x' has 1 samples: give one value of each at every sample"),
+        (lambda: rtamt.read({"x": [[1, 2, 3]]}), "'x' has 2 dimensions, expected 1: give one number a sample"),
+        (lambda: rtamt.read({"time": [0, None], "x": [1, 2]}),
+         "the time column 'time' of a dict is empty at sample 1"),
+        (lambda: rtamt.read({"time": [0, "now"], "x": [1, 2]}),
+         "the time column 'time' has 'now', expected a number, or dates such as 2024-05-01T12:00:00"),
+        (lambda: rtamt.read({"x": [1, "a"]}, columns=["x"]), "'x' of a dict is 'a' at sample 1, expected a number"),
+        (lambda: rtamt.read({"x": [1, None]}),
+         "'x' is missing at sample 1 of a dict: fill the gap, or name the column of time stamps, "
+         "so that each signal has a clock of its own"),
+        (lambda: rtamt.read({"req": [1]}, columns=["rq"]), "a dict has no column 'rq', only req; did you mean 'req'?"),
+        (lambda: rtamt.read({"req": [1]}, time="clock"), "a dict has no column 'clock', only req"),
+        (lambda: rtamt.read({"x": [1]}, columns="x"),
+         "columns is the text 'x'; give a list of names, such as ['x']"),
+        (lambda: rtamt.read({"time": [1], "x": [1]}, units={"time": "min"}),
+         "the unit of the time column 'time' is 'min', which is none of s, ms, us, ns"),
+        (lambda: rtamt.read({"t": [0, 1], "x": [1, 2]}, columns=["time", "x"]),
+         "the formula reads 'time', but the time stamps of a dict are its column 't'; "
+         "name that column 'time', or the variable something else"),
+        (lambda: rtamt.read({"x [V]": [1], "x [A]": [1]}),
+         "a dict has several columns for 'x': 'x [V]', 'x [A]'; say which are meant with columns= or names="),
+        (lambda: rtamt.read(pd.DataFrame([[1, 2]], columns=["x", "x"])),
+         "the pandas frame has two columns called 'x'; rename one of them"),
+        (lambda: rtamt.read({"x": ([0.0], [1]), "y": (DATES[:1], [1])}),
+         "some signals of a dict have dates for times and others numbers: use one of them for all"),
+    ],
+)  # fmt: skip
+def test_messages(call, message):
+    with pytest.raises(rtamt.StlError) as error:
+        call()
+    assert str(error.value) == message

@@ -1,0 +1,126 @@
+"""``Trace``: names, clocks, renaming, and clocks that are chosen openly."""
+
+from fractions import Fraction
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+import rtamt
+from tests import strategies
+
+
+def two_clocks():
+    return rtamt.read({"req": ([0.0, 2.5], [5, 0]), "gnt": ([0.0, 1.0, 4.0], [0, 4, 0])})
+
+
+def test_dense_time_reads_each_signal_on_its_own_clock():
+    spec = rtamt.parse("always(req >= 3 -> eventually[0:2](gnt >= 3))")
+    data = {"req": ([0.0, 2.5], [5, 0]), "gnt": ([0.0, 1.0, 4.0], [0, 4, 0])}
+    ours, given_ = spec.evaluate(two_clocks(), time="dense"), spec.evaluate(data, time="dense")
+    assert ours.signal.times.tolist() == given_.signal.times.tolist()
+    assert ours.signal.values.tolist() == given_.signal.values.tolist()
+
+
+def test_discrete_time_needs_one_clock_and_says_what_to_do():
+    with pytest.raises(rtamt.TraceError) as error:
+        rtamt.parse("req >= gnt").evaluate(two_clocks())
+    assert str(error.value) == (
+        "'req' and 'gnt' are on different clocks (2 samples, 0 s to 2.5 s; 3 samples, 0 s to 4 s): "
+        "evaluate in dense time, or put them on one clock with trace.resample(period=...) or trace.hold(), "
+        "on the command line with --resample PERIOD"
+    )
+    # Of one signal alone the clock is the clock.
+    assert rtamt.parse("req >= 3").evaluate(two_clocks()).signal.values.tolist() == [2, -3]
+
+
+def test_what_discrete_time_reads_after_resampling():
+    trace = two_clocks().resample("500ms")
+    assert trace["gnt"].times.tolist() == [0, 0.5, 1, 1.5, 2, 2.5, 3, 3.5, 4]
+    assert trace["req"].values.tolist() == [5, 5, 5, 5, 5, 0, 0, 0, 0]
+    assert rtamt.parse("always(req >= 3 -> eventually[0:2](gnt >= 3))").evaluate(trace).robustness == 1
+
+
+def test_a_line_ends_where_the_first_signal_ends_and_hold_where_the_last_one_does():
+    assert two_clocks().resample(0.5, how="linear").end == 2.5
+    assert two_clocks().resample(0.5, how="linear")["gnt"].values.tolist() == [
+        0, 2, 4, 4 - 4 / 6, 4 - 8 / 6, 2,
+    ]  # fmt: skip
+    assert two_clocks().resample(0.5).end == 4
+
+
+def test_signals_begin_where_all_of_them_have_begun():
+    trace = rtamt.read({"x": ([0.0, 3.0], [1, 2]), "y": ([1.0, 2.0], [5, 6])})
+    assert trace.hold()["x"].times.tolist() == [1, 2, 3]
+    assert trace.resample(1)["y"].values.tolist() == [5, 6, 6]
+
+
+def test_nanoseconds_since_1970_stay_exact():
+    epoch = 1_700_000_000_123_456_789
+    trace = rtamt.read({"x": (np.array([epoch, epoch + 10, epoch + 20]), [0, 1, 2])})
+    assert trace["x"].times.tolist() == [epoch, epoch + 10, epoch + 20]
+    fine = trace.resample("5ns", how="linear")
+    assert fine["x"].times.tolist() == [epoch + 5 * i for i in range(5)]
+    assert fine["x"].values.tolist() == [0, 0.5, 1, 1.5, 2]
+    assert rtamt.parse("eventually[0:20ns](x >= 2)").evaluate(trace, time="dense").satisfied
+
+
+def test_a_monitor_takes_traces_as_chunks():
+    monitor = rtamt.parse("always[0:1](x >= 3)").monitor()
+    assert monitor.update_many(rtamt.read({"time": [0, 1, 2], "x": [5, 4, 6]})).values.tolist() == [1, 1]
+    dense = rtamt.parse("x >= 3").monitor(time="dense")
+    assert dense.update_many(rtamt.read({"time": [0, 2], "x": [5, 4]})).times.tolist() == [0, 2]
+
+
+def test_rename_gives_names_that_formulas_can_say():
+    trace = rtamt.read({"battery_status[1].voltage_v": [12.1, 12.0], "v": [1, 2]})
+    assert trace.rename({"u": "battery_status[1].voltage_v"}).names == ("u", "v")
+    with pytest.raises(rtamt.UsageError, match=r"^a dict has a 'v' already; choose another name$"):
+        trace.rename({"v": "battery_status[1].voltage_v"})
+    with pytest.raises(rtamt.TraceError, match=r"^a dict has no 'w', only battery_status\[1\].voltage_v, v"):
+        trace.rename({"x": "w"})
+
+
+def test_without_stamps_samples_are_one_period_apart_and_dense_time_says_what_it_needs():
+    trace = rtamt.read({"x": [1, 2, 3]})
+    assert rtamt.parse("eventually[0:200ms](x >= 3)", period="100ms").evaluate(trace).robustness == 0
+    assert (trace.start, trace["x"].times.tolist()) == (None, [0, 1, 2])
+    with pytest.raises(rtamt.TraceError) as error:
+        rtamt.parse("x >= 3").evaluate(trace, time="dense")
+    assert str(error.value) == (
+        "a dict has no time stamps, which dense time needs: name their column with time=, "
+        "or on the command line --time-column"
+    )
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (lambda t: t.resample("0s"), "the sampling period is '0s'; it must be positive"),
+        (lambda t: t.resample(1, how="line"), "cannot resample by 'line'; did you mean 'linear'?; "
+         "choose from hold, linear"),
+        (lambda _: rtamt.read({"x": [1]}).hold(), "'x' has no time stamps, so that it cannot be put on another clock"),
+        (lambda _: rtamt.read({"x": ([0.0], [1]), "y": ([5.0], [1])}).resample(1, how="linear"),
+         "the signals have no instant in common"),
+        (lambda _: rtamt.read({"x": (np.array([2**60]), [1])}).resample(Fraction(1, 3)),
+         "the period 1/3 s is no whole number of nanoseconds, in which the stamps are counted"),
+    ],
+)  # fmt: skip
+def test_messages(call, message):
+    with pytest.raises(rtamt.StlError) as error:
+        call(two_clocks())
+    assert str(error.value) == message
+
+
+@given(strategies.dense_traces(), st.sampled_from((1, 2, 3)))
+def test_law_a_resampled_or_held_signal_is_the_dense_one_at_those_instants(trace, step):
+    """``hold`` is what dense time means by a signal: the value of the last sample."""
+    read = rtamt.read(trace)
+    spec = rtamt.parse("x + y")
+    dense = spec.evaluate(trace, time="dense").signal
+    for held in (read.resample(Fraction(step, 10**9)), read.hold()):
+        result = spec.evaluate(held, period="1ns", tolerance=1e9).signal.values
+        times = np.rint(held["x"].times * 1e9)
+        at = np.searchsorted(dense.times, times, side="right") - 1
+        assert result.tolist() == dense.values[at].tolist()
