@@ -1,0 +1,81 @@
+"""The corpus as it is kept: one case a line, JSON, every number with all its digits (README.md beside)."""
+
+from __future__ import annotations
+
+import json
+import math
+from dataclasses import asdict, dataclass, field
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+FOLDER = Path(__file__).parent
+FILES = ("corners.jsonl", "discrete.jsonl", "dense.jsonl")
+
+SEMANTICS = (
+    "standard",
+    "boolean",
+    "output_robustness",
+    "input_vacuity",
+    "input_robustness",
+    "output_vacuity",
+)
+
+
+@dataclass
+class Case:
+    """A formula, a trace and the answer; README.md says what each field holds."""
+
+    id: str
+    time: str
+    formula: str
+    step: str
+    signals: dict[str, list[Any]]
+    semantics: str = "standard"
+    inputs: list[str] = field(default_factory=list)
+    values: list[Any] = field(default_factory=list)
+    end: int | None = None
+    known: list[Any] | None = None
+
+    @property
+    def seconds(self) -> Fraction:
+        """The sampling period, or the length of a tick."""
+        return Fraction(self.step)
+
+    @property
+    def instants(self) -> list[int]:
+        """Of a dense trace, the ticks at which some signal has a sample, in order."""
+        return sorted({t for samples in self.signals.values() for t, _ in samples})
+
+
+def read(name: str) -> list[Case]:
+    """Return the cases of one file of the corpus."""
+    with (FOLDER / name).open(encoding="utf-8") as lines:
+        return [Case(**_each(json.loads(line), _number)) for line in lines]
+
+
+def write(name: str, cases: list[Case]) -> None:
+    """Write one file of the corpus; what a field holds by default is left out."""
+    with (FOLDER / name).open("w", encoding="utf-8") as file:
+        file.writelines(line(case) + "\n" for case in cases)
+
+
+def line(case: Case) -> str:
+    """Return a case as it is written."""
+    kept = {k: v for k, v in asdict(case).items() if k == "known" or v not in ("standard", [], None)}
+    return json.dumps(_each(kept, _text), separators=(",", ":"), allow_nan=False, ensure_ascii=False)
+
+
+def _each(value: Any, change: Any) -> Any:
+    """Change every number of a signal or an answer: JSON has no infinity."""
+    if isinstance(value, dict):
+        return {k: _each(v, change) for k, v in value.items()}
+    return [_each(v, change) for v in value] if isinstance(value, list) else change(value)
+
+
+def _text(value: Any) -> Any:
+    return str(value) if isinstance(value, float) and math.isinf(value) else value
+
+
+def _number(value: Any) -> Any:
+    return float(value) if value in ("inf", "-inf") else value

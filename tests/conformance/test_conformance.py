@@ -1,0 +1,196 @@
+"""The corpus is true: an evaluator of its own gives every answer, and so does every path of the engine."""
+
+from __future__ import annotations
+
+from math import inf
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pytest
+
+import rtamt
+from rtamt.language.formula import Apply, postorder
+from rtamt.language.operators import STL
+from tests.conformance import cases
+from tests.conformance.generate import ALONE, data_of, ticks_of
+from tests.oracle import meaning
+
+if TYPE_CHECKING:
+    from tests.conformance.cases import Case
+
+# As many parts as keep a failure close to its case and the suite quick to start.
+PARTS = 8
+CORPUS = [case for name in cases.FILES for case in cases.read(name)]
+KNOWN = [case for case in CORPUS if case.known is not None]
+# The C library's own, which may differ in the last bits.
+ROUNDED = {"exp", "ln", "log", "pow"}
+
+parts = pytest.mark.parametrize("part", range(PARTS))
+
+
+def specification(case: Case, backend: str) -> rtamt.Specification:
+    settings: dict[str, Any] = {"semantics": case.semantics, "roles": dict.fromkeys(case.inputs, "input")}
+    if case.time == "discrete":
+        return rtamt.parse(case.formula, backend=backend, period=case.seconds, **settings)
+    return rtamt.parse(case.formula, backend=backend, time="dense", resolution=case.seconds, **settings)
+
+
+def same(case: Case, got: list[Any], wanted: list[Any]) -> bool:
+    """Tell whether two lists of values agree: to the last bit, but for what the C library rounds."""
+    if len(got) != len(wanted):
+        return False
+    if case.semantics == "boolean":
+        got = [v if isinstance(v, bool) else v > 0 for v in got]
+    if got == wanted:
+        return True
+    names = {node.op.name for node in postorder(rtamt.parse(case.formula).formula) if isinstance(node, Apply)}
+    return bool(names & ROUNDED) and np.allclose(got, wanted, rtol=1e-12, atol=0)
+
+
+def told(case: Case, what: list[Any]) -> str:
+    return f"{case.id}: '{case.formula}' gave {what} instead of {case.values}"
+
+
+def changes(ticks: list[int], values: list[Any], semantics: str) -> list[list[Any]]:
+    """Return a step function as its changes."""
+    kept: list[list[Any]] = []
+    for tick, value in zip(ticks, values, strict=True):
+        v = value > 0 if semantics == "boolean" and not isinstance(value, bool) else value
+        if not kept or kept[-1][1] != v:
+            kept.append([tick, v])
+    return kept
+
+
+def agree(case: Case, ticks: list[int], values: list[Any]) -> bool:
+    """Tell whether dense events are the answer."""
+    got = changes(ticks, values, case.semantics)
+    return [t for t, _ in got] == [t for t, _ in case.values] and same(
+        case, [v for _, v in got], [v for _, v in case.values]
+    )
+
+
+def test_the_corpus_has_every_operator_and_names_each_case_once() -> None:
+    assert len({case.id for case in CORPUS}) == len(CORPUS)
+    asked = {
+        time: {case.id.split("/")[1] for case in CORPUS if case.time == time}
+        for time in ("discrete", "dense")
+    }
+    assert {op.name for op in STL} <= asked["discrete"]
+    assert {op.name for op in STL if not op.discrete_only} <= asked["dense"]
+    assert {op.name for op in STL} == meaning.COVERED
+    assert sum(case.id.startswith("discrete/until/") for case in CORPUS) == ALONE
+
+
+@parts
+def test_an_evaluator_of_its_own_gives_every_answer(part: int) -> None:
+    for case in CORPUS[part::PARTS]:
+        formula = rtamt.parse(case.formula).formula
+        roles = (case.semantics, case.inputs)
+        horizon = meaning.horizon(formula, case.seconds)
+        if case.time == "discrete":
+            n = len(next(iter(case.signals.values())))
+            values = meaning.discrete(formula, case.signals, n, case.seconds, *roles)
+            assert same(case, values, case.values), told(case, values)
+            late = None if horizon is None else [k + horizon for k in range(n)]
+            assert case.known == (late and [k if k < n else None for k in late]), case.id
+            continue
+        signals = {name: [tuple(pair) for pair in samples] for name, samples in case.signals.items()}
+        start, cells = meaning.dense(formula, signals, case.seconds, *roles)
+        assert agree(case, list(range(start, start + len(cells))), cells), told(case, cells)
+        assert case.end == start + len(cells) - 1
+        if horizon is None:
+            assert case.known is None
+        else:
+            assert case.known is not None
+            for now, until in case.known:
+                lasts = [
+                    max([t for t, _ in samples if t <= now], default=-inf) for samples in signals.values()
+                ]
+                assert until == (
+                    min(lasts) - horizon if min(lasts) - horizon >= start and min(lasts) > -inf else None
+                )
+
+
+@pytest.mark.parametrize("backend", ["cpp", "python"])
+@parts
+def test_offline(part: int, backend: str) -> None:
+    for case in CORPUS[part::PARTS]:
+        signal = specification(case, backend).evaluate(data_of(case)).signal
+        if case.time == "discrete":
+            assert same(case, signal.values.tolist(), case.values), told(case, signal.values.tolist())
+        else:
+            ticks = ticks_of(signal.times, case.seconds)
+            assert agree(case, ticks, signal.values.tolist()), told(case, signal.values.tolist())
+            assert ticks[-1] == case.end
+
+
+@pytest.mark.parametrize("backend", ["cpp", "python"])
+@parts
+def test_online_sample_by_sample(part: int, backend: str) -> None:
+    # The Python back end evaluates again at every update: a share of the cases will do.
+    for case in KNOWN[part :: PARTS * (1 if backend == "cpp" else 8)]:
+        monitor = specification(case, backend).monitor()
+        data = data_of(case)
+        (one_after_another if case.time == "discrete" else instant_by_instant)(case, monitor, data)
+
+
+def one_after_another(case: Case, monitor: Any, data: dict[str, Any]) -> None:
+    assert case.known is not None
+    names = monitor.input_names
+    values = []
+    for i, time in enumerate(data["time"]):
+        value = monitor.update(time, **{name: data[name][i] for name in names})
+        assert (value is not None) == (i in case.known), f"{case.id}: sample {i}"
+        values += [] if value is None else [value]
+    values += monitor.finish().values.tolist()
+    assert same(case, values, case.values), told(case, values)
+
+
+def instant_by_instant(case: Case, monitor: Any, data: dict[str, Any]) -> None:
+    assert case.known is not None
+    at = {name: dict(zip(times.tolist(), values, strict=True)) for name, (times, values) in data.items()}
+    ticks: list[int] = []
+    values: list[float] = []
+    nanoseconds = int(case.seconds * 10**9)
+    for now, until in case.known:
+        stamp = now * nanoseconds
+        signal = monitor.update(
+            np.int64(stamp), **{name: at[name][stamp] for name in at if stamp in at[name]}
+        )
+        ticks += ticks_of(signal.times, case.seconds)
+        values += signal.values.tolist()
+        assert (ticks[-1] if ticks else None) == until, f"{case.id}: after {now}"
+    rest = monitor.finish()
+    ticks += ticks_of(rest.times, case.seconds)
+    values += rest.values.tolist()
+    assert agree(case, ticks, values), told(case, values)
+    assert ticks[-1] == case.end
+
+
+@parts
+def test_online_in_chunks(part: int) -> None:
+    for case in KNOWN[part::PARTS]:
+        monitor = specification(case, "cpp").monitor()
+        data = data_of(case)
+        longest = max(len(samples) for samples in case.signals.values())
+        parts = []
+        for begin in range(0, longest, 2):
+            cut = slice(begin, begin + 2)
+            if case.time == "discrete":
+                chunk: dict[str, Any] = {name: column[cut] for name, column in data.items()}
+            else:
+                chunk = {name: (times[cut], values[cut]) for name, (times, values) in data.items()}
+            parts.append(monitor.update_many(chunk))
+        parts.append(monitor.finish())
+        values = [v for signal in parts for v in signal.values.tolist()]
+        if case.time == "discrete":
+            assert same(case, values, case.values), told(case, values)
+        else:
+            ticks = [t for signal in parts for t in ticks_of(signal.times, case.seconds)]
+            assert agree(case, ticks, values), told(case, values)
+
+
+@pytest.mark.parametrize("name", cases.FILES)
+def test_a_case_is_written_as_it_was_read(name: str) -> None:
+    lines = (cases.FOLDER / name).read_text(encoding="utf-8").splitlines()
+    assert [cases.line(case) for case in cases.read(name)] == lines
