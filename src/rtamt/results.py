@@ -32,7 +32,7 @@ class Result:
     @property
     def robustness(self) -> float:
         """ρ at the first instant: how far the recording is from violating (or satisfying)."""
-        return float(self.signal.values[0])
+        return float(self.signal.values[0]) + 0.0  # no minus before a zero
 
     @cached_property
     def satisfied(self) -> bool:

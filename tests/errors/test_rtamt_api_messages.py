@@ -170,8 +170,12 @@ def test_a_file_that_is_no_text(tmp_path):
 def test_wrong_options_of_the_combined_class():
     cls = rtamt.StlDiscreteTimeSpecification
     assert said(lambda: cls(language="C")) == "the language is 'C'; choose Language.PYTHON or Language.CPP"
-    assert said(lambda: cls("standard")) == (
-        "the semantics 'standard' is not supported; choose Semantics.STANDARD"
+    names = "standard, output_robustness, input_vacuity, input_robustness, output_vacuity, boolean"
+    assert said(lambda: cls("output")) == (
+        f"unknown semantics 'output'; did you mean 'output_vacuity'?; choose from {names}"
+    )
+    assert said(lambda: setattr(cls(), "semantics", rtamt.Language.CPP)) == (
+        f"unknown semantics <Language.CPP: 'C++'>; choose from {names}"
     )
 
 

@@ -13,7 +13,9 @@ from hypothesis import strategies as st
 
 import rtamt
 from rtamt.errors import EvaluationError
-from rtamt.language.formula import variables
+from rtamt.language.formula import Apply, children, postorder, variables
+from rtamt.language.operators import Sort
+from rtamt.language.printer import canonical
 from rtamt.rewrite.horizon import horizon
 from rtamt.rewrite.interface import SEMANTICS, truth
 from tests.laws.test_dense_definition_laws import TICK, dense_formulas, value
@@ -222,3 +224,51 @@ def test_inputs_and_outputs_are_two_sides_of_one_definition(
         np.testing.assert_array_equal(
             under(formula, columns, inputs, one), under(formula, columns, others, other)
         )
+
+
+# ---- the paper's classes --------------------------------------------------------------------------
+
+
+def read_as_formulas(formula: Formula) -> set[Formula]:
+    """Return the parts that stand where a formula is expected, and not below a predicate."""
+    found, stack = set(), [formula]
+    while stack:
+        node = stack.pop()
+        found.add(node)
+        if not interface.is_predicate(node):
+            stack.extend(children(node))
+    return found
+
+
+@FEW
+@given(formulas(), traces(), NAMED, INPUTS)
+def test_the_papers_classes_are_the_definition_and_so_is_every_part(
+    formula: Formula, columns: dict[str, Any], semantics: str, inputs: set[str]
+) -> None:
+    ordinary, n = by_definition(formula, columns), len(columns["x"])
+    assume(ordinary is not None)
+    spec = rtamt.StlDiscreteTimeSpecification(semantics=semantics)
+    for name in ("x", "y"):
+        spec.declare_var(name, "float")
+        spec.set_var_io_type(name, "input" if name in inputs else "output")
+    spec.spec = canonical(formula)
+    spec.parse()
+    expected = interface.values(formula, semantics, inputs, columns, n, ONE)
+    data = {"time": list(range(n)), **columns}
+    np.testing.assert_array_equal(spec.evaluate(data), list(enumerate(expected)))
+    judged = read_as_formulas(formula)
+    for part in postorder(formula):
+        number = not isinstance(part, Apply) or part.op.result is Sort.NUMBER
+        if part in judged and not number:
+            wanted = interface.values(part, semantics, inputs, columns, n, ONE)
+        else:
+            wanted = by_definition(part, columns)
+        np.testing.assert_array_equal(spec.get_value(canonical(part)), wanted)
+
+    delay = int(horizon(formula) or 0)
+    spec.pastify()
+    try:
+        late = [spec.update(i, [(k, columns[k][i]) for k in ("x", "y")]) for i in range(n)]
+    except rtamt.RTAMTException:
+        assume(False)  # before the horizon a delayed operand is infinite
+    np.testing.assert_array_equal(late[delay:], expected[: max(0, n - delay)])

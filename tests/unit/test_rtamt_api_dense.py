@@ -309,9 +309,3 @@ def test_before_parse():
     message = "no specification has been read; set spec and call parse() first"
     spec = rtamt.StlDenseTimeSpecification()
     assert said(spec.evaluate, ["x", [[0, 1]]]) == said(spec.update, ["x", [[0, 1]]]) == message
-
-
-def test_only_standard_semantics():
-    assert said(rtamt.StlDenseTimeSpecification, rtamt.Semantics.INPUT_VACUITY) == (
-        f"the semantics {rtamt.Semantics.INPUT_VACUITY!r} is not supported; choose Semantics.STANDARD"
-    )

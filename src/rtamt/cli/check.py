@@ -55,7 +55,8 @@ examples:
   rtamt check examples/request_grant/spec.stl examples/request_grant/*.csv
   rtamt check "always((req >= 3) -> eventually[0:5](gnt >= 3))" log.csv --json
   rtamt check "always[0:500ms](speed <= 30)" drive.csv --period 100ms -o robustness.csv
-  rtamt check "always(alarm -> eventually[0:70ms](stop))" events.csv --time dense"""
+  rtamt check "always(alarm -> eventually[0:70ms](stop))" events.csv --time dense
+  rtamt check examples/request_grant/spec.stl log.csv --semantics output_robustness"""
 
 
 @dataclass(frozen=True, slots=True)

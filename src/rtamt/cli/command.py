@@ -15,10 +15,13 @@ from rtamt.engine.core import core
 from rtamt.errors import SpecificationError, StlError, UsageError
 from rtamt.language.units import UNITS
 from rtamt.readers import READERS
+from rtamt.rewrite.interface import SEMANTICS
 from rtamt.specification import Specification, load, parse
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+
+    from rtamt.settings import Settings
 
 OK, VIOLATED, ERROR = 0, 1, 2
 INTERRUPTED, BROKEN_PIPE = 130, 141  # what a shell reports for a program ended by these signals
@@ -71,6 +74,13 @@ def add_specification_options(parser: argparse.ArgumentParser) -> None:
         metavar="{cpp,python}",
         help="cpp: the compiled core (default); python: the definition itself, slow",
     )
+    parser.add_argument(
+        "--semantics",
+        default="standard",
+        metavar="NAME",
+        help=f"what a predicate is worth: {', '.join(SEMANTICS)} (default: standard, its robustness); "
+        f"which variables are inputs is declared in the specification",
+    )
 
 
 def add_time_option(parser: argparse.ArgumentParser) -> None:
@@ -93,7 +103,13 @@ def read_specification(args: argparse.Namespace, time: str = "discrete") -> Spec
             raise CommandError(f"{error}; on the command line: --backend python") from None
     if time == "dense" and args.period is not None:
         raise CommandError("dense time has no sampling period: leave out --period, or --time dense")
-    options = {"period": args.period, "unit": args.unit, "backend": args.backend, "time": time}
+    options: Settings = {
+        "period": args.period,
+        "unit": args.unit,
+        "backend": args.backend,
+        "time": time,
+        "semantics": args.semantics,
+    }
     if os.path.isfile(spec):
         if os.path.splitext(spec)[1].lower() in set(READERS) - {".txt"}:
             raise CommandError(f"'{spec}' is a trace; the specification comes before the traces")
@@ -117,12 +133,12 @@ def complain(sentence: object) -> None:
 
 
 def json_number(value: float) -> float | str:
-    """Return a number as JSON can hold it: JSON has no infinities, so they are text.
+    """Return a number as JSON can hold it: JSON has no infinities, so they are text; no minus before zero.
 
-    >>> json_number(float("-inf")), json_number(2.5)
-    ('-inf', 2.5)
+    >>> json_number(float("-inf")), json_number(2.5), json_number(-0.0)
+    ('-inf', 2.5, 0.0)
     """
-    return value if isfinite(value) else str(value)
+    return value + 0.0 if isfinite(value) else str(value)
 
 
 def short(value: float) -> str:

@@ -34,9 +34,9 @@ _EPILOG = """\
 In the listing of the program every line is an instruction: %0, %1, ... are results, n is a width in
 samples, and a lag is the number of samples after which a result is known.
 
---json prints one object: {"name", "formula", "latex", "variables", "period", "horizon", "pastified",
-"program", "memory", "offline_only"}; what does not exist is null. Durations are in seconds, memory
-in bytes.
+--json prints one object: {"name", "formula", "latex", "semantics", "variables", "period", "horizon",
+"pastified", "program", "memory", "offline_only"}; what does not exist is null. Durations are in seconds,
+memory in bytes. The program is that of the semantics, the pastified form serves each.
 
 examples:
   rtamt info examples/request_grant/spec.stl
@@ -81,6 +81,7 @@ def gather(spec: Specification) -> Facts:
     """Find out all there is to tell; what an online monitor cannot have stays None."""
     period = spec.period or Fraction(1)
     facts = Facts(spec, period)
+    judged = spec.judged(spec.formula)
     try:
         check_online(spec.formula, spec.text)
         facts = replace(
@@ -89,7 +90,7 @@ def gather(spec: Specification) -> Facts:
         check_bounds(spec.formula, period, spec.text)
     except BoundError as error:
         return replace(facts, offline_only=error.message)
-    program = compile_program((desugar(spec.formula),), period, spec.input_names)
+    program = compile_program((desugar(judged),), period, spec.input_names)
     memory = None if spec.backend == "python" else int(core().memory(program.to_bytes()))
     return replace(facts, program=program, memory=memory)
 
@@ -118,6 +119,8 @@ def _lines(facts: Facts) -> Iterator[str]:
     for assertion in spec.document.assertions[:-1]:
         if assertion.name:
             yield f"           {assertion.name} = {printed(assertion.formula)}"
+    if spec.semantics != "standard":
+        yield f"semantics  {spec.semantics}"
     for i, variable in enumerate(_variables(spec)):
         topic = variable["topic"] and f"({variable['topic']})"
         words = [variable["role"], variable["type"], variable["name"], topic]
@@ -151,6 +154,7 @@ def _as_json(facts: Facts) -> str:
             "name": spec.name,
             "formula": printed(spec.formula),
             "latex": spec.formula.latex() if is_printable(spec.formula) else None,
+            "semantics": spec.semantics,
             "variables": _variables(spec),
             "period": float(facts.period),
             "horizon": None if facts.horizon is None else float(facts.horizon),

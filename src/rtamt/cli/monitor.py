@@ -5,7 +5,8 @@ from __future__ import annotations
 import json
 import sys
 from collections import deque
-from typing import TYPE_CHECKING
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
 
 from rtamt.cli.command import (
     ERROR,
@@ -43,7 +44,8 @@ With --time dense signals change at any instant, each on its own clock: a JSON o
 the variables, and a line of output is printed for every change and at the last known instant.
 
 output: {"time": 0.0, "robustness": 3.0}. JSON has no infinities: they are the strings "inf" and
-"-inf", here and in the input.
+"-inf", here and in the input. With --semantics boolean a line has the verdict too: {"time": 0.0,
+"robustness": "inf", "satisfied": true}.
 
 A line that is no sample ends the monitor with exit code 2. With --keep-going it is reported and
 left out, and the exit code is 2 at the end. A sample that is left out leaves a gap in time, which
@@ -78,8 +80,11 @@ def run(args: argparse.Namespace) -> int:
         raise CommandError(f"the tolerance is {args.tolerance:g}; give a fraction of the period, such as 0.1")
     spec = read_specification(args, args.time)
     dense = spec.time == "dense"
+    told = Output(verdicts=spec.semantics == "boolean")
     watched: Watched | DenseWatched = (
-        DenseWatched(spec.monitor(time="dense")) if dense else Watched(spec.monitor(tolerance=args.tolerance))
+        DenseWatched(spec.monitor(time="dense"), told)
+        if dense
+        else Watched(spec.monitor(tolerance=args.tolerance), told)
     )
     samples = Samples(watched.monitor.input_names, args.time_column, partial=dense)
     if sys.stdin.isatty():
@@ -103,11 +108,31 @@ def run(args: argparse.Namespace) -> int:
     return code
 
 
+@dataclass(frozen=True, slots=True)
+class Output:
+    """Prints what became known, a JSON object a line; with ``verdicts`` whether the formula holds, too."""
+
+    verdicts: bool
+
+    def signal(self, signal: Signal) -> None:
+        """Print every point of a signal."""
+        for time, robustness in zip(signal.times.tolist(), signal.values.tolist(), strict=True):
+            self.point(time, robustness)
+
+    def point(self, time: float, robustness: float) -> None:
+        """Print the robustness at one instant."""
+        line: dict[str, Any] = {"time": time, "robustness": json_number(robustness)}
+        if self.verdicts:
+            line["satisfied"] = robustness > 0
+        print(json.dumps(line), flush=True)
+
+
 class Watched:
     """A monitor with the time stamps of the samples whose robustness is not known yet."""
 
-    def __init__(self, monitor: Monitor) -> None:
+    def __init__(self, monitor: Monitor, output: Output) -> None:
         self.monitor = monitor
+        self._output = output
         self._period = float(monitor.period)
         self._stamps: deque[float] = deque()
 
@@ -121,42 +146,34 @@ class Watched:
             return f"{STDIN}, line {line}: {error}"
         self._stamps.append(time)
         if robustness is not None:
-            _print(self._stamps.popleft(), robustness)
+            self._output.point(self._stamps.popleft(), robustness)
         return ""
 
     def finish(self) -> None:
         """End the trace; print what was not known yet."""
-        _print_all(self.monitor.finish())
+        self._output.signal(self.monitor.finish())
 
 
 class DenseWatched:
     """A monitor in dense time: a sample may hold some of the variables, a result any number of points."""
 
-    def __init__(self, monitor: DenseMonitor) -> None:
+    def __init__(self, monitor: DenseMonitor, output: Output) -> None:
         self.monitor = monitor
+        self._output = output
 
     def take(self, time: float | None, values: dict[str, float], line: int) -> str:
         """Take a sample and print what became known; return what is wrong with the sample, if anything is."""
         if time is None:
             return f"{STDIN}, line {line}: in dense time every sample needs its time"
         try:
-            _print_all(self.monitor.update(time, **values))
+            self._output.signal(self.monitor.update(time, **values))
         except StlError as error:
             return f"{STDIN}, line {line}: {error}"
         return ""
 
     def finish(self) -> None:
         """End the signals; print what was not known yet."""
-        _print_all(self.monitor.finish())
-
-
-def _print_all(signal: Signal) -> None:
-    for time, robustness in zip(signal.times.tolist(), signal.values.tolist(), strict=True):
-        _print(time, robustness)
-
-
-def _print(time: float, robustness: float) -> None:
-    print(json.dumps({"time": time, "robustness": json_number(robustness)}), flush=True)
+        self._output.signal(self.monitor.finish())
 
 
 COMMAND = Command("monitor", "watch a stream: samples on stdin, robustness on stdout", configure, run)

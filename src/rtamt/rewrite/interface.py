@@ -106,7 +106,7 @@ def semantics_of(semantics: object) -> str | Judge:
     if not isinstance(semantics, str | Enum) or name not in SEMANTICS:
         raise UsageError(
             f"unknown semantics {shown(semantics)}{did_you_mean(name, SEMANTICS)}; "
-            f"choose from {', '.join(SEMANTICS)}, or give a function of a predicate and roles"
+            f"choose from {', '.join(SEMANTICS)}"
         )
     return name
 
@@ -132,11 +132,14 @@ def lower(formula: Formula, semantics: str | Judge, roles: Roles) -> Formula:
     if judge is standard:
         return formula
     all_roles = MappingProxyType({name: role_of(name, roles) for name in variables(formula)})
+    predicates = _predicates(formula)
 
     def step(node: Formula, below: tuple[tuple[Formula, Formula], ...]) -> tuple[Formula, Formula]:
         """Return the node read as a number, and read as a formula."""
-        if not isinstance(node, Apply) or is_predicate(node):
+        if id(node) in predicates:
             return node, _judged(node, judge, all_roles)
+        if not isinstance(node, Apply):
+            return node, node
         args = tuple(
             as_formula if sort is Sort.FORMULA else as_number
             for sort, (as_number, as_formula) in zip(node.op.operands, below, strict=True)
@@ -178,6 +181,24 @@ def role_of(name: str, roles: Roles) -> str:
     return roles.get(name) or roles.get(name.partition(".")[0], "output")
 
 
+def _predicates(formula: Formula) -> set[int]:
+    """Return the identities of the predicates: where a formula is expected, and not below another predicate."""
+    found: set[int] = set()
+    seen: set[int] = set()
+    stack = [formula]
+    while stack:
+        node = stack.pop()
+        if id(node) in seen:
+            continue
+        seen.add(id(node))
+        if not isinstance(node, Apply) or is_predicate(node):
+            found.add(id(node))
+        else:
+            operands = zip(node.op.operands, node.args, strict=True)
+            stack.extend(arg for sort, arg in operands if sort is Sort.FORMULA)
+    return found
+
+
 def _judged(predicate: Formula, judge: Judge, roles: Roles) -> Formula:
     """Return what a semantics puts in the place of a predicate, which still reads what the predicate reads."""
     judged = judge(predicate, roles)
@@ -203,4 +224,4 @@ def _judged(predicate: Formula, judge: Judge, roles: Roles) -> Formula:
 
 
 def _name(judge: Judge) -> str:
-    return f"'{getattr(judge, '__name__', None) or judge!r}'"
+    return f"'{getattr(judge, '__name__', repr(judge))}'"

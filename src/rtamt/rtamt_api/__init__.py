@@ -13,6 +13,7 @@ online              pastification, and where the result goes
 discrete            discrete time: sampling period, the offline class
 discrete_online     the online class, and the combined one
 dense               dense time: the offline class, the online one, and the combined one
+interface_aware     the classes for IA-STL: the same with another semantics
 backends            the compiled core, or the definition where it is not built
 associativity       the warning for chains that RTAMT read differently
 failures            every error leaves as an RTAMTException
@@ -31,6 +32,24 @@ from rtamt.rtamt_api.discrete_online import (
     StlDiscreteTimeSpecification,
     StlDiscreteTimeSpecificationCpp,
 )
+from rtamt.rtamt_api.interface_aware import (
+    IAStlInputRobustnessDenseTimeOfflineSpecification,
+    IAStlInputRobustnessDenseTimeOnlineSpecification,
+    IAStlInputRobustnessDiscreteTimeOfflineSpecification,
+    IAStlInputRobustnessDiscreteTimeOnlineSpecification,
+    IAStlInputVacuityDenseTimeOfflineSpecification,
+    IAStlInputVacuityDenseTimeOnlineSpecification,
+    IAStlInputVacuityDiscreteTimeOfflineSpecification,
+    IAStlInputVacuityDiscreteTimeOnlineSpecification,
+    IAStlOutputRobustnessDenseTimeOfflineSpecification,
+    IAStlOutputRobustnessDenseTimeOnlineSpecification,
+    IAStlOutputRobustnessDiscreteTimeOfflineSpecification,
+    IAStlOutputRobustnessDiscreteTimeOnlineSpecification,
+    IAStlOutputVacuityDenseTimeOfflineSpecification,
+    IAStlOutputVacuityDenseTimeOnlineSpecification,
+    IAStlOutputVacuityDiscreteTimeOfflineSpecification,
+    IAStlOutputVacuityDiscreteTimeOnlineSpecification,
+)
 from rtamt.rtamt_api.options import Language, Semantics, StlIOType, TimeInterpretation
 
 #: Spellings of older programs and of the paper's ROS code.
@@ -40,6 +59,22 @@ STLCTSpecification = StlDenseTimeSpecification
 STLDenseTimeSpecification = StlDenseTimeSpecification
 
 __all__ = [
+    "IAStlInputRobustnessDenseTimeOfflineSpecification",
+    "IAStlInputRobustnessDenseTimeOnlineSpecification",
+    "IAStlInputRobustnessDiscreteTimeOfflineSpecification",
+    "IAStlInputRobustnessDiscreteTimeOnlineSpecification",
+    "IAStlInputVacuityDenseTimeOfflineSpecification",
+    "IAStlInputVacuityDenseTimeOnlineSpecification",
+    "IAStlInputVacuityDiscreteTimeOfflineSpecification",
+    "IAStlInputVacuityDiscreteTimeOnlineSpecification",
+    "IAStlOutputRobustnessDenseTimeOfflineSpecification",
+    "IAStlOutputRobustnessDenseTimeOnlineSpecification",
+    "IAStlOutputRobustnessDiscreteTimeOfflineSpecification",
+    "IAStlOutputRobustnessDiscreteTimeOnlineSpecification",
+    "IAStlOutputVacuityDenseTimeOfflineSpecification",
+    "IAStlOutputVacuityDenseTimeOnlineSpecification",
+    "IAStlOutputVacuityDiscreteTimeOfflineSpecification",
+    "IAStlOutputVacuityDiscreteTimeOnlineSpecification",
     "Language",
     "STLCTSpecification",
     "STLDenseTimeSpecification",

@@ -13,7 +13,7 @@ from rtamt.errors import UsageError
 from rtamt.language.formula import Const
 from rtamt.language.units import UNITS
 from rtamt.rewrite.desugar import desugar
-from rtamt.rtamt_api.options import Language, Semantics
+from rtamt.rtamt_api.options import Language
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Mapping, Sequence
@@ -44,10 +44,8 @@ def require_core(what: str, instead: str) -> None:
         ) from reason
 
 
-def check_choices(semantics: Semantics, language: Language) -> None:
-    """Raise :class:`UsageError` for what the combined classes cannot be made with."""
-    if semantics is not Semantics.STANDARD:
-        raise UsageError(f"the semantics {semantics!r} is not supported; choose Semantics.STANDARD")
+def check_language(language: Language) -> None:
+    """Raise :class:`UsageError` for a language that the combined classes cannot be made with."""
     if not isinstance(language, Language):
         raise UsageError(f"the language is {language!r}; choose Language.PYTHON or Language.CPP")
     if language is Language.CPP:

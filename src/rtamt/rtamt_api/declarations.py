@@ -94,11 +94,13 @@ class Declarations(ABC):
 
     @raises_rtamt
     def set_var_io_type(self, var_name: str, var_iotype: str) -> None:
-        """Say on which side of the interface a declared variable is: ``'input'`` or ``'output'``."""
+        """Say on which side of the interface a declared variable is: ``'input'`` or ``'output'`` (the default)."""
         self._require_declared(var_name)
         if var_iotype not in ("input", "output"):
             raise UsageError(f"the io type of '{var_name}' is {var_iotype!r}; choose 'input' or 'output'")
-        self.var_io_dict[var_name] = var_iotype
+        if self.var_io_dict[var_name] != var_iotype:
+            self.var_io_dict[var_name] = var_iotype
+            self._settings_changed()
 
     @raises_rtamt
     def set_var_topic(self, var_name: str, var_topic: str) -> None:
@@ -252,8 +254,7 @@ class Declarations(ABC):
         for declaration in document.declarations:
             if declaration.kind == "var":
                 self.declare_var(declaration.name, declaration.type)
-                if declaration.role is not None:
-                    self.set_var_io_type(declaration.name, declaration.role)
+                self.var_io_dict[declaration.name] = declaration.role or "output"
         for name, topic in document.topics.items():
             self.set_var_topic(name, topic)
 

@@ -13,7 +13,7 @@ from rtamt.errors import NameInFormulaError, TraceError, UsageError, shown
 from rtamt.language.formula import Var, postorder, variables
 from rtamt.language.units import UNITS
 from rtamt.rewrite.check import check_bounds, check_dense
-from rtamt.rtamt_api.backends import check_choices, dense_signal, is_compiled
+from rtamt.rtamt_api.backends import check_language, dense_signal, is_compiled
 from rtamt.rtamt_api.declarations import head_of
 from rtamt.rtamt_api.failures import raises_rtamt
 from rtamt.rtamt_api.formulas import Formulas
@@ -106,7 +106,7 @@ class StlDenseTimeOfflineSpecification(DenseTimeSpecification):
         def value_of(part: Formula) -> list[list[float]]:
             read = tuple(dict.fromkeys((*names, *variables(part))))
             held = {name: columns[name] for name in read if name in columns}
-            return self._points(dense_signal(part, dense_evaluate.trace(held, read, NANOSECOND)))
+            return self._points(dense_signal(self._worth(part), dense_evaluate.trace(held, read, NANOSECOND)))
 
         robustness = value_of(formula)
         self._value_of = value_of
@@ -183,7 +183,8 @@ class StlDenseTimeOnlineSpecification(OnlineSpecification, DenseTimeSpecificatio
         if self._monitor is None:
             formula, text = self._result, self._parsed_document.text
             require_past(formula, text)
-            self._monitor = DenseMonitor(formula, text=text, backend="cpp" if is_compiled() else "python")
+            backend = "cpp" if is_compiled() else "python"
+            self._monitor = DenseMonitor(self._judged(formula), text=text, backend=backend)
         return self._monitor
 
 
@@ -209,7 +210,8 @@ class StlDenseTimeSpecification(StlDenseTimeOfflineSpecification, StlDenseTimeOn
         self, semantics: Semantics = Semantics.STANDARD, language: Language = Language.PYTHON
     ) -> None:
         super().__init__()
-        check_choices(semantics, language)
+        check_language(language)
+        self.semantics = semantics
 
 
 def _by_name(dataset: tuple[Any, ...]) -> dict[str, Samples]:

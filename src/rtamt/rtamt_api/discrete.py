@@ -113,11 +113,11 @@ class StlDiscreteTimeOfflineSpecification(DiscreteTimeSpecification):
         """
         formula = self._result
         stamps, trace = self._trace(dataset)
-        values = signal(formula, trace)
+        values = signal(self._judged(formula), trace)
         gaps = np.diff(stamps)
         period = self._period_in_units
         self._violations = int(np.count_nonzero(np.abs(gaps - period) > self._tolerance * period))
-        self._value_of = lambda part: signal(part, trace).tolist()
+        self._value_of = lambda part: signal(self._worth(part), trace).tolist()
         result: list[list[float]] = np.column_stack((stamps, values)).tolist()
         return result
 

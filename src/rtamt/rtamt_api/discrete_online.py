@@ -10,7 +10,7 @@ from rtamt.engine.monitor import refused_time, refused_values
 from rtamt.errors import RTAMTException, TraceError
 from rtamt.language.formula import Formula, Var
 from rtamt.language.units import UNITS
-from rtamt.rtamt_api.backends import check_choices, open_stream, require_core
+from rtamt.rtamt_api.backends import check_language, open_stream, require_core
 from rtamt.rtamt_api.declarations import head_of
 from rtamt.rtamt_api.discrete import DiscreteTimeSpecification, StlDiscreteTimeOfflineSpecification
 from rtamt.rtamt_api.failures import raises_rtamt
@@ -112,8 +112,9 @@ class StlDiscreteTimeOnlineSpecification(OnlineSpecification, DiscreteTimeSpecif
             formulas = [self._result, *(f for f in self._formulas.values() if f is not self._result)]
             for formula in formulas:
                 require_past(formula, text)
+            judged = [self._judged(formula) for formula in formulas]
             self._stream = open_stream(
-                formulas, self._inputs, self._period, self._unit, self._tolerance, frozenset(self._types)
+                judged, self._inputs, self._period, self._unit, self._tolerance, frozenset(self._types)
             )
             self._refusals = self._stream.refusals
         return self._stream
@@ -198,7 +199,7 @@ class StlDiscreteTimeOnlineSpecification(OnlineSpecification, DiscreteTimeSpecif
         return self._shared and self._objects[name] is not self._seen.get(name)
 
     def _latest(self, part: Formula) -> float:
-        return self._require_stream().latest(part)
+        return self._require_stream().latest(self._worth(part))
 
     def _collect(self) -> None:
         """Bring var_object_dict up to date with the updates that went past it."""
@@ -240,7 +241,8 @@ class StlDiscreteTimeSpecification(StlDiscreteTimeOfflineSpecification, StlDiscr
         self, semantics: Semantics = Semantics.STANDARD, language: Language = Language.PYTHON
     ) -> None:
         super().__init__()
-        check_choices(semantics, language)
+        check_language(language)
+        self.semantics = semantics
 
     def evaluate(self, dataset: Mapping[str, Any]) -> list[list[float]]:
         """Evaluate a finished trace; see :class:`StlDiscreteTimeOfflineSpecification`."""

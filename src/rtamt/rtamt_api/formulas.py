@@ -9,17 +9,22 @@ from typing import TYPE_CHECKING, Any
 from rtamt.errors import UsageError, did_you_mean
 from rtamt.language.formula import Formula, Var, postorder, variables
 from rtamt.language.printer import canonical
+from rtamt.rewrite import interface
 from rtamt.rtamt_api.declarations import Declarations
 from rtamt.rtamt_api.failures import raises_rtamt
+from rtamt.rtamt_api.options import Semantics
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from rtamt.language.specfile import Document
+    from rtamt.rewrite.interface import Judge
 
 
 class Formulas(Declarations):
     """What the classes of both time domains share once the text has been read. Not made by users."""
+
+    _semantics: Semantics | str | Judge = Semantics.STANDARD
 
     def __init__(self) -> None:
         super().__init__()
@@ -34,6 +39,18 @@ class Formulas(Declarations):
         self._formulas = formulas
         self._inputs = tuple(dict.fromkeys(name for f in formulas.values() for name in variables(f)))
         self._value_of = None
+
+    @property
+    def semantics(self) -> Semantics | str | Judge:
+        """What a predicate is worth: a :class:`Semantics`, or what ``semantics`` of :func:`rtamt.parse` takes."""
+        return self._semantics
+
+    @semantics.setter
+    @raises_rtamt
+    def semantics(self, semantics: Semantics | str | Judge) -> None:
+        interface.semantics_of(semantics)
+        self._semantics = semantics
+        self._settings_changed()
 
     @abstractmethod
     def _check(self, formula: Formula, text: str) -> None:
@@ -57,6 +74,23 @@ class Formulas(Declarations):
         """The formula of the last assertion."""
         _ = self._parsed_document
         return list(self._formulas.values())[-1]
+
+    # ---- semantics -------------------------------------------------------------------------------
+
+    def _judged(self, formula: Formula) -> Formula:
+        """Return the formula whose robustness is the value of ``formula`` under the semantics."""
+        return interface.lower(formula, interface.semantics_of(self._semantics), self.var_io_dict)
+
+    def _worth(self, part: Formula) -> Formula:
+        """Return the formula whose robustness is the value of a part of the specification.
+
+        What is read as a number has its ordinary value under every semantics.
+        """
+        if part is not self._result and interface.is_number(part):
+            return part
+        judged = self._judged(part)
+        read_so = (node for formula in self._formulas.values() for node in postorder(self._judged(formula)))
+        return judged if judged == part or judged in set(read_so) else part
 
     # ---- values ----------------------------------------------------------------------------------
 

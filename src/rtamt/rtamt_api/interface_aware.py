@@ -1,0 +1,109 @@
+"""The paper's classes for interface-aware STL: those for STL, with another semantics to begin with.
+
+Which variables are inputs is declared with ``set_var_io_type``, or with ``input`` and ``output`` in the
+text; what is neither is an output.
+"""
+
+from __future__ import annotations
+
+from rtamt.rtamt_api.dense import StlDenseTimeOfflineSpecification, StlDenseTimeOnlineSpecification
+from rtamt.rtamt_api.discrete import StlDiscreteTimeOfflineSpecification
+from rtamt.rtamt_api.discrete_online import StlDiscreteTimeOnlineSpecification
+from rtamt.rtamt_api.formulas import Formulas
+from rtamt.rtamt_api.options import Semantics
+
+
+class OutputRobustness(Formulas):
+    """Measures what changes of outputs it takes, inputs being what they are."""
+
+    _semantics = Semantics.OUTPUT_ROBUSTNESS
+
+
+class InputVacuity(Formulas):
+    """Measures what changes of inputs it takes, whatever outputs may do."""
+
+    _semantics = Semantics.INPUT_VACUITY
+
+
+class InputRobustness(Formulas):
+    """Measures what changes of inputs it takes, outputs being what they are."""
+
+    _semantics = Semantics.INPUT_ROBUSTNESS
+
+
+class OutputVacuity(Formulas):
+    """Measures what changes of outputs it takes, whatever inputs may do."""
+
+    _semantics = Semantics.OUTPUT_VACUITY
+
+
+class IAStlOutputRobustnessDiscreteTimeOfflineSpecification(
+    OutputRobustness, StlDiscreteTimeOfflineSpecification
+):
+    """Output robustness of finished traces in discrete time."""
+
+
+class IAStlInputVacuityDiscreteTimeOfflineSpecification(InputVacuity, StlDiscreteTimeOfflineSpecification):
+    """Input vacuity of finished traces in discrete time."""
+
+
+class IAStlInputRobustnessDiscreteTimeOfflineSpecification(
+    InputRobustness, StlDiscreteTimeOfflineSpecification
+):
+    """Input robustness of finished traces in discrete time."""
+
+
+class IAStlOutputVacuityDiscreteTimeOfflineSpecification(OutputVacuity, StlDiscreteTimeOfflineSpecification):
+    """Output vacuity of finished traces in discrete time."""
+
+
+class IAStlOutputRobustnessDiscreteTimeOnlineSpecification(
+    OutputRobustness, StlDiscreteTimeOnlineSpecification
+):
+    """Output robustness of a stream in discrete time."""
+
+
+class IAStlInputVacuityDiscreteTimeOnlineSpecification(InputVacuity, StlDiscreteTimeOnlineSpecification):
+    """Input vacuity of a stream in discrete time."""
+
+
+class IAStlInputRobustnessDiscreteTimeOnlineSpecification(
+    InputRobustness, StlDiscreteTimeOnlineSpecification
+):
+    """Input robustness of a stream in discrete time."""
+
+
+class IAStlOutputVacuityDiscreteTimeOnlineSpecification(OutputVacuity, StlDiscreteTimeOnlineSpecification):
+    """Output vacuity of a stream in discrete time."""
+
+
+class IAStlOutputRobustnessDenseTimeOfflineSpecification(OutputRobustness, StlDenseTimeOfflineSpecification):
+    """Output robustness of finished signals in dense time."""
+
+
+class IAStlInputVacuityDenseTimeOfflineSpecification(InputVacuity, StlDenseTimeOfflineSpecification):
+    """Input vacuity of finished signals in dense time."""
+
+
+class IAStlInputRobustnessDenseTimeOfflineSpecification(InputRobustness, StlDenseTimeOfflineSpecification):
+    """Input robustness of finished signals in dense time."""
+
+
+class IAStlOutputVacuityDenseTimeOfflineSpecification(OutputVacuity, StlDenseTimeOfflineSpecification):
+    """Output vacuity of finished signals in dense time."""
+
+
+class IAStlOutputRobustnessDenseTimeOnlineSpecification(OutputRobustness, StlDenseTimeOnlineSpecification):
+    """Output robustness of a stream in dense time."""
+
+
+class IAStlInputVacuityDenseTimeOnlineSpecification(InputVacuity, StlDenseTimeOnlineSpecification):
+    """Input vacuity of a stream in dense time."""
+
+
+class IAStlInputRobustnessDenseTimeOnlineSpecification(InputRobustness, StlDenseTimeOnlineSpecification):
+    """Input robustness of a stream in dense time."""
+
+
+class IAStlOutputVacuityDenseTimeOnlineSpecification(OutputVacuity, StlDenseTimeOnlineSpecification):
+    """Output vacuity of a stream in dense time."""

@@ -1,0 +1,1 @@
+"""RTAMT's module path for interface-aware STL in discrete time."""

@@ -1,0 +1,66 @@
+"""Every sentence about semantics and roles, in full."""
+
+import pytest
+
+import rtamt
+from rtamt.language.formula import Var
+
+NAMES = "standard, output_robustness, input_vacuity, input_robustness, output_vacuity, boolean"
+
+
+def said(call):
+    with pytest.raises(rtamt.UsageError) as info:
+        call()
+    return str(info.value)
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        lambda wrong: rtamt.parse("x", semantics=wrong),
+        lambda wrong: rtamt.robustness("x", {"x": [1]}, semantics=wrong),
+        lambda wrong: rtamt.parse("x").evaluate({"x": [1]}, semantics=wrong),
+        lambda wrong: rtamt.parse("x").monitor(semantics=wrong),
+    ],
+)
+def test_an_unknown_semantics(call):
+    assert said(lambda: call("output_robustnes")) == (
+        f"unknown semantics 'output_robustnes'; did you mean 'output_robustness'?; choose from {NAMES}"
+    )
+    assert said(lambda: call(3)) == f"unknown semantics 3; choose from {NAMES}"
+
+
+def test_wrong_roles():
+    assert said(lambda: rtamt.parse("req >= 3", roles={"rec": "input"})) == (
+        "roles has 'rec', which the specification neither reads nor declares; did you mean 'req'?"
+    )
+    assert said(lambda: rtamt.parse("req >= 3", roles={"req": "in"})) == (
+        "the role of 'req' is 'in'; choose 'input' or 'output'"
+    )
+
+
+def no_formula(_predicate, _roles):
+    return 3
+
+
+def another_variable(_predicate, _roles):
+    return Var("z")
+
+
+@pytest.mark.parametrize(
+    ("judge", "sentence"),
+    [
+        (
+            no_formula,
+            "the semantics 'no_formula' returned 3 for the predicate 'x >= 3'; return a formula",
+        ),
+        (
+            another_variable,
+            "the semantics 'another_variable' returned 'z' for the predicate 'x >= 3', which does not "
+            "read 'z'; use the predicate's own variables",
+        ),
+    ],
+)
+def test_a_function_that_returns_something_else(judge, sentence):
+    spec = rtamt.parse("always(x >= 3)")
+    assert said(lambda: spec.evaluate({"x": [1]}, semantics=judge)) == sentence
