@@ -270,3 +270,14 @@ def test_a_trace_that_may_not_be_read(run, monkeypatch):
 
     monkeypatch.setattr("builtins.open", denied)
     assert run("check", "x", "good.csv") == (2, "", "rtamt: cannot read 'good.csv': Permission denied\n")
+
+
+@pytest.mark.parametrize("command", ["check", "monitor", "info"])
+def test_an_unknown_semantics(run, command):
+    traces = ["log.csv"] if command == "check" else []
+    assert run(command, "x >= 3", *traces, "--semantics", "vacuity") == (
+        2,
+        "",
+        "rtamt: unknown semantics 'vacuity'; did you mean 'input_vacuity'?; choose from standard, "
+        "output_robustness, input_vacuity, input_robustness, output_vacuity, boolean\n",
+    )

@@ -56,7 +56,7 @@ examples:
   rtamt check "always((req >= 3) -> eventually[0:5](gnt >= 3))" log.csv --json
   rtamt check "always[0:500ms](speed <= 30)" drive.csv --period 100ms -o robustness.csv
   rtamt check "always(alarm -> eventually[0:70ms](stop))" events.csv --time dense
-  rtamt check examples/request_grant/spec.stl log.csv --semantics output_robustness"""
+  rtamt check examples/request_grant/spec.stl examples/request_grant/b_vacuous.csv --semantics input_vacuity"""
 
 
 @dataclass(frozen=True, slots=True)

@@ -213,3 +213,17 @@ def test_what_dense_time_cannot_do(run, write, args, message):
     formula, *options = args
     answer = run("check", formula, write("events.csv", DENSE), *options)
     assert answer == (2, "", f"rtamt: {message}\n")
+
+
+@pytest.mark.parametrize("time", ["discrete", "dense"])
+@pytest.mark.parametrize(
+    ("semantics", "values"),
+    [("output_robustness", [3, "inf", -2, -2]), ("input-vacuity", [0, 1, 0, 0])],
+)
+def test_the_four_recordings_under_interface_aware_semantics(run, semantics, values, time):
+    traces = map(str, sorted(EXAMPLES.glob("*.csv")))
+    spec = str(EXAMPLES / "spec.stl")
+    answer = run("check", spec, *traces, "--json", "--semantics", semantics, "--time", time)
+    found = [json.loads(line) for line in answer.out.splitlines()]
+    assert [row["robustness"] for row in found] == values
+    assert [row["satisfied"] for row in found] == [True, True, False, False]

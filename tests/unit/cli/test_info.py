@@ -75,6 +75,7 @@ def test_json(run):
         "name": None,
         "formula": "next(req.value >= 3)",
         "latex": run("info", "next(req.value >= 3)", "--latex").out.strip(),
+        "semantics": "standard",
         "variables": [{"name": "req.value", "type": None, "role": None, "topic": None}],
         "period": 1.0,
         "horizon": 1.0,
@@ -120,3 +121,14 @@ def test_memory_is_that_of_the_core(run, formula):
     program = compile_program((desugar(spec.formula),), spec.period, spec.input_names)
     told = json.loads(run("info", formula, "--json").out)["memory"]
     assert told == _core.memory(program.to_bytes())
+
+
+def test_the_program_is_that_of_the_semantics(run):
+    answer = run("info", "input float req; req >= 3", "--semantics", "output_robustness")
+    assert answer.out.splitlines()[:3] == [
+        "formula    req >= 3",
+        "semantics  output_robustness",
+        "variables  input float req",
+    ]
+    assert answer.out.splitlines()[-1] == "  %2   lag 0    holds_ge %0 %1  -> output"
+    assert json.loads(run("info", "x", "--semantics", "boolean", "--json").out)["semantics"] == "boolean"

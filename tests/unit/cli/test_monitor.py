@@ -144,3 +144,18 @@ def test_a_dense_sample_without_a_time():
     )
     assert (done.returncode, done.stdout) == (2, "")
     assert done.stderr == "rtamt: stdin, line 1: in dense time every sample needs its time\n"
+
+
+@pytest.mark.parametrize("time", ["discrete", "dense"])
+def test_the_boolean_semantics_prints_verdicts_where_the_robustness_is_zero(run, time):
+    for text, robustness, verdict in (("x >= 3", "inf", True), ("x > 3", "-inf", False)):
+        answer = run(
+            "monitor", text, "--semantics", "boolean", "--time", time, stdin=jsonl({"time": 0, "x": 3})
+        )
+        assert json.loads(answer.out) == {"time": 0.0, "robustness": robustness, "satisfied": verdict}
+
+
+def test_the_monitor_takes_every_semantics_and_prints_no_minus_before_zero(run):
+    text = "input float u; output float y; u >= 3 -> not (y >= 3)"
+    answer = run("monitor", text, "--semantics", "input-vacuity", stdin=jsonl({"time": 0, "u": 5, "y": 9}))
+    assert answer == (0, '{"time": 0.0, "robustness": 0.0}\n', "")
