@@ -211,7 +211,13 @@ class Specification:
 
         ``semantics``: by default that of the specification; see :func:`rtamt.rewrite.interface.lower`.
         """
-        return interface.lower(formula, self._semantics(semantics), self.roles)
+        chosen = self._semantics(semantics)
+        if not isinstance(chosen, str):
+            return interface.lower(formula, chosen, self.roles)
+        judged = self._lowered.get((formula, chosen))
+        if judged is None:
+            judged = self._lowered[formula, chosen] = interface.lower(formula, chosen, self.roles)
+        return judged
 
     def signal_of(self, formula: Formula, trace: Recording | DenseRecording) -> Signal:
         """Return the robustness signal of any formula over a normalised recording."""
@@ -253,6 +259,10 @@ class Specification:
             variables=self.document.variables or None,
             unit=self.unit,
         )
+
+    @cached_property
+    def _lowered(self) -> dict[tuple[Formula, str], Formula]:
+        return {}
 
     @cached_property
     def _evaluators(self) -> dict[tuple[Formula, Fraction], Evaluator]:

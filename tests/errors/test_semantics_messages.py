@@ -4,6 +4,7 @@ import pytest
 
 import rtamt
 from rtamt.language.formula import Var
+from rtamt.rewrite.interface import SEMANTICS
 
 NAMES = "standard, output_robustness, input_vacuity, input_robustness, output_vacuity, boolean"
 
@@ -64,3 +65,31 @@ def another_variable(_predicate, _roles):
 def test_a_function_that_returns_something_else(judge, sentence):
     spec = rtamt.parse("always(x >= 3)")
     assert said(lambda: spec.evaluate({"x": [1]}, semantics=judge)) == sentence
+
+
+@pytest.mark.parametrize("semantics", SEMANTICS)
+def test_the_other_sentences_are_the_same_under_every_semantics(semantics):
+    spec = rtamt.parse("x >= 3 and always(y >= 3)", roles={"x": "input"}, semantics=semantics)
+    with pytest.raises(rtamt.BoundError) as info:
+        spec.monitor()
+    assert str(info.value) == (
+        "'always' without an upper bound needs the whole future and cannot be monitored online; "
+        "give it a bound, such as always[0:10], or evaluate the finished trace offline\n"
+        "  line 1, column 12:\n"
+        "    x >= 3 and always(y >= 3)\n"
+        "               ^^^^^^^^^^^^^^"
+    )
+    bounded = rtamt.parse("not once[0:150ms](x >= 3)", semantics=semantics)
+    for call in (
+        lambda: bounded.evaluate({"x": [1]}, period="100ms"),
+        lambda: bounded.monitor(period="100ms"),
+    ):
+        with pytest.raises(rtamt.BoundError) as info:
+            call()
+        assert str(info.value) == (
+            "The operator bound must be a multiple of the sampling period: 150 ms is not a whole number of "
+            "periods of 100 ms; change the bound or the period\n"
+            "  line 1, column 9:\n"
+            "    not once[0:150ms](x >= 3)\n"
+            "            ^^^^^^^^^"
+        )

@@ -195,3 +195,14 @@ def test_an_inner_name_in_a_message(time: str) -> None:
         f"'sqrt(eventually x)' has no value at {where}: it is 0/0, inf - inf, 0 * inf, or a root or logarithm of "
         "a negative number; change the formula or the data so that this cannot happen"
     )
+
+
+@pytest.mark.parametrize("backend", BACKENDS)
+def test_a_dense_sub_formula_does_not_see_what_lies_before_the_recording_begins(backend):
+    # y begins at 2 s, and so does the recording: the formula never reads the 9 that x is at 0 s.
+    spec = rtamt.parse("once(x >= 1) or y >= 1", backend=backend)
+    data = {"x": ([0, 1, 5], [9, 1, 2]), "y": ([2, 8], [-9, -9])}
+    result = spec.evaluate(data, time="dense")
+    for signal in (result.signal, result["once(x >= 1)"]):
+        assert (signal.times.tolist(), signal.values.tolist()) == ([2, 5, 8], [0, 1, 1])
+    assert result["eventually(x >= 1)"].times.tolist() == [2, 8]

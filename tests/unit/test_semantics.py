@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pickle
+from dataclasses import replace
 from math import copysign, inf
 
 import pytest
@@ -188,3 +189,22 @@ def test_what_a_function_leaves_unread_is_still_read_and_spans_the_trace():
     assert len(monitor.update(0, x=1)) == 0  # y may still come
     with pytest.raises(rtamt.TraceError):
         spec.evaluate({"x": [float("nan")], "y": [1]})
+
+
+NEAR = replace(
+    rtamt.STL["ge"],
+    name="near",
+    spellings=("~~",),
+    definition=lambda a, b: 1 - abs(a - b),
+    expansion=None,
+    truth=None,
+    dual=None,
+)
+
+
+def test_a_comparison_of_ones_own_holds_where_it_is_positive_unless_its_record_says_more():
+    language = rtamt.STL.extend(NEAR)
+    spec = rtamt.parse("x ~~ 3", language=language, backend="python", roles={"x": "input"})
+    values = [spec.evaluate({"x": [3.5, 4, 5]}, semantics=name).signal.values.tolist() for name in SEMANTICS]
+    holds = [inf, -inf, -inf]
+    assert values == [[0.5, 0, -1], holds, [0.5, 0, -1], [0.5, 0, -1], [0, 0, 0], holds]

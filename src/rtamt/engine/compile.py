@@ -97,18 +97,25 @@ def compile_program(
 
 
 def compile_plan(
-    outputs: Sequence[Formula], period: Fraction, clip: int | None = None, domain: str = "discrete"
+    outputs: Sequence[Formula],
+    period: Fraction,
+    clip: int | None = None,
+    domain: str = "discrete",
+    inputs: tuple[str, ...] = (),
 ) -> Plan:
-    """Compile core formulas for an offline evaluation; arguments as for :func:`compile_program`."""
+    """Compile core formulas for an offline evaluation; arguments as for :func:`compile_program`.
+
+    ``inputs``: those that are read besides what the formulas read.
+    """
     stages: list[Stage] = []
     formulas = tuple(outputs)
     # Every stage reads every variable, so that all of them begin and end together.
-    names = _read_by(formulas)
+    names = _read_by(formulas, inputs)
     while any(unbounded_future(formula) for formula in formulas):
         formulas, stage = _cut(formulas, names, period, clip, domain, len(stages))
         stages.append(stage)
-    inputs = _read_by(formulas, names)
-    return Plan(tuple(stages), compile_program(formulas, period, inputs, clip, domain))
+    program = compile_program(formulas, period, _read_by(formulas, names), clip, domain)
+    return Plan(tuple(stages), program)
 
 
 def _read_by(formulas: Sequence[Formula], names: tuple[str, ...] = ()) -> tuple[str, ...]:

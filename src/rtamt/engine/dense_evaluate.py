@@ -75,7 +75,9 @@ def trace(data: Any, names: Sequence[str], tick: Fraction, known: Collection[str
 
 def evaluate(formula: Formula, recording: DenseRecording) -> Signal:
     """Return the robustness of a core formula (see ``desugar``) from the recording's start to its end."""
-    plan = compile_plan((formula,), recording.scale.tick, domain="dense")
+    # Also what this formula does not read says where the recording starts and ends.
+    inputs = tuple(recording.columns)
+    plan = compile_plan((formula,), recording.scale.tick, domain="dense", inputs=inputs)
     columns = dict(recording.columns)
     # What unbounded future reads must have settled: past windows slide on after the last sample.
     settled = reach(formula, recording.scale.tick) if plan.stages else 0
