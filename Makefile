@@ -26,7 +26,7 @@ run: $(VENV)/.core ## check the four recordings of the paper's Fig. 4: specifica
 
 test: test-python test-cpp test-install ## everything that can be tested
 
-test-python: $(VENV)/.core $(VENV)/.group-test ## Python: laws, units, messages, doctests
+test-python: $(VENV)/.core $(VENV)/.group-test $(VENV)/.apt ## Python: laws, units, messages, doctests
 	$(RUN) -m pytest
 
 test-cpp: $(VENV)/.group-build ## C++: the core alone, under the address and undefined-behaviour sanitizers
@@ -79,6 +79,11 @@ $(VENV)/.group-test: $(VENV)/.extras
 $(VENV)/.extras: $(VENV)/.core
 	$(RUN) -m pip install --quiet "rtamt[$(EXTRAS)]"
 	@touch $@
+
+# Debian's packages that some tests run against; where they cannot be had, those tests are skipped and say so.
+PACKAGES := postgresql
+$(VENV)/.apt: Makefile tools/apt-packages $(VENV)/.made
+	@tools/apt-packages $(PACKAGES) && touch $@ || echo "The tests that need it are skipped."
 
 # Written only when it differs: an editable install knows each module by its name.
 MODULES := find src -name '*.py' | sort

@@ -154,7 +154,8 @@ def _find(source: Source, column: str, everything: Sequence[tuple[Table, Field]]
     more = f" and {len(names) - 12} more" if len(names) > 12 else ""
     hint = did_you_mean(column, names)
     raise TraceError(
-        f"{source.name} has no column '{column}', only {', '.join(names[:12])}{more}{hint}", variable=column
+        f"{source.name} has no column '{column}', only {', '.join(names[:12]) or 'nothing'}{more}{hint}",
+        variable=column,
     )
 
 

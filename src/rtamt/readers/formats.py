@@ -7,7 +7,7 @@ import os
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from rtamt.errors import TraceError, did_you_mean
+from rtamt.errors import TraceError, UsageError, did_you_mean
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -17,18 +17,25 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Format:
-    """A kind of file. ``opener``: module and function, imported when such a file is read."""
+    """A kind of file.
+
+    ``opener``: module and function, imported when such a file is read. ``sheets``: whether a file may
+    hold several tables, of which the opener takes one by its name.
+    """
 
     name: str
     suffixes: tuple[str, ...]
     opener: str
+    sheets: bool = False
 
-    def open(self, path: str) -> Source:
+    def open(self, path: str, sheet: str | None = None) -> Source:
         """Open a file of this kind."""
         module, function = self.opener.split(":")
-        opener: Callable[[str], Source] = getattr(
-            importlib.import_module(f"rtamt.readers.{module}"), function
-        )
+        opener: Callable[..., Source] = getattr(importlib.import_module(f"rtamt.readers.{module}"), function)
+        if self.sheets:
+            return opener(path, sheet)
+        if sheet is not None:
+            raise UsageError(f"'{path}' is {self.name}, which has no sheets; leave the sheet out")
         return opener(path)
 
 
@@ -36,6 +43,9 @@ FORMATS = (
     Format("CSV", (".csv", ".tsv", ".txt"), "text:open_csv"),
     Format("Parquet", (".parquet", ".pq"), "arrow:open_parquet"),
     Format("Arrow", (".arrow", ".feather", ".ipc"), "arrow:open_arrow"),
+    Format("Excel", (".xlsx", ".xlsm"), "excel:open_excel", sheets=True),
+    Format("PX4 ULog", (".ulg",), "ulog:open_ulog"),
+    Format("MDF", (".mf4", ".mdf"), "mdf:open_mdf"),
 )
 
 SUFFIXES = {suffix: known for known in FORMATS for suffix in known.suffixes}

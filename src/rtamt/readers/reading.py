@@ -10,6 +10,7 @@ from rtamt.errors import UsageError
 from rtamt.readers import frames
 from rtamt.readers.assemble import Choice, trace_of
 from rtamt.readers.formats import FORMATS, format_of
+from rtamt.readers.sql import is_url, open_sql
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
@@ -25,17 +26,22 @@ def read(
     columns: Iterable[str] | None = None,
     names: Mapping[str, str] | None = None,
     units: Mapping[str, str] | None = None,
+    sheet: str | None = None,
+    query: str | None = None,
 ) -> Trace:
     r"""Read a recording; ``Specification.evaluate`` and ``update_many`` take what comes out.
 
-    ``source``: a file, whose suffix tells its format; a dict, pandas, polars, xarray or arrow object,
-    or structured numpy array. ``columns``: the signals that are wanted (default: all that are
-    numbers). ``names``: for signals that are to be called otherwise than their columns, from the name
-    to the column: ``{"v": "battery_status[1].voltage_v"}``. ``time``: the column of time stamps, ``""``
-    for none; by default the one called time, t, timestamp, stamp or datetime, perhaps with a unit
-    (``Time [ms]``, ``time_ms``), else the one column of dates. ``units``: from column to unit, where
-    the source does not say it; ``"time"`` stands for the column of time stamps, which otherwise are
-    seconds, or, where they are integers too large for that, ms, us or ns since 1970.
+    ``source``: a file, whose suffix tells its format (CSV, Parquet, Arrow, Excel, PX4 ULog, MDF); the
+    address of a database (``sqlite:///log.db``, ``postgresql://user@host/name``), with a ``query`` whose
+    rows are samples; a dict, a pandas, polars, xarray or arrow object, or a structured numpy array.
+    ``columns``: the signals that are wanted (default: all that are numbers). ``names``: for signals that
+    are to be called otherwise than their columns, from the name to the column:
+    ``{"v": "battery_status[1].voltage_v"}``. ``time``: the column of time stamps, ``""`` for none; by
+    default the one called time, t, timestamp, stamp or datetime, perhaps with a unit (``Time [ms]``,
+    ``time_ms``), else the one column of dates. ``units``: from column to unit, where the source does
+    not say it; ``"time"`` stands for the column of time stamps, which otherwise are seconds, or, where
+    they are integers too large for that, ms, us or ns since 1970. ``sheet``: of an Excel workbook that
+    has several.
 
     A value that is missing (an empty cell, null, pandas' NaN) is no sample: the signal then has a
     clock of its own. What was guessed is in ``Trace.notes``, and printed with it.
@@ -54,7 +60,7 @@ def read(
     >>> trace.channel("speed").unit, trace.notes
     ('m/s', ("time is 't [ms]', by its name", 'left out, not numbers: note'))
     """
-    with opened(source) as found:
+    with opened(source, sheet, query) as found:
         return trace_of(found, choice(time, columns, names, units))
 
 
@@ -71,9 +77,9 @@ def choice(
 
 
 @contextmanager
-def opened(source: Any) -> Iterator[Source]:
+def opened(source: Any, sheet: str | None = None, query: str | None = None) -> Iterator[Source]:
     """Open whatever can be read, and close it at the end."""
-    found = _open(source)
+    found = _open(source, sheet, query)
     try:
         yield found
     finally:
@@ -81,14 +87,19 @@ def opened(source: Any) -> Iterator[Source]:
             found.close()
 
 
-def _open(source: Any) -> Source:
+def _open(source: Any, sheet: str | None, query: str | None) -> Source:
+    if isinstance(source, str) and is_url(source):
+        return open_sql(source, query)
+    if query is not None:
+        raise UsageError("a query is for a database, whose address looks like sqlite:///log.db")
     if isinstance(source, (str, os.PathLike)):
         path = os.fspath(source)
-        return format_of(path).open(path)
+        return format_of(path).open(path, sheet)
     found = frames.source_of(source)
     if found is None:
         kinds = ", ".join(known.name for known in FORMATS)
         raise UsageError(
-            f"cannot read a {type(source).__name__}: give a file ({kinds}) or {', '.join(frames.known_kinds())}"
+            f"cannot read data of type {type(source).__name__}: give a file ({kinds}), the address of a "
+            f"database, or {', '.join(frames.known_kinds())}"
         )
     return found

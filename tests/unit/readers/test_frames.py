@@ -163,7 +163,8 @@ def test_the_data_of_the_caller_is_not_shared():
     ("call", "message"),
     [
         (lambda: rtamt.read(5),
-         "cannot read a int: give a file (CSV, Parquet, Arrow) or a dict, a structured numpy array, "
+         "cannot read data of type int: give a file (CSV, Parquet, Arrow, Excel, PX4 ULog, MDF), the address "
+         "of a database, or a dict, a structured numpy array, "
          "pandas.DataFrame, pandas.Series, polars.DataFrame, pyarrow.Table, xarray.Dataset, xarray.DataArray"),
         (lambda: rtamt.read(np.zeros((2, 2))),
          "an array of 2 dimensions does not say what is in it: give a dict from name to values, "

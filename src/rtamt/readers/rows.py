@@ -1,0 +1,70 @@
+"""Rows of Python objects (of a sheet, of a query) to columns."""
+
+from __future__ import annotations
+
+from collections import Counter
+from decimal import Decimal
+from itertools import chain, islice
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rtamt.engine.signals import is_number
+from rtamt.readers.clocks import from_objects
+from rtamt.readers.frames import field_of
+from rtamt.readers.source import CHUNK, Field, Table
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Sequence
+
+    from rtamt.readers.source import Raw
+
+#: Rows that are looked at to tell numbers, dates and texts apart.
+_SAMPLE = 100
+
+
+def table_of_rows(columns: Sequence[str], rows: Iterable[Sequence[Any]]) -> Table:
+    """Return a table that is read once, whole or in chunks. ``columns``: "" for one to be left out."""
+    counts = Counter(columns)
+    rows = iter(rows)
+    first = list(islice(rows, _SAMPLE))
+    rows = chain(first, rows)
+    # A name that two columns share keeps both in the list, so that asking for it is an error.
+    fields = [field_of(c, _kind([row[i] for row in first])) for i, c in enumerate(columns) if c]
+    places = {column: i for i, column in enumerate(columns) if counts[column] == 1}
+
+    def chunks(wanted: Sequence[Field]) -> Iterator[list[Raw]]:
+        while block := list(islice(rows, CHUNK)):
+            yield [_column([row[places[field.column]] for row in block]) for field in wanted]
+
+    def load(wanted: Sequence[Field]) -> list[Raw]:
+        whole = list(rows)
+        return [_column([row[places[field.column]] for row in whole]) for field in wanted]
+
+    return Table(tuple(fields), load, chunks)
+
+
+def _kind(values: Sequence[Any]) -> str:
+    """Tell what a column holds by its first values; "" where they do not tell."""
+    given = [value for value in values if value is not None]
+    if not given:
+        return ""
+    if all(is_number(value) or isinstance(value, Decimal) for value in given):
+        return "number"
+    if from_objects(given) is not None:
+        return "time"
+    return "text" if all(isinstance(value, str) for value in given) else ""
+
+
+def _column(values: list[Any]) -> Raw:
+    """Return plain numbers as numbers, anything else as objects."""
+    if all(type(value) is float for value in values):
+        return np.array(values, dtype=np.float64)
+    if all(type(value) is int for value in values):
+        try:
+            return np.array(values, dtype=np.int64)
+        except OverflowError:
+            return np.array(values, dtype=np.float64)
+    result = np.empty(len(values), dtype=object)
+    result[:] = values
+    return result

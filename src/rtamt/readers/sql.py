@@ -1,0 +1,63 @@
+"""Databases, with SQLAlchemy: a query whose rows are samples."""
+
+from __future__ import annotations
+
+import re
+from contextlib import ExitStack
+
+from rtamt.errors import TraceError, UsageError
+from rtamt.readers.rows import table_of_rows
+from rtamt.readers.source import CHUNK, Source, library
+
+_URL = re.compile(r"[a-z][a-z0-9+]*://", re.IGNORECASE)
+#: The driver that our extra brings; the one that SQLAlchemy tries first is another.
+_POSTGRESQL = re.compile(r"postgres(?:ql)?://")
+
+
+def is_url(text: str) -> bool:
+    """Tell whether a text is the address of a database.
+
+    >>> is_url("sqlite:///log.db"), is_url("C:/log.csv")
+    (True, False)
+    """
+    return _URL.match(text) is not None
+
+
+def open_sql(url: str, query: str | None) -> Source:
+    """Run a query; the server sends its rows as they are read, wherever it can."""
+    sqlalchemy = library("sqlalchemy", "databases")
+    exceptions = library("sqlalchemy.exc", "databases")
+    if query is None:
+        raise UsageError(
+            f"'{_shown(url)}' is a database: say what to read with query=, or on the command line --query"
+        )
+    with ExitStack() as stack:
+        try:
+            engine = sqlalchemy.create_engine(_POSTGRESQL.sub("postgresql+psycopg://", url, count=1))
+            stack.callback(engine.dispose)
+            connection = stack.enter_context(engine.connect())
+            streaming = connection.execution_options(stream_results=True, yield_per=CHUNK)
+            # What looks like a parameter (:name) is part of the query: nobody gives values for it.
+            result = streaming.execute(sqlalchemy.text(query.replace(":", r"\:")))
+        except exceptions.NoSuchModuleError as error:
+            raise UsageError(f"there is no driver for '{_shown(url)}': {_first_line(error)}") from None
+        except ModuleNotFoundError as error:
+            raise UsageError(
+                f"'{_shown(url)}' needs the Python module '{error.name}', which is not installed"
+            ) from None
+        except exceptions.SQLAlchemyError as error:
+            raise TraceError(f"cannot read from '{_shown(url)}': {_first_line(error)}") from None
+        if not result.returns_rows:
+            raise TraceError(f"the query on '{_shown(url)}' returns no rows; give a SELECT")
+        columns = list(result.keys())
+        return Source(_shown(url), (table_of_rows(columns, result),), close=stack.pop_all().close)
+
+
+def _shown(url: str) -> str:
+    """Return the address without a password."""
+    return re.sub(r"(://[^:/@]*):[^@]*@", r"\1:***@", url)
+
+
+def _first_line(error: Exception) -> str:
+    original = getattr(error, "orig", None) or error
+    return str(original).strip().split("\n")[0]

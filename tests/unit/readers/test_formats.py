@@ -1,0 +1,167 @@
+"""Excel, PX4 ULog and MDF files."""
+
+import datetime as dt
+import os
+import struct
+from pathlib import Path
+
+import asammdf
+import numpy as np
+import openpyxl
+import pytest
+
+import rtamt
+
+# ---- Excel ---------------------------------------------------------------------------------------
+
+
+def workbook(path, **sheets):
+    book = openpyxl.Workbook()
+    book.remove(book.active)
+    for title, rows in sheets.items():
+        page = book.create_sheet(title)
+        for row in rows:
+            page.append(row)
+    book.save(path)
+    return path
+
+
+def test_excel(tmp_path):
+    rows = [[], ["Time [s]", "x [V]", "note"], [0, 5, "go"], [0.1, None, None], [], [0.2, 6.5, "stop"]]
+    trace = rtamt.read(workbook(tmp_path / "a.xlsx", log=rows))
+    assert (trace.names, trace.channel("x").unit) == (("x",), "V")
+    assert (trace["x"].times.tolist(), trace["x"].values.tolist()) == ([0, 0.2], [5, 6.5])
+    assert trace.notes == ("time is 'Time [s]', by its name", "left out, not numbers: note")
+
+
+def test_excel_dates_and_sheets(tmp_path):
+    dates = [dt.datetime(2024, 5, 1, 10, 0, second) for second in (0, 1)]
+    path = workbook(tmp_path / "a.xlsx", readme=[], log=[["when", "x"], [dates[0], 1], [dates[1], 2]])
+    trace = rtamt.read(path)
+    assert trace["x"].times.tolist() == np.array(dates, dtype="M8[ns]").tolist()
+    assert trace.notes == ("sheet 'log'", "time is 'when', the one column of dates")
+    path = workbook(tmp_path / "b.xlsx", first=[["x"], [1]], second=[["x"], [2]])
+    assert rtamt.read(path, sheet="second")["x"].values.tolist() == [2]
+
+
+# ---- PX4 ULog ------------------------------------------------------------------------------------
+
+
+def ulog(path, topics, dropouts=()):
+    """Write a flight log: ``topics`` are (name, instance, fields, rows)."""
+    out = bytearray(b"ULog\x01\x12\x35\x01" + struct.pack("<Q", 0))
+
+    def message(kind, payload):
+        out.extend(struct.pack("<HB", len(payload), ord(kind)) + payload)
+
+    for name, fields in {name: fields for name, _, fields, _ in topics}.items():
+        message("F", f"{name}:uint64_t timestamp;{fields};".encode())
+    for number, (name, instance, _, _) in enumerate(topics):
+        message("A", struct.pack("<BH", instance, number) + name.encode())
+    for number, (_, _, fields, rows) in enumerate(topics):
+        code = "<HQ" + {"float x": "f", "float[2] q": "ff"}[fields]
+        for row in rows:
+            message("D", struct.pack(code, number, *row))
+    for milliseconds in dropouts:
+        message("O", struct.pack("<H", milliseconds))
+    path.write_bytes(out)
+    return path
+
+
+def test_ulog(tmp_path):
+    topics = [
+        ("battery", 0, "float x", [(1_000_000, 12.5), (1_500_000, 12.25)]),
+        ("battery", 1, "float x", [(1_000_000, 11.5), (2_000_000, 11.25), (3_000_000, 11)]),
+        ("attitude", 0, "float[2] q", [(1_000_001, 1, 0)]),
+    ]
+    path = ulog(tmp_path / "flight.ulg", topics, dropouts=[100, 19])
+    trace = rtamt.read(path)
+    assert trace.names == ("attitude.q[0]", "attitude.q[1]", "battery.x", "battery[1].x")
+    assert trace.notes == ("2 dropouts of the logger, 0.119 s in all: nothing was recorded in them",)
+    assert trace["attitude.q[0]"].times.tolist() == [1.000001]
+    named = rtamt.read(path, columns=["battery.x", "v"], names={"v": "battery[1].x"})
+    spec = rtamt.parse("always(battery.x >= v)")
+    result = spec.evaluate(named, time="dense")
+    assert result.signal.times.tolist() == [1, 2, 3]
+    assert result.signal.values.tolist() == [0.75, 1, 1.25]
+
+
+FLIGHTS = [Path(os.environ.get("RTAMT_FLIGHT", "")), Path(__file__).parents[4] / "shared/data/px4_flight.ulg"]
+
+
+@pytest.mark.skipif(
+    not any(path.is_file() for path in FLIGHTS), reason="no recorded flight; RTAMT_FLIGHT names one"
+)
+def test_a_real_flight():
+    trace = rtamt.read(next(path for path in FLIGHTS if path.is_file()))
+    rates = [name for name in trace.names if name.startswith("vehicle_attitude.") and name.endswith("speed")]
+    assert len(rates) == 3
+    for name in rates:
+        result = rtamt.parse(f"always(abs({name}) <= 20)").evaluate(trace, time="dense")
+        assert result.robustness == 20 - np.abs(trace[name].values).max()
+
+
+# ---- MDF -----------------------------------------------------------------------------------------
+
+
+def test_mdf(tmp_path):
+    def channel(name, times, values, **more):
+        return asammdf.Signal(np.array(values), np.array(times, dtype=float), name=name, **more)
+
+    path = tmp_path / "drive.mf4"
+    gear = {"val_0": 0, "text_0": b"neutral", "val_1": 1, "text_1": b"first"}
+    with asammdf.MDF(version="4.10") as file:
+        file.start_time = dt.datetime(2024, 5, 1, 12, tzinfo=dt.timezone(dt.timedelta(hours=2)))
+        file.append([channel("speed", [0, 0.5, 1], [3.0, 4.0, 5.0], unit="m/s"),
+                     channel("gear", [0, 0.5, 1], np.array([0, 1, 1], dtype="u1"), conversion=gear)])  # fmt: skip
+        file.append([channel("torque", [0, 0.25], [7, 8], unit="Nm")])
+        file.append([channel("torque", [0, 0.75], [9, 10], unit="Nm")])
+        file.save(path)
+    trace = rtamt.read(path, columns=["speed", "gear"])
+    assert trace.origin == np.datetime64("2024-05-01T10:00:00", "ns")
+    assert trace.channel("speed").unit == "m/s"
+    assert trace["speed"].times.tolist() == [0, 0.5, 1]
+    assert trace["gear"].values.tolist() == [0, 1, 1]
+    assert rtamt.parse("always(gear >= 1 -> speed >= 4)").evaluate(trace).satisfied
+    both = [name for name in rtamt.read(path).names if "torque" in name]
+    assert [rtamt.read(path)[name].values.tolist() for name in both] == [[7, 8], [9, 10]]
+
+
+# ---- messages ------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("name", "make", "options", "message"),
+    [
+        ("a.xlsx", lambda p: workbook(p, a=[["x"], [1]]), {"sheet": "b"}, "{path} has no sheet 'b', only a"),
+        ("a.xlsx", lambda p: workbook(p, one=[["x"]], two=[["y"]]), {},
+         "{path} has several sheets: one, two; choose one with sheet=, or on the command line --sheet"),
+        ("a.xlsx", lambda p: workbook(p, a=[]), {},
+         "{path} is empty: it needs a row of column names, then a row for each sample"),
+        ("a.xlsx", lambda p: workbook(p, a=[[0, 1]]), {},
+         "{path}: expected a row of column names, such as time, x; the first row is (0, 1)"),
+        ("a.xlsx", lambda p: workbook(p, a=[["t", "x"], [0, "?"]]), {"columns": ["x"]},
+         "'x' of {path} is '?' at sample 0, expected a number"),
+        ("a.xlsx", lambda p: p.write_bytes(b"no"), {}, "'{path}' cannot be read as Excel: File is not a zip file"),
+        ("a.ulg", lambda p: p.write_bytes(b"no"), {},
+         "'{path}' cannot be read as a PX4 flight log: Invalid file format (Header too short)"),
+        ("a.ulg", lambda _: None, {}, "there is no file '{path}'"),
+        ("a.ulg", lambda p: ulog(p, []), {"columns": ["x"]}, "{path} has no column 'x', only nothing"),
+        ("a.csv", lambda p: p.write_text("x\n1\n"), {"sheet": "b"},
+         "'{path}' is CSV, which has no sheets; leave the sheet out"),
+        ("a.csv", lambda p: p.write_text("x\n1\n"), {"query": "select"},
+         "a query is for a database, whose address looks like sqlite:///log.db"),
+    ],
+)  # fmt: skip
+def test_messages(tmp_path, name, make, options, message):
+    path = tmp_path / name
+    make(path)
+    with pytest.raises(rtamt.StlError) as error:
+        rtamt.read(str(path), **options)
+    assert str(error.value) == message.format(path=path)
+
+
+def test_what_is_no_mdf(tmp_path):
+    (tmp_path / "a.mf4").write_bytes(b"nothing of the kind" * 10)
+    with pytest.raises(rtamt.TraceError, match=r"^'.*a\.mf4' cannot be read as MDF: .*not a valid"):
+        rtamt.read(tmp_path / "a.mf4")
