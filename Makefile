@@ -54,9 +54,10 @@ format: $(VENV)/.group-lint ## format Python and C++
 	$(RUN) -m ruff format
 	$(CXX_FILES) '*.[ch]pp' | xargs $(VENV)/bin/clang-format -i
 
-bench: $(VENV)/.core ## what a sample costs, beside the figures to reach
+bench: $(VENV)/.core $(VENV)/.extras ## what a sample costs, beside the figures to reach
 	$(RUN) benchmarks/run.py
 	$(RUN) benchmarks/dense_memory.py
+	$(RUN) benchmarks/stream.py
 
 clean: ## remove all that was made here, .venv too
 	rm -rf $(VENV) build dist

@@ -17,7 +17,7 @@ from rtamt.errors import (
     UsageError,
 )
 from rtamt.language.operators import STL
-from rtamt.readers.reading import read
+from rtamt.readers.reading import read, scan
 from rtamt.results import Result
 from rtamt.rtamt_api import (
     IAStlInputRobustnessDenseTimeOfflineSpecification,
@@ -54,6 +54,8 @@ from rtamt.rtamt_api import (
     TimeInterpretation,
 )
 from rtamt.specification import Specification, load, parse, robustness
+from rtamt.streams import StreamResult, check_stream
+from rtamt.verdicts import first_violation
 
 __version__ = "1.0.0.dev0"
 
@@ -104,12 +106,16 @@ __all__ = [
     "StlDiscreteTimeSpecificationCpp",
     "StlError",
     "StlIOType",
+    "StreamResult",
     "TimeInterpretation",
     "Trace",
     "TraceError",
     "UsageError",
+    "check_stream",
+    "first_violation",
     "load",
     "parse",
     "read",
     "robustness",
+    "scan",
 ]

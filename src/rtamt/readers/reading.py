@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import UsageError
 from rtamt.readers import frames
-from rtamt.readers.assemble import Choice, trace_of
+from rtamt.readers.assemble import Choice, chunks_of, trace_of
 from rtamt.readers.formats import FORMATS, format_of
 from rtamt.readers.sql import is_url, open_sql
 
@@ -62,6 +62,38 @@ def read(
     """
     with opened(source, sheet, query) as found:
         return trace_of(found, choice(time, columns, names, units))
+
+
+def scan(
+    source: Any,
+    *,
+    time: str | None = None,
+    columns: Iterable[str] | None = None,
+    names: Mapping[str, str] | None = None,
+    units: Mapping[str, str] | None = None,
+    sheet: str | None = None,
+    query: str | None = None,
+) -> Iterator[Trace]:
+    r"""Read a recording in chunks, in memory that does not grow with its length; arguments as for :func:`read`.
+
+    For :func:`rtamt.check_stream` and ``update_many``. Parquet, Arrow and Excel files and SQL queries can
+    be read in chunks; what the first chunk tells of the time stamps holds for all. Give
+    ``columns=spec.input_names``, so that only what a formula reads is read.
+
+    >>> import pathlib, tempfile
+    >>> import pyarrow, pyarrow.parquet, rtamt
+    >>> spec = rtamt.parse("always(speed <= 30)")
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     path = pathlib.Path(folder, "log.parquet")
+    ...     pyarrow.parquet.write_table(pyarrow.table({"t": [0, 1, 2], "speed": [5, 31, 4]}), path)
+    ...     result = rtamt.check_stream(spec, rtamt.scan(path, columns=spec.input_names))
+    >>> result.robustness, result.first_violation
+    (-1.0, 1.0)
+    """
+    with opened(source, sheet, query) as found:
+        if any(table.chunks is None for table in found.tables) or len(found.tables) != 1:
+            raise UsageError(f"{found.name} cannot be read in chunks; read it whole with rtamt.read")
+        yield from chunks_of(found, choice(time, columns, names, units))
 
 
 def choice(
