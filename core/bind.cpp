@@ -12,7 +12,9 @@
 #include "opcodes.hpp"
 #include "program.hpp"
 #include "python/arrays.hpp"
+#include "python/calls.hpp"
 #include "python/dense_monitor.hpp"
+#include "python/failures.hpp"
 #include "python/monitor.hpp"
 
 #include <nanobind/nanobind.h>
@@ -23,6 +25,7 @@
 #include <nanobind/stl/string_view.h>
 #include <nanobind/stl/vector.h>
 
+#include <memory>
 #include <new>
 #include <stdexcept>
 #include <string>
@@ -34,10 +37,12 @@ namespace nb = nanobind;
 
 namespace {
 
+using rtamt::CallSite;
 using rtamt::Domain;
 using rtamt::Program;
 using rtamt::dense::EventList;
 using rtamt::discrete::Executor;
+using rtamt::python::Calls;
 using rtamt::python::Column;
 using rtamt::python::DenseMonitor;
 using rtamt::python::EventColumn;
@@ -46,8 +51,21 @@ using rtamt::python::Monitor;
 using rtamt::python::Result;
 using rtamt::python::Results;
 
-Program parse(const nb::bytes& bytes, Domain domain = Domain::discrete) {
-    return Program::parse({static_cast<const std::uint8_t*>(bytes.data()), bytes.size()}, domain);
+Program parse(const nb::bytes& bytes, Domain domain = Domain::discrete,
+              std::vector<CallSite> calls = {}) {
+    return Program::parse({static_cast<const std::uint8_t*>(bytes.data()), bytes.size()}, domain,
+                          std::move(calls));
+}
+
+// Calls `work`; what a Python operator raised when it was made goes before what the core threw.
+template <class Work>
+auto making(Calls& calls, Work&& work) {
+    try {
+        return std::forward<Work>(work)();
+    } catch (const std::runtime_error&) {
+        calls.rethrow();
+        throw;
+    }
 }
 
 // The method descriptor has checked that self is a Monitor, but not that __init__ has run.
@@ -107,8 +125,22 @@ PyMethodDef hot_methods[] = {
     {nullptr, nullptr, 0, nullptr},
 };
 
+template <class Monitor>
+int traverse(PyObject* self, visitproc visit, void* arg) {
+    Py_VISIT(Py_TYPE(self));
+    return nb::inst_ready(self) ? nb::inst_ptr<Monitor>(self)->calls().traverse(visit, arg) : 0;
+}
+
+template <class Monitor>
+int clear(PyObject* self) {
+    if (nb::inst_ready(self)) nb::inst_ptr<Monitor>(self)->calls().clear();
+    return 0;
+}
+
 PyType_Slot monitor_slots[] = {
     {Py_tp_methods, static_cast<void*>(hot_methods)},
+    {Py_tp_traverse, reinterpret_cast<void*>(traverse<Monitor>)},
+    {Py_tp_clear, reinterpret_cast<void*>(clear<Monitor>)},
     {0, nullptr},
 };
 
@@ -121,20 +153,29 @@ PyMethodDef dense_hot_methods[] = {
 
 PyType_Slot dense_monitor_slots[] = {
     {Py_tp_methods, static_cast<void*>(dense_hot_methods)},
+    {Py_tp_traverse, reinterpret_cast<void*>(traverse<DenseMonitor>)},
+    {Py_tp_clear, reinterpret_cast<void*>(clear<DenseMonitor>)},
     {0, nullptr},
 };
 
 std::vector<Result> evaluate(const nb::bytes& bytes, const std::vector<Column>& columns,
-                             std::size_t count, const Exceptions& exceptions) {
-    Program program = parse(bytes);
+                             std::size_t count, const nb::list& calls,
+                             const Exceptions& exceptions) {
+    Calls held(calls);
+    Program program = parse(bytes, Domain::discrete, held.sites());
     const auto pointers = rtamt::python::pointers_of(columns, program.inputs, count);
     Results results;
     for (std::size_t i = 0; i < program.outputs.size(); ++i)
         results.add(count);
-    const auto failure = rtamt::python::without_gil(count, [&] {
-        return Executor::evaluate(std::move(program), pointers, count, results.pointers());
+    const auto failure = making(held, [&] {
+        return rtamt::python::without_gil(count, [&] {
+            return Executor::evaluate(std::move(program), pointers, count, results.pointers());
+        });
     });
-    if (failure) rtamt::python::raise_undefined(exceptions, *failure);
+    if (failure) {
+        rtamt::python::raise_undefined(exceptions, held, failure->instruction, failure->sample,
+                                       failure->fault);
+    }
     return results.hand_over();
 }
 
@@ -160,18 +201,24 @@ Result scan(std::string_view kind, const Column& a, const std::optional<Column>&
 }
 
 nb::list dense_evaluate(const nb::bytes& bytes, const std::vector<EventColumn>& columns,
-                        std::int64_t extra, const Exceptions& exceptions) {
-    Program program = parse(bytes, Domain::dense);
+                        std::int64_t extra, const nb::list& calls, const Exceptions& exceptions) {
+    Calls held(calls);
+    Program program = parse(bytes, Domain::dense, held.sites());
     const auto inputs = rtamt::python::events_of(columns, program.inputs);
     if (extra < 0) throw std::invalid_argument("The extra ticks cannot be fewer than 0.");
     std::size_t count = 0;
     for (const auto& events : inputs)
         count += events.count;
     std::vector<EventList> outputs(program.outputs.size());
-    const auto failure = rtamt::python::without_gil(count, [&] {
-        return rtamt::dense::Executor::evaluate(std::move(program), inputs, extra, outputs);
+    const auto failure = making(held, [&] {
+        return rtamt::python::without_gil(count, [&] {
+            return rtamt::dense::Executor::evaluate(std::move(program), inputs, extra, outputs);
+        });
     });
-    if (failure) rtamt::python::raise_undefined(exceptions, *failure);
+    if (failure) {
+        rtamt::python::raise_undefined(exceptions, held, failure->instruction, failure->time,
+                                       failure->fault);
+    }
     return rtamt::python::hand_over(outputs);
 }
 
@@ -224,20 +271,26 @@ NB_MODULE(_core, m) {
         new_exception(m, "Refused", "An update was refused; the monitor is as it was."),
         new_exception(m, "Undefined",
                       "An operation made NaN; args are the instruction and the sample, or "
-                      "the tick in dense time.")};
+                      "the tick in dense time. Or a call failed: then also what it said, and "
+                      "the cause is what a Python operator raised.")};
 
     nb::class_<Monitor>(m, "Monitor", nb::type_slots(monitor_slots),
                         "Runs a program online, one sample or one chunk at a time.")
         .def(
             "__init__",
             [exceptions](Monitor* self, const nb::bytes& program, const std::vector<nb::str>& names,
-                         double period, double tolerance, bool strict, const nb::object& ignored) {
-                new (self)
-                    Monitor(parse(program), names, period, tolerance, strict, ignored, exceptions);
+                         double period, double tolerance, bool strict, const nb::object& ignored,
+                         const nb::list& calls) {
+                const auto held = std::make_shared<Calls>(calls);
+                Program parsed = parse(program, Domain::discrete, held->sites());
+                making(*held, [&] {
+                    new (self) Monitor(std::move(parsed), names, period, tolerance, strict, ignored,
+                                       held, exceptions);
+                });
             },
             nb::arg("program"), nb::arg("names"), nb::arg("period") = 1.0,
             nb::arg("tolerance") = rtamt::infinity, nb::arg("strict") = true,
-            nb::arg("ignored") = nb::none())
+            nb::arg("ignored") = nb::none(), nb::arg("calls") = nb::list())
         .def("push", &Monitor::push, nb::arg("times").none(), nb::arg("columns"),
              "Take a chunk, a column an input; return what became known of each output.")
         .def("finish", &Monitor::finish, "End the trace; return the rest of each output.")
@@ -257,10 +310,16 @@ NB_MODULE(_core, m) {
         .def(
             "__init__",
             [exceptions](DenseMonitor* self, const nb::bytes& program,
-                         const std::vector<nb::str>& names, const nb::object& ignored) {
-                new (self) DenseMonitor(parse(program, Domain::dense), names, ignored, exceptions);
+                         const std::vector<nb::str>& names, const nb::object& ignored,
+                         const nb::list& calls) {
+                const auto held = std::make_shared<Calls>(calls);
+                Program parsed = parse(program, Domain::dense, held->sites());
+                making(*held, [&] {
+                    new (self) DenseMonitor(std::move(parsed), names, ignored, held, exceptions);
+                });
             },
-            nb::arg("program"), nb::arg("names"), nb::arg("ignored") = nb::none())
+            nb::arg("program"), nb::arg("names"), nb::arg("ignored") = nb::none(),
+            nb::arg("calls") = nb::list())
         .def("tell", &DenseMonitor::tell, nb::arg("signal"), nb::arg("scale"),
              nb::arg("rate").none(),
              "Say how update() tells time: in seconds of so many ticks, or (None) by integers that "
@@ -288,23 +347,29 @@ NB_MODULE(_core, m) {
     m.def("opcode_names", &opcode_names, "The names of the opcodes, in the order of their codes.");
     m.def(
         "evaluate",
-        [exceptions](const nb::bytes& program, const std::vector<Column>& columns, std::size_t n) {
-            return evaluate(program, columns, n, exceptions);
+        [exceptions](const nb::bytes& program, const std::vector<Column>& columns, std::size_t n,
+                     const nb::list& calls) {
+            return evaluate(program, columns, n, calls, exceptions);
         },
-        nb::arg("program"), nb::arg("columns"), nb::arg("n"),
+        nb::arg("program"), nb::arg("columns"), nb::arg("n"), nb::arg("calls") = nb::list(),
         "Run a program over a whole trace of n samples; return n values an output.");
     m.def("scan", &scan, nb::arg("kind"), nb::arg("a"), nb::arg("b") = nb::none(),
           "Unbounded future over a whole column: run_max, run_min, or until.");
     m.def(
-        "memory", [](const nb::bytes& program) { return Executor::memory(parse(program)); },
-        nb::arg("program"), "Bytes of state of a new monitor of this program.");
+        "memory",
+        [](const nb::bytes& program, const nb::list& calls) {
+            const Calls held(calls);
+            return Executor::memory(parse(program, Domain::discrete, held.sites()));
+        },
+        nb::arg("program"), nb::arg("calls") = nb::list(),
+        "Bytes of state of a new monitor of this program, but for the calls in it.");
     m.def(
         "dense_evaluate",
         [exceptions](const nb::bytes& program, const std::vector<EventColumn>& columns,
-                     std::int64_t extra) {
-            return dense_evaluate(program, columns, extra, exceptions);
+                     std::int64_t extra, const nb::list& calls) {
+            return dense_evaluate(program, columns, extra, calls, exceptions);
         },
-        nb::arg("program"), nb::arg("columns"), nb::arg("extra") = 0,
+        nb::arg("program"), nb::arg("columns"), nb::arg("extra") = 0, nb::arg("calls") = nb::list(),
         "Run a program over whole signals, times and values of each, up to their last time and "
         "extra ticks more; return the events of each output.");
     m.def("dense_scan", &dense_scan, nb::arg("kind"), nb::arg("a"), nb::arg("b") = nb::none(),

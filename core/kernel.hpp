@@ -59,6 +59,9 @@ class Kernel {
     // Takes back everything since the checkpoint.
     virtual void rollback() noexcept {}
 
+    // What went wrong where run() answers a place and no value is NaN: null but for calls.
+    [[nodiscard]] virtual const char* fault() const noexcept { return nullptr; }
+
     // Where the registers are; again whenever they have moved.
     void connect(const double* a, const double* b, double* out) noexcept {
         a_ = a;

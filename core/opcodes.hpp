@@ -1,6 +1,7 @@
 // Every instruction of a program: code (its place in the list), name, operands and what it needs.
 //
-// The order is part of the program format: new opcodes go to the end.
+// The order is part of the program format: new opcodes go to the end. A call runs a kernel that is
+// not of the core (rtamt/kernel.hpp); its operands are listed beside the program.
 #pragma once
 
 #include <array>
@@ -36,10 +37,11 @@ enum class Opcode : std::uint8_t {
     run_min,
     since,
     until,
+    call,
 };
 
 // What the number n of an instruction means.
-enum class Count : std::uint8_t { none, input, distance, width };
+enum class Count : std::uint8_t { none, input, distance, width, call };
 
 struct OpcodeInfo {
     std::string_view name;
@@ -49,7 +51,7 @@ struct OpcodeInfo {
     Count count;
 };
 
-inline constexpr std::array<OpcodeInfo, 25> opcodes{{
+inline constexpr std::array<OpcodeInfo, 26> opcodes{{
     {"input", 0, false, false, Count::input},     {"const", 0, false, false, Count::none},
     {"neg", 1, true, false, Count::none},         {"abs", 1, true, false, Count::none},
     {"sqrt", 1, true, true, Count::none},         {"exp", 1, true, false, Count::none},
@@ -62,10 +64,10 @@ inline constexpr std::array<OpcodeInfo, 25> opcodes{{
     {"shift", 1, false, false, Count::distance},  {"slide_max", 1, false, false, Count::width},
     {"slide_min", 1, false, false, Count::width}, {"run_max", 1, false, false, Count::none},
     {"run_min", 1, false, false, Count::none},    {"since", 2, false, false, Count::none},
-    {"until", 2, false, false, Count::width},
+    {"until", 2, false, false, Count::width},     {"call", 0, false, true, Count::call},
 }};
 
-static_assert(opcodes[static_cast<std::size_t>(Opcode::until)].name == "until");
+static_assert(opcodes[static_cast<std::size_t>(Opcode::call)].name == "call");
 
 [[nodiscard]] constexpr const OpcodeInfo& info(Opcode opcode) noexcept {
     return opcodes[static_cast<std::size_t>(opcode)];

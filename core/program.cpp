@@ -11,6 +11,7 @@
 #include <stdexcept>
 #include <string_view>
 #include <type_traits>
+#include <utility>
 
 namespace rtamt {
 
@@ -132,9 +133,34 @@ class Checker {
             const bool wanted = place++ < info_.operands;
             if (!wanted && operand != no_operand) fail("has an operand too many");
             if (wanted && operand == no_operand) fail("lacks an operand");
-            if (wanted && operand >= index_) {
-                fail("reads instruction " + std::to_string(operand) + ", which is not before it");
-            }
+            if (wanted) before(operand);
+        }
+    }
+
+    void before(std::uint32_t operand) const {
+        if (operand < index_) return;
+        fail("reads instruction " + std::to_string(operand) + ", which is not before it");
+    }
+
+    // A call's number is known to be that of one when its operands are looked at.
+    void call() const {
+        const std::int64_t n = instruction_.n;
+        if (program_.calls.empty()) fail("runs code of its own, which bytes cannot carry");
+        if (n < 0 || n >= static_cast<std::int64_t>(program_.calls.size())) {
+            fail("is call " + std::to_string(n) + " of " + std::to_string(program_.calls.size()));
+        }
+        const CallSite& site = program_.calls[static_cast<std::size_t>(n)];
+        if (site.operands.empty()) fail("lacks an operand");
+        for (const std::uint32_t operand : site.operands)
+            before(operand);
+        if (site.kernel->version != RTAMT_KERNEL_VERSION) {
+            fail("was built for version " + std::to_string(site.kernel->version) +
+                 " of rtamt/kernel.hpp, this core has version " +
+                 std::to_string(RTAMT_KERNEL_VERSION) + "; build it again");
+        }
+        if (dense_ ? site.kernel->advance == nullptr : site.kernel->run == nullptr) {
+            fail(dense_ ? "is for discrete time, and dense time is wanted here"
+                        : "is for dense time, and discrete time is wanted here");
         }
     }
 
@@ -155,23 +181,29 @@ class Checker {
         case Count::width:
             bounded("width", n, dense_ ? 0 : 1);
             break;
+        case Count::call:
+            call();
+            break;
         }
     }
 
     void lags() const {
         const std::int64_t lag = instruction_.lag;
         bounded("lag", lag, 0);
-        if (info_.operands == 0 && lag != 0) {
+        if (info_.operands == 0 && info_.count != Count::call && lag != 0) {
             fail("has the lag " + std::to_string(lag) + " where only 0 makes sense");
         }
         const std::int64_t expected = program_.operand_lag(instruction_);
-        for (const std::uint32_t operand : {instruction_.a, instruction_.b}) {
-            if (operand == no_operand) continue;
+        program_.each_operand(instruction_, [&](std::uint32_t operand) {
             const Instruction& source = program_.instructions[operand];
             if (source.opcode != Opcode::constant && source.lag != expected) {
                 fail("mixes operands of lag " + std::to_string(expected) + " and " +
                      std::to_string(source.lag));
             }
+        });
+        if (info_.count == Count::call && lag < expected) {
+            fail("has the lag " + std::to_string(lag) + " where its operands have " +
+                 std::to_string(expected));
         }
         if (info_.pointwise && lag != expected) {
             fail("has the lag " + std::to_string(lag) + " where its operands have " +
@@ -205,7 +237,8 @@ Instruction read_instruction(Reader& reader, std::size_t index) {
 
 } // namespace
 
-Program Program::parse(std::span<const std::uint8_t> bytes, Domain domain) {
+Program Program::parse(std::span<const std::uint8_t> bytes, Domain domain,
+                       std::vector<CallSite> calls) {
     Reader reader(bytes);
     const Header header = read_header(reader, bytes.size());
     const auto body = bytes.first(bytes.size() - checksum_size);
@@ -223,6 +256,7 @@ Program Program::parse(std::span<const std::uint8_t> bytes, Domain domain) {
 
     Program program;
     program.domain = domain;
+    program.calls = std::move(calls);
     program.inputs = header.inputs;
     program.instructions.reserve(header.instructions);
     for (std::size_t index = 0; index < header.instructions; ++index) {
@@ -243,12 +277,12 @@ Program Program::parse(std::span<const std::uint8_t> bytes, Domain domain) {
 }
 
 std::int64_t Program::operand_lag(const Instruction& instruction) const noexcept {
-    for (const std::uint32_t operand : {instruction.a, instruction.b}) {
-        if (operand != no_operand && instructions[operand].opcode != Opcode::constant) {
-            return instructions[operand].lag;
-        }
-    }
-    return 0;
+    std::int64_t lag = -1;
+    each_operand(instruction, [&](std::uint32_t operand) {
+        const Instruction& source = instructions[operand];
+        if (lag < 0 && source.opcode != Opcode::constant) lag = source.lag;
+    });
+    return std::max<std::int64_t>(lag, 0);
 }
 
 std::int64_t Program::latest() const noexcept {

@@ -24,6 +24,8 @@
 
 #include "opcodes.hpp"
 
+#include <rtamt/kernel.hpp>
+
 #include <cstdint>
 #include <span>
 #include <string>
@@ -44,22 +46,45 @@ struct Instruction {
     Opcode opcode{};
     std::uint32_t a = no_operand;
     std::uint32_t b = no_operand;
-    std::int64_t n = 0; // input index, distance of a shift, or width of a window
+    std::int64_t n = 0; // index of an input or a call, distance of a shift, or width of a window
     double x = 0.0;     // value of a constant, or what a shift yields where there is no sample
     std::int64_t lag = 0;
+};
+
+// A kernel that is not of the core, and the instructions that it reads. Whoever runs the program
+// keeps the table; bytes alone hold none.
+struct CallSite {
+    const rtamt_kernel* kernel = nullptr;
+    rtamt_setup setup{};
+    std::vector<std::uint32_t> operands;
 };
 
 struct Program {
     std::vector<Instruction> instructions;
     std::vector<std::uint32_t> outputs;
+    std::vector<CallSite> calls;
     std::uint32_t inputs = 0;
     std::string note;
     Domain domain = Domain::discrete;
 
-    // Reads and checks a serialised program for this time domain; throws std::invalid_argument with
-    // one sentence.
+    // Reads and checks a serialised program for this time domain, and the calls that come with it;
+    // throws std::invalid_argument with one sentence.
     [[nodiscard]] static Program parse(std::span<const std::uint8_t> bytes,
-                                       Domain domain = Domain::discrete);
+                                       Domain domain = Domain::discrete,
+                                       std::vector<CallSite> calls = {});
+
+    // Calls `visit` with the index of each operand of an instruction, in order.
+    template <class Visit>
+    void each_operand(const Instruction& instruction, Visit&& visit) const {
+        if (instruction.opcode == Opcode::call) {
+            for (const std::uint32_t operand :
+                 calls[static_cast<std::size_t>(instruction.n)].operands)
+                visit(operand);
+            return;
+        }
+        if (instruction.a != no_operand) visit(instruction.a);
+        if (instruction.b != no_operand) visit(instruction.b);
+    }
 
     // The lag shared by the operands of an instruction; constants have no time and do not count.
     [[nodiscard]] std::int64_t operand_lag(const Instruction& instruction) const noexcept;

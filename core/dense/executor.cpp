@@ -1,5 +1,6 @@
 #include "executor.hpp"
 
+#include "call.hpp"
 #include "constant.hpp"
 #include "kernels.hpp"
 
@@ -24,14 +25,26 @@ Executor::Executor(Program program) : program_(std::move(program)), feeds_(progr
     add_constants(guards);
     for (std::uint32_t i = 0; i < kernels_.size(); ++i) {
         const Instruction& instruction = program_.instructions[i];
-        kernels_[i] = make_kernel(instruction);
-        if (!kernels_[i]) continue;
         const std::int64_t lag = program_.operand_lag(instruction);
+        kernels_[i] = instruction.opcode == Opcode::call ? make_call(instruction, lag)
+                                                         : make_kernel(instruction);
+        if (!kernels_[i]) continue;
         kernels_[i]->connect(operand(instruction.a, lag), operand(instruction.b, lag));
         (guards[i] ? guarded_ : free_).push_back({kernels_[i].get(), i, reach[i]});
     }
     for (const std::uint32_t output : program_.outputs)
         outputs_.push_back({operand(output, 0), program_.instructions[output].lag, false, 0.0});
+}
+
+std::unique_ptr<Kernel> Executor::make_call(const Instruction& instruction,
+                                            std::int64_t lag) const {
+    const CallSite& site = program_.calls[static_cast<std::size_t>(instruction.n)];
+    auto kernel = std::make_unique<Call>(*site.kernel, site.setup, lag, instruction.lag);
+    std::vector<const Events*> operands;
+    program_.each_operand(instruction,
+                          [&](std::uint32_t index) { operands.push_back(operand(index, lag)); });
+    kernel->connect_operands(std::move(operands));
+    return kernel;
 }
 
 // Which instructions can make NaN, or lead to one that can.
@@ -41,8 +54,7 @@ std::vector<bool> Executor::guarded() const {
         const Instruction& instruction = program_.instructions[i];
         if (info(instruction.opcode).partial) guarded[i] = true;
         if (!guarded[i]) continue;
-        if (instruction.a != no_operand) guarded[instruction.a] = true;
-        if (instruction.b != no_operand) guarded[instruction.b] = true;
+        program_.each_operand(instruction, [&](std::uint32_t operand) { guarded[operand] = true; });
     }
     return guarded;
 }
@@ -57,10 +69,9 @@ std::vector<std::int64_t> Executor::reaches() const {
     for (std::size_t i = reaches.size(); i-- > 0;) {
         const Instruction& instruction = program_.instructions[i];
         const std::int64_t past = instruction.opcode == Opcode::shift ? instruction.n : 0;
-        for (const std::uint32_t source : {instruction.a, instruction.b}) {
-            if (source == no_operand) continue;
+        program_.each_operand(instruction, [&](std::uint32_t source) {
             reaches[source] = std::max(reaches[source], reaches[i] - past);
-        }
+        });
     }
     return reaches;
 }
@@ -84,8 +95,8 @@ void Executor::add_constants(const std::vector<bool>& guarded) {
     for (std::size_t i = 0; i < program_.instructions.size(); ++i) {
         const Instruction& instruction = program_.instructions[i];
         const std::int64_t lag = program_.operand_lag(instruction);
-        if (instruction.a != no_operand) add(instruction.a, lag, guarded[i]);
-        if (instruction.b != no_operand) add(instruction.b, lag, guarded[i]);
+        program_.each_operand(instruction,
+                              [&](std::uint32_t source) { add(source, lag, guarded[i]); });
     }
     for (const std::uint32_t output : program_.outputs)
         add(output, 0, false);
@@ -167,18 +178,20 @@ std::int64_t Executor::step(std::int64_t target) noexcept {
 // else is NaN in this step can only follow from it.
 bool Executor::run_guarded(std::int64_t frontier) {
     std::int64_t first = never;
-    std::uint32_t culprit = 0;
+    const Unit* culprit = nullptr;
     for (const Unit& unit : guarded_) {
         const std::int64_t arrival = unit.kernel->run(frontier);
         if (arrival < first && arrival <= later(end_, unit.reach)) [[unlikely]] {
             first = arrival;
-            culprit = unit.instruction;
+            culprit = &unit;
         }
     }
     if (first == never) [[likely]] {
         return true;
     }
-    failure_ = {culprit, first - program_.instructions[culprit].lag};
+    const std::uint32_t instruction = culprit->instruction;
+    failure_ = {instruction, first - program_.instructions[instruction].lag,
+                Fault(culprit->kernel->fault())};
     return false;
 }
 

@@ -16,6 +16,7 @@
 // middle of an update (std::bad_alloc), only reset() helps.
 #pragma once
 
+#include "../fault.hpp"
 #include "../program.hpp"
 #include "events.hpp"
 #include "feed.hpp"
@@ -32,10 +33,12 @@
 
 namespace rtamt::dense {
 
-// An operation made NaN: which instruction, and the time of the value.
+// An operation made NaN: which instruction, and the time of the value. Or a call failed: what it
+// said.
 struct Failure {
     std::uint32_t instruction;
     std::int64_t time;
+    Fault fault{};
 };
 
 class Executor {
@@ -122,6 +125,8 @@ class Executor {
     [[nodiscard]] std::vector<bool> guarded() const;
     [[nodiscard]] std::vector<std::int64_t> reaches() const;
     [[nodiscard]] const Events* operand(std::uint32_t index, std::int64_t lag) const;
+    [[nodiscard]] std::unique_ptr<Kernel> make_call(const Instruction& instruction,
+                                                    std::int64_t lag) const;
     void add_constants(const std::vector<bool>& guarded);
 
     [[nodiscard]] bool open() noexcept;

@@ -33,6 +33,9 @@ class Kernel {
     // Moves the frontier; answers the first arrival of a value that is NaN, or never.
     virtual std::int64_t run(std::int64_t frontier) = 0;
 
+    // What went wrong where run() answers a time and no value is NaN: null but for calls.
+    [[nodiscard]] virtual const char* fault() const noexcept { return nullptr; }
+
     // Remembers the state; takes back everything since then.
     virtual void checkpoint() noexcept = 0;
     virtual void rollback() noexcept = 0;

@@ -41,8 +41,8 @@ Executor::Plan Executor::plan(const Program& program) {
         const Instruction& instruction = program.instructions[i];
         if (info(instruction.opcode).partial) plan.guarded[i] = true;
         if (!plan.guarded[i]) continue;
-        if (instruction.a != no_operand) plan.guarded[instruction.a] = true;
-        if (instruction.b != no_operand) plan.guarded[instruction.b] = true;
+        program.each_operand(instruction,
+                             [&](std::uint32_t operand) { plan.guarded[operand] = true; });
     }
     std::size_t total = size; // registers
     for (std::size_t i = 0; i < size; ++i) {
@@ -68,7 +68,10 @@ Executor::Executor(const Plan& plan, Program program)
         const std::size_t size = state_size(instruction);
         double* state = arena_.take(size);
         double* journal = plan.guarded[i] ? arena_.take(size) : nullptr;
-        auto kernel = make_kernel(instruction, program_.operand_lag(instruction), state, journal);
+        auto kernel =
+            instruction.opcode == Opcode::call
+                ? make_call(i)
+                : make_kernel(instruction, program_.operand_lag(instruction), state, journal);
         if (kernel) {
             (plan.guarded[i] ? guarded_ : free_).push_back({kernel.get(), i});
             if (plan.guarded[i]) {
@@ -83,6 +86,15 @@ Executor::Executor(const Plan& plan, Program program)
     }
     if (guarded_.empty()) fragile_.clear();
     connect();
+}
+
+std::unique_ptr<Kernel> Executor::make_call(std::uint32_t index) {
+    const Instruction& instruction = program_.instructions[index];
+    const CallSite& site = program_.calls[static_cast<std::size_t>(instruction.n)];
+    auto kernel = std::make_unique<Call>(*site.kernel, site.setup,
+                                         program_.operand_lag(instruction), instruction.lag);
+    calls_.emplace_back(kernel.get(), index);
+    return kernel;
 }
 
 std::size_t Executor::memory(const Program& program) {
@@ -102,7 +114,7 @@ const double* Executor::register_of(std::uint32_t instruction) const noexcept {
     return registers_.data() + instruction * stride_;
 }
 
-void Executor::connect() noexcept {
+void Executor::connect() {
     for (std::uint32_t i = 0; i < kernels_.size(); ++i) {
         const Instruction& instruction = program_.instructions[i];
         if (instruction.opcode == Opcode::constant) {
@@ -112,6 +124,13 @@ void Executor::connect() noexcept {
                                  instruction.b == no_operand ? nullptr : register_of(instruction.b),
                                  register_of(i));
         }
+    }
+    for (const auto& [call, index] : calls_) {
+        std::vector<const double*> registers;
+        program_.each_operand(program_.instructions[index], [&](std::uint32_t operand) {
+            registers.push_back(register_of(operand));
+        });
+        call->connect_operands(std::move(registers));
     }
     for (Input& input : inputs_)
         input.values = register_of(input.instruction);
@@ -170,19 +189,22 @@ void Executor::load(std::span<const double* const> columns, std::size_t offset,
 // else is NaN in this block can only follow from it.
 bool Executor::run_guarded(const Block& block) noexcept {
     std::size_t first = Kernel::defined;
-    std::uint32_t culprit = 0;
+    const Unit* culprit = nullptr;
     for (const Unit& unit : guarded_) {
         const std::size_t place = unit.kernel->run(block);
         if (place < first) [[unlikely]] {
             first = place;
-            culprit = unit.instruction;
+            culprit = &unit;
         }
     }
     if (first == Kernel::defined) [[likely]] {
         return true;
     }
-    failure_ = {culprit,
-                block.slot + static_cast<std::int64_t>(first) - program_.instructions[culprit].lag};
+    const std::uint32_t instruction = culprit->instruction;
+    failure_ = {instruction,
+                block.slot + static_cast<std::int64_t>(first) -
+                    program_.instructions[instruction].lag,
+                Fault(culprit->kernel->fault())};
     return false;
 }
 

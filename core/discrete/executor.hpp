@@ -12,22 +12,27 @@
 #pragma once
 
 #include "../arena.hpp"
+#include "../fault.hpp"
 #include "../kernel.hpp"
 #include "../program.hpp"
+#include "call.hpp"
 
 #include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace rtamt::discrete {
 
-// An operation made NaN: which instruction, and the index of the sample its value is for.
+// An operation made NaN: which instruction, and the index of the sample its value is for. Or a call
+// failed: what it said.
 struct Failure {
     std::uint32_t instruction;
     std::int64_t sample;
+    Fault fault{};
 };
 
 enum class Outcome : std::uint8_t { failed, silent, known };
@@ -104,7 +109,8 @@ class Executor {
     std::vector<std::unique_ptr<Kernel>> kernels_; // by instruction; none for inputs and constants
     std::vector<Unit> guarded_;
     std::vector<Unit> free_;
-    std::vector<Kernel*> reversible_; // the guarded kernels with state
+    std::vector<std::pair<Call*, std::uint32_t>> calls_; // and their instructions
+    std::vector<Kernel*> reversible_;                    // the guarded kernels with state
     std::vector<Input> inputs_;
     std::vector<Fragile> fragile_;
     std::vector<double> registers_;
@@ -119,9 +125,10 @@ class Executor {
     Executor(const Plan& plan, Program program);
 
     [[nodiscard]] static Plan plan(const Program& program);
+    [[nodiscard]] std::unique_ptr<Kernel> make_call(std::uint32_t index);
     [[nodiscard]] double* register_of(std::uint32_t instruction) noexcept;
     [[nodiscard]] const double* register_of(std::uint32_t instruction) const noexcept;
-    void connect() noexcept;
+    void connect();
 
     void checkpoint(std::size_t count) noexcept;
     void rollback() noexcept;

@@ -82,19 +82,14 @@ nb::list hand_over(std::vector<EventList>& lists) {
     return result;
 }
 
-void raise_undefined(const Exceptions& exceptions, const Failure& failure) {
-    const nb::object arguments = nb::make_tuple(failure.instruction, failure.time);
-    PyErr_SetObject(exceptions.undefined.ptr(), arguments.ptr());
-    throw nb::python_error();
-}
-
 DenseMonitor::DenseMonitor(Program program, const std::vector<nb::str>& names,
-                           const nb::object& ignored, Exceptions exceptions)
-    : executor_(std::move(program)), names_(names, executor_.program().inputs, ignored),
-      exceptions_(std::move(exceptions)), row_(names.size()), events_(names.size()),
-      results_(executor_.program().outputs.size()), spare_(results_.size()),
-      until_(results_.size()), counts_(names.size()), scale_name_("_scale"),
-      events_name_("_events") {}
+                           const nb::object& ignored, std::shared_ptr<Calls> calls,
+                           Exceptions exceptions)
+    : calls_(std::move(calls)), executor_(std::move(program)),
+      names_(names, executor_.program().inputs, ignored), exceptions_(std::move(exceptions)),
+      row_(names.size()), events_(names.size()), results_(executor_.program().outputs.size()),
+      spare_(results_.size()), until_(results_.size()), counts_(names.size()),
+      scale_name_("_scale"), events_name_("_events") {}
 
 void DenseMonitor::tell(const nb::type_object& signal, const nb::object& scale,
                         std::optional<double> rate) {
@@ -117,14 +112,17 @@ PyObject* DenseMonitor::update(PyObject* time, PyObject* values) noexcept {
     if (reason != nullptr) return refuse(reason);
     for (EventList& list : spare_)
         list.resize(0);
+    busy_ = true;
     try {
         const auto failure = executor_.push(events_, spare_);
+        busy_ = false;
         if (failure) return fail(*failure);
         std::swap(results_, spare_);
         for (std::size_t input = 0; input < events_.size(); ++input)
             counts_[input] += static_cast<std::int64_t>(events_[input].count);
         close();
     } catch (const std::bad_alloc&) {
+        busy_ = false;
         return PyErr_NoMemory();
     }
     return answer();
@@ -144,10 +142,7 @@ void DenseMonitor::close() {
 }
 
 PyObject* DenseMonitor::fail(const Failure& failure) const noexcept {
-    PyObject* arguments =
-        Py_BuildValue("(IL)", failure.instruction, static_cast<long long>(failure.time));
-    if (arguments != nullptr) PyErr_SetObject(exceptions_.undefined.ptr(), arguments);
-    Py_XDECREF(arguments);
+    set_undefined(exceptions_, *calls_, failure.instruction, failure.time, failure.fault);
     return nullptr;
 }
 
@@ -260,7 +255,9 @@ nb::tuple DenseMonitor::push(const std::vector<EventColumn>& columns) {
     std::vector<EventList> results(results_.size());
     std::optional<Failure> failure;
     exclusively(samples(inputs), [&] { failure = executor_.push(inputs, results); });
-    if (failure) raise_undefined(exceptions_, *failure);
+    if (failure) {
+        raise_undefined(exceptions_, *calls_, failure->instruction, failure->time, failure->fault);
+    }
     for (std::size_t i = 0; i < inputs.size(); ++i)
         counts_[i] += static_cast<std::int64_t>(inputs[i].count);
     return take(results);
@@ -271,7 +268,9 @@ nb::tuple DenseMonitor::finish() {
     std::vector<EventList> results(results_.size());
     std::optional<Failure> failure;
     exclusively(executor_.state_bytes(), [&] { failure = executor_.finish(results); });
-    if (failure) raise_undefined(exceptions_, *failure);
+    if (failure) {
+        raise_undefined(exceptions_, *calls_, failure->instruction, failure->time, failure->fault);
+    }
     return take(results);
 }
 

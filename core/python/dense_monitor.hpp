@@ -8,7 +8,8 @@
 
 #include "../dense/executor.hpp"
 #include "arrays.hpp"
-#include "monitor.hpp"
+#include "calls.hpp"
+#include "failures.hpp"
 #include "names.hpp"
 #include "numbers.hpp"
 
@@ -17,6 +18,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -36,12 +38,10 @@ using EventColumn = std::pair<Times, Column>;
 [[nodiscard]] nb::tuple hand_over(dense::EventList& list);
 [[nodiscard]] nb::list hand_over(std::vector<dense::EventList>& lists);
 
-[[noreturn]] void raise_undefined(const Exceptions& exceptions, const dense::Failure& failure);
-
 class DenseMonitor {
   public:
     DenseMonitor(Program program, const std::vector<nb::str>& names, const nb::object& ignored,
-                 Exceptions exceptions);
+                 std::shared_ptr<Calls> calls, Exceptions exceptions);
 
     // How update() tells time until the next reset(): in seconds of so many ticks, or by integers
     // of whatever kind that are ticks. It answers with objects of this class, whose `_scale` is the
@@ -62,6 +62,9 @@ class DenseMonitor {
 
     void reset();
 
+    // What the garbage collector looks at.
+    [[nodiscard]] Calls& calls() const noexcept { return *calls_; }
+
     [[nodiscard]] std::vector<std::int64_t> counts() const;
     [[nodiscard]] std::optional<std::int64_t> start() const;
     [[nodiscard]] std::optional<std::int64_t> known(std::size_t output) const;
@@ -70,6 +73,7 @@ class DenseMonitor {
     [[nodiscard]] std::size_t state_bytes() const;
 
   private:
+    std::shared_ptr<Calls> calls_; // what the executor's calls need
     dense::Executor executor_;
     Names names_;
     Numbers numbers_;
@@ -88,7 +92,7 @@ class DenseMonitor {
     nb::str events_name_;
     bool told_ = false; // whether update() knows how time is told
     double rate_ = 0.0; // ticks a second; 0: times are ticks
-    bool busy_ = false; // another thread is inside, or a number's own __float__ came back
+    bool busy_ = false; // another thread is inside, or a __float__ or an operator that came back
 
     void require_idle() const;
     void require_output(std::size_t output) const;

@@ -26,15 +26,10 @@ constexpr const char* in_use =
 
 } // namespace
 
-void raise_undefined(const Exceptions& exceptions, const Failure& failure) {
-    const nb::object arguments = nb::make_tuple(failure.instruction, failure.sample);
-    PyErr_SetObject(exceptions.undefined.ptr(), arguments.ptr());
-    throw nb::python_error();
-}
-
 Monitor::Monitor(Program program, const std::vector<nb::str>& names, double period,
-                 double tolerance, bool strict, const nb::object& ignored, Exceptions exceptions)
-    : executor_(std::move(program)),
+                 double tolerance, bool strict, const nb::object& ignored,
+                 std::shared_ptr<Calls> calls, Exceptions exceptions)
+    : calls_(std::move(calls)), executor_(std::move(program)),
       clock_(period, tolerance, strict, history_of(executor_.program())),
       exceptions_(std::move(exceptions)), row_(names.size()), previous_(names.size(), missing) {
     const std::size_t inputs = executor_.program().inputs;
@@ -124,7 +119,9 @@ PyObject* Monitor::step(std::span<PyObject* const> values) noexcept {
 template <class Accepted>
 PyObject* Monitor::take(Accepted&& accepted) noexcept {
     double value = 0.0;
+    busy_ = true;
     const Outcome outcome = executor_.step(row_.data(), value);
+    busy_ = false;
     if (outcome == Outcome::failed) [[unlikely]] {
         return fail();
     }
@@ -135,11 +132,8 @@ PyObject* Monitor::take(Accepted&& accepted) noexcept {
 }
 
 PyObject* Monitor::fail() const noexcept {
-    const Failure failure = executor_.failure();
-    PyObject* arguments =
-        Py_BuildValue("(IL)", failure.instruction, static_cast<long long>(failure.sample));
-    if (arguments != nullptr) PyErr_SetObject(exceptions_.undefined.ptr(), arguments);
-    Py_XDECREF(arguments);
+    const Failure& failure = executor_.failure();
+    set_undefined(exceptions_, *calls_, failure.instruction, failure.sample, failure.fault);
     return nullptr;
 }
 
@@ -189,7 +183,10 @@ std::vector<Result> Monitor::push(const std::optional<Column>& times,
     }
     const auto failure =
         exclusively(count, [&] { return executor_.push(pointers, count, results.pointers()); });
-    if (failure) raise_undefined(exceptions_, *failure);
+    if (failure) {
+        raise_undefined(exceptions_, *calls_, failure->instruction, failure->sample,
+                        failure->fault);
+    }
     if (times) {
         for (std::size_t i = 0; i < count; ++i)
             clock_.advance(times->data()[i]);
@@ -211,7 +208,10 @@ std::vector<Result> Monitor::finish() {
     }
     const auto failure = exclusively(history_of(executor_.program()),
                                      [&] { return executor_.finish(results.pointers()); });
-    if (failure) raise_undefined(exceptions_, *failure);
+    if (failure) {
+        raise_undefined(exceptions_, *calls_, failure->instruction, failure->sample,
+                        failure->fault);
+    }
     return results.hand_over();
 }
 

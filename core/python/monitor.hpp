@@ -7,12 +7,15 @@
 #include "../discrete/clock.hpp"
 #include "../discrete/executor.hpp"
 #include "arrays.hpp"
+#include "calls.hpp"
+#include "failures.hpp"
 #include "numbers.hpp"
 
 #include <nanobind/nanobind.h>
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <utility>
@@ -20,18 +23,11 @@
 
 namespace rtamt::python {
 
-// The exceptions of the module.
-struct Exceptions {
-    nb::object refused;   // an update was refused
-    nb::object undefined; // an operation made NaN: instruction, sample
-};
-
-[[noreturn]] void raise_undefined(const Exceptions& exceptions, const discrete::Failure& failure);
-
 class Monitor {
   public:
     Monitor(Program program, const std::vector<nb::str>& names, double period, double tolerance,
-            bool strict, const nb::object& ignored, Exceptions exceptions);
+            bool strict, const nb::object& ignored, std::shared_ptr<Calls> calls,
+            Exceptions exceptions);
 
     // One sample each. A float or None is what became known of the first output; null, with a
     // Python exception set, is a refusal.
@@ -43,6 +39,9 @@ class Monitor {
                                            const std::vector<Column>& columns);
     [[nodiscard]] std::vector<Result> finish();
     void reset();
+
+    // What the garbage collector looks at.
+    [[nodiscard]] Calls& calls() const noexcept { return *calls_; }
     [[nodiscard]] double last(std::uint32_t instruction) const;
     [[nodiscard]] Result recent(std::size_t count) const;
 
@@ -54,6 +53,7 @@ class Monitor {
     }
 
   private:
+    std::shared_ptr<Calls> calls_; // what the executor's calls need
     discrete::Executor executor_;
     discrete::Clock clock_;
     Numbers numbers_;
@@ -63,7 +63,7 @@ class Monitor {
     nb::object ignored_;           // names of variables that exist and are not read
     std::vector<double> row_;      // the sample that is being read
     std::vector<double> previous_; // the last sample that was taken; NaN where there is none
-    bool busy_ = false;            // another thread is inside, without the GIL
+    bool busy_ = false; // another thread is inside, without the GIL or in a Python operator
 
     void require_idle() const;
     PyObject* refuse(const char* reason) const noexcept;

@@ -7,6 +7,7 @@
 #include <bit>
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace programs {
@@ -36,6 +37,16 @@ class Builder {
     std::uint32_t binary(Opcode opcode, std::uint32_t a, std::uint32_t b, std::int64_t n,
                          std::int64_t lag) {
         return add({opcode, a, b, n, 0, lag});
+    }
+    std::uint32_t call(const rtamt_kernel& kernel, const rtamt_setup& setup,
+                       std::vector<std::uint32_t> operands, std::int64_t lag) {
+        program_.calls.push_back({&kernel, setup, std::move(operands)});
+        const auto number = static_cast<std::int64_t>(program_.calls.size() - 1);
+        return add({Opcode::call, rtamt::no_operand, rtamt::no_operand, number, 0, lag});
+    }
+    Builder& dense() {
+        program_.domain = rtamt::Domain::dense;
+        return *this;
     }
     // The same values, known `distance` slots later.
     std::uint32_t later(std::uint32_t a, std::int64_t distance) {

@@ -7,7 +7,7 @@
 using rtamt::Opcode;
 
 TEST(codes_are_the_ones_of_the_program_format) {
-    CHECK(rtamt::opcodes.size() == 25);
+    CHECK(rtamt::opcodes.size() == 26);
     CHECK(rtamt::info(Opcode::input).name == "input" && static_cast<int>(Opcode::input) == 0);
     CHECK(rtamt::info(Opcode::constant).name == "const" && static_cast<int>(Opcode::constant) == 1);
     CHECK(rtamt::info(Opcode::ln).name == "ln" && static_cast<int>(Opcode::ln) == 6);
@@ -18,6 +18,7 @@ TEST(codes_are_the_ones_of_the_program_format) {
     CHECK(rtamt::info(Opcode::run_min).name == "run_min" &&
           static_cast<int>(Opcode::run_min) == 22);
     CHECK(rtamt::info(Opcode::until).name == "until" && static_cast<int>(Opcode::until) == 24);
+    CHECK(rtamt::info(Opcode::call).name == "call" && static_cast<int>(Opcode::call) == 25);
 }
 
 TEST(names_are_unique) {
@@ -27,7 +28,7 @@ TEST(names_are_unique) {
     CHECK(names.size() == rtamt::opcodes.size());
 }
 
-TEST(only_pointwise_operations_are_partial) {
+TEST(only_pointwise_operations_and_calls_are_partial) {
     for (const auto& opcode : rtamt::opcodes)
-        CHECK(opcode.pointwise || !opcode.partial);
+        CHECK(opcode.pointwise || opcode.name == "call" || !opcode.partial);
 }

@@ -115,7 +115,7 @@ TEST(header_is_checked) {
     CHECK(with(15, 255).starts_with(refused("").substr(0, 39) + "it has "));
     CHECK(with(33, 1) == refused("a reserved byte of instruction 0 is not zero"));
     CHECK(with(32 + 12, 1) == refused("a reserved byte of instruction 0 is not zero"));
-    CHECK(with(32, 25) == refused("instruction 0 has the unknown opcode 25"));
+    CHECK(with(32, 26) == refused("instruction 0 has the unknown opcode 26"));
 }
 
 TEST(sizes_that_would_overflow_are_refused) {

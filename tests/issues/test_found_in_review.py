@@ -168,23 +168,6 @@ def test_what_has_no_rule_for_pastification_is_refused(reads: dict[str, Any]) ->
     )
 
 
-def test_an_operator_with_a_definition_alone_says_so_on_the_core() -> None:
-    always = STL["always"]
-    ahead = type(always)(
-        "ahead", ("ahead",), always.fixity, 75, always.operands, always.result, "doc", "ahead x", "{0}",
-        always.definition, always.tense, always.bounds,
-    )  # fmt: skip
-    for text in ("ahead x", "ahead[0:2] x"):
-        spec = rtamt.parse(text, language=STL.extend(ahead))
-        with pytest.raises(rtamt.UsageError) as info:
-            spec.evaluate({"x": [3.0, 1.0]})
-        assert str(info.value) == (
-            "the operator 'ahead' has a definition but no kernel; evaluate it with backend='python'"
-        )
-        python = rtamt.parse(text, language=STL.extend(ahead), backend="python")
-        assert python.evaluate({"x": [3.0, 1.0]}).robustness == 1
-
-
 @pytest.mark.parametrize("time", ["discrete", "dense"])
 def test_an_inner_name_in_a_message(time: str) -> None:
     data: Any = {"time": [0.0, 1.0], "x": [-1.0, -2.0]}

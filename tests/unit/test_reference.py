@@ -208,7 +208,12 @@ TWICE = Operator(
     r"2{0}", definition=lambda x: 2 * x,
 )  # fmt: skip
 WAS = replace(
-    TWICE, name="was", spellings=("was",), tense=Tense.PAST, definition=lambda x: np.append(0.0, x[:-1])
+    TWICE,
+    name="was",
+    spellings=("was",),
+    tense=Tense.PAST,
+    reach=1,
+    definition=lambda x: np.append(0.0, x[:-1]),
 )
 BROKEN = replace(TWICE, name="broken", spellings=("broken",), definition=lambda x: x[:1])
 

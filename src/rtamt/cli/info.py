@@ -11,6 +11,7 @@ from rtamt.cli.command import OK, Command, add_specification_options, read_speci
 from rtamt.cli.terminal import is_printable, printed
 from rtamt.engine.compile import compile_program
 from rtamt.engine.core import core
+from rtamt.engine.drivers import calls_of
 from rtamt.errors import BoundError
 from rtamt.language.units import format_duration
 from rtamt.rewrite.check import check_bounds, check_online
@@ -91,7 +92,7 @@ def gather(spec: Specification) -> Facts:
     except BoundError as error:
         return replace(facts, offline_only=error.message)
     program = compile_program((desugar(judged),), period, spec.input_names)
-    memory = None if spec.backend == "python" else int(core().memory(program.to_bytes()))
+    memory = None if spec.backend == "python" else int(core().memory(program.code(), calls_of(program)))
     return replace(facts, program=program, memory=memory)
 
 

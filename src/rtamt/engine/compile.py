@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-from rtamt.engine.lower import LOWERINGS, no_kernel
+from rtamt.engine.lower import LOWERINGS
 from rtamt.language.formula import Apply, Formula, Interval, Var, fold, variables
 from rtamt.language.operators import STL, Until, Window
 from rtamt.rewrite.check import reads_unbounded_future, unbounded_future
@@ -22,14 +22,18 @@ if TYPE_CHECKING:
     from rtamt.engine.program import Program
 
 
+#: A scan that the core does not know.
+DEFINED = "defined"
+
+
 @dataclass(frozen=True, slots=True)
 class Scan:
     """A backward pass over outputs of a stage: its result is the input called ``name`` later on."""
 
     name: str
-    kind: str  # run_max, run_min or until
+    kind: str  # run_max, run_min or until; DEFINED: the definition of what it stands for
     outputs: tuple[int, ...]
-    meaning: Formula  # what the result stands for
+    meaning: Apply  # what the result stands for
 
 
 @dataclass(frozen=True, slots=True)
@@ -134,7 +138,7 @@ def _cut(
 ) -> tuple[tuple[Formula, ...], Stage]:
     """Replace the innermost operators of unbounded future by inputs that a new stage computes."""
     operands: dict[Formula, int] = {}
-    scans: dict[tuple[str, tuple[int, ...]], Scan] = {}
+    scans: dict[tuple[Formula | None, str, tuple[int, ...]], Scan] = {}
     just_before = LOWERINGS[domain].until_just_before(period)
 
     def cut(node: Formula, below: tuple[tuple[Formula, bool], ...]) -> tuple[Formula, bool]:
@@ -145,17 +149,25 @@ def _cut(
         unbounded = reads_unbounded_future(node)
         if any(was_unbounded for _, was_unbounded in below) or not unbounded:
             return rebuilt, unbounded or any(was_unbounded for _, was_unbounded in below)
-        kernel = node.op.kernel
-        if not isinstance(kernel, Window | Until):
-            raise no_kernel(node)
-        kind = f"run_{kernel.reduce}" if isinstance(kernel, Window) else "until"
-        key = (kind, tuple(operands.setdefault(arg, len(operands)) for arg in node.args))
-        scan = scans.setdefault(key, Scan(f"#{number}.{len(scans)}", *key, replace(node, interval=None)))
-        return _after_scan(node, Var(scan.name, node.span), just_before), True
+        kind, outputs = _kind(node), tuple(operands.setdefault(arg, len(operands)) for arg in node.args)
+        defined = kind == DEFINED
+        meaning = node if defined else replace(node, interval=None)
+        key = (node if defined else None, kind, outputs)
+        scan = scans.setdefault(key, Scan(f"#{number}.{len(scans)}", kind, outputs, meaning))
+        result = Var(scan.name, node.span)
+        return result if defined else _after_scan(node, result, just_before), True
 
     rest = tuple(fold(formula, cut)[0] for formula in formulas)
     program = compile_program(tuple(operands), period, _read_by(tuple(operands), names), clip, domain)
     return rest, Stage(program, tuple(scans.values()))
+
+
+def _kind(node: Apply) -> str:
+    """Return which pass from the end computes an operator of unbounded future."""
+    kernel = node.op.kernel
+    if isinstance(kernel, Window):
+        return f"run_{kernel.reduce}"
+    return "until" if isinstance(kernel, Until) else DEFINED
 
 
 def _after_scan(node: Apply, scan: Var, just_before: Fraction) -> Formula:

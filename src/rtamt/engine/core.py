@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
-from rtamt.errors import UsageError
+from rtamt.engine.drivers import calls_of
+from rtamt.errors import EvaluationError, UsageError
+from rtamt.language.formula import Apply
 
 if TYPE_CHECKING:
-    from collections.abc import Collection
+    from collections.abc import Collection, Iterator
     from types import ModuleType
 
     from rtamt.engine.program import Program
+    from rtamt.language.formula import Formula
 
 
 def core() -> ModuleType:
@@ -34,11 +38,38 @@ def core_monitor(
     gaps that miss the period and takes the sample; samples of ``ignored`` variables are skipped.
     """
     _core = core()
-    code = program.to_bytes()
+    code, calls = program.code(), calls_of(program)
     try:
-        return _core.Monitor(code, list(program.inputs), period, tolerance, strict, frozenset(ignored))
+        with making(program):
+            return _core.Monitor(
+                code, list(program.inputs), period, tolerance, strict, frozenset(ignored), calls
+            )
     except MemoryError:
+        gibibytes = _core.memory(code, calls) / 2**30
         raise UsageError(
-            f"the monitor needs {_core.memory(code) / 2**30:.3g} GiB of memory, which this machine does not give; "
+            f"the monitor needs {gibibytes:.3g} GiB of memory, which this machine does not give; "
             f"shorten the longest bound or lengthen the period"
         ) from None
+
+
+@contextmanager
+def making(program: Program) -> Iterator[None]:
+    """Turn what a compiled kernel says when it cannot be made into a sentence."""
+    try:
+        yield
+    except RuntimeError as error:
+        names = dict.fromkeys(site.op.name for site in program.calls)
+        raise UsageError(f"the kernel of '{' or '.join(names)}' cannot be made: {error}") from None
+
+
+def check_call(error: Exception, formula: Formula | None) -> None:
+    """Raise what a user's own operator raised or said; do nothing where an operation only made NaN.
+
+    ``error``: the core's ``Undefined``. ``formula``: where.
+    """
+    if error.__cause__ is not None:
+        raise error.__cause__
+    if len(error.args) == 3 and isinstance(formula, Apply):
+        raise EvaluationError(
+            f"the kernel of '{formula.op.name}' failed in '{formula}': {error.args[2]}; mend the kernel"
+        )

@@ -8,9 +8,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rtamt.engine import dense_signals, signals
-from rtamt.engine.compile import compile_plan
-from rtamt.engine.core import core
+from rtamt.engine.compile import DEFINED, compile_plan
+from rtamt.engine.core import check_call, core, making
 from rtamt.engine.dense_signals import TimeScale
+from rtamt.engine.drivers import calls_of, defined_signal
+from rtamt.engine.evaluate import gave_nan, is_called
 from rtamt.engine.signals import Signal
 from rtamt.errors import EvaluationError, TraceError, UsageError
 from rtamt.language.formula import Apply, fold
@@ -19,7 +21,7 @@ if TYPE_CHECKING:
     from collections.abc import Collection, Mapping, Sequence
     from fractions import Fraction
 
-    from rtamt.engine.compile import Plan
+    from rtamt.engine.compile import Plan, Scan
     from rtamt.engine.dense_signals import Samples
     from rtamt.engine.program import Program
     from rtamt.language.formula import Formula
@@ -84,7 +86,11 @@ def evaluate(formula: Formula, recording: DenseRecording) -> Signal:
     for stage in plan.stages:
         values = run(stage.program, columns, recording.scale, plan, settled)
         for scan in stage.scans:
-            columns[scan.name] = core().dense_scan(scan.kind, *(values[i] for i in scan.outputs))
+            operands = [values[i] for i in scan.outputs]
+            if scan.kind == DEFINED:
+                columns[scan.name] = defined(scan, operands, recording, plan)
+            else:
+                columns[scan.name] = core().dense_scan(scan.kind, *operands)
     return recording.signal(*run(plan.program, columns, recording.scale, plan)[0])
 
 
@@ -106,19 +112,33 @@ def run(
     """Run one program of a plan over whole signals, and ``extra`` ticks on."""
     _core = core()
     try:
-        values: list[Samples] = _core.dense_evaluate(
-            program.to_bytes(), [columns[name] for name in program.inputs], extra
-        )
+        with making(program):
+            values: list[Samples] = _core.dense_evaluate(
+                program.code(), [columns[name] for name in program.inputs], extra, calls_of(program)
+            )
     except _core.Undefined as error:
-        instruction, tick = error.args
+        instruction, tick, *_ = error.args
         formula = program.origins[instruction]
         assert formula is not None
-        raise undefined(plan.original(formula), scale.show(tick)) from None
+        formula = plan.original(formula)
+        check_call(error, formula)
+        raise undefined(formula, scale.show(tick)) from None
     return values
+
+
+def defined(scan: Scan, operands: list[Samples], recording: DenseRecording, plan: Plan) -> Samples:
+    """Return the values of a user's operator of unbounded future, by its definition."""
+    ticks, values = defined_signal(scan.meaning, recording.scale.tick, operands)
+    wrong = np.flatnonzero(np.isnan(values) & (ticks <= recording.end))
+    if len(wrong):
+        raise undefined(plan.original(scan.meaning), recording.scale.show(int(ticks[wrong[0]])))
+    return ticks, values
 
 
 def undefined(formula: Formula | None, time: str) -> EvaluationError:
     """Return the error for a value that does not exist (0/0, inf - inf, …)."""
+    if is_called(formula):
+        return gave_nan(formula, f"time {time}")
     return EvaluationError(
         f"'{formula}' has no value at time {time}: it is 0/0, inf - inf, 0 * inf, or a root "
         f"or logarithm of a negative number; change the formula or the data so that this cannot happen"

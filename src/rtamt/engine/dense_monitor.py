@@ -8,10 +8,11 @@ import numpy as np
 
 from rtamt.engine import dense_signals
 from rtamt.engine.compile import compile_program
-from rtamt.engine.core import core
+from rtamt.engine.core import check_call, core, making
 from rtamt.engine.dense_evaluate import undefined
 from rtamt.engine.dense_python_backend import PythonDenseMonitor
 from rtamt.engine.dense_signals import TickSignal, TimeScale
+from rtamt.engine.drivers import calls_of
 from rtamt.engine.python_backend import Refused
 from rtamt.engine.signals import Signal
 from rtamt.errors import TraceError, UsageError
@@ -78,7 +79,10 @@ class DenseMonitor:
         else:
             program = compile_program((desugar(formula),), resolution, self.input_names, domain="dense")
             self._program = program
-            self._backend = core().DenseMonitor(program.to_bytes(), list(self.input_names))
+            with making(program):
+                self._backend = core().DenseMonitor(
+                    program.code(), list(self.input_names), calls=calls_of(program)
+                )
             self._refused, self._undefined = core().Refused, core().Undefined
         self._update = self._backend.update
 
@@ -178,8 +182,9 @@ class DenseMonitor:
             raise self._no_value(error, scale) from None
 
     def _no_value(self, error: Exception, scale: TimeScale | None) -> EvaluationError:
-        instruction, tick = error.args
+        instruction, tick, *_ = error.args
         assert self._program is not None
+        check_call(error, self._program.origins[instruction])
         assert scale is not None
         return undefined(self._program.origins[instruction], scale.show(tick))
 

@@ -16,13 +16,14 @@ from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
 import numpy as np
 
+from rtamt.engine.defined import check_dense_meaning, signal_of
 from rtamt.engine.reference import undefined
 from rtamt.errors import UsageError
-from rtamt.language.dense_definitions import QUARTERS, Steps, lifted, merged
+from rtamt.language.dense_definitions import QUARTERS, Steps, merged
 from rtamt.language.formula import Apply, Const, Formula, Var, children, fold, postorder
 from rtamt.language.operators import Bounds, Tense
 from rtamt.rewrite.check import check_dense
-from rtamt.rewrite.desugar import rebuilt
+from rtamt.rewrite.desugar import rebuilt, spelled_out
 from rtamt.rewrite.horizon import horizon
 
 if TYPE_CHECKING:
@@ -235,17 +236,7 @@ def _apply(node: Formula, below: tuple[Steps, ...], trace: _Trace) -> Steps:
         return trace.signals[node.name]
     if not isinstance(node, Apply):
         raise TypeError(f"not a formula: {node!r}")
-    if node.op.dense is not None:
-        return lifted(node.op.dense, below, *_window(node, trace.tick))
-    times = sorted({trace.start, *(t for x in below for t in x.times)})
-    columns = [np.array([x.at(t) for t in times]) for x in below]
-    values = np.asarray(node.op.definition(*(columns or (len(times),))), float)
-    if values.shape != (len(times),):
-        raise UsageError(
-            f"the definition of '{node.op.name}' returned an array of shape {values.shape} for "
-            f"{len(times)} instants; it must return one value an instant, shape ({len(times)},)"
-        )
-    return merged(times, values.tolist())
+    return signal_of(node, below or (Steps((trace.start,), (0.0,)),), *_window(node, trace.tick))
 
 
 def _window(node: Apply, tick: Fraction) -> tuple[int, int | None]:
@@ -259,6 +250,7 @@ def _window(node: Apply, tick: Fraction) -> tuple[int, int | None]:
 def _with_dense_meaning(formula: Formula) -> Formula:
     """Replace the operators in time that dense time knows only by their expansions (a user's own)."""
     check_dense(formula)
+    formula = spelled_out(formula)
 
     def step(node: Formula, args: tuple[Formula, ...]) -> Formula:
         if not isinstance(node, Apply):
@@ -267,10 +259,8 @@ def _with_dense_meaning(formula: Formula) -> Formula:
         if node.op.tense is Tense.NONE or node.op.dense is not None:
             return node
         if node.op.expansion is None:
-            raise UsageError(
-                f"'{node.op.name}' has no meaning in dense time; give its record a dense definition "
-                f"(dense=...) or an expansion, or use discrete time"
-            )
+            check_dense_meaning(node.op)
+            return node
         return _with_dense_meaning(node.op.expansion(*args, node.interval))
 
     return fold(formula, step)

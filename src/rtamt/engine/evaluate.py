@@ -4,15 +4,21 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rtamt.engine.compile import Plan, compile_plan
-from rtamt.engine.core import core
+import numpy as np
+
+from rtamt.engine.compile import DEFINED, Plan, compile_plan
+from rtamt.engine.core import check_call, core, making
+from rtamt.engine.drivers import calls_of, defined_column
 from rtamt.errors import EvaluationError
 from rtamt.language.formula import Apply, postorder
+from rtamt.language.operators import Blocks, Compiled
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
     from fractions import Fraction
+    from typing import TypeGuard
 
+    from rtamt.engine.compile import Scan
     from rtamt.engine.program import Program
     from rtamt.engine.signals import FloatArray, Recording
     from rtamt.language.formula import Formula
@@ -40,7 +46,11 @@ class Evaluator:
         for stage in plan.stages:
             values = run(stage.program, columns, trace, plan)
             for scan in stage.scans:
-                columns[scan.name] = core().scan(scan.kind, *(values[i] for i in scan.outputs))
+                operands = [values[i] for i in scan.outputs]
+                if scan.kind == DEFINED:
+                    columns[scan.name] = defined(scan, operands, trace, plan)
+                else:
+                    columns[scan.name] = core().scan(scan.kind, *operands)
         return run(plan.program, columns, trace, plan)
 
 
@@ -62,19 +72,47 @@ def run(
     _core = core()
     inputs = [columns[name] for name in program.inputs]
     try:
-        values: list[FloatArray] = _core.evaluate(program.to_bytes(), inputs, len(trace))
+        with making(program):
+            values: list[FloatArray] = _core.evaluate(program.code(), inputs, len(trace), calls_of(program))
     except _core.Undefined as error:
-        instruction, sample = error.args
+        instruction, sample, *_ = error.args
         formula = program.origins[instruction]
         assert formula is not None
-        raise undefined(plan.original(formula), sample, float(trace.times[sample])) from None
+        formula = plan.original(formula)
+        check_call(error, formula)
+        raise undefined(formula, sample, float(trace.times[sample])) from None
+    return values
+
+
+def defined(scan: Scan, operands: list[FloatArray], trace: Recording, plan: Plan) -> FloatArray:
+    """Return the values of a user's operator of unbounded future, by its definition."""
+    values = defined_column(scan.meaning, trace.period, operands)
+    wrong = np.flatnonzero(np.isnan(values))
+    if len(wrong):
+        sample = int(wrong[0])
+        raise undefined(plan.original(scan.meaning), sample, float(trace.times[sample]))
     return values
 
 
 def undefined(formula: Formula | None, sample: int, time: float) -> EvaluationError:
     """Return the error for a value that does not exist (0/0, inf - inf, …)."""
+    if is_called(formula):
+        return gave_nan(formula, f"sample {sample}, time {time:g} s")
     return EvaluationError(
         f"'{formula}' has no value at sample {sample}, time {time:g} s: it is 0/0, inf - inf, "
         f"0 * inf, or a root or logarithm of a negative number; "
         f"change the formula or the data so that this cannot happen"
+    )
+
+
+def is_called(formula: Formula | None) -> TypeGuard[Apply]:
+    """Tell whether a core formula is an operator that the core does not know."""
+    return isinstance(formula, Apply) and isinstance(formula.op.kernel, Blocks | Compiled | None)
+
+
+def gave_nan(formula: Apply, where: str) -> EvaluationError:
+    """Return the error for a user's operator that gave NaN."""
+    return EvaluationError(
+        f"the operator '{formula.op.name}' gave NaN: '{formula}' has no value at {where}; "
+        f"mend the operator, or change the formula or the data so that this cannot happen"
     )

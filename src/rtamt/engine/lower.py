@@ -1,8 +1,9 @@
 """Core formula to instructions: value numbering, lags, and the delays that align operands.
 
-One function for each shape of kernel in the operator table; no operator is named here. Time is
-counted in steps: samples in discrete time, ticks in dense time. The two differ only in how many
-steps a closed window has, and in how until over [a, b] is put together where a > 0.
+One function for each shape of kernel in the operator table, and a call for every operator that has
+none of them; no operator is named here. Time is counted in steps: samples in discrete time, ticks in
+dense time. The two differ only in how many steps a closed window has, and in how until over [a, b] is
+put together where a > 0.
 """
 
 from __future__ import annotations
@@ -12,10 +13,9 @@ from math import copysign, inf
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
-from rtamt.engine.program import Instruction, Program
-from rtamt.errors import UsageError
+from rtamt.engine.program import CallSite, Instruction, Program
 from rtamt.language.formula import Apply, Const, Formula, Var, postorder
-from rtamt.language.operators import Pointwise, Shift, Since, Tense, Until, Window
+from rtamt.language.operators import Bounds, Pointwise, Shift, Since, Tense, Until, Window
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -39,6 +39,7 @@ class Lowering(ABC):
         self.origins: list[Formula | None] = []
         self.index_of: dict[tuple[Instruction, float], int] = {}
         self.value_of: dict[Formula, int] = {}
+        self.calls: dict[CallSite, int] = {}
 
     def program(self, outputs: tuple[int, ...]) -> Program:
         """Return the program; what no output needs stays, since it may fail and may be asked for."""
@@ -50,6 +51,7 @@ class Lowering(ABC):
             self.value_of,
             tuple(self.origins),
             self.domain,
+            tuple(self.calls),
         )
 
     def lower(self, formula: Formula) -> int:
@@ -77,7 +79,7 @@ class Lowering(ABC):
             return self.since(node, *args)
         if isinstance(kernel, Until):
             return self.until(node, *args)
-        raise no_kernel(node)
+        return self.call(node, args)
 
     # ---- emitting --------------------------------------------------------------------------------
 
@@ -121,11 +123,16 @@ class Lowering(ABC):
         """Return the operand ``distance`` samples behind, ``fill`` where there is none."""
         return self.emit(Instruction("shift", index, n=distance, x=fill, lag=lag), origin)
 
-    def steps(self, bound: Fraction) -> int:
-        """Return a bound in steps, cut to the length of the trace."""
+    def whole(self, bound: Fraction) -> int:
+        """Return a bound in steps."""
         count = bound / self.period
         assert count.denominator == 1, "bounds are checked before compilation"
-        return count.numerator if self.clip is None else min(count.numerator, self.clip)
+        return count.numerator
+
+    def steps(self, bound: Fraction) -> int:
+        """Return a bound in steps, cut to the length of the trace."""
+        count = self.whole(bound)
+        return count if self.clip is None else min(count, self.clip)
 
     def bounds(self, node: Apply) -> tuple[int, int | None]:
         """Return the interval of an operator in steps; no interval is [0, inf)."""
@@ -200,6 +207,31 @@ class Lowering(ABC):
         known = lag + end if node.op.tense is Tense.FUTURE else lag
         return self.until_within(node, hold, goal, (begin, end), known)
 
+    def call(self, node: Apply, args: list[int]) -> int:
+        """Lower an operator that the core does not know: its kernel, or else its definition, is called."""
+        if not args:  # a constant says how many values are wanted, and when
+            args = [self.emit(Instruction("const"), node)]
+        begin = 0 if node.interval is None else self.whole(node.interval.begin)
+        end = self.end_of(node)
+        ahead = self.ahead(node, end)
+        site = CallSite(node, tuple(args), begin, end, ahead)
+        # Where the trace ends earlier than the operator reads, its value is known at the end.
+        lag = max(self.lag(i) for i in args) + (ahead if self.clip is None else min(ahead, self.clip))
+        number = self.calls.setdefault(site, len(self.calls))
+        return self.emit(Instruction("call", n=number, lag=lag), node)
+
+    def end_of(self, node: Apply) -> int | None:
+        """Return the upper bound of an operator's interval in steps, None where there is none."""
+        return None if node.interval is None or node.interval.end is None else self.whole(node.interval.end)
+
+    def ahead(self, node: Apply, end: int | None) -> int:
+        """Return how many steps ahead an operator reads, whose future is bounded."""
+        if node.op.tense is not Tense.FUTURE:
+            return 0
+        ahead = node.op.reach if node.op.bounds is Bounds.NONE else end
+        assert ahead is not None, "unbounded future is cut off before"
+        return ahead
+
     @abstractmethod
     def until_within(self, node: Apply, hold: int, goal: int, bounds: tuple[int, int], known: int) -> int:
         """Return until over [begin, end] = ``bounds``, known at lag ``known``."""
@@ -262,13 +294,6 @@ class DenseLowering(Lowering):
         else:
             first = self.moved(self.slid("min", hold, begin, lag, node), width, inf, lag, node)
         return self.emit(Instruction("min", after, first, lag=known), node)
-
-
-def no_kernel(node: Apply) -> UsageError:
-    """Return the error for an operator that has a definition only."""
-    return UsageError(
-        f"the operator '{node.op.name}' has a definition but no kernel; evaluate it with backend='python'"
-    )
 
 
 LOWERINGS: Mapping[str, type[DiscreteLowering] | type[DenseLowering]] = MappingProxyType(

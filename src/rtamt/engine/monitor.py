@@ -10,7 +10,7 @@ import numpy as np
 
 from rtamt.engine import python_backend, signals
 from rtamt.engine.compile import compile_program
-from rtamt.engine.core import core, core_monitor
+from rtamt.engine.core import check_call, core, core_monitor
 from rtamt.engine.evaluate import undefined
 from rtamt.engine.signals import Signal
 from rtamt.errors import TraceError, UsageError, shown
@@ -240,8 +240,9 @@ class Monitor:
 
     def _no_value(self, error: Exception, new: Sequence[float] | signals.FloatArray) -> Exception:
         """Name the sub-formula and the instant of a value that does not exist; ``new`` are the stamps taken."""
-        instruction, sample = error.args
+        instruction, sample, *_ = error.args
         assert self._program is not None
+        check_call(error, self._program.origins[instruction])
         stamps = np.concatenate((self._backend.recent(min(self._lag, self.samples)), new))
         first = self.samples + len(new) - len(stamps)
         return undefined(self._program.origins[instruction], sample, float(stamps[sample - first]))

@@ -17,18 +17,21 @@ import zlib
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from rtamt.errors import UsageError
+
 if TYPE_CHECKING:
     from collections.abc import Mapping
     from fractions import Fraction
 
-    from rtamt.language.formula import Formula
+    from rtamt.language.formula import Apply, Formula
+    from rtamt.language.operators import Operator
 
 #: In the order of the core's enumeration; a test compares the two.
 OPCODES = (
     "input", "const",
     "neg", "abs", "sqrt", "exp", "ln",
     "add", "sub", "mul", "div", "pow", "log", "min", "max", "holds_gt", "holds_ge", "holds_eq",
-    "shift", "slide_max", "slide_min", "run_max", "run_min", "since", "until",
+    "shift", "slide_max", "slide_min", "run_max", "run_min", "since", "until", "call",
 )  # fmt: skip
 
 #: Time domains, in the order of their codes.
@@ -43,7 +46,8 @@ _RECORD = struct.Struct("<B3xIIIqdq")
 class Instruction:
     """One instruction: ``a`` and ``b`` are operands (indices of earlier instructions, or None).
 
-    ``n`` is a width or distance in samples (of ``input``: which input), ``x`` a constant or fill.
+    ``n`` is a width or distance in samples (of ``input``: which input; of ``call``: which call), ``x`` a
+    constant or fill.
     """
 
     opcode: str
@@ -53,9 +57,11 @@ class Instruction:
     x: float = 0.0
     lag: int = 0
 
-    def describe(self, inputs: tuple[str, ...]) -> str:
+    def describe(self, inputs: tuple[str, ...], calls: tuple[CallSite, ...] = ()) -> str:
         """Return the instruction as one line of a listing."""
         parts = [self.opcode]
+        if self.opcode == "call":
+            return calls[self.n].describe()
         if self.opcode == "input":
             parts.append(inputs[self.n])
         elif self.opcode == "const":
@@ -66,6 +72,34 @@ class Instruction:
         if self.opcode == "shift":
             parts.append(f"fill={self.x!r}")
         return " ".join(parts)
+
+
+@dataclass(frozen=True, slots=True)
+class CallSite:
+    """An operator that the core does not know, and the instructions that it reads.
+
+    It runs a kernel of the user's, or the definition where there is none. ``begin`` and ``end`` are its
+    interval in steps (samples or ticks), ``end=None`` where there is no upper bound; ``ahead`` is how
+    many steps ahead of the present one it reads.
+    """
+
+    node: Apply
+    operands: tuple[int, ...]
+    begin: int
+    end: int | None
+    ahead: int
+
+    @property
+    def op(self) -> Operator:
+        """The operator."""
+        return self.node.op
+
+    def describe(self) -> str:
+        """Return the call as one line of a listing."""
+        interval = ""
+        if self.node.interval is not None:
+            interval = f"[{self.begin}:{'inf' if self.end is None else self.end}]"
+        return " ".join([f"call {self.op.name}{interval}", *(f"%{i}" for i in self.operands)])
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,6 +118,7 @@ class Program:
     value_of: Mapping[Formula, int]
     origins: tuple[Formula | None, ...]
     domain: str = "discrete"
+    calls: tuple[CallSite, ...] = ()
 
     @property
     def lags(self) -> tuple[int, ...]:
@@ -91,7 +126,19 @@ class Program:
         return tuple(self.instructions[i].lag for i in self.outputs)
 
     def to_bytes(self) -> bytes:
-        """Serialise: what the core, and every carrier of it, runs."""
+        """Serialise: what every carrier of the core runs.
+
+        Raises :class:`UsageError` where the program calls an operator that the core does not know.
+        """
+        if self.calls:
+            raise UsageError(
+                f"the program calls '{self.calls[0].op.name}', which the core does not know: bytes cannot carry "
+                f"an operator's own code; expand it into the operators of STL, or run the program in Python"
+            )
+        return self.code()
+
+    def code(self) -> bytes:
+        """Return what the core runs in this process, together with the calls."""
         meta = json.dumps({"inputs": self.inputs, "period": str(self.period)}, separators=(",", ":")).encode()
         parts = [
             _HEADER.pack(
@@ -130,5 +177,5 @@ class Program:
         lines = []
         for i, ins in enumerate(self.instructions):
             mark = "  -> output" if i in self.outputs else ""
-            lines.append(f"%{i:<3} lag {ins.lag:<4} {ins.describe(self.inputs)}{mark}")
+            lines.append(f"%{i:<3} lag {ins.lag:<4} {ins.describe(self.inputs, self.calls)}{mark}")
         return "\n".join(lines)

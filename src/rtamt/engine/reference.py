@@ -14,9 +14,11 @@ from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
+from rtamt.engine.defined import values_of
 from rtamt.errors import EvaluationError, UsageError
 from rtamt.language.formula import Apply, Const, Formula, Var, fold
 from rtamt.language.operators import Bounds, Tense
+from rtamt.rewrite.desugar import spelled_out
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -48,7 +50,7 @@ def evaluate(
     >>> evaluate(lately, {"x": np.array([1.0, 2.0, 3.0, 4.0])}, 4, Fraction(1))
     array([-inf, -inf,   1.,   2.])
     """
-    return _evaluate(formula, _Stretch(columns, n, period, start))
+    return _evaluate(spelled_out(formula), _Stretch(columns, n, period, start))
 
 
 def evaluate_all(
@@ -59,7 +61,7 @@ def evaluate_all(
     Arguments and errors are those of :func:`evaluate`; each array has shape (n,).
     """
     every: dict[Formula, Array] = {}
-    _evaluate(formula, _Stretch(columns, n, period, start), every=every)
+    _evaluate(spelled_out(formula), _Stretch(columns, n, period, start), every=every)
     return every
 
 
@@ -76,6 +78,7 @@ def history(formula: Formula, period: Fraction) -> int | None:
     >>> history(STL["prev"](lately), Fraction(1, 10))
     6
     """
+    formula = spelled_out(formula)
     return _reaches(formula, period, Tense.PAST)[id(formula)]
 
 
@@ -121,7 +124,7 @@ class ReferenceMonitor:
         history: int | None,
         start: float = 0.0,
     ) -> None:
-        self._formulas = tuple(formulas)
+        self._formulas = tuple(map(spelled_out, formulas))
         self._inputs = inputs
         self._period = period
         self._horizons = tuple(horizons)
@@ -268,13 +271,7 @@ def _apply(node: Formula, below: tuple[Array, ...], stretch: _Stretch) -> Array:
     if not isinstance(node, Apply):
         raise TypeError(f"not a formula: {node!r}")
     window = () if node.op.bounds is Bounds.NONE else _window(node, stretch.period)
-    value: Array = np.asarray(node.op.definition(*(below or (n,)), *window), float)
-    if value.shape != (n,):
-        raise UsageError(
-            f"the definition of '{node.op.name}' returned an array of shape {value.shape} for {n} samples; "
-            f"it must return one value a sample, shape ({n},)"
-        )
-    return value
+    return values_of(node, below, n, window, "sample")
 
 
 def _window(node: Apply, period: Fraction) -> tuple[int, int | None]:

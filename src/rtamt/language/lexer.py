@@ -25,7 +25,7 @@ from rtamt.language.formula import Span
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from rtamt.language.operators import Language, Operator
+    from rtamt.language.operators import Language
 
 PUNCTUATION = "( ) [ ] , : ; = @".split()
 
@@ -67,9 +67,9 @@ def is_word(spelling: str) -> bool:
     return NAME.fullmatch(spelling) is not None
 
 
-@lru_cache(maxsize=32)
-def _pattern(operators: tuple[Operator, ...]) -> re.Pattern[str]:
-    symbols = {s for op in operators for s in op.spellings if not is_word(s)}.union(PUNCTUATION)
+@lru_cache(maxsize=32)  # by text, so that no operator of a user's is kept here
+def _pattern(spellings: tuple[str, ...]) -> re.Pattern[str]:
+    symbols = {s for s in spellings if not is_word(s)}.union(PUNCTUATION)
     symbol = "|".join(re.escape(s) for s in sorted(symbols, key=lambda s: (-len(s), s)))
     # Something always matches after the skipped part: the expression never backtracks into a comment.
     return re.compile(
@@ -93,7 +93,7 @@ def tokenize(text: str, language: Language) -> Sequence[Token]:
         raise UsageError(f"a formula is text, got {type(text).__name__}")
     tokens: list[Token] = []
     new, add = tuple.__new__, tokens.append  # a token costs half of what calling Token does
-    for match in _pattern(language.operators).finditer(text):
+    for match in _pattern(language.spellings).finditer(text):
         kind, group = match.lastgroup, match.lastindex
         if kind is None or group is None or kind == "end":
             break

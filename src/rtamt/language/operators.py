@@ -8,7 +8,8 @@ The meaning of an operator is its ``definition``, a pure function on arrays (``d
 dense time an operator of one instant means the same, value by value; one that reads others has its
 value at an instant as ``dense`` (``dense_definitions.py``), or means what its ``expansion`` means.
 How it is made fast is either an ``expansion`` into simpler operators or a ``kernel``: one of five
-shapes that the compiler knows. Names of opcodes are those of the core.
+shapes that the compiler knows, or a class of the user's (``Blocks``, ``Compiled``). Names of opcodes are
+those of the core.
 """
 
 from __future__ import annotations
@@ -21,7 +22,9 @@ from rtamt.language import definitions as d
 from rtamt.language import dense_definitions as dense
 from rtamt.language.formula import Const, Formula, Interval
 from rtamt.language.records import (
+    Blocks,
     Bounds,
+    Compiled,
     Fixity,
     Kernel,
     Language,
@@ -37,7 +40,9 @@ from rtamt.language.records import (
 
 __all__ = [
     "STL",
+    "Blocks",
     "Bounds",
+    "Compiled",
     "Fixity",
     "Kernel",
     "Language",
@@ -212,16 +217,16 @@ STL: Language = Language.of((
             definition=d.once, dense=dense.once, kernel=Window("max"), dual="historically", guards=("and",)),
     # ---- one sample away ---------------------------------------------------------------------
     _prefix("prev", "prev Y previous", 70, "One sample ago; holds where there is none.", "prev(x >= 3)",
-            latex=r"\mathbf{{Y}} {0}", tense=Tense.PAST, discrete_only=True,
+            latex=r"\mathbf{{Y}} {0}", tense=Tense.PAST, reach=1, discrete_only=True,
             definition=d.prev, kernel=Shift(inf), dual="s_prev", guards=("implies",)),
     _prefix("next", "next X", 70, "One sample ahead; holds where there is none.", "next(x >= 3)",
-            latex=r"\mathbf{{X}} {0}", tense=Tense.FUTURE, discrete_only=True,
+            latex=r"\mathbf{{X}} {0}", tense=Tense.FUTURE, reach=1, discrete_only=True,
             definition=d.next_, kernel=Shift(inf), dual="s_next", twin=""),
     _prefix("s_prev", "s_prev sY s_previous", 70, "One sample ago; fails where there is none.", "s_prev(x >= 3)",
-            latex=r"\mathbf{{Y}}_s {0}", tense=Tense.PAST, discrete_only=True,
+            latex=r"\mathbf{{Y}}_s {0}", tense=Tense.PAST, reach=1, discrete_only=True,
             definition=d.s_prev, kernel=Shift(-inf), dual="prev", guards=("and",)),
     _prefix("s_next", "s_next sX", 70, "One sample ahead; fails where there is none.", "s_next(x >= 3)",
-            latex=r"\mathbf{{X}}_s {0}", tense=Tense.FUTURE, discrete_only=True,
+            latex=r"\mathbf{{X}}_s {0}", tense=Tense.FUTURE, reach=1, discrete_only=True,
             definition=d.s_next, kernel=Shift(-inf), dual="next", twin=""),
     # ---- two operands in time ----------------------------------------------------------------
     _infix("until", "until U", 60, "The second within the window ahead, the first at every instant before it.",
@@ -241,7 +246,7 @@ STL: Language = Language.of((
            guards=(None, "and")),
     # ---- edges -------------------------------------------------------------------------------
     _function("rise", 1, "Holds now and not one sample ago.", "rise(x >= 3)", operands=(F,), result=F,
-              latex=r"\uparrow {0}", tense=Tense.PAST, discrete_only=True, definition=d.rise, expansion=_rise),
+              latex=r"\uparrow {0}", tense=Tense.PAST, reach=1, discrete_only=True, definition=d.rise, expansion=_rise),
     _function("fall", 1, "Held one sample ago and does not now.", "fall(x >= 3)", operands=(F,), result=F,
-              latex=r"\downarrow {0}", tense=Tense.PAST, discrete_only=True, definition=d.fall, expansion=_fall),
+              latex=r"\downarrow {0}", tense=Tense.PAST, reach=1, discrete_only=True, definition=d.fall, expansion=_fall),
 ))  # fmt: skip

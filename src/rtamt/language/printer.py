@@ -94,7 +94,7 @@ def canonical(formula: Formula, language: Language = STL) -> str:
         if not isinstance(node, Apply):
             raise TypeError(f"{type(node).__name__} is not a formula")
         op = node.op
-        word = _longest(op) + _interval(node.interval, ",", str)
+        word = _longest(op.spellings) + _interval(node.interval, ",", str)
         if op.fixity is Fixity.ATOM:
             return (word,)
         if is_infix(op):
@@ -127,7 +127,7 @@ def to_latex(formula: Formula) -> str:
         elif isinstance(node, Var):
             yield _latex_name(node.name)
         elif isinstance(node, Apply):
-            for literal, operand, exposed in _template(node.op.latex, node.interval is not None):
+            for literal, operand, exposed in _template(_latex_of(node.op), node.interval is not None):
                 yield literal
                 if operand == "I":
                     yield _latex_interval(node.interval)
@@ -252,11 +252,11 @@ def _name(name: str, language: Language) -> str:
 
 
 @lru_cache(maxsize=256)
-def _longest(op: Operator) -> str:
+def _longest(spellings: tuple[str, ...]) -> str:
     """Return RTAMT's spelling: the first one if it is a symbol, else the longest word."""
-    if not is_word(op.spellings[0]):
-        return op.spellings[0]
-    return max((s for s in op.spellings if is_word(s)), key=len)
+    if not is_word(spellings[0]):
+        return spellings[0]
+    return max((s for s in spellings if is_word(s)), key=len)
 
 
 def _rational(value: Fraction) -> str:
@@ -279,6 +279,18 @@ def _interval(
 
 
 # ---- LaTeX ---------------------------------------------------------------------------------------
+
+
+def _latex_of(op: Operator) -> str:
+    """Return an operator's template, or one made of its first spelling."""
+    if op.latex:
+        return op.latex
+    word = op.spellings[0].replace("{", "{{").replace("}", "}}")
+    name = rf"\mathrm{{{{{_escaped(word)}}}}}_{{I}}"
+    fields = [f"{{{k}}}" for k in range(len(op.operands))]
+    if is_infix(op):
+        return rf"{fields[0]} \mathbin{{{{{name}}}}} {fields[1]}"
+    return f"{name}({', '.join(fields)})" if op.fixity is Fixity.FUNCTION else " ".join([name, *fields])
 
 
 @lru_cache(maxsize=256)
@@ -317,6 +329,10 @@ def _latex_number(value: float) -> str:
 
 
 def _latex_name(name: str) -> str:
-    special = {"\\": r"\backslash ", "^": r"\hat{\ }", "~": r"\sim ", " ": r"\ "}
-    escaped = "".join(special.get(c, f"\\{c}" if c in "{}$&#_%" else c) for c in name)
+    escaped = _escaped(name)
     return escaped if len(name) == 1 else rf"\mathrm{{{escaped}}}"
+
+
+def _escaped(name: str) -> str:
+    special = {"\\": r"\backslash ", "^": r"\hat{\ }", "~": r"\sim ", " ": r"\ "}
+    return "".join(special.get(c, f"\\{c}" if c in "{}$&#_%" else c) for c in name)

@@ -84,13 +84,45 @@ class Until:
     """The window of until; in the past tense the window of precedes."""
 
 
-Kernel = Pointwise | Window | Shift | Since | Until
+@dataclass(frozen=True, slots=True)
+class Blocks:
+    """A Python class over blocks of numpy arrays, for each time domain that it makes fast.
+
+    ``discrete`` and ``dense`` are called with the bounds of the interval, in samples and in ticks (with
+    nothing where the operator takes no interval), and return an object of one trace: see
+    docs/how-to/extend.md for its methods.
+    """
+
+    discrete: Callable[..., Any] | None = None
+    dense: Callable[..., Any] | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Compiled:
+    """Kernels in a shared library that was built with ``rtamt/kernel.hpp``.
+
+    ``library`` is its path; ``discrete`` and ``dense`` are the names of the kernels in it, for each time
+    domain that they make fast.
+    """
+
+    library: str
+    discrete: str | None = None
+    dense: str | None = None
+
+
+Kernel = Pointwise | Window | Shift | Since | Until | Blocks | Compiled
+
+#: What is said of the samples that an operator reads, where nothing is.
+_UNSAID = -1
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Operator:
     """One operator. Two operators are equal only if they are the same record.
 
+    Its meaning is its ``definition``; or its ``expansion``, where it has no definition: then it is
+    expanded before anything else is asked of it. What it reads is said by ``tense`` and the interval;
+    where it takes no interval by ``reach``, the number of samples away, None for all of them.
     ``power`` is the binding power (higher binds tighter). ``guards`` tells pastification how an
     operand that was delayed by d is kept from being read before the operand meant anything:
     ``"and"`` (the operand counts as false there), ``"implies"`` (as true), None (no need).
@@ -106,15 +138,15 @@ class Operator:
     result: Sort
     doc: str
     example: str
-    latex: str  # {0}, {1} operands, {I} the interval as a subscript
-    definition: Callable[..., Any]
+    latex: str = ""  # {0}, {1} operands, {I} the interval as a subscript; by default the first spelling
+    definition: Callable[..., Any] | None = None
     tense: Tense = Tense.NONE
     bounds: Bounds = Bounds.NONE
     kernel: Kernel | None = None
     expansion: Expansion | None = None
     dense: Callable[..., float] | None = None
     discrete_only: bool = False
-    reach: int | None = 1  # of a past or future operator without bounds: samples away it reads, None for all
+    reach: int | None = _UNSAID
     dual: str | None = None
     twin: str | None = None
     guards: tuple[str | None, ...] = ()
@@ -129,8 +161,13 @@ class Operator:
                 f"the operator '{self.name}' is written as {self.fixity.value} and needs {arity} operands, "
                 f"not {len(self.operands)}"
             )
-        if not callable(self.definition):
-            raise UsageError(f"the operator '{self.name}' has no definition: give a function on arrays")
+        if self.definition is None and self.expansion is None:
+            raise UsageError(
+                f"the operator '{self.name}' has no definition: give a function on arrays, or an expansion"
+            )
+        if self.definition is not None and not callable(self.definition):
+            raise UsageError(f"the definition of '{self.name}' is no function: give one on arrays")
+        self._check_kernel()
         if not self.spellings:
             raise UsageError(f"the operator '{self.name}' has no spelling: give at least one")
         for spelling in self.spellings:
@@ -140,6 +177,34 @@ class Operator:
                     f"the operator '{self.name}' cannot be spelled '{spelling}': use a word, or symbols "
                     f"other than brackets and punctuation"
                 )
+
+    def _check_kernel(self) -> None:
+        if self.definition is None:
+            if self.kernel is not None:
+                raise UsageError(
+                    f"the operator '{self.name}' has a kernel and no definition that it could be held against: "
+                    f"give one, a function on arrays"
+                )
+            return
+        if isinstance(self.kernel, Blocks | Compiled) and self.expansion is not None:
+            raise UsageError(f"the operator '{self.name}' has an expansion and a kernel: keep one of them")
+        if self.tense is Tense.NONE and self.bounds is not Bounds.NONE:
+            raise UsageError(
+                f"the operator '{self.name}' takes an interval and reads one instant only: "
+                f"say where it reads, tense=Tense.PAST or Tense.FUTURE"
+            )
+        if self.tense is Tense.NONE or self.bounds is not Bounds.NONE:
+            return
+        if self.reach is not None and self.reach < 0:
+            raise UsageError(
+                f"the operator '{self.name}' reads the {self.tense.value} and takes no interval: "
+                f"say how far it reads, reach= a number of samples, or None for all of them"
+            )
+        if self.reach is not None and self.dense is not None:
+            raise UsageError(
+                f"the operator '{self.name}' has a dense definition and a reach in samples, which dense time "
+                f"does not have: give it an interval, or reach=None"
+            )
 
     def __call__(self, *args: Formula, interval: Interval | None = None) -> Apply:
         """Build the formula ``op[interval](*args)``."""
@@ -170,6 +235,8 @@ class Language:
     """An immutable set of operators."""
 
     operators: tuple[Operator, ...]
+    #: Every spelling of every operator.
+    spellings: tuple[str, ...]
     _by_name: Mapping[str, Operator]
     _by_spelling: Mapping[tuple[str, bool], Operator]
 
@@ -189,7 +256,8 @@ class Language:
                 if key in spellings:
                     raise UsageError(f"'{spelling}' spells both '{spellings[key].name}' and '{op.name}'")
                 spellings[key] = op
-        return cls(table, MappingProxyType(names), MappingProxyType(spellings))
+        words = tuple(spelling for spelling, _ in spellings)
+        return cls(table, words, MappingProxyType(names), MappingProxyType(spellings))
 
     def extend(self, *operators: Operator) -> Language:
         """Return a new language with these operators added.

@@ -8,6 +8,7 @@ from rtamt.errors import BoundError, SpecificationError
 from rtamt.language.formula import Apply, Formula, postorder
 from rtamt.language.operators import Bounds, Tense
 from rtamt.language.units import format_duration
+from rtamt.rewrite.desugar import spelled_out
 
 if TYPE_CHECKING:
     from fractions import Fraction
@@ -30,7 +31,7 @@ def check_bounds(
     """
     discrete = what == "sampling period"
     steps, most = ("periods", _MOST_PERIODS) if discrete else ("ticks", _MOST_TICKS)
-    for node in postorder(formula):
+    for node in postorder(spelled_out(formula)):
         if not isinstance(node, Apply) or node.interval is None:
             continue
         for bound in (node.interval.begin, node.interval.end):
@@ -65,7 +66,7 @@ def check_online(formula: Formula, text: str | None = None) -> None:
 
 def check_dense(formula: Formula, text: str | None = None) -> None:
     """Raise :class:`SpecificationError` at the first operator that only makes sense between samples."""
-    for node in postorder(formula):
+    for node in postorder(spelled_out(formula)):
         if isinstance(node, Apply) and node.op.discrete_only:
             raise SpecificationError(
                 f"'{node.op.name}' means one sample away, which dense time does not have; "
@@ -77,7 +78,7 @@ def check_dense(formula: Formula, text: str | None = None) -> None:
 
 def unbounded_future(formula: Formula) -> Apply | None:
     """Return the first (innermost, leftmost) operator that reads an unbounded future, or None."""
-    for node in postorder(formula):
+    for node in postorder(spelled_out(formula)):
         if isinstance(node, Apply) and reads_unbounded_future(node):
             return node
     return None
@@ -94,4 +95,4 @@ def reads_unbounded_future(node: Apply) -> bool:
 
 def has_future(formula: Formula) -> bool:
     """Tell whether any operator of the formula reads the future."""
-    return any(isinstance(n, Apply) and n.op.tense is Tense.FUTURE for n in postorder(formula))
+    return any(isinstance(n, Apply) and n.op.tense is Tense.FUTURE for n in postorder(spelled_out(formula)))

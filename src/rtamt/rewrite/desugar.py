@@ -1,11 +1,11 @@
-"""Replace every operator that has an expansion, until only operators with kernels are left."""
+"""Replace every operator that has an expansion, until none is left that has a shorter way."""
 
 from __future__ import annotations
 
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from rtamt.language.formula import Apply, Formula, Span, children, fold
+from rtamt.language.formula import Apply, Formula, Span, children, fold, postorder
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -15,13 +15,40 @@ def desugar(formula: Formula) -> Formula:
     """Return an equivalent formula over core operators.
 
     An operator with neither expansion nor kernel (one that was added with its definition alone)
-    stays; only the Python back end runs it. New nodes carry the span of the operator they explain.
+    stays, and is run by its definition. New nodes carry the span of the operator they explain.
 
     >>> from rtamt.language.parser import parse_formula
     >>> str(desugar(parse_formula("x >= 3 -> y <= 2")))
     '-(x - 3) or 2 - y'
     """
     return fold(formula, expand)
+
+
+def spelled_out(formula: Formula) -> Formula:
+    """Return the formula without the operators that mean what they expand to, and have no definition.
+
+    Whatever asks what an operator reads or means asks this first; where there is nothing to expand, it is
+    the same object.
+
+    >>> from dataclasses import replace
+    >>> from rtamt.language.formula import Var
+    >>> from rtamt.language.operators import STL
+    >>> nand = replace(STL["and"], name="nand", definition=None, kernel=None,
+    ...     expansion=lambda a, b, _i: STL["not"](STL["and"](a, b)))
+    >>> str(spelled_out(nand(Var("x"), Var("y"))))
+    'not (x and y)'
+    """
+    if not any(isinstance(node, Apply) and node.op.definition is None for node in postorder(formula)):
+        return formula
+
+    def step(node: Formula, args: tuple[Formula, ...]) -> Formula:
+        if not isinstance(node, Apply) or node.op.definition is not None:
+            return rebuilt(node, args) if isinstance(node, Apply) else node
+        assert node.op.expansion is not None
+        expanded = stamped(node.op.expansion(*args, node.interval), args, node.span)
+        return _rebuild_above(expanded, {id(arg) for arg in args}, step)
+
+    return fold(formula, step)
 
 
 def expand(node: Formula, args: tuple[Formula, ...]) -> Formula:

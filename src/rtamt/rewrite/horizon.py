@@ -6,6 +6,7 @@ from fractions import Fraction
 
 from rtamt.language.formula import Apply, Formula, fold
 from rtamt.language.operators import Bounds, Tense
+from rtamt.rewrite.desugar import spelled_out
 
 
 def horizon(formula: Formula, period: Fraction = Fraction(1)) -> Fraction | None:
@@ -33,4 +34,4 @@ def horizon(formula: Formula, period: Fraction = Fraction(1)) -> Fraction | None
             return None
         return deepest + node.interval.end
 
-    return fold(formula, step)
+    return fold(spelled_out(formula), step)

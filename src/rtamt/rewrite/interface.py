@@ -22,7 +22,7 @@ from typing import TypeAlias
 from rtamt.errors import UsageError, did_you_mean, shown
 from rtamt.language.formula import Apply, Const, Formula, fold, variables
 from rtamt.language.operators import STL, Sort, holds
-from rtamt.rewrite.desugar import rebuilt
+from rtamt.rewrite.desugar import rebuilt, spelled_out
 
 #: From a variable to its side of the interface: ``"input"`` or ``"output"``.
 Roles: TypeAlias = Mapping[str, str]
@@ -131,6 +131,7 @@ def lower(formula: Formula, semantics: str | Judge, roles: Roles) -> Formula:
     judge = SEMANTICS[semantics] if isinstance(semantics, str) else semantics
     if judge is standard:
         return formula
+    formula = spelled_out(formula)  # what an operator of the user's stands for may hold predicates
     all_roles = MappingProxyType({name: role_of(name, roles) for name in variables(formula)})
     predicates = _predicates(formula)
 

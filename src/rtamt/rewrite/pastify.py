@@ -17,6 +17,7 @@ from rtamt.errors import BoundError, SpecificationError
 from rtamt.language.formula import Apply, Formula, Interval, fold, postorder
 from rtamt.language.operators import STL, Tense
 from rtamt.rewrite.check import unbounded_future
+from rtamt.rewrite.desugar import spelled_out
 from rtamt.rewrite.horizon import horizon
 
 
@@ -33,6 +34,7 @@ def pastify(
     >>> str(pastify(parse_formula("always[0:10](x >= 3 -> eventually[0:5] y >= 3)")))
     'historically[0:10](once[5:5](x >= 3) -> once[0:5](y >= 3))'
     """
+    formula = spelled_out(formula)
     node = unbounded_future(formula)
     if node is not None:
         raise BoundError(

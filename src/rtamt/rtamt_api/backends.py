@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from rtamt.engine import dense_evaluate, dense_reference, reference
 from rtamt.engine.compile import compile_program
-from rtamt.engine.core import core, core_monitor
+from rtamt.engine.core import check_call, core, core_monitor
 from rtamt.engine.evaluate import Evaluator, undefined
 from rtamt.engine.python_backend import PythonMonitor, Refused
 from rtamt.errors import UsageError
@@ -121,7 +121,8 @@ class CompiledStream:
         try:
             robustness: float = self.monitor.update_pairs(timestamp, list(numbers.items()))
         except self._undefined as error:
-            instruction, sample = error.args
+            instruction, sample, *_ = error.args
+            check_call(error, self._program.origins[instruction])
             raise undefined(self._program.origins[instruction], sample, timestamp * self._unit) from None
         return robustness
 

@@ -1,0 +1,33 @@
+// What a call said when it failed: a copy, because the call may be taken back or gone when it is
+// read.
+//
+// Memory: its own; longer sentences are cut.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <string_view>
+
+namespace rtamt {
+
+class Fault {
+  public:
+    Fault() = default;
+    explicit Fault(const char* sentence) noexcept : present_(sentence != nullptr) {
+        if (!present_) return;
+        const std::string_view text(sentence);
+        size_ = std::min(text.size(), text_.size());
+        std::copy_n(text.data(), size_, text_.data());
+    }
+
+    explicit operator bool() const noexcept { return present_; }
+    [[nodiscard]] std::string_view text() const noexcept { return {text_.data(), size_}; }
+
+  private:
+    std::array<char, 256> text_{};
+    std::size_t size_ = 0;
+    bool present_ = false;
+};
+
+} // namespace rtamt

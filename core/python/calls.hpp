@@ -1,0 +1,48 @@
+// Kernels that are not of the core, as Python hands them over: the table of a loaded library, or a
+// function that makes a driver (rtamt.engine.drivers), which stands for any Python class.
+//
+// A call to Python takes the GIL. What it raises is kept until the failure is told.
+#pragma once
+
+#include "../program.hpp"
+
+#include <nanobind/nanobind.h>
+
+#include <memory>
+#include <vector>
+
+namespace rtamt::python {
+
+namespace nb = nanobind;
+
+class Calls {
+  public:
+    // Of each call a tuple: a capsule "rtamt.kernel" or a function that makes a driver, the bounds
+    // of the interval in steps (-1: none), seconds in a step, and the indices of the operands.
+    explicit Calls(const nb::list& calls);
+
+    // The same for the program; this must live longer than whoever runs it.
+    [[nodiscard]] std::vector<CallSite> sites() const { return sites_; }
+
+    // The exception that a driver raised last, if any; it is forgotten here.
+    [[nodiscard]] nb::object take_error();
+
+    // For Python's garbage collector: an operator's function knows the module that it is in, and
+    // that knows the monitor.
+    [[nodiscard]] int traverse(visitproc visit, void* arg) const;
+    void clear() noexcept;
+
+    // Lets an exception of a driver pass in place of the one that the core threw because of it.
+    void rethrow();
+
+  private:
+    struct Driven;
+    struct Drop {
+        void operator()(Driven* driven) const noexcept;
+    };
+    std::vector<nb::object> capsules_;
+    std::vector<std::unique_ptr<Driven, Drop>> driven_;
+    std::vector<CallSite> sites_;
+};
+
+} // namespace rtamt::python

@@ -1,0 +1,46 @@
+// The exceptions of the module, and how a failure of the core becomes one.
+#pragma once
+
+#include "../fault.hpp"
+#include "calls.hpp"
+
+#include <nanobind/nanobind.h>
+
+#include <cstdint>
+#include <string_view>
+
+namespace rtamt::python {
+
+struct Exceptions {
+    nb::object refused;   // an update was refused
+    nb::object undefined; // an operation made NaN: instruction, sample or tick; and, of a call that
+                          // failed, what it said
+};
+
+// Sets Undefined; its cause is what a Python operator raised, if one did.
+inline void set_undefined(const Exceptions& exceptions, Calls& calls, std::uint32_t instruction,
+                          std::int64_t moment, const Fault& fault) noexcept {
+    const auto when = static_cast<long long>(moment);
+    PyObject* raised = nullptr;
+    if (fault) {
+        const std::string_view text = fault.text(); // of whoever wrote the kernel
+        const auto size = static_cast<Py_ssize_t>(text.size());
+        raised = PyObject_CallFunction(exceptions.undefined.ptr(), "ILN", instruction, when,
+                                       PyUnicode_DecodeUTF8(text.data(), size, "replace"));
+    } else {
+        raised = PyObject_CallFunction(exceptions.undefined.ptr(), "IL", instruction, when);
+    }
+    if (raised == nullptr) return;
+    if (fault) PyException_SetCause(raised, calls.take_error().release().ptr());
+    PyErr_SetObject(exceptions.undefined.ptr(), raised);
+    Py_DECREF(raised);
+}
+
+[[noreturn]] inline void raise_undefined(const Exceptions& exceptions, Calls& calls,
+                                         std::uint32_t instruction, std::int64_t moment,
+                                         const Fault& fault) {
+    set_undefined(exceptions, calls, instruction, moment, fault);
+    throw nb::python_error();
+}
+
+} // namespace rtamt::python

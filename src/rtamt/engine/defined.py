@@ -1,0 +1,162 @@
+"""An operator of which only the definition is known, in the shape in which the core calls operators.
+
+:class:`DefinedSamples` and :class:`DefinedEvents` are to an operator with a definition what a user's own
+classes are to one that was made fast (docs/how-to/extend.md): they keep the stretch of the operands that
+the definition reads, and apply it to that again.
+"""
+
+from __future__ import annotations
+
+import copy
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rtamt.errors import EvaluationError, StlError, UsageError
+from rtamt.language.dense_definitions import QUARTERS, Steps, lifted, merged
+from rtamt.language.operators import Bounds, Tense
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import NDArray
+
+    from rtamt.language.formula import Apply
+    from rtamt.language.operators import Operator
+
+    Array = NDArray[np.float64]
+    Events = tuple[NDArray[np.int64], Array]
+
+
+def values_of(node: Apply, operands: Sequence[Array], n: int, bounds: tuple[Any, ...], what: str) -> Array:
+    """Apply an operator's definition to arrays of ``n`` values; ``what`` they are: a sample or an instant."""
+    op = node.op
+    assert op.definition is not None, "expanded before"
+    try:
+        values: Array = np.asarray(op.definition(*(operands if op.operands else (n,)), *bounds), float)
+    except StlError:
+        raise
+    except Exception as error:
+        raise raised(node, error) from error
+    if values.shape != (n,):
+        raise UsageError(
+            f"the definition of '{op.name}' returned an array of shape {values.shape} for {n} {what}s; "
+            f"it must return one value {'a' if what == 'sample' else 'an'} {what}, shape ({n},)"
+        )
+    return values
+
+
+def raised(node: Apply, error: Exception) -> EvaluationError:
+    """Return the error for an operator whose own code raised one."""
+    return EvaluationError(
+        f"the operator '{node.op.name}' failed in '{node}': {type(error).__name__}: {error}; mend the operator"
+    )
+
+
+def check_dense_meaning(op: Operator) -> None:
+    """Raise :class:`UsageError` for an operator that has a meaning in discrete time only."""
+    if op.dense is None and op.tense is not Tense.NONE:
+        raise UsageError(
+            f"'{op.name}' has no meaning in dense time; give its record a dense definition "
+            f"(dense=...) or an expansion, or use discrete time"
+        )
+
+
+def behind(op: Operator, end: int | None) -> int | None:
+    """Return how many steps behind the present one an operator reads; None: all of them."""
+    if op.tense is not Tense.PAST:
+        return 0
+    return op.reach if op.bounds is Bounds.NONE else end
+
+
+class DefinedSamples:
+    """The definition in discrete time, over blocks of samples."""
+
+    def __init__(self, node: Apply, begin: int, end: int | None, ahead: int) -> None:
+        op = node.op
+        self._node = node
+        self._bounds = () if op.bounds is Bounds.NONE else (begin, end)
+        self._behind = behind(op, end)
+        self._ahead = ahead
+        self._first = 0  # the sample that the kept stretch begins with
+        self._told = 0
+        self._kept: tuple[Array, ...] = (np.empty(0),) * max(len(op.operands), 1)
+
+    def push(self, *blocks: Array) -> Array:
+        """Take new values of each operand; return the values that are known by now."""
+        self._kept = tuple(np.concatenate(pair) for pair in zip(self._kept, blocks, strict=True))
+        return self._news(self._first + len(self._kept[0]) - self._ahead)
+
+    def finish(self) -> Array:
+        """Return the values that the end of the trace makes known."""
+        return self._news(self._first + len(self._kept[0]))
+
+    def _news(self, end: int) -> Array:
+        end = max(end, self._told)
+        n = len(self._kept[0])
+        values = values_of(self._node, self._kept, n, self._bounds, "sample")
+        news: Array = values[self._told - self._first : end - self._first].copy()
+        self._told = end
+        if self._behind is not None:
+            drop = max(0, end - self._behind - self._first)
+            self._kept = tuple(column[drop:] for column in self._kept)
+            self._first += drop
+        return news
+
+    def __deepcopy__(self, _memo: dict[int, Any]) -> DefinedSamples:
+        return copy.copy(self)  # arrays are replaced here, never written to
+
+
+class DefinedEvents:
+    """The definition in dense time, over stretches of events; times and bounds are ticks."""
+
+    def __init__(self, node: Apply, begin: int, end: int | None, ahead: int) -> None:
+        op = node.op
+        self._node = node
+        self._bounds = begin * QUARTERS, None if end is None else end * QUARTERS
+        self._behind = behind(op, end)
+        self._ahead = ahead
+        self._told: int | None = None  # up to when values were told
+        self._kept: tuple[Steps, ...] = (Steps((), ()),) * max(len(op.operands), 1)
+
+    def push(self, *events: Events, until: int) -> Events:
+        """Take the operands' events up to ``until``; return those that are known by now."""
+        self._kept = tuple(
+            Steps((*old.times, *(t * QUARTERS for t in times.tolist())), (*old.values, *values.tolist()))
+            for old, (times, values) in zip(self._kept, events, strict=True)
+        )
+        due = until - self._ahead
+        result = signal_of(self._node, self._kept, *self._bounds)
+        news = [
+            (t // QUARTERS, value)
+            for t, value in zip(*result, strict=True)
+            if t <= due * QUARTERS and (self._told is None or t > self._told * QUARTERS)
+        ]
+        if due * QUARTERS >= self._kept[0].times[0]:
+            self._told = due
+            if self._behind is not None:
+                self._kept = tuple(_from(x, (due - self._behind) * QUARTERS) for x in self._kept)
+        return np.array([t for t, _ in news], np.int64), np.array([value for _, value in news], float)
+
+    def __deepcopy__(self, _memo: dict[int, Any]) -> DefinedEvents:
+        return copy.copy(self)  # tuples are replaced here, never written to
+
+
+def signal_of(node: Apply, operands: tuple[Steps, ...], begin: int, end: int | None) -> Steps:
+    """Return an operator's values at all instants; times and bounds in quarters of a tick."""
+    if node.op.dense is not None:
+        try:
+            return lifted(node.op.dense, operands, begin, end)
+        except Exception as error:
+            raise raised(node, error) from error
+    times = sorted({t for x in operands for t in x.times})
+    columns = [np.array([x.at(t) for t in times]) for x in operands]
+    return merged(times, values_of(node, columns, len(times), (), "instant").tolist())
+
+
+def _from(steps: Steps, start: int) -> Steps:
+    """Return a step function from ``start`` on, if it begins before that."""
+    if start <= steps.times[0]:
+        return steps
+    later = [(t, v) for t, v in zip(*steps, strict=True) if t > start]
+    return Steps((start, *(t for t, _ in later)), (steps.at(start), *(v for _, v in later)))

@@ -1,0 +1,60 @@
+"""What it takes to add to the language: the records, the formulas they build, and the header for C++.
+
+``docs/how-to/extend.md`` shows it on worked examples. A new operator is one record; ``STL.extend(...)``
+is the language with it, for ``language=`` of :func:`rtamt.parse` and ``--language`` on the command line.
+
+>>> from rtamt.extend import STL, Fixity, Operator, Sort
+>>> import rtamt
+>>> clip = Operator("clip", ("clip",), Fixity.FUNCTION, 200, (Sort.NUMBER,) * 3, Sort.NUMBER,
+...     "The first operand, held between the others.", "clip(x, 0, 1) >= 1",
+...     definition=lambda x, low, high: x.clip(low, high))
+>>> spec = rtamt.parse("always(clip(x, 0, 1) >= y)", language=STL.extend(clip))
+>>> spec.evaluate({"x": [5, 0.5], "y": [0, 0]}).robustness
+0.5
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from rtamt.engine.core import core
+from rtamt.language.dense_definitions import QUARTERS, Steps
+from rtamt.language.formula import Apply, Const, Formula, Interval, Var
+from rtamt.language.operators import STL
+from rtamt.language.records import Blocks, Bounds, Compiled, Fixity, Language, Operator, Sort, Tense
+
+__all__ = [
+    "QUARTERS",
+    "STL",
+    "Apply",
+    "Blocks",
+    "Bounds",
+    "Compiled",
+    "Const",
+    "Fixity",
+    "Formula",
+    "Interval",
+    "Language",
+    "Operator",
+    "Sort",
+    "Steps",
+    "Tense",
+    "Var",
+    "get_cmake_dir",
+    "get_include",
+]
+
+
+def get_include() -> str:
+    """Return the folder of the header ``rtamt/kernel.hpp``, for a compiler's ``-I``."""
+    return str(_installed("include"))
+
+
+def get_cmake_dir() -> str:
+    """Return the folder of ``rtamt-config.cmake``, for CMake's ``-Drtamt_DIR=``."""
+    return str(_installed("cmake"))
+
+
+def _installed(folder: str) -> Path:
+    # Beside the compiled core, which an editable install keeps elsewhere than the Python files.
+    return Path(str(core().__file__)).parents[1] / folder

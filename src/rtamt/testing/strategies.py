@@ -1,0 +1,247 @@
+"""Formulas, from the table of operators, and traces and chunkings of both kinds, for property tests."""
+
+from __future__ import annotations
+
+import itertools
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from hypothesis import strategies as st
+
+from rtamt.engine import reference
+from rtamt.errors import EvaluationError
+from rtamt.language.formula import Apply, Const, Formula, Interval, Var
+from rtamt.language.operators import STL, Bounds, Language, Operator, Sort, Tense
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from hypothesis.strategies import DrawFn, SearchStrategy
+    from numpy.typing import NDArray
+
+    Array = NDArray[np.float64]
+    # Of each variable, its times in ticks and its values.
+    DenseTrace = dict[str, tuple[NDArray[np.int64], Array]]
+
+# Every combination of these values of the variables is one sample of the trace on which arithmetic is tried.
+_PROBE = (-2.0, 0.0, 1.0, 3.0)
+
+
+@dataclass(frozen=True)
+class _Drawn:
+    """A formula, how it can be read, its values on the probe, and how many operators deep it is."""
+
+    formula: Formula
+    sort: Sort
+    probe: Array
+    depth: int = 0
+
+
+@st.composite
+def formulas(
+    draw: DrawFn,
+    max_depth: int = 4,
+    variables: Sequence[str] = ("x", "y"),
+    *,
+    past: bool = True,
+    future: bool = True,
+    unbounded_past: bool = True,
+    unbounded_future: bool = False,
+    arithmetic: bool = True,
+    discrete: bool = True,
+    infinite: bool = True,
+    language: Language = STL,
+    period: Fraction = Fraction(1),
+    select: Callable[[Operator], bool] = lambda _op: True,
+) -> Formula:
+    """Draw a formula at most ``max_depth`` operators deep, sub-formulas sometimes repeated.
+
+    ``past``, ``future``, ``discrete`` (operators that mean one sample away) and ``select`` say which
+    operators of ``language`` take part. Without ``arithmetic``, operands read as numbers are variables
+    and numbers only, and no number is infinite unless the trace is. ``infinite`` lets infinite numbers
+    stand where formulas may. Bounds are whole multiples of ``period``.
+
+    Arithmetic that has no value on a few small numbers (the root of -2, 0/0) is drawn again with
+    harmless operands, most of the time: the laws that use this must still expect EvaluationError.
+    """
+    operators = [
+        op
+        for op in language
+        if select(op)
+        and (past or op.tense is not Tense.PAST)
+        and (future or op.tense is not Tense.FUTURE)
+        and (discrete or not op.discrete_only)
+        and (arithmetic or op.result is Sort.FORMULA)
+    ]
+    by_sort = {sort: [op for op in operators if op.result is sort] for sort in Sort}
+    samples = np.array(list(itertools.product(_PROBE, repeat=len(variables))))
+    n = len(samples)
+    columns = {name: samples[:, k].copy() for k, name in enumerate(variables)}
+    pool: list[_Drawn] = []
+
+    def chance(one_in: int) -> bool:
+        return draw(st.integers(0, one_in - 1)) == one_in - 1
+
+    def number(*, anywhere: bool) -> _Drawn:
+        doubled = draw(st.integers(-6, 6)) if anywhere else draw(st.sampled_from((1, 2, 4, 6)))
+        return _Drawn(Const(doubled / 2), Sort.NUMBER, np.full(n, doubled / 2))
+
+    def leaf(sort: Sort) -> _Drawn:
+        if sort is Sort.FORMULA and infinite and chance(12):
+            value = draw(st.sampled_from((np.inf, -np.inf)))
+            return _Drawn(Const(value), sort, np.full(n, value))
+        if variables and not chance(4):
+            name = draw(st.sampled_from(list(variables)))
+            return _Drawn(Var(name), Sort.NUMBER, columns[name])
+        return number(anywhere=True)
+
+    def interval(op: Operator) -> Interval | None:
+        unbounded = unbounded_past if op.tense is Tense.PAST else unbounded_future
+        if op.bounds is Bounds.NONE or (op.bounds is Bounds.OPTIONAL and unbounded and chance(5)):
+            return None
+        begin = draw(st.integers(0, 3))
+        if op.bounds is Bounds.OPTIONAL and unbounded and chance(6):
+            return Interval(begin * period, None)
+        return Interval(begin * period, (begin + draw(st.integers(0, 3))) * period)
+
+    def apply(op: Operator, operands: Sequence[_Drawn], window: Interval | None) -> _Drawn:
+        bounds: tuple[int | None, ...] = ()
+        if op.bounds is not Bounds.NONE:
+            end = None if window is None or window.end is None else int(window.end / period)
+            bounds = (0 if window is None else int(window.begin / period), end)
+        with np.errstate(all="ignore"):
+            values: list[Any] = [o.probe for o in operands] or [n]
+            probe = _meaning(op, window)(*values, *bounds)
+        depth = 1 + max((o.depth for o in operands), default=0)
+        return _Drawn(Apply(op, tuple(o.formula for o in operands), window), op.result, probe, depth)
+
+    def draw_one(depth: int, sort: Sort) -> _Drawn:
+        reusable = [d for d in pool if d.depth <= depth and (d.sort is sort or sort is Sort.FORMULA)]
+        if reusable and chance(4):
+            return draw(st.sampled_from(reusable))
+        # Seldom a number where a formula is expected or the reverse: both are legal.
+        odd = arithmetic and chance(8)
+        candidates = by_sort[sort] if not odd else operators
+        if depth == 0 or not candidates or chance(10):
+            return leaf(sort)
+        op = draw(st.sampled_from(candidates))
+        operands = [draw_one(depth - 1, operand) for operand in op.operands]
+        window = interval(op)
+        drawn = apply(op, operands, window)
+        for kept in reversed(range(len(operands))):
+            if not np.isnan(drawn.probe).any() or chance(20):
+                break
+            operands[kept:] = [number(anywhere=False) for _ in operands[kept:]]
+            drawn = apply(op, operands, window)
+        if np.isnan(drawn.probe).any():
+            # What is built on it has no value to be tried on: begin again from something that has.
+            return drawn if chance(20) else leaf(sort)
+        pool.append(drawn)
+        return drawn
+
+    return draw_one(max_depth, Sort.FORMULA).formula
+
+
+def _meaning(op: Operator, window: Interval | None) -> Callable[..., Array]:
+    """Return an operator's definition, or one made of its expansion."""
+    if op.definition is not None:
+        return op.definition
+
+    def expanded(*operands: Any) -> Array:
+        n = operands[0] if not op.operands else len(operands[0])
+        columns = {str(k): operands[k] for k in range(len(op.operands))}
+        formula = Apply(op, tuple(Var(name) for name in columns), window)
+        try:
+            return reference.evaluate(formula, columns, n, Fraction(1))
+        except EvaluationError:
+            return np.full(n, np.nan)
+
+    return expanded
+
+
+@st.composite
+def traces(
+    draw: DrawFn,
+    variables: Sequence[str] = ("x", "y"),
+    min_size: int = 1,
+    max_size: int = 30,
+    *,
+    infinite: bool = False,
+) -> dict[str, Array]:
+    """Draw columns of equal length: few distinct small values each, so that ties and repeats occur."""
+    n = draw(st.integers(min_size, max_size))
+    values = st.integers(-8, 8).map(lambda k: k / 2)
+    if infinite:
+        values = st.one_of(values, values, values, st.sampled_from((np.inf, -np.inf)))
+    columns = {}
+    for name in variables:
+        palette = draw(st.lists(values, min_size=1, max_size=6, unique=True))
+        columns[name] = np.array(draw(st.lists(st.sampled_from(palette), min_size=n, max_size=n)), float)
+    return columns
+
+
+def chunkings(n: int) -> SearchStrategy[list[int]]:
+    """Return a strategy of sizes, some of them 0, that add up to ``n``."""
+    cuts = st.lists(st.integers(0, n), max_size=max(2, n))
+    return cuts.map(lambda c: [b - a for a, b in itertools.pairwise([0, *sorted(c), n])])
+
+
+@st.composite
+def dense_traces(
+    draw: DrawFn,
+    variables: Sequence[str] = ("x", "y"),
+    max_size: int = 12,
+    *,
+    infinite: bool = False,
+    origin: int = 0,
+) -> DenseTrace:
+    """Draw a signal a variable, each with times of its own, in ticks from ``origin`` on.
+
+    Starts and ends differ, jumps coincide often, segments of one tick and repeated values occur, and
+    some signals have a single sample or end before another one begins.
+    """
+    values = st.integers(-8, 8).map(lambda k: k / 2)
+    if infinite:
+        values = st.one_of(values, values, values, st.sampled_from((np.inf, -np.inf)))
+    trace = {}
+    for name in variables:
+        n = draw(st.integers(1, max_size))
+        steps = draw(st.lists(st.sampled_from((1, 1, 1, 2, 2, 3, 5)), min_size=n - 1, max_size=n - 1))
+        times = np.cumsum([origin + draw(st.sampled_from((0, 0, 0, 1, 2, 5, 12))), *steps], dtype=np.int64)
+        palette = draw(st.lists(values, min_size=1, max_size=5, unique=True))
+        column = draw(st.lists(st.sampled_from(palette), min_size=n, max_size=n))
+        trace[name] = (times, np.array(column, float))
+    return trace
+
+
+@st.composite
+def dense_chunkings(draw: DrawFn, trace: DenseTrace) -> list[DenseTrace]:
+    """Draw a way to hand over a dense trace: updates, each with some samples of some variables.
+
+    A variable may be absent from an update, present without samples, far ahead of the others or far
+    behind; sometimes every update is one sample of one variable.
+    """
+    sizes = {name: len(times) for name, (times, _) in trace.items()}
+    if draw(st.booleans()):
+        order = draw(st.permutations([name for name, n in sizes.items() for _ in range(n)]))
+        shares = [{name: 1} for name in order]
+    else:
+        m = draw(st.integers(1, 6))
+        shares = [{} for _ in range(m)]
+        for name, n in sizes.items():
+            cuts = sorted(draw(st.lists(st.integers(0, n), min_size=m - 1, max_size=m - 1)))
+            for share, (begin, end) in zip(shares, itertools.pairwise([0, *cuts, n]), strict=True):
+                if end > begin or draw(st.booleans()):
+                    share[name] = end - begin
+    updates, begun = [], dict.fromkeys(sizes, 0)
+    for share in shares:
+        update: DenseTrace = {}
+        for name, size in share.items():
+            begin = begun[name]
+            begun[name] += size
+            times, values = trace[name]
+            update[name] = times[begin : begin + size], values[begin : begin + size]
+        updates.append(update)
+    return updates

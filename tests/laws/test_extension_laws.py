@@ -1,0 +1,85 @@
+"""check_operator: true operators pass, whichever way they are run, and wrong ones fail with a counterexample."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+import rtamt
+from rtamt.extend import STL, Blocks, Operator
+from rtamt.testing import check_operator
+from tests.unit.test_extension import CLIP, FLIPS, MEAN, TOTAL
+
+
+def by_definition_alone(name: str) -> Operator:
+    """Return an operator of the table as a user would try it first."""
+    op = STL[name]
+    return replace(
+        op, name=f"my_{name}", spellings=(f"my_{name}",), kernel=None, expansion=None, truth=None, folds=False,
+        example=op.example.replace(op.spellings[0], f"my_{name}", 1), dual=None,
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize("name", ["since", "until", "s_next", "ge"])
+def test_a_definition_alone_obeys_the_laws_in_every_mode(name: str) -> None:
+    check_operator(by_definition_alone(name), examples=6)
+
+
+@pytest.mark.parametrize("op", [MEAN, FLIPS, CLIP, STL["once"]], ids=lambda op: op.name)
+def test_these_obey_the_laws(op: Operator) -> None:
+    check_operator(op, infinite=False, examples=6)
+
+
+def test_a_class_over_blocks_obeys_the_laws() -> None:
+    check_operator(TOTAL, infinite=False, examples=6)
+
+
+class Forgetful:
+    """A sum that begins anew with every block."""
+
+    def push(self, x: Any) -> Any:
+        return np.cumsum(x)
+
+
+def test_a_kernel_that_forgets_between_blocks_is_found() -> None:
+    wrong = replace(TOTAL, kernel=Blocks(discrete=Forgetful))
+    with pytest.raises(AssertionError) as info:
+        check_operator(wrong, infinite=False, examples=20)
+    message = str(info.value)
+    assert "the operator 'total' breaks the law \"fast is the definition\" in" in message
+    assert "\n  x = [" in message
+    assert "\n  expected [" in message
+
+
+def test_a_kernel_that_is_not_its_definition_is_found() -> None:
+    class Negative:
+        def push(self, x: Any) -> Any:
+            return -np.cumsum(x)
+
+    with pytest.raises(AssertionError) as info:
+        check_operator(replace(TOTAL, kernel=Blocks(discrete=Negative)), infinite=False)
+    assert str(info.value).startswith("the operator 'total' breaks the law \"fast is the definition\" in '")
+
+
+def test_an_interval_that_says_less_than_is_read_is_found() -> None:
+    greedy = replace(MEAN, definition=lambda x, _a, _b: np.cumsum(x))
+    with pytest.raises(AssertionError, match="breaks the law"):
+        check_operator(greedy, infinite=False, examples=20)
+
+
+def test_a_wrong_dual_is_found() -> None:
+    with pytest.raises(AssertionError, match="its dual is 'and'"):
+        check_operator(replace(by_definition_alone("implies"), dual="and"), examples=4)
+
+
+def test_an_example_that_does_not_show_the_operator_is_found() -> None:
+    with pytest.raises(AssertionError, match="the example shows the operator"):
+        check_operator(replace(CLIP, example="x >= 3"))
+
+
+def test_what_an_operator_raises_is_told() -> None:
+    with pytest.raises(rtamt.EvaluationError, match="the operator 'clip' failed in"):
+        check_operator(replace(CLIP, definition=lambda x, _low, _high: x[99]))
