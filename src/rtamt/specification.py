@@ -26,13 +26,7 @@ from rtamt.rewrite.check import check_bounds, check_dense
 from rtamt.rewrite.desugar import desugar
 from rtamt.rewrite.horizon import horizon
 from rtamt.rewrite.pastify import pastify
-from rtamt.settings import (
-    check_backend,
-    check_constants,
-    positive_period,
-    roles_of,
-    time_domain,
-)
+from rtamt.settings import check_backend, check_constants, positive_period, roles_of, time_domain
 
 if TYPE_CHECKING:
     import os
@@ -300,18 +294,9 @@ class Specification:
         # The text says it all, and is read without recursion however long it is.
         declared = {declaration.name for declaration in self.document.declarations}
         given = {name: v for name, v in self.document.constants.items() if name not in declared}
-        settings: Settings = {
-            "period": self.period,
-            "unit": self.unit,
-            "backend": self.backend,
-            "constants": given,
-            "language": self.language,
-            "time": self.time,
-            "resolution": self.resolution,
-            "semantics": self.semantics,
-            "roles": dict(self.roles),
-        }
-        return _parse_again, (self.text, settings)
+        names = ("period", "unit", "backend", "language", "time", "resolution", "semantics")
+        settings = {name: getattr(self, name) for name in names}
+        return _parse_again, (self.text, {**settings, "constants": given, "roles": dict(self.roles)})
 
     def __str__(self) -> str:
         return to_text(self.formula, self.language)

@@ -29,6 +29,9 @@ def test_an_unknown_semantics(call):
         f"unknown semantics 'output_robustnes'; did you mean 'output_robustness'?; choose from {NAMES}"
     )
     assert said(lambda: call(3)) == f"unknown semantics 3; choose from {NAMES}"
+    assert said(lambda: call(rtamt.Semantics)) == (
+        f"unknown semantics <enum 'Semantics'>; choose from {NAMES}"
+    )
 
 
 def test_wrong_roles():

@@ -100,7 +100,7 @@ def semantics_of(semantics: object) -> str | Judge:
     >>> semantics_of("output-robustness")
     'output_robustness'
     """
-    if callable(semantics):
+    if callable(semantics) and not isinstance(semantics, type):
         return semantics
     name = str(semantics).replace("-", "_")
     if not isinstance(semantics, str | Enum) or name not in SEMANTICS:
