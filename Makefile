@@ -11,11 +11,11 @@ RUN := $(VENV)/bin/python
 WITH_VENV := PATH="$(CURDIR)/$(VENV)/bin:$$PATH" VIRTUAL_ENV="$(CURDIR)/$(VENV)"
 
 EXAMPLE := examples/request_grant
-CXX_FILES := find core tests/cpp benchmarks -name
+CXX_FILES := find core tests/cpp tests/fuzz benchmarks -name
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help run test test-python test-cpp test-install lint format bench clean
+.PHONY: help run test test-python test-cpp test-install lint format bench fuzz clean
 
 help: ## list the tasks
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-13s %s\n", $$1, $$2 }' Makefile
@@ -58,6 +58,16 @@ bench: $(VENV)/.core $(VENV)/.extras ## what a sample costs, beside the figures 
 	$(RUN) benchmarks/run.py
 	$(RUN) benchmarks/dense_memory.py
 	$(RUN) benchmarks/stream.py
+
+FUZZ_SECONDS ?= 60
+fuzz: $(VENV)/.core $(VENV)/.group-test $(VENV)/.group-build ## look for input that breaks the core, the parser or the readers: FUZZ_SECONDS, then some minutes
+	@command -v clang++ >/dev/null || { echo "error: make fuzz needs Clang; install it as root: apt-get install clang" >&2; exit 1; }
+	$(WITH_VENV) cmake --preset fuzz
+	$(WITH_VENV) cmake --build --preset fuzz
+	mkdir -p build/fuzz/found
+	build/fuzz/tests/fuzz/fuzz_program build/fuzz/found tests/fuzz/corpus/program -artifact_prefix=build/fuzz/ \
+	    -max_total_time=$(FUZZ_SECONDS) -timeout=10 -rss_limit_mb=1024 -malloc_limit_mb=512 -print_final_stats=1
+	$(RUN) -m pytest tests/fuzz --hypothesis-profile=fuzz
 
 clean: ## remove all that was made here, .venv too
 	rm -rf $(VENV) build dist

@@ -91,6 +91,12 @@ Header read_header(Reader& reader, std::size_t size) {
         refuse("it has " + std::to_string(size) + " bytes where its header promises " +
                std::to_string(expected));
     }
+    // Every input takes memory when the program runs: a number that nothing stands behind is
+    // refused.
+    if (header.inputs > size) {
+        refuse("it promises " + std::to_string(header.inputs) + " inputs, more than its " +
+               std::to_string(size) + " bytes can name");
+    }
     return header;
 }
 
@@ -207,6 +213,10 @@ class Checker {
         }
         if (info_.pointwise && lag != expected) {
             fail("has the lag " + std::to_string(lag) + " where its operands have " +
+                 std::to_string(expected));
+        }
+        if (lag < expected) {
+            fail("has the lag " + std::to_string(lag) + ", before its operands are known at " +
                  std::to_string(expected));
         }
     }

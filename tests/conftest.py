@@ -1,4 +1,7 @@
-"""Hypothesis profiles: "dev" while working, "ci" (fixed examples, more of them) where CI=true."""
+"""Hypothesis profiles: "dev" while working, "ci" (fixed examples, more of them) where CI=true.
+
+"fuzz", very many examples, is for `make fuzz`.
+"""
 
 import os
 
@@ -11,6 +14,7 @@ PHASES = [phase for phase in Phase if phase is not Phase.explain]
 
 settings.register_profile("dev", max_examples=100, deadline=None, phases=PHASES)
 settings.register_profile("ci", max_examples=150, deadline=None, phases=PHASES, derandomize=True)
+settings.register_profile("fuzz", max_examples=20_000, deadline=None, phases=PHASES)
 settings.load_profile("ci" if os.environ.get("CI") == "true" else "dev")
 
 # A failing example shows its formula as text, not as nested records of operators.
