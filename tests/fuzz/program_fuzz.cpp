@@ -56,10 +56,10 @@ void run_discrete(const Program& program, std::uint8_t seed) {
         return rows;
     };
     const auto starts = [](std::vector<std::vector<double>>& rows) {
-        std::vector<double*> pointers;
+        std::vector<double*> begins;
         for (auto& row : rows)
-            pointers.push_back(row.data());
-        return pointers;
+            begins.push_back(row.data());
+        return begins;
     };
     rtamt::discrete::Executor executor(program);
     std::vector<double> row(program.inputs);

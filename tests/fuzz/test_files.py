@@ -93,6 +93,23 @@ def test_any_binary_file_is_a_trace_or_an_error_that_names_it(data: st.DataObjec
     read(data.draw(damaged(suffix)), suffix)
 
 
+def test_a_time_column_of_nothing_but_nulls_is_missing_its_first_stamp(tmp_path: Path) -> None:
+    path = tmp_path / "log.arrow"
+    feather.write_feather(pa.table({"t": pa.array([None, None], pa.int64()), "x": [1.0, 2.0]}), path)
+    with pytest.raises(TraceError) as info:
+        rtamt.read(path)
+    assert str(info.value) == f"the time column 't' of {path} is empty at sample 0"
+
+
+def test_a_parquet_file_whose_column_names_are_damaged_is_refused(tmp_path: Path) -> None:
+    good = tmp_path / "good.parquet"
+    parquet.write_table(pa.table({"t": [0.0], "needle": [1.0]}), good, store_schema=False)
+    path = tmp_path / "log.parquet"
+    path.write_bytes(good.read_bytes().replace(b"needle", b"\xff\xfeedle"))
+    with pytest.raises(TraceError, match="cannot be read as Parquet: 'utf-8' codec can't decode byte 0xff"):
+        rtamt.read(path)
+
+
 @pytest.mark.parametrize("path", sorted(CORPUS.iterdir()), ids=lambda path: path.name)
 def test_files_of_the_corpus(path: Path) -> None:
     assert path.suffix in {suffix for known in FORMATS for suffix in known.suffixes}

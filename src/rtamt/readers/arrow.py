@@ -16,19 +16,23 @@ if TYPE_CHECKING:
     from rtamt.readers.source import Raw
 
 
+# What pyarrow lets through of a damaged file: texts that are not UTF-8, columns that are not there.
+_OTHERS = (ValueError, LookupError)
+
+
 def open_parquet(path: str) -> Source:
     """Open a Parquet file; its row groups are read one after another where chunks are asked for."""
     parquet, arrow = library("pyarrow.parquet", "Parquet"), library("pyarrow", "Parquet")
-    with opening(path, "Parquet", arrow.ArrowException):
+    with opening(path, "Parquet", arrow.ArrowException, *_OTHERS):
         file = parquet.ParquetFile(path)
-    fields = _fields(file.schema_arrow.empty_table().flatten().schema, arrow)
+        fields = _fields(file.schema_arrow.empty_table().flatten().schema, arrow)
 
     def load(wanted: Sequence[Field]) -> list[Raw]:
-        with opening(path, "Parquet", arrow.ArrowException):
+        with opening(path, "Parquet", arrow.ArrowException, *_OTHERS):
             return _raws(file.read(columns=_columns(wanted)).flatten(), wanted)
 
     def chunks(wanted: Sequence[Field]) -> Iterator[list[Raw]]:
-        with opening(path, "Parquet", arrow.ArrowException):
+        with opening(path, "Parquet", arrow.ArrowException, *_OTHERS):
             yield from _of_batches(file.iter_batches(CHUNK, columns=_columns(wanted)), wanted, arrow)
 
     return Source(path, (Table(fields, load, chunks),), close=file.close)
@@ -37,7 +41,7 @@ def open_parquet(path: str) -> Source:
 def open_arrow(path: str) -> Source:
     """Open an Arrow file (Feather is one), or a stream that was written into a file."""
     arrow, ipc = library("pyarrow", "Arrow files"), library("pyarrow.ipc", "Arrow files")
-    with opening(path, "an Arrow file", arrow.ArrowException):
+    with opening(path, "an Arrow file", arrow.ArrowException, *_OTHERS):
         file = arrow.memory_map(path)
         try:
             reader = ipc.open_file(file)
@@ -45,14 +49,14 @@ def open_arrow(path: str) -> Source:
         except arrow.ArrowInvalid:
             file.seek(0)
             batches = reader = ipc.open_stream(file)
-    fields = _fields(reader.schema.empty_table().flatten().schema, arrow)
+        fields = _fields(reader.schema.empty_table().flatten().schema, arrow)
 
     def chunks(wanted: Sequence[Field]) -> Iterator[list[Raw]]:
-        with opening(path, "an Arrow file", arrow.ArrowException):
+        with opening(path, "an Arrow file", arrow.ArrowException, *_OTHERS):
             yield from _of_batches(batches, wanted, arrow)
 
     def load(wanted: Sequence[Field]) -> list[Raw]:
-        with opening(path, "an Arrow file", arrow.ArrowException):
+        with opening(path, "an Arrow file", arrow.ArrowException, *_OTHERS):
             whole = arrow.Table.from_batches(list(batches), schema=reader.schema)
             return _raws(whole.flatten(), wanted)
 
@@ -93,7 +97,7 @@ def _fields(schema: Any, arrow: Any) -> tuple[Field, ...]:
             kind = "text"
         field = field_of(column.name, kind)
         said = column.metadata or {}
-        unit = (said.get(b"unit") or said.get(b"units") or b"").decode()
+        unit = (said.get(b"unit") or said.get(b"units") or b"").decode(errors="replace")
         fields.append(Field(field.column, field.name, unit or field.unit, kind))
     return tuple(fields)
 

@@ -90,7 +90,8 @@ def clock_of(field: Field, raw: Raw, unit: str | None, guessed: bool) -> Clock:
         match = _STAMPS.fullmatch(field.name.lower())
         unit = _UNIT_OF[match["unit"]] if match and match["unit"] else None
     integers = raw.dtype.kind in "iu"
-    farthest = max(abs(int(raw.min())), abs(int(raw.max()))) if integers and raw.size else 0
+    present = raw.compressed() if isinstance(raw, np.ma.MaskedArray) else raw
+    farthest = max(abs(int(present.min())), abs(int(present.max()))) if integers and present.size else 0
     if unit is None:
         unit = next((u for u, least in _SINCE_1970 if farthest >= least), "s")
         if unit != "s":
