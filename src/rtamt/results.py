@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from rtamt.engine.signals import Recording, Signal
 from rtamt.errors import UsageError, did_you_mean
@@ -14,6 +14,7 @@ from rtamt.rewrite.check import check_bounds, check_dense
 
 if TYPE_CHECKING:
     from rtamt.engine.dense_evaluate import DenseRecording
+    from rtamt.explain.report import Explanation
     from rtamt.rewrite.interface import Judge
     from rtamt.specification import Specification
 
@@ -46,6 +47,37 @@ class Result:
         """
         lowered = interface.boolean(self.specification.formula)
         return bool(self.specification.signal_of(lowered, self.trace).values[0] > 0)
+
+    def explain(self, at: Any = None) -> Explanation:
+        """Tell why the formula is satisfied or violated: which instants of which signals are responsible.
+
+        ``at``: a time of the recording, as its times are told; by default the first instant. What is
+        explained is the robustness under the semantics of the evaluation, and the verdict, which is the
+        same under each. Raises :class:`UsageError` where the recording has no such time.
+
+        >>> import rtamt
+        >>> spec = rtamt.parse("always(req >= 3 -> eventually[0:2](gnt >= 3))")
+        >>> explanation = spec.evaluate({"req": [0, 6, 0, 0, 0], "gnt": [0, 0, 0, 1, 7]}).explain()
+        >>> print(explanation)
+        violated by 2 at 0 s: always(req >= 3 -> eventually[0:2](gnt >= 3))
+        'gnt >= 3' is -2 at 3 s: the robustness follows it from -3 to 3
+        whatever the signals do elsewhere, it is violated because
+          'req >= 3' held at 1 s (3)
+          'gnt >= 3' failed from 1 s to 3 s (-3 to -2)
+        >>> explanation.critical.predicate, explanation.critical.time, explanation.critical.value
+        ('gnt >= 3', 3.0, -2.0)
+        """
+        from rtamt.explain.explain import explain
+
+        spec = self.specification
+        return explain(
+            spec.formula,
+            self.trace,
+            backend=spec.backend,
+            at=at,
+            text=spec.text,
+            semantics=lambda predicate: spec.judged(predicate, self.semantics),
+        )
 
     def __getitem__(self, name: str) -> Signal:
         """Return the signal of a named sub-specification, or of any formula over the same variables.

@@ -75,23 +75,33 @@ def trace(data: Any, names: Sequence[str], tick: Fraction, known: Collection[str
     return result
 
 
+class Evaluator:
+    """Evaluates the same core formulas (see ``desugar``) over recordings of ``inputs``, compiled once."""
+
+    def __init__(self, formulas: Sequence[Formula], tick: Fraction, inputs: tuple[str, ...]) -> None:
+        # Also what these formulas do not read says where the recording starts and ends.
+        self._plan = compile_plan(tuple(formulas), tick, domain="dense", inputs=inputs)
+        # What unbounded future reads must have settled: past windows slide on after the last sample.
+        self._settled = max(reach(formula, tick) for formula in formulas) if self._plan.stages else 0
+
+    def __call__(self, recording: DenseRecording) -> list[Samples]:
+        """Return the events of each formula from the recording's start on."""
+        plan, columns = self._plan, dict(recording.columns)
+        for stage in plan.stages:
+            values = run(stage.program, columns, recording.scale, plan, self._settled)
+            for scan in stage.scans:
+                operands = [values[i] for i in scan.outputs]
+                if scan.kind == DEFINED:
+                    columns[scan.name] = defined(scan, operands, recording, plan)
+                else:
+                    columns[scan.name] = core().dense_scan(scan.kind, *operands)
+        return run(plan.program, columns, recording.scale, plan)
+
+
 def evaluate(formula: Formula, recording: DenseRecording) -> Signal:
     """Return the robustness of a core formula (see ``desugar``) from the recording's start to its end."""
-    # Also what this formula does not read says where the recording starts and ends.
-    inputs = tuple(recording.columns)
-    plan = compile_plan((formula,), recording.scale.tick, domain="dense", inputs=inputs)
-    columns = dict(recording.columns)
-    # What unbounded future reads must have settled: past windows slide on after the last sample.
-    settled = reach(formula, recording.scale.tick) if plan.stages else 0
-    for stage in plan.stages:
-        values = run(stage.program, columns, recording.scale, plan, settled)
-        for scan in stage.scans:
-            operands = [values[i] for i in scan.outputs]
-            if scan.kind == DEFINED:
-                columns[scan.name] = defined(scan, operands, recording, plan)
-            else:
-                columns[scan.name] = core().dense_scan(scan.kind, *operands)
-    return recording.signal(*run(plan.program, columns, recording.scale, plan)[0])
+    evaluator = Evaluator((formula,), recording.scale.tick, tuple(recording.columns))
+    return recording.signal(*evaluator(recording)[0])
 
 
 def reach(formula: Formula, tick: Fraction) -> int:

@@ -1,0 +1,215 @@
+"""A formula and a recording to an explanation: the critical point and the implicant."""
+
+from __future__ import annotations
+
+from math import inf
+from typing import TYPE_CHECKING, Any
+
+from rtamt.engine.signals import Recording
+from rtamt.explain.cells import NEVER, Steps, two_valued
+from rtamt.explain.critical import Walk
+from rtamt.explain.demands import Demands
+from rtamt.explain.minimise import Forcing, minimal
+from rtamt.explain.report import CriticalPoint, Explanation, Stretch
+from rtamt.explain.sentences import formula_text, predicate_text, sentences
+from rtamt.explain.signals import Signals, truths
+from rtamt.explain.structure import Structure, literal, reaches
+from rtamt.explain.timeline import timeline
+from rtamt.language.formula import postorder
+from rtamt.rewrite import interface
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from rtamt.engine.dense_evaluate import DenseRecording
+    from rtamt.explain.critical import Point
+    from rtamt.explain.minimise import Interval
+    from rtamt.explain.structure import Leaf
+    from rtamt.language.formula import Formula
+
+
+def explain(
+    formula: Formula,
+    recording: Recording | DenseRecording,
+    *,
+    backend: str = "cpp",
+    at: Any = None,
+    text: str | None = None,
+    semantics: Callable[[Formula], Formula] = lambda predicate: predicate,
+) -> Explanation:
+    """Explain a formula's verdict and robustness at an instant (by default the first).
+
+    ``recording``: normalised, as a result holds it. ``at``: a time as the caller tells time. ``text``: from
+    which the formula was read, to quote predicates as they were written. ``semantics`` gives the
+    formula whose value counts as that of a predicate. Raises :class:`UsageError` where ``at`` is not in the
+    recording.
+    """
+    return _Explainer(formula, recording, backend, text, semantics).at(at)
+
+
+class _Explainer:
+    """One formula over one recording."""
+
+    def __init__(
+        self,
+        formula: Formula,
+        recording: Recording | DenseRecording,
+        backend: str,
+        text: str | None,
+        semantics: Callable[[Formula], Formula],
+    ) -> None:
+        self._formula = formula
+        self._text = text
+        self._line = timeline(recording, backend)
+        self._dense = not isinstance(recording, Recording)
+        self._structure = Structure.of(formula, self._line.period if self._dense else None)
+        leaves = self._structure.leaves
+        predicates = [leaf.formula for leaf in leaves.values()]
+        lowered = [*map(semantics, predicates), *map(interface.boolean, predicates)]
+        steps = self._line.measured(lowered) if lowered else []
+        self._values: dict[str, Steps] = dict(zip(leaves, steps[: len(leaves)], strict=True))
+        self._truth: dict[str, Steps] = dict(zip(leaves, steps[len(leaves) :], strict=True))
+        self._signals = Signals(self._structure, self._line, self._values)
+        self._holds = truths(self._structure, self._line, self._truth)
+        self._walk = Walk(self._signals, self._line.period, self._line.end)
+
+    def at(self, at: Any) -> Explanation:
+        cell = 0 if at is None else self._line.cell(at)
+        core = self._structure.core
+        satisfied = cell in self._holds[core]
+        robustness = self._signals.at(core, cell)
+        critical, moment = self._critical(cell)
+        stretches = tuple(self._stretch(interval, satisfied) for interval in self._implicant(cell, satisfied))
+        told = formula_text(self._formula)
+        return Explanation(
+            told,
+            self._line.time(cell),
+            satisfied,
+            robustness,
+            critical,
+            tuple(stretch for stretch, _ in stretches),
+            sentences(told, self._line.show(cell), satisfied, robustness, (critical, moment), stretches),
+        )
+
+    # ---- the critical point ------------------------------------------------------------------------
+
+    def _critical(self, cell: int) -> tuple[CriticalPoint, str]:
+        """Return the critical point, and its instant for a sentence."""
+        point = self._walk.down(self._structure.core, cell)
+        start, end = point.cell, point.cell + 1
+        value = point.sign * self._signals.at(self._structure.core, cell)
+        lowest = highest = self._signals.at(self._structure.core, cell)
+        words, leaf = None, None
+        decided_by = point.decided_by
+        if point.name:
+            leaf = self._structure.leaves[point.name]
+            value = self._values[point.name].at(point.cell)
+            words = predicate_text(leaf.formula, self._text)
+            decided_by = "constant" if leaf.fixed else "predicate"
+        if leaf is not None and not leaf.fixed:
+            if self._dense:
+                start, end = self._values[point.name].around(point.cell)
+            lowest, highest = self._follows(point, start, end, cell)
+        told = CriticalPoint(
+            words,
+            None if leaf is None else leaf.formula,
+            self._line.time(point.cell),
+            self._line.time(start),
+            self._line.time(end) if self._dense else self._line.time(point.cell),
+            value,
+            point.sign,
+            lowest,
+            highest,
+            decided_by,
+        )
+        return told, self._line.show(point.cell)
+
+    def _follows(self, point: Point, start: int, end: int, cell: int) -> tuple[float, float]:
+        """Return the robustness when the critical value goes, up to sign, to -inf and to +inf alone."""
+        run = self._line.runner((self._structure.polar[self._structure.core, 1],))
+        signals = {name: self._values[name] for name, leaf in self._structure.leaves.items() if leaf.fixed}
+        for name, leaf in self._structure.leaves.items():
+            if not leaf.fixed:
+                signals[literal(name, 1)] = signals[literal(name, -1)] = self._values[name]
+        moved = literal(point.name, point.sign)
+        ends = []
+        for value in (-point.sign * inf, point.sign * inf):
+            changed = self._values[point.name].changed(start, end, value)
+            ends.append(run({**signals, moved: changed})[0].at(cell))
+        return ends[0], ends[1]
+
+    # ---- the implicant -----------------------------------------------------------------------------
+
+    def _implicant(self, cell: int, satisfied: bool) -> list[Interval]:
+        period, end = self._line.period, self._line.end
+        demands = Demands(
+            self._structure, self._holds, self._signals, self._walk, period, end, dense=self._dense
+        )
+        demands.ask(cell, satisfied=satisfied)
+        fixed = {
+            leaf.name: _infinite(self._truth[leaf.name])
+            for leaf in self._structure.leaves.values()
+            if leaf.fixed
+        }
+        found = minimal(Forcing(self._structure, demands, self._line, fixed), demands)
+        places = {name: i for i, name in enumerate(self._structure.leaves)}
+        return sorted(found, key=lambda interval: (places[interval.name], interval.start, interval.sign))
+
+    def _stretch(self, interval: Interval, satisfied: bool) -> tuple[Stretch, str]:
+        """Return an interval of the implicant as data, and when it is for a sentence."""
+        leaf = self._structure.leaves[interval.name]
+        line, last = self._line, interval.end - 1
+        holds = satisfied == (interval.sign > 0)
+        # Cut by a window, the last cell is the end; where the predicate changes, it holds until then.
+        forever = interval.end >= NEVER
+        closed = not forever and (not self._dense or self._same_at(leaf, interval.end, holds))
+        _, values = self._values[leaf.name].between(interval.start, interval.end)
+        behind, ahead = self._reads(leaf)
+        begin, end = max(interval.start - behind, 0), min(last + ahead, line.end - 1)
+        stop = None if forever else line.time(last if closed else interval.end)
+        stretch = Stretch(
+            predicate_text(leaf.formula, self._text),
+            leaf.formula,
+            holds,
+            line.time(interval.start),
+            stop,
+            closed,
+            float(values.min()),
+            float(values.max()),
+            line.time(begin),
+            line.time(end) if ahead else stop,
+        )
+        when = self._when(interval, closed)
+        if behind or ahead:
+            reading = f"to {line.show(end)}" if end < NEVER // 2 else "on"
+            when += f", read as a whole: from {line.show(begin)} {reading}"
+        return stretch, when
+
+    def _same_at(self, leaf: Leaf, cell: int, holds: bool) -> bool:
+        return (self._truth[leaf.name].at(cell) > 0) == holds
+
+    def _reads(self, leaf: Leaf) -> tuple[int, int]:
+        """Return how many cells behind and ahead the value of a predicate depends on."""
+        order = tuple(dict.fromkeys(postorder(leaf.formula)))
+        return reaches(order, self._line.period)[leaf.formula]
+
+    def _when(self, interval: Interval, closed: bool) -> str:
+        show, last = self._line.show, interval.end - 1
+        if closed and last == interval.start:
+            when = f"at {show(interval.start)}"
+        elif interval.end >= NEVER:
+            when = f"from {show(interval.start)} on"
+        elif closed:
+            when = f"from {show(interval.start)} to {show(last)}"
+        else:
+            when = f"from {show(interval.start)} until {show(interval.end)}"
+        return (
+            when
+            if interval.start <= self._line.last
+            else f"{when} (after the last sample, whose values hold)"
+        )
+
+
+def _infinite(steps: Steps) -> Steps:
+    """Return +inf where a function is positive, and -inf elsewhere."""
+    return two_valued(steps.positive(), inf, -inf, steps.end)

@@ -1,0 +1,127 @@
+"""From enough to just enough: intervals are taken away as long as the verdict is forced without them.
+
+A set of intervals forces the verdict if the formula has it when each predicate has its truth on its
+intervals and, everywhere else, the truth that speaks against the verdict, at each of its places.
+Operators being monotone, no other values there can be worse. The engine says so, on the formula
+with two variables for a predicate (``Structure.polar``) that are +inf or -inf.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import inf
+from typing import TYPE_CHECKING
+
+from rtamt.explain.cells import NONE, Cells, Steps, two_valued
+from rtamt.explain.structure import literal, reaches
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping, Sequence
+
+    from rtamt.explain.demands import Demands
+    from rtamt.explain.structure import Structure
+    from rtamt.explain.timeline import Timeline
+
+
+@dataclass(frozen=True, slots=True)
+class Interval:
+    """The cells [start, end) of a predicate, at places of one sign."""
+
+    start: int
+    end: int
+    name: str
+    sign: int
+
+
+class Forcing:
+    """Tells where the verdict falls when the predicates are known on some intervals only."""
+
+    def __init__(
+        self, structure: Structure, demands: Demands, timeline: Timeline, fixed: Mapping[str, Steps]
+    ) -> None:
+        self._demands = demands
+        self._end = timeline.end
+        self._fixed = fixed
+        self._literals = [
+            (leaf.name, sign) for leaf in structure.leaves.values() if not leaf.fixed for sign in (1, -1)
+        ]
+        self._choices = [(place, surely) for place, surely in demands.choices if len(surely)]
+        formulas = [structure.polar[place] for place, _ in self._choices]
+        self._run = timeline.runner(formulas) if formulas else None
+        found = reaches(structure.order, timeline.period)
+        nodes = [node for (node, _), _ in self._choices]
+        #: How many cells behind and ahead a choice can look.
+        self.behind = max((found[node][0] for node in nodes), default=0)
+        self.ahead = max((found[node][1] for node in nodes), default=0)
+
+    def failures(self, intervals: Iterable[Interval]) -> Cells:
+        """Return the cells at which something falls that the verdict cannot do without."""
+        if self._run is None:
+            return NONE
+        known: dict[tuple[str, int], list[tuple[int, int]]] = {}
+        for interval in intervals:
+            known.setdefault((interval.name, interval.sign), []).append((interval.start, interval.end))
+        signals = dict(self._fixed)
+        for name, sign in self._literals:
+            good = inf if self._demands.truth(sign) else -inf
+            cells = Cells.of(known.get((name, sign), ()))
+            signals[literal(name, sign)] = two_valued(cells, good, -good, self._end)
+        failed = NONE
+        for ((_, sign), surely), steps in zip(self._choices, self._run(signals), strict=True):
+            holds = Cells.where(steps.changes, (steps.values > 0) == self._demands.truth(sign), self._end)
+            failed = failed | (surely - holds)
+        return failed
+
+
+def minimal(forcing: Forcing, demands: Demands) -> list[Interval]:
+    """Return intervals that force the verdict, none of which can be taken away.
+
+    Taken away on trial are first large groups of neighbours, then smaller ones. Groups so far apart that
+    nothing looks at two of them are tried in one run.
+    """
+    kept: list[Interval] = []
+    open_: list[Interval] = []
+    for (name, sign), asked in demands.leaves.items():
+        for start, end in asked.cells:
+            sure = len(asked.surely & Cells.of([(start, end)])) > 0
+            (kept if sure else open_).append(Interval(start, end, name, sign))
+    open_.sort(key=lambda interval: (interval.start, interval.end))
+    size = 1 << max(len(open_) - 1, 0).bit_length()
+    groups = [open_] if open_ else []
+    while groups:
+        groups = _needed(groups, kept, forcing)
+        if size == 1:
+            break
+        size //= 2
+        groups = [group[i : i + size] for group in groups for i in range(0, len(group), size)]
+    return kept + [interval for group in groups for interval in group]
+
+
+def _needed(
+    groups: Sequence[list[Interval]], kept: Sequence[Interval], forcing: Forcing
+) -> list[list[Interval]]:
+    """Return the groups that cannot be taken away, each tried when those before it have been decided."""
+    zones = {
+        id(group): (
+            min(interval.start for interval in group) - forcing.ahead,
+            max(interval.end for interval in group) + forcing.behind,
+        )
+        for group in groups
+    }
+    waiting = sorted(groups, key=lambda group: zones[id(group)][1])
+    staying = {id(group): group for group in groups}
+    while waiting:
+        trial: list[list[Interval]] = []
+        later: list[list[Interval]] = []
+        for group in waiting:
+            apart = not trial or zones[id(group)][0] >= zones[id(trial[-1])][1]
+            (trial if apart else later).append(group)
+        for group in trial:
+            del staying[id(group)]
+        rest = [interval for group in (*staying.values(),) for interval in group]
+        failed = forcing.failures([*kept, *rest])
+        for group in trial:
+            if len(failed & Cells.of([zones[id(group)]])):
+                staying[id(group)] = group
+        waiting = later
+    return [group for group in groups if id(group) in staying]

@@ -1,0 +1,225 @@
+"""A recording in cells: formulas over it and over stand-ins for predicates, and times back and forth."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rtamt.engine import dense_evaluate, dense_reference, evaluate, reference
+from rtamt.engine.dense_evaluate import DenseRecording
+from rtamt.engine.dense_signals import kind_of
+from rtamt.engine.signals import TOLERANCE, Recording, is_number
+from rtamt.errors import StlError, UsageError, shown
+from rtamt.explain.cells import NEVER, Steps
+from rtamt.language.formula import Var
+from rtamt.rewrite.desugar import desugar
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+    from fractions import Fraction
+
+    from rtamt.engine.dense_signals import Samples
+    from rtamt.language.formula import Formula
+
+    #: From a function of cells for each variable to one for each formula.
+    Runner = Callable[[Mapping[str, Steps]], list[Steps]]
+
+
+class Timeline(ABC):
+    """The cells of a recording: ``period`` is the seconds from one to the next, ``end`` how many there are.
+
+    Formulas go to the back end of the specification: the engine, or the definition.
+    """
+
+    period: Fraction
+    end: int
+
+    @abstractmethod
+    def measured(self, formulas: Sequence[Formula]) -> list[Steps]:
+        """Evaluate formulas over the recording."""
+
+    @abstractmethod
+    def runner(self, formulas: Sequence[Formula]) -> Runner:
+        """Prepare to evaluate core formulas (in cells) again and again, over other signals each time."""
+
+    @abstractmethod
+    def cell(self, at: Any) -> int:
+        """Return the cell of a time as the caller tells it; raise :class:`UsageError` outside the recording."""
+
+    @abstractmethod
+    def time(self, cell: int) -> Any:
+        """Return the time of a cell as the caller tells it; None where there is none so late."""
+
+    @abstractmethod
+    def show(self, cell: int) -> str:
+        """Return the time of a cell for a sentence."""
+
+    @property
+    @abstractmethod
+    def last(self) -> int:
+        """The last cell that was recorded."""
+
+
+class DiscreteTimeline(Timeline):
+    """Cells are samples."""
+
+    def __init__(self, recording: Recording, backend: str) -> None:
+        self._recording = recording
+        self._backend = backend
+        self.period = recording.period
+        self.end = len(recording)
+
+    def measured(self, formulas: Sequence[Formula]) -> list[Steps]:
+        """See :class:`Timeline`."""
+        return self._evaluated([desugar(formula) for formula in formulas], self._recording)
+
+    def runner(self, formulas: Sequence[Formula]) -> Runner:
+        """See :class:`Timeline`."""
+        evaluator = None if self._backend == "python" else evaluate.Evaluator(formulas, self.period)
+
+        def run(signals: Mapping[str, Steps]) -> list[Steps]:
+            columns = {name: self._samples(steps) for name, steps in signals.items()}
+            recording = Recording(self._recording.times, columns, self.period)
+            if evaluator is None:
+                return self._evaluated(formulas, recording)
+            return [Steps.of_samples(values) for values in evaluator(recording)]
+
+        return run
+
+    def _evaluated(self, formulas: Sequence[Formula], recording: Recording) -> list[Steps]:
+        if self._backend == "python":
+            start = float(recording.times[0])
+            values = [
+                reference.evaluate(formula, recording.columns, self.end, self.period, start)
+                for formula in formulas
+            ]
+        else:
+            values = evaluate.Evaluator(formulas, self.period)(recording)
+        return [Steps.of_samples(samples) for samples in values]
+
+    def _samples(self, steps: Steps) -> np.ndarray[Any, Any]:
+        return np.repeat(steps.values, np.diff(steps.changes, append=self.end))
+
+    def cell(self, at: Any) -> int:
+        """See :class:`Timeline`."""
+        times = self._recording.times
+        if is_number(at):
+            nearest = int(np.abs(times - float(at)).argmin())
+            if abs(float(times[nearest]) - float(at)) <= TOLERANCE * float(self.period):
+                return nearest
+        raise UsageError(
+            f"there is no sample at {shown(at)}; the recording has {self.end}, "
+            f"from {times[0]:.12g} s to {times[-1]:.12g} s"
+        )
+
+    def time(self, cell: int) -> Any:
+        """See :class:`Timeline`."""
+        return float(self._recording.times[cell])
+
+    def show(self, cell: int) -> str:
+        """See :class:`Timeline`."""
+        return f"{self._recording.times[cell]:.12g} s"
+
+    @property
+    def last(self) -> int:
+        """See :class:`Timeline`."""
+        return self.end - 1
+
+
+class DenseTimeline(Timeline):
+    """Cells are ticks, from the recording's start on for ever: the last values hold."""
+
+    def __init__(self, recording: DenseRecording, backend: str) -> None:
+        self._recording = recording
+        self._backend = backend
+        self._start = recording.start
+        self.period = recording.scale.tick
+        self.end = NEVER
+        self._last = recording.end - self._start
+        if self._last >= NEVER // 2:
+            raise UsageError(
+                "the recording has too many ticks to be explained; choose a coarser resolution, such as "
+                "resolution='1us'"
+            )
+
+    def measured(self, formulas: Sequence[Formula]) -> list[Steps]:
+        """See :class:`Timeline`."""
+        found = self._evaluator([desugar(formula) for formula in formulas])(self._recording.columns)
+        return [Steps(ticks - self._start, values, NEVER) for ticks, values in found]
+
+    def runner(self, formulas: Sequence[Formula]) -> Runner:
+        """See :class:`Timeline`."""
+        evaluator = self._evaluator(formulas)
+
+        def run(signals: Mapping[str, Steps]) -> list[Steps]:
+            columns = {name: (steps.changes, steps.values) for name, steps in signals.items()}
+            return [Steps(ticks, values, NEVER) for ticks, values in evaluator(columns)]
+
+        return run
+
+    def _evaluator(self, formulas: Sequence[Formula]) -> Callable[[Mapping[str, Samples]], list[Samples]]:
+        """Return what evaluates formulas as far as anything can change, after the recording's end too."""
+        after = max(dense_evaluate.reach(formula, self.period) for formula in formulas)
+        compiled: dense_evaluate.Evaluator | None = None
+
+        def evaluated(columns: Mapping[str, Samples]) -> list[Samples]:
+            nonlocal compiled
+            recording = DenseRecording(_held(columns, after), self._recording.scale)
+            if self._backend == "python":
+                steps = (dense_reference.evaluate(f, recording.columns, self.period) for f in formulas)
+                return [(step.times, step.values) for step in steps]
+            if compiled is None:
+                # Formulas without variables last as long as the recording: one variable says how long.
+                compiled = dense_evaluate.Evaluator((*formulas, Var(next(iter(columns)))), self.period)
+            return compiled(recording)[: len(formulas)]
+
+        return evaluated
+
+    def cell(self, at: Any) -> int:
+        """See :class:`Timeline`."""
+        scale = self._recording.scale
+        try:
+            stamps = [at] if scale.kind != "ns" else np.array([at])
+            found = int(scale.ticks(stamps, "at")[0]) - self._start if kind_of(stamps) == scale.kind else -1
+        except (StlError, TypeError, ValueError):
+            found = -1
+        if 0 <= found <= self._last:
+            return found
+        raise UsageError(
+            f"{shown(at)} is no instant of the recording, "
+            f"which lasts from {self.show(0)} to {self.show(self._last)}"
+        )
+
+    def time(self, cell: int) -> Any:
+        """See :class:`Timeline`."""
+        if cell >= NEVER // 2:
+            return None
+        time = self._recording.scale.times(np.array([cell + self._start], np.int64))[0]
+        return time if self._recording.scale.kind == "datetime" else time.item()
+
+    def show(self, cell: int) -> str:
+        """See :class:`Timeline`."""
+        return self._recording.scale.show(cell + self._start)
+
+    @property
+    def last(self) -> int:
+        """See :class:`Timeline`."""
+        return self._last
+
+
+def timeline(recording: Recording | DenseRecording, backend: str) -> Timeline:
+    """Return the cells of a recording."""
+    if isinstance(recording, Recording):
+        return DiscreteTimeline(recording, backend)
+    return DenseTimeline(recording, backend)
+
+
+def _held(columns: Mapping[str, Samples], after: int) -> dict[str, Samples]:
+    """Return the columns with the last value of one of them held on after the end of all."""
+    end = max(int(ticks[-1]) for ticks, _ in columns.values()) + min(after, NEVER)
+    name, (ticks, values) = next(iter(columns.items()))
+    if end > int(ticks[-1]):
+        ticks, values = np.append(ticks, end), np.append(values, values[-1])
+    return {**columns, name: (ticks, values)}
