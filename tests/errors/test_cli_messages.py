@@ -22,7 +22,10 @@ def run(capsys, monkeypatch, tmp_path):
 @pytest.mark.parametrize(
     ("args", "message"),
     [
-        (["chek"], "there is no command 'chek', only check, monitor, info, operators; did you mean 'check'?"),
+        (
+            ["chek"],
+            "there is no command 'chek', only check, explain, monitor, info, operators; did you mean 'check'?",
+        ),
         (["--verion"], "unrecognized arguments: --verion; see 'rtamt --help'"),
         (["check"], "the following arguments are required: SPEC, TRACE; see 'rtamt check --help'"),
         (["check", "x"], "the following arguments are required: TRACE; see 'rtamt check --help'"),

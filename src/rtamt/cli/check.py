@@ -18,13 +18,13 @@ from rtamt.cli.command import (
     complain,
     json_number,
     read_specification,
+    read_trace,
     short,
 )
 from rtamt.cli.terminal import Progress, printed, table, use_color
-from rtamt.engine.signals import TIME, Recording
+from rtamt.engine.signals import Recording
 from rtamt.errors import StlError
 from rtamt.language.units import format_duration
-from rtamt.readers import read
 
 if TYPE_CHECKING:
     import argparse
@@ -119,17 +119,11 @@ def _evaluate(
 ) -> Outcome:
     progress.show(label)
     try:
-        data = read(
-            trace,
-            spec.input_names,
-            time_column=time_column,
-            progress=lambda samples: progress.show(f"{label}: {samples:,} samples"),
+        data = read_trace(
+            spec, trace, time_column, lambda samples: progress.show(f"{label}: {samples:,} samples")
         )
     except StlError as error:
         return Outcome(trace, "error", error=str(error))
-    if spec.time == "dense" and TIME not in data:
-        problem = "dense time needs a column of time stamps: call it 'time', or name it with --time-column"
-        return Outcome(trace, "error", error=f"{trace}: {problem}")
     try:
         result = spec.evaluate(data)
         return Outcome(trace, "satisfied" if result.satisfied else "violated", result)

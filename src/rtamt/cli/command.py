@@ -12,14 +12,17 @@ from math import isfinite
 from typing import TYPE_CHECKING, NoReturn
 
 from rtamt.engine.core import core
+from rtamt.engine.signals import TIME
 from rtamt.errors import SpecificationError, StlError, UsageError
 from rtamt.language.units import UNITS
-from rtamt.readers import READERS
+from rtamt.readers import READERS, read
 from rtamt.rewrite.interface import SEMANTICS
 from rtamt.specification import Specification, load, parse
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Mapping
+
+    from rtamt.engine.signals import FloatArray
 
     from rtamt.settings import Settings
 
@@ -124,6 +127,20 @@ def read_specification(args: argparse.Namespace, time: str = "discrete") -> Spec
     if not spec.strip():
         raise CommandError("the specification is empty; give a file or a formula, such as 'always(x >= 3)'")
     return parse(spec, **options)
+
+
+def read_trace(
+    spec: Specification,
+    trace: str,
+    time_column: str | None = None,
+    progress: Callable[[int], None] | None = None,
+) -> Mapping[str, FloatArray]:
+    """Read what a specification reads from a trace; ``progress`` is told how many samples there are so far."""
+    data = read(trace, spec.input_names, time_column=time_column, progress=progress)
+    if spec.time == "dense" and TIME not in data:
+        problem = "dense time needs a column of time stamps: call it 'time', or name it with --time-column"
+        raise CommandError(f"{trace}: {problem}")
+    return data
 
 
 def complain(sentence: object) -> None:

@@ -171,9 +171,8 @@ class DenseTimeline(Timeline):
                 steps = (dense_reference.evaluate(f, recording.columns, self.period) for f in formulas)
                 return [(step.times, step.values) for step in steps]
             if compiled is None:
-                # Formulas without variables last as long as the recording: one variable says how long.
-                compiled = dense_evaluate.Evaluator((*formulas, Var(next(iter(columns)))), self.period)
-            return compiled(recording)[: len(formulas)]
+                compiled = dense_evaluate.Evaluator(formulas, self.period, tuple(columns))
+            return compiled(recording)
 
         return evaluated
 

@@ -15,6 +15,7 @@ from rtamt.language.units import UNITS
 from rtamt.rewrite.check import check_bounds, check_dense
 from rtamt.rtamt_api.backends import check_language, dense_signal, is_compiled
 from rtamt.rtamt_api.declarations import head_of
+from rtamt.rtamt_api.explained import ExplainedSpecification
 from rtamt.rtamt_api.failures import raises_rtamt
 from rtamt.rtamt_api.formulas import Formulas
 from rtamt.rtamt_api.online import OnlineSpecification, require_past
@@ -23,6 +24,7 @@ from rtamt.rtamt_api.options import Language, Semantics
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from rtamt.engine.dense_evaluate import DenseRecording
     from rtamt.engine.signals import FloatArray, Signal
     from rtamt.language.formula import Formula
 
@@ -73,7 +75,7 @@ class DenseTimeSpecification(Formulas):
         return points
 
 
-class StlDenseTimeOfflineSpecification(DenseTimeSpecification):
+class StlDenseTimeOfflineSpecification(ExplainedSpecification, DenseTimeSpecification):
     """Evaluates finished signals, each on its own clock.
 
     >>> import rtamt
@@ -103,13 +105,17 @@ class StlDenseTimeOfflineSpecification(DenseTimeSpecification):
                 raise signals.missing_variable(name, tuple(given))
         columns = self._columns(given, self._inputs)
 
-        def value_of(part: Formula) -> list[list[float]]:
+        def recording_for(part: Formula) -> DenseRecording:
             read = tuple(dict.fromkeys((*names, *variables(part))))
             held = {name: columns[name] for name in read if name in columns}
-            return self._points(dense_signal(self._worth(part), dense_evaluate.trace(held, read, NANOSECOND)))
+            return dense_evaluate.trace(held, read, NANOSECOND)
+
+        def value_of(part: Formula) -> list[list[float]]:
+            return self._points(dense_signal(self._worth(part), recording_for(part)))
 
         robustness = value_of(formula)
         self._value_of = value_of
+        self._remember(formula, recording_for(formula))
         return robustness
 
 

@@ -15,6 +15,7 @@ from rtamt.errors import StlError, UsageError
 from rtamt.language.units import UNITS, duration
 from rtamt.rewrite.check import check_bounds
 from rtamt.rtamt_api.backends import signal
+from rtamt.rtamt_api.explained import ExplainedSpecification
 from rtamt.rtamt_api.failures import raises_rtamt
 from rtamt.rtamt_api.formulas import Formulas
 
@@ -89,7 +90,7 @@ class DiscreteTimeSpecification(Formulas):
         check_bounds(formula, self._period, text)
 
 
-class StlDiscreteTimeOfflineSpecification(DiscreteTimeSpecification):
+class StlDiscreteTimeOfflineSpecification(ExplainedSpecification, DiscreteTimeSpecification):
     """Evaluates finished traces.
 
     >>> import rtamt
@@ -118,6 +119,7 @@ class StlDiscreteTimeOfflineSpecification(DiscreteTimeSpecification):
         period = self._period_in_units
         self._violations = int(np.count_nonzero(np.abs(gaps - period) > self._tolerance * period))
         self._value_of = lambda part: signal(self._worth(part), trace).tolist()
+        self._remember(formula, trace)
         result: list[list[float]] = np.column_stack((stamps, values)).tolist()
         return result
 

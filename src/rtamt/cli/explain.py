@@ -1,0 +1,79 @@
+"""``rtamt explain``: which instants of which signals are responsible for the verdict on a recording."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING
+
+from rtamt.cli.command import (
+    OK,
+    VIOLATED,
+    Command,
+    CommandError,
+    add_specification_options,
+    add_time_option,
+    read_specification,
+    read_trace,
+)
+from rtamt.cli.terminal import Progress
+from rtamt.errors import StlError
+
+if TYPE_CHECKING:
+    import argparse
+
+    from rtamt.explain.report import Explanation
+
+_DESCRIPTION = """\
+Tell why a recording satisfies or violates a requirement: the critical point (the predicate
+and the instant whose value is, up to sign, the robustness) and the implicant (the intervals of
+predicates that alone force the verdict, whatever the signals do elsewhere).
+
+Exit code: 0 satisfied, 1 violated, 2 it could not be explained."""
+
+_EPILOG = """\
+A trace is a CSV file, as for 'rtamt check'. A predicate is quoted with what it was worth: above 0 it
+held, below 0 it failed.
+
+--json prints one object: {"trace", "formula", "time", "satisfied", "robustness", "critical", "implicant"}.
+An interval of the implicant that never ends has the end null; its end belongs to it if "closed".
+JSON has no infinities: they are the strings "inf" and "-inf".
+
+examples:
+  rtamt explain examples/request_grant/spec.stl examples/request_grant/c_violated.csv
+  rtamt explain "always((req >= 3) -> eventually[0:5](gnt >= 3))" log.csv --at 2.5 --time dense
+  rtamt explain requirement.stl log.csv --json"""
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of the command."""
+    parser.description = _DESCRIPTION
+    parser.epilog = _EPILOG
+    add_specification_options(parser)
+    parser.add_argument("trace", metavar="TRACE", help="a CSV file")
+    add_time_option(parser)
+    parser.add_argument("--at", metavar="T", type=float, help="seconds: the instant (default: the first)")
+    parser.add_argument("--time-column", metavar="NAME", help="the column of time stamps; '' for none")
+    parser.add_argument("--json", action="store_true", help="print JSON")
+
+
+def run(args: argparse.Namespace) -> int:
+    """Evaluate the trace and explain what comes of it."""
+    spec = read_specification(args, args.time)
+    with Progress() as progress:
+        progress.show(args.trace)
+        data = read_trace(
+            spec, args.trace, args.time_column, lambda n: progress.show(f"{args.trace}: {n:,} samples")
+        )
+        try:
+            explanation = spec.evaluate(data).explain(args.at)
+        except StlError as error:
+            raise CommandError(f"{args.trace}: {error}") from error
+    print(_as_json(args.trace, explanation) if args.json else explanation)
+    return OK if explanation.satisfied else VIOLATED
+
+
+def _as_json(trace: str, explanation: Explanation) -> str:
+    return json.dumps({"trace": trace, **explanation.to_dict()})
+
+
+COMMAND = Command("explain", "tell which instants of which signals decide the verdict", configure, run)

@@ -1,0 +1,70 @@
+"""What the offline classes of both time domains share: telling why."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from rtamt.errors import UsageError
+from rtamt.rewrite import interface
+from rtamt.rtamt_api.backends import is_compiled
+from rtamt.rtamt_api.failures import raises_rtamt
+from rtamt.rtamt_api.formulas import Formulas
+
+if TYPE_CHECKING:
+    from rtamt.engine.dense_evaluate import DenseRecording
+    from rtamt.engine.signals import Recording
+    from rtamt.explain.report import Explanation
+    from rtamt.language.formula import Formula
+    from rtamt.language.specfile import Document
+    from rtamt.rewrite.interface import Judge
+
+
+class ExplainedSpecification(Formulas):
+    """A specification whose evaluations can be explained. Not made by users."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._evaluated: tuple[Formula, Recording | DenseRecording, str | Judge] | None = None
+
+    def _parsed(self, document: Document) -> None:
+        super()._parsed(document)
+        self._evaluated = None
+
+    def _remember(self, formula: Formula, recording: Recording | DenseRecording) -> None:
+        """Keep what was evaluated, and under which semantics, until it is to be explained."""
+        self._evaluated = formula, recording, interface.semantics_of(self._semantics)
+
+    @raises_rtamt
+    def explain(self, at: Any = None) -> Explanation:
+        """Tell why the latest ``evaluate`` found the specification satisfied or violated.
+
+        ``at``: an instant, in seconds; by default the first. The answer prints as sentences and is data:
+        ``.critical``, ``.implicant``, ``.to_dict()``, all times in seconds. Raises
+        :class:`RTAMTException` before the first ``evaluate``.
+
+        >>> import rtamt
+        >>> spec = rtamt.StlDiscreteTimeOfflineSpecification()
+        >>> spec.declare_var("x", "float")
+        >>> spec.spec = "always(x >= 3)"
+        >>> spec.parse()
+        >>> _ = spec.evaluate({"time": [0, 1, 2], "x": [5, 1, 4]})
+        >>> print(spec.explain())
+        violated by 2 at 0 s: always(x >= 3)
+        'x >= 3' is -2 at 1 s: the robustness follows it up to 1
+        whatever the signals do elsewhere, it is violated because
+          'x >= 3' failed at 1 s (-2)
+        """
+        from rtamt.explain.explain import explain
+
+        if self._evaluated is None:
+            raise UsageError("there is nothing to explain yet; call evaluate() first")
+        formula, recording, semantics = self._evaluated
+        roles = self.var_io_dict
+        return explain(
+            formula,
+            recording,
+            backend="cpp" if is_compiled() else "python",
+            at=at,
+            text=self._parsed_document.text,
+            semantics=lambda predicate: interface.lower(predicate, semantics, roles),
+        )
