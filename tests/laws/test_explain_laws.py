@@ -221,7 +221,7 @@ def cases(draw: Any, *, domain: str, **settings: Any) -> Case:
     return Case(world, cell, explanation, apart, predicates)
 
 
-few = settings(max_examples=settings().max_examples // 3)
+few = settings(max_examples=settings().max_examples // 2)
 both_domains = pytest.mark.parametrize("domain", ["discrete", "dense"])
 
 

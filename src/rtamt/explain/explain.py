@@ -160,9 +160,8 @@ class _Explainer:
         leaf = self._structure.leaves[interval.name]
         line, last = self._line, interval.end - 1
         holds = satisfied == (interval.sign > 0)
-        # Cut by a window, the last cell is the end; where the predicate changes, it holds until then.
         forever = interval.end >= NEVER
-        closed = not forever and (not self._dense or self._same_at(leaf, interval.end, holds))
+        closed = not forever and line.closes(interval.end, self._formula)
         _, values = self._values[leaf.name].between(interval.start, interval.end)
         behind, ahead = self._reads(leaf)
         begin, end = max(interval.start - behind, 0), min(last + ahead, line.end - 1)
@@ -184,9 +183,6 @@ class _Explainer:
             reading = f"to {line.show(end)}" if end < NEVER // 2 else "on"
             when += f", read as a whole: from {line.show(begin)} {reading}"
         return stretch, when
-
-    def _same_at(self, leaf: Leaf, cell: int, holds: bool) -> bool:
-        return (self._truth[leaf.name].at(cell) > 0) == holds
 
     def _reads(self, leaf: Leaf) -> tuple[int, int]:
         """Return how many cells behind and ahead the value of a predicate depends on."""

@@ -66,7 +66,7 @@ def sentences(
 
 def _decision(point: CriticalPoint, when: str) -> str:
     if point.predicate is None:
-        return f"{_NO_PREDICATE[point.decided_by]} ({when})"
+        return f"{_NO_PREDICATE[point.decided_by]} (at {when})"
     told = f"'{point.predicate}' is {_short(point.value)} at {when}"
     if point.decided_by == "constant":
         return f"{told}: a constant"

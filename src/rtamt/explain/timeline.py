@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from abc import ABC, abstractmethod
 from typing import TYPE_CHECKING, Any
 
@@ -13,7 +14,7 @@ from rtamt.engine.dense_signals import kind_of
 from rtamt.engine.signals import TOLERANCE, Recording, is_number
 from rtamt.errors import StlError, UsageError, shown
 from rtamt.explain.cells import NEVER, Steps
-from rtamt.language.formula import Var
+from rtamt.language.formula import Apply, Var, postorder
 from rtamt.rewrite.desugar import desugar
 
 if TYPE_CHECKING:
@@ -60,6 +61,10 @@ class Timeline(ABC):
     @abstractmethod
     def last(self) -> int:
         """The last cell that was recorded."""
+
+    @abstractmethod
+    def closes(self, end: int, formula: Formula) -> bool:
+        """Tell whether an interval of cells up to ``end`` is better told by its last cell than by ``end``."""
 
 
 class DiscreteTimeline(Timeline):
@@ -126,6 +131,10 @@ class DiscreteTimeline(Timeline):
     def last(self) -> int:
         """See :class:`Timeline`."""
         return self.end - 1
+
+    def closes(self, end: int, formula: Formula) -> bool:  # noqa: ARG002 - samples are all there is
+        """See :class:`Timeline`."""
+        return True
 
 
 class DenseTimeline(Timeline):
@@ -206,6 +215,19 @@ class DenseTimeline(Timeline):
     def last(self) -> int:
         """See :class:`Timeline`."""
         return self._last
+
+    def closes(self, end: int, formula: Formula) -> bool:
+        """See :class:`Timeline`.
+
+        [2 s, 5 s] and [2 s, 5 s + 1 tick) are the same ticks, as are [2 s, 5 s) and [2 s, 5 s - 1 tick]. What
+        is meant is the end on the grid that all samples and bounds share.
+        """
+        grain = math.gcd(*(int(np.gcd.reduce(ticks)) for ticks, _ in self._recording.columns.values()))
+        for node in postorder(formula):
+            if isinstance(node, Apply) and node.interval is not None:
+                bounds = node.interval.begin, node.interval.end or 0
+                grain = math.gcd(grain, *(int(bound / self.period) for bound in bounds))
+        return (end + self._start) % max(grain, 1) != 0 == (end + self._start - 1) % max(grain, 1)
 
 
 def timeline(recording: Recording | DenseRecording, backend: str) -> Timeline:

@@ -1,0 +1,57 @@
+"""``rtamt explain``: output, JSON, exit codes."""
+
+import json
+
+TRACE = "time,req,gnt\n0,0,0\n1,6,0\n2,0,0\n3,0,1\n4,0,7\n"
+SPEC = "always(req >= 3 -> eventually[0:2](gnt >= 3))"
+
+
+def test_a_violation_is_told_and_exits_with_1(run, write):
+    assert run("explain", SPEC, write("log.csv", TRACE)) == (
+        1,
+        "violated by 2 at 0 s: always(req >= 3 -> eventually[0:2](gnt >= 3))\n"
+        "'gnt >= 3' is -2 at 3 s: the robustness follows it from -3 to 3\n"
+        "whatever the signals do elsewhere, it is violated because\n"
+        "  'req >= 3' held at 1 s (3)\n"
+        "  'gnt >= 3' failed from 1 s to 3 s (-3 to -2)\n",
+        "",
+    )
+
+
+def test_another_instant_that_is_satisfied_exits_with_0(run, write):
+    answer = run("explain", SPEC, write("log.csv", TRACE), "--at", "2", "--time", "dense")
+    assert (answer.code, answer.err) == (0, "")
+    assert answer.out.splitlines()[0] == f"satisfied by 4 at 2 s: {SPEC}"
+    assert answer.out.splitlines()[-1] == "  'req >= 3' failed from 2 s on (-3)"
+
+
+def test_json(run, write):
+    answer = run("explain", SPEC, write("log.csv", TRACE), "--json")
+    told = json.loads(answer.out)
+    assert answer.code == 1
+    assert list(told) == ["trace", "formula", "time", "satisfied", "robustness", "critical", "implicant"]
+    assert (told["trace"], told["critical"]["predicate"], told["critical"]["value"]) == (
+        "log.csv",
+        "gnt >= 3",
+        -2,
+    )
+    assert [(s["predicate"], s["holds"], s["start"], s["end"]) for s in told["implicant"]] == [
+        ("req >= 3", True, 1, 1),
+        ("gnt >= 3", False, 1, 3),
+    ]
+
+
+def test_an_instant_that_was_not_recorded(run, write):
+    assert run("explain", SPEC, write("log.csv", TRACE), "--at", "9") == (
+        2,
+        "",
+        "rtamt: log.csv: there is no sample at 9.0; the recording has 5, from 0 s to 4 s\n",
+    )
+
+
+def test_dense_time_without_stamps(run, write):
+    assert run("explain", "x >= 3", write("log.csv", "x\n1\n"), "--time", "dense") == (
+        2,
+        "",
+        "rtamt: log.csv: dense time needs a column of time stamps: call it 'time', or name it with --time-column\n",
+    )

@@ -1,0 +1,260 @@
+"""``result.explain()``: sentences, data, instants, words, and what cannot be taken apart."""
+
+import json
+from dataclasses import FrozenInstanceError, replace
+from datetime import datetime
+
+import numpy as np
+import pytest
+
+import rtamt
+from rtamt.errors import UsageError
+from rtamt.language.operators import STL
+
+TEXT = "always(req >= 3 -> eventually[0:2](gnt >= 3))"
+VIOLATED = {"req": [0, 6, 0, 0, 0], "gnt": [0, 0, 0, 1, 7]}
+inf = float("inf")
+
+
+def explained(text, data, at=None, **options):
+    return rtamt.parse(text, **options).evaluate(data).explain(at)
+
+
+def test_it_prints_as_sentences():
+    assert str(explained(TEXT, VIOLATED)) == (
+        "violated by 2 at 0 s: always(req >= 3 -> eventually[0:2](gnt >= 3))\n"
+        "'gnt >= 3' is -2 at 3 s: the robustness follows it from -3 to 3\n"
+        "whatever the signals do elsewhere, it is violated because\n"
+        "  'req >= 3' held at 1 s (3)\n"
+        "  'gnt >= 3' failed from 1 s to 3 s (-3 to -2)"
+    )
+
+
+def test_a_satisfied_formula_is_explained_too_and_nothing_idle_is_told():
+    granted = {"req": [0, 6, 0, 0, 0], "gnt": [5, 0, 0, 4, 7]}
+    assert explained(TEXT, granted).sentences == (
+        "satisfied by 1 at 0 s: always(req >= 3 -> eventually[0:2](gnt >= 3))",
+        "'gnt >= 3' is 1 at 3 s: the robustness follows it from -3 to 3",
+        "whatever the signals do elsewhere, it is satisfied because",
+        "  'gnt >= 3' held at 0 s (2)",
+        "  'gnt >= 3' held from 3 s to 4 s (1 to 4)",
+    )
+
+
+def test_in_dense_time_segments_end_where_they_end():
+    data = {"req": ([0, 1.5, 2], [0, 6, 0]), "gnt": ([0, 3.75, 5], [0, 7, 0])}
+    assert explained(TEXT.replace("0:2", "0:1"), data, time="dense").sentences == (
+        "violated by 3 at 0 s: always(req >= 3 -> eventually[0:1](gnt >= 3))",
+        "'req >= 3' is 3 at 1.5 s: the robustness follows it from -3 to 3",
+        "whatever the signals do elsewhere, it is violated because",
+        "  'req >= 3' held from 1.5 s until 2 s (3)",
+        "  'gnt >= 3' failed from 1.5 s until 3 s (-3)",
+    )
+
+
+@pytest.mark.parametrize(
+    ("text", "data", "sentence"),
+    [
+        ("x", [1], "'x' is 1 at 0 s: the robustness follows it"),
+        ("x or x > 1", [1], "'x' is 1 at 0 s: the robustness follows it down to 0"),
+        ("always x", [1, 2], "'x' is 1 at 0 s: the robustness follows it up to 2"),
+        ("always(x or x > 1)", [1, 2], "'x' is 1 at 0 s: the robustness follows it from 0 to 2"),
+        (
+            "eventually(x and x >= 0)",
+            [1, 1],
+            "'x' is 1 at 0 s: so is another, and moving one of them alone changes nothing",
+        ),
+        ("x or 3 > 1", [1], "'3 > 1' is 2 at 0 s: a constant"),
+        ("x and false", [1], "no predicate decides it: a constant of the formula does (at 0 s)"),
+        (
+            "prev x",
+            [1],
+            "no predicate decides it: nothing was recorded before the start, where a window looks (at 0 s)",
+        ),
+        (
+            "eventually[1:2] x",
+            [1],
+            "no predicate decides it: nothing was recorded after the end, where a window looks (at 0 s)",
+        ),
+    ],
+)  # fmt: skip
+def test_what_decides_the_robustness(text, data, sentence):
+    assert explained(text, {"x": data}).sentences[1] == sentence
+
+
+def test_a_verdict_that_rests_on_nothing_says_so():
+    assert explained("x or true", {"x": [1]}).sentences == (
+        "satisfied by inf at 0 s: x or true",
+        "no predicate decides it: a constant of the formula does (at 0 s)",
+        "the verdict rests on no predicate: whatever the signals do, it stands",
+    )
+
+
+@pytest.mark.parametrize(("text", "satisfied"), [("x >= 3", True), ("x > 3", False)])
+def test_the_verdict_is_the_boolean_one_where_the_robustness_is_0(text, satisfied):
+    explanation = explained(text, {"x": [3]})
+    assert explanation.satisfied is satisfied
+    assert (
+        explanation.sentences[0]
+        == f"{'satisfied' if satisfied else 'violated'} with robustness 0 at 0 s: {text}"
+    )
+    assert [(s.predicate, s.holds) for s in explanation.implicant] == [(text, satisfied)]
+
+
+def test_a_satisfied_or_does_not_fall_with_its_critical_value():
+    point = explained("x >= 0 or y >= 0", {"x": [3], "y": [2]}).critical
+    assert (point.predicate, point.value, point.lowest, point.highest) == ("x >= 0", 3, 2, inf)
+
+
+def test_predicates_are_quoted_as_they_were_written():
+    text = "const float limit = 3; asked = req>=limit; out = always(asked -> gnt >=\n limit)"
+    explanation = explained(text, {"req": [5], "gnt": [0]})
+    assert [s.predicate for s in explanation.implicant] == ["req>=limit", "gnt >= 3"]
+
+
+def test_as_data_it_is_what_json_can_hold():
+    told = explained("always(x >= 3) and once[1:2] x", {"x": [5, 1, 4]}).to_dict()
+    assert json.loads(json.dumps(told)) == told
+    assert told == {
+        "formula": "always(x >= 3) and once[1:2] x",
+        "time": 0.0,
+        "satisfied": False,
+        "robustness": "-inf",
+        "critical": {
+            "predicate": None, "time": 0.0, "start": 0.0, "end": 0.0, "value": "-inf", "polarity": 1,
+            "lowest": "-inf", "highest": "-inf", "decided_by": "start",
+        },
+        "implicant": [],
+    }  # fmt: skip
+    (stretch,) = explained("always(x >= 3)", {"x": ([0, 2], [5, 4])}, time="dense").to_dict()["implicant"]
+    assert stretch == {
+        "predicate": "x >= 3", "holds": True, "start": 0.0, "end": None, "closed": False,
+        "lowest": 1.0, "highest": 2.0, "reads_from": 0.0, "reads_to": None,
+    }  # fmt: skip
+
+
+def test_it_cannot_be_changed():
+    explanation = explained("x", {"x": [1]})
+    with pytest.raises(FrozenInstanceError):
+        explanation.satisfied = False
+
+
+@pytest.mark.parametrize(
+    ("times", "at", "start"),
+    [
+        ([10.0, 10.1, 10.2], 10.1, 10.1),
+        (np.array([10, 20, 30]) * 10**6, 20_000_000, 20_000_000),
+        (
+            np.array(["2024-01-01", "2024-01-02", "2024-01-03"], "datetime64[ns]"),
+            datetime(2024, 1, 2),
+            np.datetime64("2024-01-02", "ns"),
+        ),
+    ],
+)
+def test_dense_instants_are_told_as_the_caller_tells_time(times, at, start):
+    explanation = explained("x >= 3", {"x": (times, [5, 1, 4])}, at, time="dense")
+    (stretch,) = explanation.implicant
+    assert stretch.start == explanation.time == explanation.critical.time == start
+    assert type(explanation.time) is type(start)
+    assert json.dumps(explanation.to_dict())
+
+
+@pytest.mark.parametrize(
+    ("at", "time", "message"),
+    [
+        (0.5, "discrete", "there is no sample at 0.5; the recording has 3, from 0 s to 2 s"),
+        ("now", "discrete", "there is no sample at 'now'; the recording has 3, from 0 s to 2 s"),
+        (3.0, "dense", "3.0 is no instant of the recording, which lasts from 0 s to 2 s"),
+        ("now", "dense", "'now' is no instant of the recording, which lasts from 0 s to 2 s"),
+        (-1, "dense", "-1 is no instant of the recording, which lasts from 0 s to 2 s"),
+    ],
+)
+def test_an_instant_that_was_not_recorded(at, time, message):
+    result = rtamt.parse("x").evaluate({"time": [0, 1, 2], "x": [1, 2, 3]}, time=time)
+    with pytest.raises(UsageError) as caught:
+        result.explain(at)
+    assert str(caught.value) == message
+
+
+def test_a_recording_of_too_many_ticks():
+    data = {"x": (np.array([0, 2**60]), [1, 2])}
+    result = rtamt.parse("x").evaluate(data, time="dense")
+    with pytest.raises(UsageError) as caught:
+        result.explain()
+    assert str(caught.value) == (
+        "the recording has too many ticks to be explained; choose a coarser resolution, such as resolution='1us'"
+    )
+
+
+def test_an_operator_with_a_definition_only_is_taken_as_a_whole():
+    def median(x, a, b):
+        return np.array(
+            [np.sort(x[max(0, t - b) : t - a + 1])[0 if t < b else b // 2] for t in range(len(x))]
+        )
+
+    record = {"name": "median", "spellings": ("median",), "definition": median, "kernel": None, "dual": None}
+    language = STL.extend(replace(STL["once"], **record))
+    text, data = "always[2:3] median[0:2](x)", {"x": [4, 2, 0, 7]}
+    explanation = explained(text, data, language=language, backend="python")
+    assert explanation.critical.value == explanation.robustness == 2
+    (stretch,) = explanation.implicant
+    assert (stretch.start, stretch.end, stretch.reads_from, stretch.reads_to) == (2, 3, 0, 3)
+    assert explanation.sentences[-1] == (
+        "  'median[0:2](x)' held from 2 s to 3 s, read as a whole: from 0 s to 3 s (2)"
+    )
+
+
+def test_a_comparison_over_a_window_is_read_as_a_whole():
+    (stretch,) = explained("(always[0:2](x >= 1)) + x >= 2", {"x": [4, 3, 2, 0]}).implicant
+    assert (stretch.start, stretch.end, stretch.reads_from, stretch.reads_to) == (0, 0, 0, 2)
+
+
+def test_both_back_ends_say_the_same():
+    for time in ("discrete", "dense"):
+        said = [
+            str(explained(TEXT, {"time": range(5), **VIOLATED}, time=time, backend=b))
+            for b in ("cpp", "python")
+        ]
+        assert said[0] == said[1]
+
+
+@pytest.mark.parametrize(
+    ("semantics", "robustness", "decides"),
+    [
+        ("standard", -2, "gnt >= 3"),
+        ("output_robustness", -2, "gnt >= 3"),
+        ("input_robustness", -3, "req >= 3"),
+        ("boolean", -inf, "req >= 3"),
+    ],
+)
+def test_the_robustness_is_that_of_the_semantics_and_the_verdict_the_same_under_each(
+    semantics, robustness, decides
+):
+    spec = rtamt.parse(TEXT, roles={"req": "input", "gnt": "output"}, semantics=semantics)
+    result = spec.evaluate(VIOLATED)
+    explanation = result.explain()
+    assert explanation.robustness == result.robustness == robustness
+    assert explanation.critical.predicate == decides
+    assert explanation.critical.polarity * explanation.critical.value == robustness
+    standard = rtamt.parse(TEXT).evaluate(VIOLATED).explain()
+    assert explanation.satisfied is False
+    assert [(s.formula, s.start) for s in explanation.implicant] == [
+        (s.formula, s.start) for s in standard.implicant
+    ]
+
+
+def test_a_formula_of_thousands_of_operators():
+    terms = " and ".join(f"always[0:1](x >= {-k})" for k in range(1100))
+    explanation = explained(terms, {"x": [1, 2, 3]})
+    assert explanation.formula == "a formula of 5499 operators, variables and numbers"
+    assert explanation.critical.predicate == "x >= 0"
+    assert len(explanation.implicant) == 1100
+
+
+def test_a_long_recording_of_many_pulses_is_explained_by_what_each_of_them_needs():
+    req, gnt = np.zeros(20_000), np.zeros(20_000)
+    req[50::100] = gnt[53::100] = 5
+    gnt[54::100] = gnt[30::100] = 5  # no request needs these
+    implicant = explained("always(req >= 3 -> eventually[0:5](gnt >= 3))", {"req": req, "gnt": gnt}).implicant
+    assert sum(s.predicate == "req >= 3" for s in implicant) == 201
+    assert sum(s.predicate == "gnt >= 3" for s in implicant) == 200
