@@ -23,7 +23,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
     from rtamt.engine.signals import FloatArray
-
     from rtamt.settings import Settings
 
 OK, VIOLATED, ERROR = 0, 1, 2

@@ -14,7 +14,7 @@ from rtamt.engine.dense_signals import kind_of
 from rtamt.engine.signals import TOLERANCE, Recording, is_number
 from rtamt.errors import StlError, UsageError, shown
 from rtamt.explain.cells import NEVER, Steps
-from rtamt.language.formula import Apply, Var, postorder
+from rtamt.language.formula import Apply, postorder
 from rtamt.rewrite.desugar import desugar
 
 if TYPE_CHECKING:
