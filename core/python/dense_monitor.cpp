@@ -30,6 +30,27 @@ template <class Item>
 // Times stay this far from the ends of their range, so that bounds can be added to them.
 constexpr double farthest = 0x1p62;
 
+// Up to here a product of doubles is within half a tick of the truth.
+constexpr double near = 0x1p51;
+
+// The tick of a time far from 0, where doubles are further apart than ticks: that of the shortest
+// decimal that prints it (tick_of in ticks.py says why).
+[[nodiscard]] std::int64_t far_tick(double seconds, std::int64_t rate) noexcept {
+    const double whole = std::trunc(seconds);
+    const double rest = seconds - whole;
+    const std::int64_t begin = static_cast<std::int64_t>(whole) * rate;
+    if (rate % 1000 == 0) {
+        for (const std::int64_t step : {1000, 100, 10}) {
+            const auto grid = static_cast<double>(rate / step);
+            const double steps = std::nearbyint(rest * grid);
+            if (whole + steps / grid == seconds) {
+                return begin + static_cast<std::int64_t>(steps) * step;
+            }
+        }
+    }
+    return begin + static_cast<std::int64_t>(std::nearbyint(rest * static_cast<double>(rate)));
+}
+
 // How many samples a call brings.
 [[nodiscard]] std::size_t samples(const std::vector<Events>& inputs) noexcept {
     std::size_t count = 0;
@@ -161,7 +182,8 @@ bool DenseMonitor::read_time(PyObject* time) noexcept {
         }
         const double tick = std::nearbyint(seconds * rate_);
         if (!(std::fabs(tick) < farthest)) return false;
-        time_ = static_cast<std::int64_t>(tick);
+        time_ = std::fabs(tick) < near ? static_cast<std::int64_t>(tick)
+                                       : far_tick(seconds, static_cast<std::int64_t>(rate_));
     } else {
         if (PyLong_Check(time) || PyIndex_Check(time) == 0) return false;
         const nb::object index = nb::steal(PyNumber_Index(time));

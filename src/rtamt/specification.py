@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, Any, Literal, overload
 
 from rtamt.engine import dense_evaluate, dense_reference, reference, signals
 from rtamt.engine.dense_monitor import DenseMonitor
-from rtamt.engine.dense_signals import NANOSECOND
 from rtamt.engine.evaluate import Evaluator
 from rtamt.engine.monitor import Monitor
 from rtamt.engine.signals import Recording, Signal
+from rtamt.engine.ticks import NANOSECOND
 from rtamt.errors import BoundError, UsageError
 from rtamt.language.formula import Formula, variables
 from rtamt.language.operators import STL, Language
@@ -113,8 +113,10 @@ class Specification:
         fraction of the period by which a gap between samples may miss it.
 
         With ``time="dense"`` signals change at any instant, each on its own clock: ``data`` maps a
-        variable to (times, values), or to a list of [time, value] pairs; numbers are seconds, arrays
-        of integers nanoseconds, and datetimes are what they are. ``resolution``: the length of a tick,
+        variable to (times, values), or to a list of [time, value] pairs. Times are of one kind: numbers
+        of Python and floats are seconds; integers of numpy, alone, in a list or in an array, are
+        nanoseconds; datetimes and timedeltas are what they are, and come back as those of numpy (in UTC
+        if they have a time zone). ``resolution``: the length of a tick,
         in which time is counted (default 1 ns); bounds must be multiples of it.
 
         ``semantics``: as for :func:`parse`, by default that of the specification.

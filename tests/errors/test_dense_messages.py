@@ -51,7 +51,7 @@ WRONG: list[tuple[Any, str]] = [
     ),
     (
         {"x": (np.array([0], np.int64), [1.0]), "y": [[0.0, 1.0]]},
-        "'y' tells time in seconds, but others in ns: use one of them for all",
+        "'y' tells time in seconds, but others in nanoseconds (integers of numpy): use one of them for all",
     ),
     (
         {"x": [[1e30, 1.0]], "y": [[0.0, 1.0]]},
@@ -110,7 +110,10 @@ def test_nanoseconds_after_seconds(backend: str) -> None:
     monitor.update(0.0, x=5.0)
     with pytest.raises(rtamt.TraceError) as info:
         monitor.update(np.int64(10**9), x=5.0)
-    assert str(info.value) == "'x' tells time in ns, but others in seconds: use one of them for all"
+    assert (
+        str(info.value)
+        == "'x' tells time in nanoseconds (integers of numpy), but others in seconds: use one of them for all"
+    )
     assert len(monitor.update(np.float64(1.0), x=5.0)) == 1
 
 

@@ -224,7 +224,7 @@ def test_the_definition_serves_where_the_core_cannot_be_loaded(monkeypatch):
         ),
         ([["x", [[0, 1]]], ["x", [[1, 1]]]], "'x' is given twice: give all its samples at once"),
         ([["x", [[0, "a"]]]], "'x' is 'a' at sample 0, expected a number"),
-        ([["x", [["a", 0]]]], "'time of x' is 'a' at sample 0, expected a number"),
+        ([["x", [["a", 0]]]], "the time of 'x' is 'a' at sample 0, expected a number"),
         ([["x", [[0, nan]]]], "'x' is NaN at sample 0, time 0 s: fill the gap or leave the sample out"),
         ([["x", [[inf, 1]]]], "the time of 'x' is inf at sample 0: give a finite time"),
         (
@@ -283,8 +283,8 @@ def test_what_counts_samples_is_refused_with_its_place(name):
 
 def test_a_bound_finer_than_a_nanosecond_is_refused():
     assert said(declared, "once[0:0.5ns](x)").splitlines() == [
-        "The operator bound must be a multiple of the resolution: 0.0000000005 s is not a whole number of ticks "
-        "of 1 ns; change the bound or the tick",
+        "The operator bound must be a multiple of the resolution: 0.5 ns is not a whole number of ticks of 1 ns; "
+        "change the bound or the tick",
         "  line 1, column 5:",
         "    once[0:0.5ns](x)",
         "        ^^^^^^^^^",

@@ -10,10 +10,10 @@ import numpy as np
 from rtamt.engine import dense_signals, signals
 from rtamt.engine.compile import DEFINED, compile_plan
 from rtamt.engine.core import check_call, core, making
-from rtamt.engine.dense_signals import TimeScale
 from rtamt.engine.drivers import calls_of, defined_signal
 from rtamt.engine.evaluate import gave_nan, is_called
 from rtamt.engine.signals import Signal
+from rtamt.engine.ticks import TimeScale, kind_of
 from rtamt.errors import EvaluationError, TraceError, UsageError
 from rtamt.language.formula import Apply, fold
 
@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from rtamt.engine.compile import Plan, Scan
     from rtamt.engine.dense_signals import Samples
     from rtamt.engine.program import Program
+    from rtamt.engine.ticks import TickArray
     from rtamt.language.formula import Formula
 
 
@@ -44,7 +45,7 @@ class DenseRecording:
         """The latest last tick."""
         return max(int(ticks[-1]) for ticks, _ in self.columns.values())
 
-    def signal(self, ticks: dense_signals.TickArray, values: signals.FloatArray) -> Signal:
+    def signal(self, ticks: TickArray, values: signals.FloatArray) -> Signal:
         """Return events as a signal up to the end: a point for every change, and one at the end."""
         inside = ticks <= self.end
         ticks, values = ticks[inside], values[inside]
@@ -53,11 +54,18 @@ class DenseRecording:
         return Signal(self.scale.times(ticks), values)
 
 
-def trace(data: Any, names: Sequence[str], tick: Fraction, known: Collection[str] = ()) -> DenseRecording:
+def trace(
+    data: Any,
+    names: Sequence[str],
+    tick: Fraction,
+    known: Collection[str] = (),
+    scale: TimeScale | None = None,
+) -> DenseRecording:
     """Normalise a finished recording; the caller's data is never changed.
 
     ``data``: a mapping from variable to (times, values) or to a list of [time, value] pairs; with a
-    key ``"time"`` all variables share its stamps. ``tick``: seconds. Raises :class:`TraceError`.
+    key ``"time"`` all variables share its stamps. ``tick``: seconds. ``scale``: how the caller tells
+    time, by default found out from the first variable. Raises :class:`TraceError`.
     """
     if not names:
         raise UsageError("the formula reads no variable, so in dense time nothing says when to evaluate it")
@@ -65,9 +73,9 @@ def trace(data: Any, names: Sequence[str], tick: Fraction, known: Collection[str
     for name in names:
         if name not in columns:
             raise signals.missing_variable(name, [str(key) for key in getattr(data, "columns", data)])
-        if not np.size(columns[name][0]):
+        if not len(columns[name][0]):
             raise TraceError(f"'{name}' has no samples: give at least one", variable=name)
-    scale = TimeScale(tick, dense_signals.kind_of(columns[names[0]][0]))
+    scale = scale or TimeScale(tick, kind_of(columns[names[0]][0]))
     samples = {name: dense_signals.samples_of(columns[name], name, scale) for name in names}
     result = DenseRecording(samples, scale)
     if result.start > result.end:

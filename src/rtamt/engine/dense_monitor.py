@@ -11,10 +11,11 @@ from rtamt.engine.compile import compile_program
 from rtamt.engine.core import check_call, core, making
 from rtamt.engine.dense_evaluate import undefined
 from rtamt.engine.dense_python_backend import PythonDenseMonitor
-from rtamt.engine.dense_signals import TickSignal, TimeScale
+from rtamt.engine.dense_signals import TickSignal
 from rtamt.engine.drivers import calls_of
 from rtamt.engine.python_backend import Refused
 from rtamt.engine.signals import Signal
+from rtamt.engine.ticks import NANOSECOND, TimeScale, kind_of
 from rtamt.errors import TraceError, UsageError
 from rtamt.language.formula import variables
 from rtamt.rewrite.check import check_bounds, check_dense, check_online
@@ -51,9 +52,10 @@ class DenseMonitor:
         formula: Formula,
         *,
         text: str | None = None,
-        resolution: Fraction = dense_signals.NANOSECOND,
+        resolution: Fraction = NANOSECOND,
         backend: str = "cpp",
         known: Collection[str] = (),
+        scale: TimeScale | None = None,
     ) -> None:
         check_dense(formula, text)
         check_bounds(formula, resolution, text, "resolution")
@@ -68,6 +70,7 @@ class DenseMonitor:
         self._depth = depth
         self._tick = resolution
         self._known_names = frozenset(known)
+        self._given_scale = scale
         self._scale: TimeScale | None = None
         self._finished = False
         self._backend: Any
@@ -148,10 +151,10 @@ class DenseMonitor:
         if self._finished:
             raise UsageError("the monitor has finished its trace; call reset() before the next sample")
         columns = dense_signals.columns_of(data, self.input_names, self._known_names)
-        given = [column for column in columns.values() if np.size(column[0])]
+        given = [column for column in columns.values() if len(column[0])]
         if not given:
             return self._signal((np.empty(0, np.int64), np.empty(0)))
-        scale = self._scale or TimeScale(self._tick, dense_signals.kind_of(given[0][0]))
+        scale = self._scale or self._given_scale or TimeScale(self._tick, kind_of(given[0][0]))
         chunk = self._chunk(columns, scale)
         known = self._run(lambda: self._backend.push(chunk), scale)
         if self._scale is None:
@@ -161,9 +164,9 @@ class DenseMonitor:
 
     def _tell(self, scale: TimeScale) -> None:
         """Let the back end read plain times by itself."""
-        if scale.kind == "seconds":
+        if scale.kind == "seconds" and (1 / scale.tick).denominator == 1:
             self._backend.tell(TickSignal, scale, float(1 / scale.tick))
-        elif scale.kind == "ns" and scale.tick == dense_signals.NANOSECOND:
+        elif scale.kind == "nanoseconds" and scale.tick == NANOSECOND:
             self._backend.tell(TickSignal, scale, None)
 
     def _chunk(self, columns: dict[str, tuple[Any, Any]], scale: TimeScale) -> list[Samples]:

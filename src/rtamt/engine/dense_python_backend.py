@@ -18,7 +18,8 @@ if TYPE_CHECKING:
     from fractions import Fraction
 
     from rtamt.engine.dense_reference import Known
-    from rtamt.engine.dense_signals import Samples, TimeScale
+    from rtamt.engine.dense_signals import Samples
+    from rtamt.engine.ticks import TimeScale
     from rtamt.language.formula import Formula
 
 

@@ -118,13 +118,16 @@ def decimal(number: Fraction) -> str | None:
 
 
 def format_duration(seconds: Fraction) -> str:
-    """Return a duration for people to read, in the largest unit of which it is at least one.
+    """Return a duration for people to read, in the largest unit of which it is at least one, if there is one.
 
     >>> format_duration(Fraction(1, 10)), format_duration(Fraction(5)), format_duration(Fraction(1, 3))
     ('100 ms', '5 s', '1/3 s')
+    >>> format_duration(Fraction(1, 2 * 10**9))
+    '0.5 ns'
     """
     if seconds != 0 and decimal(seconds) is not None:
-        for unit, size in UNITS.items():
-            if abs(seconds) >= size:
-                return f"{decimal(seconds / size)} {unit}"
+        unit, size = next(
+            ((u, size) for u, size in UNITS.items() if abs(seconds) >= size), ("ns", UNITS["ns"])
+        )
+        return f"{decimal(seconds / size)} {unit}"
     return f"{decimal(seconds) or seconds} s"

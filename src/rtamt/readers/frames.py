@@ -12,6 +12,8 @@ import numpy as np
 
 from rtamt.engine import dense_signals
 from rtamt.engine.signals import TIME
+from rtamt.engine.ticks import kind_of as kind_of_times
+from rtamt.engine.ticks import sequence_of
 from rtamt.errors import TraceError
 from rtamt.readers.clocks import looks_like_stamps
 from rtamt.readers.csv import split_unit
@@ -93,8 +95,9 @@ def _dict(data: Mapping[Any, Any]) -> Source:
         for name, samples in data.items():
             times, values = dense_signals.split(samples, str(name))
             columns = {TIME: _array(times, TIME), str(name): _array(values, str(name))}
-            # As everywhere: integers in an array are nanoseconds, other numbers seconds.
-            shared = table_of(columns, TIME, {TIME: "ns"} if dense_signals.kind_of(times) == "ns" else None)
+            # As everywhere: integers of numpy are nanoseconds, other numbers seconds.
+            in_ns = kind_of_times(sequence_of(times, TIME)) == "nanoseconds"
+            shared = table_of(columns, TIME, {TIME: "ns"} if in_ns else None)
             assert shared.clock is not None
             # Each has a column of stamps of its own, which nobody asks for by its name.
             tables.append(Table(shared.fields[1:], shared.load, clock=shared.clock))

@@ -31,6 +31,7 @@ def check_bounds(
     """
     discrete = what == "sampling period"
     steps, most = ("periods", _MOST_PERIODS) if discrete else ("ticks", _MOST_TICKS)
+    longer = "a longer period" if discrete else "a coarser resolution"
     for node in postorder(spelled_out(formula)):
         if not isinstance(node, Apply) or node.interval is None:
             continue
@@ -46,7 +47,7 @@ def check_bounds(
             if bound is not None and bound / period > most:
                 raise BoundError(
                     f"{format_duration(bound)} is {float(bound / period):.3g} {steps} of {format_duration(period)}, "
-                    f"more than can be counted; shorten the bound, or leave it open with inf",
+                    f"more than can be counted; shorten the bound, leave it open with inf, or choose {longer}",
                     text,
                     node.interval.span or node.span,
                 )

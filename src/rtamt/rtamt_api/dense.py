@@ -4,11 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from rtamt.engine import dense_evaluate, signals
 from rtamt.engine.dense_monitor import DenseMonitor
-from rtamt.engine.dense_signals import NANOSECOND
+from rtamt.engine.ticks import NANOSECOND, TimeScale, all_integers
 from rtamt.errors import NameInFormulaError, TraceError, UsageError, shown
 from rtamt.language.formula import Var, postorder, variables
 from rtamt.language.units import UNITS
@@ -25,7 +23,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from rtamt.engine.dense_evaluate import DenseRecording
-    from rtamt.engine.signals import FloatArray, Signal
+    from rtamt.engine.signals import Signal
     from rtamt.language.formula import Formula
 
     Samples = tuple[list[Any], list[Any]]  # times and values, as given
@@ -45,14 +43,12 @@ class DenseTimeSpecification(Formulas):
                 )
 
     @property
-    def _units_per_second(self) -> float:
-        return float(1 / UNITS[self._unit])
+    def _scale(self) -> TimeScale:
+        return TimeScale(NANOSECOND, "units", UNITS[self._unit])
 
-    def _columns(
-        self, given: dict[str, Samples], names: Sequence[str]
-    ) -> dict[str, tuple[FloatArray, FloatArray]]:
-        """Return times in seconds and values for those of ``names`` that are given."""
-        columns = {}
+    def _columns(self, given: dict[str, Samples], names: Sequence[str]) -> dict[str, Samples]:
+        """Return times, as given, and values for those of ``names`` that are given."""
+        columns: dict[str, Samples] = {}
         for name in names:
             head, *path = (name,) if name in given else name.split(".")
             if head not in given:
@@ -60,19 +56,16 @@ class DenseTimeSpecification(Formulas):
             times, values = given[head]
             if path:
                 values = [signals.field_of(value, head, path, i) for i, value in enumerate(values)]
-            # Divided by a whole number, which rounds once: 100 ms become 0.1 s.
-            stamps = signals.array(times, f"time of {head}") / self._units_per_second
-            columns[name] = stamps, signals.array(values, name)
+            columns[name] = times, values
         return columns
 
-    def _points(self, signal: Signal) -> list[list[float]]:
-        times = signal.times
-        if self._unit != "s":
-            # Ticks first: as seconds times a thousand, 1.1 s would come back as 1100.0000000000002 ms.
-            per_second = float(1 / NANOSECOND)
-            times = np.rint(times * per_second) / (per_second / self._units_per_second)
-        points: list[list[float]] = np.column_stack((times, signal.values)).tolist()
-        return points
+
+def _points(signal: Signal, whole: bool) -> list[list[float]]:
+    """Return [time, value] pairs; times are floats, or ints where they can be if those given were (``whole``)."""
+    times = signal.times.tolist()
+    if not whole:
+        times = map(float, times)
+    return [list(point) for point in zip(times, signal.values.tolist(), strict=True)]
 
 
 class StlDenseTimeOfflineSpecification(ExplainedSpecification, DenseTimeSpecification):
@@ -92,9 +85,10 @@ class StlDenseTimeOfflineSpecification(ExplainedSpecification, DenseTimeSpecific
         """Return the robustness as ``[[time, value], ...]``: a point for every change, and one at the end.
 
         ``dataset``: for every variable ``[name, [[time, value], ...]]``, times in :attr:`unit`, later
-        from sample to sample, counted in nanoseconds; a value holds until the next one. A value is a
-        number, or an object where the specification reads fields. Other names are ignored, and nothing
-        is changed. Raises :class:`RTAMTException` for wrong data.
+        from sample to sample, counted in nanoseconds; a value holds until the next one. Integers are
+        exact, whatever their size, and if all times are integers so are those of the result, where they
+        can be. A value is a number, or an object where the specification reads fields. Other names are
+        ignored, and nothing is changed. Raises :class:`RTAMTException` for wrong data.
         """
         formula = self._result
         given = _by_name(dataset)
@@ -103,15 +97,17 @@ class StlDenseTimeOfflineSpecification(ExplainedSpecification, DenseTimeSpecific
         for name in names:
             if name not in given and head_of(name) not in given:
                 raise signals.missing_variable(name, tuple(given))
-        columns = self._columns(given, self._inputs)
+        columns, scale = self._columns(given, self._inputs), self._scale
 
         def recording_for(part: Formula) -> DenseRecording:
             read = tuple(dict.fromkeys((*names, *variables(part))))
             held = {name: columns[name] for name in read if name in columns}
-            return dense_evaluate.trace(held, read, NANOSECOND)
+            return dense_evaluate.trace(held, read, NANOSECOND, scale=scale)
 
         def value_of(part: Formula) -> list[list[float]]:
-            return self._points(dense_signal(self._worth(part), recording_for(part)))
+            read = tuple(dict.fromkeys((*names, *variables(part))))
+            whole = all(all_integers(columns[name][0]) for name in read if name in columns)
+            return _points(dense_signal(self._worth(part), recording_for(part)), whole)
 
         robustness = value_of(formula)
         self._value_of = value_of
@@ -139,6 +135,7 @@ class StlDenseTimeOnlineSpecification(OnlineSpecification, DenseTimeSpecificatio
     def __init__(self) -> None:
         super().__init__()
         self._monitor: DenseMonitor | None = None  # made by the first update
+        self._whole = True  # whether all times so far were integers
 
     @raises_rtamt
     def update(self, *dataset: Sequence[Any]) -> list[list[float]]:
@@ -154,16 +151,19 @@ class StlDenseTimeOnlineSpecification(OnlineSpecification, DenseTimeSpecificatio
         for name in given:
             if name not in self._reads and name not in self._types and name not in self._inputs:
                 raise signals.unknown_variable(name, tuple(self._reads))
-        signal = monitor.update_many(self._columns(given, monitor.input_names))
+        columns = self._columns(given, monitor.input_names)
+        signal = monitor.update_many(columns)
+        self._whole = self._whole and all(all_integers(times) for times, _ in columns.values())
         self._objects.update({name: values[-1] for name, (_, values) in given.items() if values})
         if len(signal):
             self._publish(float(signal.values[-1]))
         self._value_of = None
-        return self._points(signal)
+        return _points(signal, self._whole)
 
     def reset(self) -> None:
         """Forget the signals; the next samples are the first."""
         self._value_of = None
+        self._whole = True
         if self._monitor is not None:
             self._monitor.reset()
 
@@ -184,13 +184,16 @@ class StlDenseTimeOnlineSpecification(OnlineSpecification, DenseTimeSpecificatio
     def _start_over(self, formulas: dict[str, Formula]) -> None:
         super()._start_over(formulas)
         self._monitor = None
+        self._whole = True
 
     def _require_monitor(self) -> DenseMonitor:
         if self._monitor is None:
             formula, text = self._result, self._parsed_document.text
             require_past(formula, text)
             backend = "cpp" if is_compiled() else "python"
-            self._monitor = DenseMonitor(self._judged(formula), text=text, backend=backend)
+            self._monitor = DenseMonitor(
+                self._judged(formula), text=text, backend=backend, scale=self._scale
+            )
         return self._monitor
 
 
@@ -205,10 +208,10 @@ class StlDenseTimeSpecification(StlDenseTimeOfflineSpecification, StlDenseTimeOn
     >>> spec.spec = "eventually[0:1](x >= 3)"
     >>> spec.parse()
     >>> spec.evaluate(["x", [[0, 5], [2, 4]]])
-    [[0.0, 2.0], [2.0, 1.0]]
+    [[0, 2.0], [2, 1.0]]
     >>> spec.pastify()
     >>> spec.update(["x", [[0, 5], [2, 4]]])
-    [[0.0, 2.0], [2.0, 2.0]]
+    [[0, 2.0], [2, 2.0]]
     """
 
     @raises_rtamt
