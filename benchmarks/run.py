@@ -109,6 +109,20 @@ def online_named(k: int) -> Callable[[], float]:
     return lambda: per(calls, run)
 
 
+def online_watched() -> float:
+    """A step with two formulas watched, and their values asked for: ns for the three."""
+    monitor = rtamt.parse("always[0:1000](a + b >= -2)").monitor(watch=("a + b >= -2", "a"))
+    calls = 20_000
+
+    def run() -> None:
+        for _ in range(calls):
+            monitor.step(1.0, 2.0)
+            monitor["a + b >= -2"]
+            monitor["a"]
+
+    return per(calls, run)
+
+
 def online_positional(k: int) -> Callable[[], float]:
     """``monitor.step(x, y)``: ns a call."""
     monitor = rtamt.parse(f"always[0:{k}](a + b >= -2)").monitor()
@@ -202,6 +216,7 @@ def rows() -> list[Row]:
         ),
         *(Row(f"online update(t, a=x, b=y), k={k}", "ns/call", 250, online_named(k)) for k in WINDOWS),
         *(Row(f"online step(x, y), k={k}", "ns/call", 150, online_positional(k)) for k in WINDOWS),
+        Row("online step(x, y), and two watched formulas read", "ns/call", None, online_watched),
         *(
             Row(f"dense offline {text}", "ns/event", target, dense_offline(text))
             for text, target in (

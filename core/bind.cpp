@@ -295,8 +295,13 @@ NB_MODULE(_core, m) {
              "Take a chunk, a column an input; return what became known of each output.")
         .def("finish", &Monitor::finish, "End the trace; return the rest of each output.")
         .def("reset", &Monitor::reset, "Forget every sample.")
+        .def("state", &Monitor::state, "What the samples so far have left behind.")
+        .def("restore", &Monitor::restore, nb::arg("state"),
+             "Go on as the monitor of this state would, which was made like this one.")
         .def("last", &Monitor::last, nb::arg("instruction"),
              "The value of an instruction at the last slot.")
+        .def("latest", &Monitor::latest, nb::arg("output"),
+             "The value of an output that the last sample made known, or None.")
         .def("recent", &Monitor::recent, nb::arg("count"),
              "The times of the last samples, as many as values can be outstanding and one more.")
         .def_prop_ro("samples", &Monitor::samples, "How many samples came.")
@@ -331,6 +336,10 @@ NB_MODULE(_core, m) {
         .def("told", &DenseMonitor::told, nb::arg("output"),
              "What the last update made known of an output, times and values.")
         .def("reset", &DenseMonitor::reset, "Forget every sample.")
+        .def("state", &DenseMonitor::state,
+             "What the samples so far have left behind, but for what tell() says.")
+        .def("restore", &DenseMonitor::restore, nb::arg("state"),
+             "Go on as the monitor of this state would, which was made like this one.")
         .def("known", &DenseMonitor::known, nb::arg("output"),
              "The last tick at which an output is known, or None.")
         .def_prop_ro(

@@ -28,6 +28,12 @@ class Foreign {
     void checkpoint() noexcept { kernel_->checkpoint(state_.get()); }
     void rollback() noexcept { kernel_->rollback(state_.get()); }
 
+    // What such a kernel remembers is its own affair.
+    [[noreturn]] static void refuse_transfer() {
+        throw std::invalid_argument(
+            "The state of a kernel that is not of the core cannot be copied.");
+    }
+
   private:
     struct Destroy {
         void (*function)(void*) = nullptr;

@@ -6,6 +6,8 @@
 // kernel that can make one says where it did, and the executor then takes the update back.
 #pragma once
 
+#include "snapshot.hpp"
+
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
@@ -61,6 +63,10 @@ class Kernel {
 
     // What went wrong where run() answers a place and no value is NaN: null but for calls.
     [[nodiscard]] virtual const char* fault() const noexcept { return nullptr; }
+
+    // Writes or reads what the samples so far have left behind; not between checkpoint() and
+    // rollback().
+    virtual void transfer(Snapshot& snapshot) = 0;
 
     // Where the registers are; again whenever they have moved.
     void connect(const double* a, const double* b, double* out) noexcept {

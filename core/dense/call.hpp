@@ -60,6 +60,7 @@ class Call final : public Kernel {
         foreign_.rollback();
         state_ = saved_;
     }
+    void transfer(Snapshot& /*snapshot*/) override { Foreign::refuse_transfer(); }
 
   protected:
     void reset() noexcept override {

@@ -5,6 +5,8 @@
 // without copying them, and keeps its memory when cleared.
 #pragma once
 
+#include "../snapshot.hpp"
+
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
@@ -71,6 +73,17 @@ class EventList {
         std::copy(times_.get() + skipped, times_.get() + count_, times_.get());
         std::copy(values_.get() + skipped, values_.get() + count_, values_.get());
         count_ -= skipped;
+    }
+
+    void transfer(Snapshot& snapshot) {
+        std::size_t count = count_;
+        snapshot.item(count);
+        if (snapshot.loading()) {
+            make_room(count);
+            resize(count);
+        }
+        snapshot.cells(times_.get(), count);
+        snapshot.cells(values_.get(), count);
     }
 
     [[nodiscard]] std::size_t count() const noexcept { return count_; }

@@ -349,6 +349,25 @@ void Executor::reset() noexcept {
     started_ = fresh_ = finished_ = false;
 }
 
+void Executor::transfer(Snapshot& snapshot) {
+    snapshot.item(origin_);
+    snapshot.item(frontier_);
+    snapshot.item(end_);
+    snapshot.item(started_);
+    snapshot.item(fresh_);
+    snapshot.item(finished_);
+    for (Feed& feed : feeds_)
+        feed.transfer(snapshot);
+    for (Output& output : outputs_) {
+        snapshot.item(output.told);
+        snapshot.item(output.last);
+    }
+    for (const auto& units : {std::span(guarded_), std::span(free_)}) {
+        for (const Unit& unit : units)
+            unit.kernel->transfer(snapshot);
+    }
+}
+
 std::optional<Failure> Executor::evaluate(Program program, std::span<const Events> inputs,
                                           std::int64_t extra, Lists outputs) {
     Executor executor(std::move(program));

@@ -62,6 +62,10 @@ class Executor {
 
     void reset() noexcept;
 
+    // Writes or reads what the samples so far have left behind, for an executor of the same
+    // program. One that could not read is to be thrown away.
+    void transfer(Snapshot& snapshot);
+
     // A whole trace at once, the last values held for `extra` ticks more; what a failure leaves
     // behind is unspecified.
     [[nodiscard]] static std::optional<Failure> evaluate(Program program,

@@ -62,6 +62,16 @@ class Feed {
         last_.reset();
     }
 
+    // Between updates: the samples that wait, and when the first and the last were.
+    void transfer(Snapshot& snapshot) {
+        queue_.erase_front(head_);
+        head_ = 0;
+        queue_.transfer(snapshot);
+        rest_ = queue_.view();
+        snapshot.item(first_);
+        snapshot.item(last_);
+    }
+
     // Makes the value at the start of the trace the one event of the view.
     void begin(std::int64_t time) noexcept {
         const std::size_t past = rest_.until(time, rest_.count);

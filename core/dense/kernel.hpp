@@ -7,6 +7,7 @@
 // No value is NaN: a kernel that can make one says when, and the executor takes the update back.
 #pragma once
 
+#include "../snapshot.hpp"
 #include "events.hpp"
 
 #include <bit>
@@ -39,6 +40,10 @@ class Kernel {
     // Remembers the state; takes back everything since then.
     virtual void checkpoint() noexcept = 0;
     virtual void rollback() noexcept = 0;
+
+    // Writes or reads what the samples so far have left behind; not between checkpoint() and
+    // rollback().
+    virtual void transfer(Snapshot& snapshot) = 0;
 
     // How many events can come without any more from the operands.
     [[nodiscard]] virtual std::size_t pending() const noexcept { return 0; }
@@ -79,6 +84,10 @@ class Kernel {
     std::int64_t start_ = 0;
 };
 
+inline void Kernel::transfer(Snapshot& snapshot) {
+    snapshot.item(start_);
+}
+
 // A kernel whose result need not begin where its operands do. What it says before its start is
 // held back, and its value at the start told there.
 class Temporal : public Kernel {
@@ -89,6 +98,10 @@ class Temporal : public Kernel {
 
     void checkpoint() noexcept override { saved_ = told_; }
     void rollback() noexcept override { told_ = saved_; }
+    void transfer(Snapshot& snapshot) override {
+        Kernel::transfer(snapshot);
+        snapshot.item(told_);
+    }
 
   protected:
     // Takes events, at most one an instant, and merges those that change nothing. A copy on the

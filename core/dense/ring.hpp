@@ -6,6 +6,8 @@
 // Cost: O(1) a cell that enters, amortised; unlike a copy of the window, it does not grow with it.
 #pragma once
 
+#include "../snapshot.hpp"
+
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
@@ -57,6 +59,19 @@ class Ring {
         head_ = saved_head_;
         tail_ = saved_tail_;
         release();
+    }
+
+    // The cells, oldest first; not between checkpoint() and rollback().
+    void transfer(Snapshot& snapshot) {
+        std::size_t count = size();
+        snapshot.item(count);
+        if (snapshot.loading()) clear();
+        for (std::size_t i = 0; i < count; ++i) {
+            Cell cell{};
+            if (!snapshot.loading()) cell = (*this)[i];
+            snapshot.item(cell);
+            if (snapshot.loading()) push_back(cell);
+        }
     }
 
     // How many cells from the front on satisfy a condition that, once false, stays so. Cost: the

@@ -43,6 +43,10 @@ class Shift final : public Temporal {
         Temporal::rollback();
         waiting_.rollback();
     }
+    void transfer(Snapshot& snapshot) override {
+        Temporal::transfer(snapshot);
+        waiting_.transfer(snapshot);
+    }
 
     [[nodiscard]] std::size_t pending() const noexcept override { return waiting_.size(); }
     [[nodiscard]] std::size_t bytes() const noexcept override {

@@ -42,6 +42,10 @@ class Since final : public Temporal {
         Temporal::rollback();
         state_ = saved_;
     }
+    void transfer(Snapshot& snapshot) override {
+        Temporal::transfer(snapshot);
+        snapshot.item(state_);
+    }
 
   protected:
     void reset() noexcept override {

@@ -52,6 +52,11 @@ class Until final : public Temporal {
         window_.rollback();
         state_ = saved_;
     }
+    void transfer(Snapshot& snapshot) override {
+        Temporal::transfer(snapshot);
+        window_.transfer(snapshot);
+        snapshot.item(state_);
+    }
 
     [[nodiscard]] std::size_t pending() const noexcept override { return window_.size(); }
     [[nodiscard]] std::size_t bytes() const noexcept override {

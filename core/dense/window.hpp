@@ -48,6 +48,10 @@ class Slide final : public Temporal {
         Temporal::rollback();
         wedge_.rollback();
     }
+    void transfer(Snapshot& snapshot) override {
+        Temporal::transfer(snapshot);
+        wedge_.transfer(snapshot);
+    }
 
     [[nodiscard]] std::size_t pending() const noexcept override { return wedge_.size(); }
     [[nodiscard]] std::size_t bytes() const noexcept override {

@@ -49,6 +49,7 @@ class Call final : public Kernel {
     void reset() noexcept override { foreign_.reset(); }
     void checkpoint(std::size_t /*count*/) noexcept override { foreign_.checkpoint(); }
     void rollback() noexcept override { foreign_.rollback(); }
+    void transfer(Snapshot& /*snapshot*/) override { Foreign::refuse_transfer(); }
 
   private:
     Foreign foreign_;

@@ -51,6 +51,13 @@ class Clock {
         violations_ = 0;
     }
 
+    void transfer(Snapshot& snapshot) {
+        stamps_.transfer(snapshot);
+        snapshot.item(anchor_);
+        snapshot.item(steps_);
+        snapshot.item(violations_);
+    }
+
     [[nodiscard]] std::uint64_t violations() const noexcept { return violations_; }
     [[nodiscard]] const Stamps& stamps() const noexcept { return stamps_; }
 

@@ -321,6 +321,17 @@ void Executor::reset() noexcept {
     finished_ = false;
 }
 
+void Executor::transfer(Snapshot& snapshot) {
+    snapshot.item(slot_);
+    snapshot.item(samples_);
+    snapshot.item(finished_);
+    for (const auto& kernel : kernels_) {
+        if (kernel) kernel->transfer(snapshot);
+    }
+    for (std::uint32_t i = 0; i < kernels_.size(); ++i)
+        snapshot.item(register_of(i)[last_]);
+}
+
 std::optional<Failure> Executor::evaluate(Program program, std::span<const double* const> columns,
                                           std::size_t count, std::span<double* const> outputs) {
     Executor executor(std::move(program));

@@ -64,6 +64,10 @@ class Executor {
 
     void reset() noexcept;
 
+    // Writes or reads what the samples so far have left behind, for an executor of the same
+    // program. One that could not read is to be thrown away.
+    void transfer(Snapshot& snapshot);
+
     // A whole trace at once, `count` values an output; what a failure leaves behind is unspecified.
     [[nodiscard]] static std::optional<Failure> evaluate(Program program,
                                                          std::span<const double* const> columns,

@@ -114,6 +114,8 @@ class Unary final : public Kernel {
         return fill<Function::partial>(out(), block.present(lag()),
                                        [=](std::size_t i) { return Function::of(a[i]); });
     }
+
+    void transfer(Snapshot& /*snapshot*/) override {}
 };
 
 template <class Function>
@@ -127,6 +129,8 @@ class Binary final : public Kernel {
         return fill<Function::partial>(out(), block.present(lag()),
                                        [=](std::size_t i) { return Function::of(a[i], b[i]); });
     }
+
+    void transfer(Snapshot& /*snapshot*/) override {}
 };
 
 } // namespace rtamt::discrete

@@ -32,6 +32,7 @@ class Running final : public Kernel {
     void reset() noexcept override { extremum_ = Algebra::identity; }
     void checkpoint(std::size_t /*count*/) noexcept override { saved_ = extremum_; }
     void rollback() noexcept override { extremum_ = saved_; }
+    void transfer(Snapshot& snapshot) override { snapshot.item(extremum_); }
 
   private:
     double extremum_ = Algebra::identity;

@@ -42,6 +42,11 @@ class Shift final : public Kernel {
         journal_.restore(ring_);
     }
 
+    void transfer(Snapshot& snapshot) override {
+        snapshot.item(state_);
+        snapshot.cells(ring_, state_.full ? distance_ : state_.next);
+    }
+
   private:
     // Consecutive values of the operand, or as many of the value that stands for absent ones.
     struct Source {

@@ -33,6 +33,7 @@ class Since final : public Kernel {
     void reset() noexcept override { since_ = Max::identity; }
     void checkpoint(std::size_t /*count*/) noexcept override { saved_ = since_; }
     void rollback() noexcept override { since_ = saved_; }
+    void transfer(Snapshot& snapshot) override { snapshot.item(since_); }
 
   private:
     double since_ = Max::identity;

@@ -6,6 +6,7 @@
 #pragma once
 
 #include "../arena.hpp"
+#include "../snapshot.hpp"
 
 #include <algorithm>
 #include <cstddef>
@@ -36,6 +37,15 @@ class Stamps {
         count_ = 0;
         regular_ = 0;
         next_ = 0;
+    }
+
+    void transfer(Snapshot& snapshot) {
+        snapshot.item(next_);
+        snapshot.item(count_);
+        snapshot.item(regular_);
+        snapshot.item(origin_);
+        snapshot.item(last_);
+        snapshot.cells(ring_, std::min(count_ - regular_, size_));
     }
 
     [[nodiscard]] std::size_t count() const noexcept { return count_; }

@@ -58,6 +58,11 @@ class Slide final : public Kernel {
         journal_.restore(ring_);
     }
 
+    void transfer(Snapshot& snapshot) override {
+        snapshot.item(state_);
+        snapshot.cells(ring_, state_.front ? width_ : state_.fill);
+    }
+
   private:
     struct State {
         std::size_t fill = 0;

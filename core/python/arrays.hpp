@@ -1,10 +1,13 @@
 // Columns that come from numpy and results that go to it, neither copied.
 #pragma once
 
+#include "../snapshot.hpp"
+
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
 
 #include <cstddef>
+#include <cstdint>
 #include <initializer_list>
 #include <memory>
 #include <optional>
@@ -70,6 +73,15 @@ class Results {
         pointers.push_back(column.data());
     }
     return pointers;
+}
+
+[[nodiscard]] inline nb::bytes bytes_of(const Snapshot& snapshot) {
+    return nb::bytes(snapshot.bytes().data(), snapshot.bytes().size());
+}
+
+// For reading, as long as the bytes are there.
+[[nodiscard]] inline Snapshot snapshot_of(const nb::bytes& bytes) {
+    return Snapshot({static_cast<const std::uint8_t*>(bytes.data()), bytes.size()});
 }
 
 // Calls `work`, and lets other Python threads run meanwhile where the samples are many.

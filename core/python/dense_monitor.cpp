@@ -41,7 +41,8 @@ constexpr double near = 0x1p51;
     const std::int64_t begin = static_cast<std::int64_t>(whole) * rate;
     if (rate % 1000 == 0) {
         for (const std::int64_t step : {1000, 100, 10}) {
-            const auto grid = static_cast<double>(rate / step);
+            const std::int64_t steps_in_one = rate / step;
+            const auto grid = static_cast<double>(steps_in_one);
             const double steps = std::nearbyint(rest * grid);
             if (whole + steps / grid == seconds) {
                 return begin + static_cast<std::int64_t>(steps) * step;
@@ -49,6 +50,11 @@ constexpr double near = 0x1p51;
         }
     }
     return begin + static_cast<std::int64_t>(std::nearbyint(rest * static_cast<double>(rate)));
+}
+
+// As attributes are looked up by.
+[[nodiscard]] nb::str interned(const char* name) {
+    return nb::steal<nb::str>(PyUnicode_InternFromString(name));
 }
 
 // How many samples a call brings.
@@ -110,7 +116,7 @@ DenseMonitor::DenseMonitor(Program program, const std::vector<nb::str>& names,
       names_(names, executor_.program().inputs, ignored), exceptions_(std::move(exceptions)),
       row_(names.size()), events_(names.size()), results_(executor_.program().outputs.size()),
       spare_(results_.size()), until_(results_.size()), counts_(names.size()),
-      scale_name_("_scale"), events_name_("_events") {}
+      scale_name_(interned("_scale")), events_name_(interned("_events")) {}
 
 void DenseMonitor::tell(const nb::type_object& signal, const nb::object& scale,
                         std::optional<double> rate) {
@@ -228,7 +234,7 @@ nb::object DenseMonitor::signal_of(const Events& events) const noexcept {
     auto* type = reinterpret_cast<PyTypeObject*>(signal_.ptr());
     const std::size_t times = events.count * sizeof(*events.times);
     const std::size_t values = events.count * sizeof(*events.values);
-    const auto signal = nb::steal(type->tp_alloc(type, 0));
+    auto signal = nb::steal(type->tp_alloc(type, 0));
     const auto bytes =
         nb::steal(PyBytes_FromStringAndSize(nullptr, static_cast<Py_ssize_t>(times + values)));
     if (!signal.is_valid() || !bytes.is_valid()) return {};
@@ -319,6 +325,28 @@ void DenseMonitor::reset() {
     std::ranges::fill(until_, std::nullopt);
     std::ranges::fill(counts_, 0);
     told_ = false;
+}
+
+nb::bytes DenseMonitor::state() {
+    require_idle();
+    Snapshot snapshot;
+    transfer(snapshot);
+    return bytes_of(snapshot);
+}
+
+void DenseMonitor::restore(const nb::bytes& state) {
+    require_idle();
+    Snapshot snapshot = snapshot_of(state);
+    transfer(snapshot);
+    snapshot.end();
+}
+
+void DenseMonitor::transfer(Snapshot& snapshot) {
+    executor_.transfer(snapshot);
+    snapshot.cells(counts_.data(), counts_.size());
+    snapshot.cells(until_.data(), until_.size());
+    for (EventList& list : results_)
+        list.transfer(snapshot);
 }
 
 std::vector<std::int64_t> DenseMonitor::counts() const {

@@ -65,6 +65,11 @@ class DenseMonitor {
     // What the garbage collector looks at.
     [[nodiscard]] Calls& calls() const noexcept { return *calls_; }
 
+    // What the samples so far have left behind, but for what tell() says; for a monitor made like
+    // this one.
+    [[nodiscard]] nb::bytes state();
+    void restore(const nb::bytes& state);
+
     [[nodiscard]] std::vector<std::int64_t> counts() const;
     [[nodiscard]] std::optional<std::int64_t> start() const;
     [[nodiscard]] std::optional<std::int64_t> known(std::size_t output) const;
@@ -95,6 +100,7 @@ class DenseMonitor {
     bool busy_ = false; // another thread is inside, or a __float__ or an operator that came back
 
     void require_idle() const;
+    void transfer(Snapshot& snapshot);
     void require_output(std::size_t output) const;
     PyObject* refuse(const char* reason) const noexcept;
     [[nodiscard]] PyObject* fail(const dense::Failure& failure) const noexcept;

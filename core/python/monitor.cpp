@@ -222,11 +222,42 @@ void Monitor::reset() {
     std::ranges::fill(previous_, missing);
 }
 
+nb::bytes Monitor::state() {
+    require_idle();
+    Snapshot snapshot;
+    transfer(snapshot);
+    return bytes_of(snapshot);
+}
+
+void Monitor::restore(const nb::bytes& state) {
+    require_idle();
+    Snapshot snapshot = snapshot_of(state);
+    transfer(snapshot);
+    snapshot.end();
+}
+
+void Monitor::transfer(Snapshot& snapshot) {
+    executor_.transfer(snapshot);
+    clock_.transfer(snapshot);
+    snapshot.cells(previous_.data(), previous_.size());
+}
+
 double Monitor::last(std::uint32_t instruction) const {
     require_idle();
     if (instruction >= executor_.program().instructions.size()) {
         throw std::out_of_range("There is no instruction " + std::to_string(instruction) + ".");
     }
+    return executor_.last(instruction);
+}
+
+std::optional<double> Monitor::latest(std::size_t output) const {
+    require_idle();
+    const Program& program = executor_.program();
+    if (output >= program.outputs.size()) {
+        throw std::out_of_range("There is no output " + std::to_string(output) + ".");
+    }
+    const std::uint32_t instruction = program.outputs[output];
+    if (executor_.samples() <= program.instructions[instruction].lag) return std::nullopt;
     return executor_.last(instruction);
 }
 

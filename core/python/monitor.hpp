@@ -42,7 +42,14 @@ class Monitor {
 
     // What the garbage collector looks at.
     [[nodiscard]] Calls& calls() const noexcept { return *calls_; }
+
+    // What the samples so far have left behind; for a monitor made like this one.
+    [[nodiscard]] nb::bytes state();
+    void restore(const nb::bytes& state);
+
     [[nodiscard]] double last(std::uint32_t instruction) const;
+    // What an output is worth that the last sample made known.
+    [[nodiscard]] std::optional<double> latest(std::size_t output) const;
     [[nodiscard]] Result recent(std::size_t count) const;
 
     [[nodiscard]] std::int64_t samples() const noexcept { return executor_.samples(); }
@@ -66,6 +73,7 @@ class Monitor {
     bool busy_ = false; // another thread is inside, without the GIL or in a Python operator
 
     void require_idle() const;
+    void transfer(Snapshot& snapshot);
     PyObject* refuse(const char* reason) const noexcept;
     [[nodiscard]] bool ready() const noexcept;
     [[nodiscard]] std::optional<std::size_t> place(PyObject* name, std::size_t guess) noexcept;

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from fractions import Fraction
-from functools import cached_property
+from functools import cached_property, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, overload
 
@@ -12,6 +12,7 @@ from rtamt.engine import dense_evaluate, dense_reference, reference, signals
 from rtamt.engine.dense_monitor import DenseMonitor
 from rtamt.engine.evaluate import Evaluator
 from rtamt.engine.monitor import Monitor
+from rtamt.engine.online import Watched
 from rtamt.engine.signals import Recording, Signal
 from rtamt.engine.ticks import NANOSECOND
 from rtamt.errors import BoundError, UsageError
@@ -30,7 +31,7 @@ from rtamt.settings import check_backend, check_constants, positive_period, role
 
 if TYPE_CHECKING:
     import os
-    from collections.abc import Mapping
+    from collections.abc import Iterable, Mapping
 
     from typing_extensions import Unpack
 
@@ -149,6 +150,7 @@ class Specification:
         period: Duration | None = None,
         tolerance: float = signals.TOLERANCE,
         semantics: Semantics | None = None,
+        watch: str | Iterable[str] = (),
     ) -> Monitor: ...
 
     @overload
@@ -158,6 +160,7 @@ class Specification:
         time: Literal["dense"],
         resolution: Duration | None = None,
         semantics: Semantics | None = None,
+        watch: str | Iterable[str] = (),
     ) -> DenseMonitor: ...
 
     def monitor(
@@ -168,13 +171,16 @@ class Specification:
         tolerance: float = signals.TOLERANCE,
         resolution: Duration | None = None,
         semantics: Semantics | None = None,
+        watch: str | Iterable[str] = (),
     ) -> Monitor | DenseMonitor:
         """Return an online monitor; of dense time where that is asked for here or in :func:`parse`.
 
         ``period`` as in :meth:`evaluate`, by default 1 s. ``tolerance``: the fraction of the period
         by which a gap between samples may miss it. ``semantics``: as for :func:`parse`; under
         ``"boolean"`` the monitor gives verdicts, +inf where the formula holds and -inf where it does
-        not, also where the robustness is 0. Raises :class:`BoundError` for unbounded future.
+        not, also where the robustness is 0. ``watch``: names of sub-specifications, or formulas over
+        the same variables, whose values ``monitor[name]`` is to tell beside the result; each is known
+        at its own horizon. Raises :class:`BoundError` for unbounded future.
 
         >>> import rtamt
         >>> monitor = rtamt.parse("always[0:200ms](x >= 3)").monitor(period="100ms")
@@ -183,8 +189,23 @@ class Specification:
         >>> verdict = rtamt.parse("x > 3").monitor(semantics="boolean")
         >>> [verdict.update(t, x=x) > 0 for t, x in enumerate([4, 3])]
         [True, False]
+        >>> spec = rtamt.parse("asked = req >= 3; always[0:1](asked -> gnt >= 3)")
+        >>> monitor = spec.monitor(watch=["asked", "gnt - req"])
+        >>> print(monitor.update(0.0, req=5, gnt=2), monitor["asked"], monitor["gnt - req"])
+        None 2.0 -3.0
         """
         formula = self.judged(self.formula, self._semantics(semantics))
+        names = (watch,) if isinstance(watch, str) else tuple(dict.fromkeys(watch))
+        watched = [self._watched(name, semantics) for name in names]
+        again = partial(
+            self.monitor,
+            time=time,
+            period=period,
+            tolerance=tolerance,
+            resolution=resolution,
+            semantics=semantics,
+            watch=names,
+        )
         if self._time(time) == "dense":
             return DenseMonitor(
                 formula,
@@ -192,6 +213,8 @@ class Specification:
                 resolution=self._resolution(resolution),
                 backend=self.backend,
                 known=self._declared,
+                watch=watched,
+                again=again,
             )
         return Monitor(
             formula,
@@ -200,6 +223,8 @@ class Specification:
             tolerance=tolerance,
             backend=self.backend,
             known=self._declared,
+            watch=watched,
+            again=again,
         )
 
     def judged(self, formula: Formula, semantics: str | Judge | None = None) -> Formula:
@@ -255,6 +280,13 @@ class Specification:
             variables=self.document.variables or None,
             unit=self.unit,
         )
+
+    def _watched(self, name: str, semantics: Semantics | None) -> Watched:
+        formula = self.named(name)
+        if not interface.is_number(formula):
+            formula = self.judged(formula, self._semantics(semantics))
+        named = any(assertion.name == name for assertion in self.document.assertions)
+        return Watched(name, formula, self.text if named else name)
 
     @cached_property
     def _lowered(self) -> dict[tuple[Formula, str], Formula]:

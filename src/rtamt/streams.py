@@ -12,9 +12,9 @@ import numpy as np
 from rtamt.engine import dense_signals, signals
 from rtamt.engine.dense_evaluate import reach
 from rtamt.engine.dense_monitor import DenseMonitor
-from rtamt.engine.dense_signals import TimeScale
 from rtamt.engine.monitor import Monitor
 from rtamt.engine.signals import Signal
+from rtamt.engine.ticks import TimeScale, kind_of
 from rtamt.errors import TraceError, UsageError
 from rtamt.rewrite.anchor import Leaf, anchor, check_in_chunks
 from rtamt.rewrite.check import check_bounds, check_dense
@@ -215,7 +215,7 @@ class _DenseStream(_Stream):
             signal = monitor.update_many(given)
             if self._scale is None:
                 first, _ = next(iter(given.values()))
-                self._scale = TimeScale(self.spec.resolution, dense_signals.kind_of(first))
+                self._scale = TimeScale(self.spec.resolution, kind_of(first))
             self._take(formula, signal)
         assert self._scale is not None
         for name, (times, values) in given.items():

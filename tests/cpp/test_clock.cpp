@@ -65,6 +65,27 @@ TEST(ticks_after_regular_times_go_on_from_the_first_of_them) {
     CHECK(clock.stamps().last() == 3.0 + 9 * 0.1 && clock.stamps().regular());
 }
 
+TEST(a_copy_tells_the_same_times_and_goes_on_alike) {
+    for (const std::size_t irregular : {std::size_t{0}, std::size_t{3}, std::size_t{9}}) {
+        Clock clock(1.0, 0.1, false, 4);
+        for (std::size_t i = 0; i < 9; ++i)
+            clock.advance(static_cast<double>(i) + (i >= irregular ? 0.25 : 0.0));
+        rtamt::Snapshot written;
+        clock.transfer(written);
+        Clock twin(1.0, 0.1, false, 4);
+        rtamt::Snapshot read(written.bytes());
+        twin.transfer(read);
+        read.end();
+        clock.tick(2);
+        twin.tick(2);
+        std::vector<double> times(4);
+        std::vector<double> others(4);
+        clock.stamps().copy(4, times.data());
+        twin.stamps().copy(4, others.data());
+        CHECK(times == others && twin.violations() == clock.violations());
+    }
+}
+
 TEST(ticks_of_many_samples_are_as_many_ticks) {
     Clock clock(0.5, 0.5, true, 4);
     clock.tick(4);

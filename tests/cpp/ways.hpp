@@ -94,8 +94,38 @@ inline std::optional<Failure> offline(const Program& program, const std::vector<
     return Executor::evaluate(program, pointers(columns, 0), count, targets);
 }
 
-// The one thing to check of a program that cannot fail: offline, online in any chunks, and again
-// after a reset, it gives what the definition gives.
+// Makes an executor that has run go on where another one of the same program is.
+inline void copy(Executor& from, Executor& to) {
+    rtamt::Snapshot written;
+    from.transfer(written);
+    rtamt::Snapshot read(written.bytes());
+    to.transfer(read);
+    read.end();
+}
+
+// A copy made anywhere in the trace goes on as if it had seen all of it, whatever the original
+// does.
+inline void check_copy(const Program& program, const std::vector<Signal>& columns,
+                       std::size_t count, Random& random, const std::vector<Signal>& expected,
+                       const std::string& note) {
+    const auto seen = static_cast<std::size_t>(random.between(0, static_cast<int>(count)));
+    std::vector<Signal> outputs(program.outputs.size());
+    Executor original(program);
+    CHECK(!push(original, columns, 0, seen / 2, outputs));
+    CHECK(!push(original, columns, seen / 2, seen - seen / 2, outputs));
+    Executor twin(program);
+    copy(original, twin);
+    auto others = outputs;
+    CHECK(!finish(original, others));
+    CHECK(!push(twin, columns, seen, count - seen, outputs));
+    CHECK(!finish(twin, outputs));
+    CHECK_NOTE(outputs == expected, note + ", copied at " + std::to_string(seen));
+    copy(twin, original);
+    CHECK(original.finished() && original.samples() == static_cast<std::int64_t>(count));
+}
+
+// The one thing to check of a program that cannot fail: offline, online in any chunks, copied, and
+// again after a reset, it gives what the definition gives.
 inline void check_all_ways(const Program& program, const std::vector<Signal>& columns,
                            std::size_t count, Random& random, const std::string& note) {
     const auto expected = oracle::answer(program, columns, count);
@@ -110,6 +140,7 @@ inline void check_all_ways(const Program& program, const std::vector<Signal>& co
         CHECK(executor.finished());
         executor.reset();
     }
+    check_copy(program, columns, count, random, expected.outputs, note);
 }
 
 } // namespace ways

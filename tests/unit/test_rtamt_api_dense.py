@@ -167,15 +167,39 @@ def test_an_assertion_that_the_result_does_not_use_changes_nothing():
     assert spec.update(["x", [[0, 5]]]) == [[0.0, 2.0]]
 
 
-def test_online_the_latest_values_are_kept_and_those_of_subformulas_are_not_made_up():
-    spec = declared("low = x <= 3; once[0:1](low)", "x")
+@pytest.mark.parametrize("compiled", [True, False])
+def test_values_of_subformulas_online_are_what_the_update_made_known(monkeypatch, compiled):
+    if not compiled:
+        monkeypatch.setitem(sys.modules, "rtamt.engine._core", None)
+        monkeypatch.delattr("rtamt.engine._core", raising=False)
+    spec = declared("low = x <= 3; high = once[0:2](y >= 2); far = y >= 9; once[0:1](low and high)")
     assert spec.get_value("x") == 0.0
     spec.update(["x", [[0, 1], [2, 4]]])
-    assert (spec.get_value("x"), spec.get_value("out")) == (4, 2.0)
-    assert said(spec.get_value, "low") == (
-        "'low' is not kept while signals are watched in dense time; ask for x, out, "
-        "or evaluate the finished signals offline"
-    )
+    assert spec.get_value("low") == []
+    spec.update(["y", [[0, 5], [1, 1], [4, 5]]])
+    assert spec.get_value("x") == [[0.0, 1.0], [2.0, 4.0]]
+    assert spec.get_value("low") == spec.get_value("(x)<=(3.0)") == [[0.0, 2.0], [2.0, -1.0]]
+    assert spec.get_value("high") == [[0.0, 3.0], [2.0, 3.0]]
+    assert spec.get_value("far") == [[0.0, -4.0], [1.0, -8.0], [2.0, -8.0]]
+    assert spec.get_value("9.0") == [[0.0, 9.0], [2.0, 9.0]]
+    assert spec.get_value("out") == [[0.0, 2.0], [2.0, 2.0]]
+    spec.update(["x", [[7, 5]]])
+    assert spec.get_value("high") == [[3.0, -1.0], [4.0, 3.0]]
+    assert spec.get_value("low") == [[4.0, -1.0]]
+    spec.update()
+    assert spec.get_value("low") == []
+    spec.reset()
+    assert said(spec.get_value, "low") == "'low' has no value yet; call update() or evaluate() first"
+
+
+def test_an_assertion_over_other_variables_is_not_watched():
+    spec = declared("late = y >= 1; ahead = eventually(x >= 1); x >= 3")
+    spec.update(["x", [[0, 5]]])
+    for name, text in (("late", "(y)>=(1.0)"), ("ahead", "eventually((x)>=(1.0))")):
+        assert said(spec.get_value, name) == (
+            f"'{text}' is no part of what is watched: the result, and past assertions that read no other "
+            f"variables; evaluate the finished signals offline"
+        )
 
 
 def test_objects_are_read_and_written(monkeypatch):
@@ -245,7 +269,7 @@ def test_a_failed_update_leaves_the_monitor_as_it_was():
         "'x' has two samples at 1 s (sample 2 and the one before, with ticks of 1 ns): keep one of them"
     )
     assert said(spec.update, ["q", []]) == "unknown variable 'q' in the data; the formula reads x"
-    assert spec.get_value("x") == 5
+    assert spec.get_value("x") == [[0.0, 5.0]]
     assert spec.update(["x", [[1, 4]]]) == [[1.0, 5.0]]
 
 

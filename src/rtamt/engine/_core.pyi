@@ -48,8 +48,17 @@ class Monitor:
     def reset(self) -> None:
         """Forget every sample."""
 
+    def state(self) -> bytes:
+        """What the samples so far have left behind; in dense time but for what tell() says."""
+
+    def restore(self, state: bytes) -> None:
+        """Go on as the monitor of this state would, which was made like this one."""
+
     def last(self, instruction: int) -> float:
         """The value of an instruction at the last slot."""
+
+    def latest(self, output: int) -> float | None:
+        """The value of an output that the last sample made known, or None."""
 
     def recent(self, count: int) -> NDArray[np.float64]:
         """The times of the last samples, as many as values can be outstanding and one more."""
@@ -97,6 +106,12 @@ class DenseMonitor:
 
     def reset(self) -> None:
         """Forget every sample."""
+
+    def state(self) -> bytes:
+        """What the samples so far have left behind; in dense time but for what tell() says."""
+
+    def restore(self, state: bytes) -> None:
+        """Go on as the monitor of this state would, which was made like this one."""
 
     def known(self, output: int) -> int | None:
         """The last tick at which an output is known, or None."""

@@ -2,28 +2,28 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rtamt.engine import dense_signals
+from rtamt.engine import dense_signals, signals
 from rtamt.engine.compile import compile_program
 from rtamt.engine.core import check_call, core, making
 from rtamt.engine.dense_evaluate import undefined
 from rtamt.engine.dense_python_backend import PythonDenseMonitor
 from rtamt.engine.dense_signals import TickSignal
 from rtamt.engine.drivers import calls_of
+from rtamt.engine.online import OnlineMonitor, Watched, depth_of
 from rtamt.engine.python_backend import Refused
 from rtamt.engine.signals import Signal
 from rtamt.engine.ticks import NANOSECOND, TimeScale, kind_of
 from rtamt.errors import TraceError, UsageError
-from rtamt.language.formula import variables
 from rtamt.rewrite.check import check_bounds, check_dense, check_online
 from rtamt.rewrite.desugar import desugar
-from rtamt.rewrite.horizon import horizon
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Collection
+    from collections.abc import Callable, Collection, Sequence
     from fractions import Fraction
 
     from rtamt.engine.dense_signals import Samples
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from rtamt.language.formula import Formula
 
 
-class DenseMonitor:
+class DenseMonitor(OnlineMonitor):
     """Watches one formula over signals that change at any instant.
 
     Built by ``Specification.monitor(time="dense")``. After every update it has told ρ for exactly
@@ -45,7 +45,11 @@ class DenseMonitor:
     Signal(times=array([], dtype=float64), values=array([], dtype=float64))
     >>> monitor.update(2.5, x=4.0)
     Signal(times=array([0. , 1.5]), values=array([2., 1.]))
+
+    ``copy.copy`` branches a monitor: the copy has the same state and goes its own way. So does pickling.
     """
+
+    _remembered = ("_finished", "_scale")
 
     def __init__(
         self,
@@ -55,39 +59,47 @@ class DenseMonitor:
         resolution: Fraction = NANOSECOND,
         backend: str = "cpp",
         known: Collection[str] = (),
+        watch: Sequence[Watched] = (),
+        again: Callable[[], OnlineMonitor] | None = None,
         scale: TimeScale | None = None,
+        parts: bool = False,
     ) -> None:
-        check_dense(formula, text)
-        check_bounds(formula, resolution, text, "resolution")
-        check_online(formula, text)
-        depth = horizon(formula)
-        assert depth is not None
-        self.input_names: tuple[str, ...] = variables(formula)
+        for watched in (Watched("", formula, text), *watch):
+            check_dense(watched.formula, watched.text)
+            check_bounds(watched.formula, resolution, watched.text, "resolution")
+            check_online(watched.formula, watched.text)
+        super().__init__(formula, watch, known, again)
         if not self.input_names:
             raise UsageError(
                 "the formula reads no variable, so in dense time nothing says when to evaluate it"
             )
-        self._depth = depth
+        self._depth = depth_of(formula)
         self._tick = resolution
-        self._known_names = frozenset(known)
         self._given_scale = scale
         self._scale: TimeScale | None = None
-        self._finished = False
-        self._backend: Any
-        if backend == "python":
-            self._program = None
-            self._backend = PythonDenseMonitor((formula,), self.input_names, resolution)
-            self._refused: Any = Refused
-            self._undefined: Any = ()
-        else:
-            program = compile_program((desugar(formula),), resolution, self.input_names, domain="dense")
-            self._program = program
-            with making(program):
-                self._backend = core().DenseMonitor(
-                    program.code(), list(self.input_names), calls=calls_of(program)
-                )
-            self._refused, self._undefined = core().Refused, core().Undefined
-        self._update = self._backend.update
+        self._program = None
+        if backend != "python":
+            outputs = [desugar(formula) for formula in self._formulas]
+            program = compile_program(outputs, resolution, self.input_names, domain="dense")
+            every = range(len(program.instructions)) if parts else ()
+            self._program = replace(program, outputs=(*program.outputs, *every))
+        self._connect(self._open())
+
+    def _open(self) -> Any:
+        if self._program is None:
+            return PythonDenseMonitor(self._formulas, self.input_names, self._tick)
+        with making(self._program):
+            return core().DenseMonitor(
+                self._program.code(), list(self.input_names), self._unread, calls=calls_of(self._program)
+            )
+
+    def _connect(self, backend: Any) -> None:
+        self._backend = backend
+        self._update = backend.update
+        self._refused: Any = Refused if self._program is None else core().Refused
+        self._undefined: Any = () if self._program is None else core().Undefined
+        if self._scale is not None:
+            self._tell(self._scale)
 
     @property
     def horizon(self) -> float:
@@ -98,11 +110,6 @@ class DenseMonitor:
     def samples(self) -> int:
         """How many samples of any variable the monitor has taken since the start or the last reset."""
         return sum(self._backend.counts)
-
-    @property
-    def memory(self) -> int:
-        """Bytes of state: that of the events inside the windows."""
-        return int(self._backend.state_bytes)
 
     def update(self, time: Any, /, **values: float) -> Signal:
         """Take the values of any variables at one instant (seconds, integer ns, or a datetime).
@@ -117,14 +124,18 @@ class DenseMonitor:
         except self._undefined as error:
             raise self._no_value(error, self._scale) from None
         times = np.array([time]) if isinstance(time, (np.integer, np.datetime64)) else [time]
-        return self._take({name: (times, [value]) for name, value in values.items()})
+        flat = self._read_by_formula(values)
+        for name in flat:
+            if name not in self.input_names:
+                raise signals.unknown_variable(name, self.input_names)
+        return self._take({name: (times, [value]) for name, value in flat.items()})
 
     def update_many(self, data: Any) -> Signal:
         """Take samples: a mapping from variable to (times, values), or to [time, value] pairs.
 
         Variables may be left out or have no samples. Returns and raises as :meth:`update` does.
         """
-        return self._take(data)
+        return self._take(dense_signals.columns_of(data, self.input_names, self._known))
 
     def finish(self) -> Signal:
         """Say that no more samples will come: every signal holds its last value. Returns the rest."""
@@ -139,6 +150,31 @@ class DenseMonitor:
         self._finished = True
         return self._signal(known)
 
+    def __getitem__(self, name: str) -> Signal:
+        """Return what the last update made known of a formula that is watched (see ``Specification.monitor``).
+
+        ``name``: as given to ``watch=``. The Signal is of the form that :meth:`update` returns, each
+        formula known at its own horizon. Raises :class:`UsageError` for what is not watched.
+
+        >>> import rtamt
+        >>> monitor = rtamt.parse("eventually[0:1](x >= 3)").monitor(time="dense", watch=["x >= 3"])
+        >>> _ = monitor.update(0.5, x=1.0)
+        >>> monitor["x >= 3"]
+        Signal(times=array([0.5]), values=array([-2.]))
+        """
+        return self._signal(self._backend.told(self._output(name)))
+
+    def part(self, formula: Formula) -> Signal:
+        """Return what the last update made known of any part of the formulas; they have no future operators.
+
+        For monitors that were made with ``parts=True``, whose updates cost a few nanoseconds more for
+        each part.
+        """
+        if self._program is None:
+            return self._signal(self._backend.part(formula))
+        output = len(self._formulas) + self._program.value_of[desugar(formula)]
+        return self._signal(self._backend.told(output))
+
     def reset(self) -> None:
         """Forget the trace; the next sample is the first."""
         self._backend.reset()
@@ -147,12 +183,11 @@ class DenseMonitor:
 
     # ---- the long way ----------------------------------------------------------------------------
 
-    def _take(self, data: Any) -> Signal:
+    def _take(self, columns: dict[str, tuple[Any, Any]]) -> Signal:
         if self._finished:
             raise UsageError("the monitor has finished its trace; call reset() before the next sample")
-        columns = dense_signals.columns_of(data, self.input_names, self._known_names)
         given = [column for column in columns.values() if len(column[0])]
-        if not given:
+        if not given and self._scale is None:
             return self._signal((np.empty(0, np.int64), np.empty(0)))
         scale = self._scale or self._given_scale or TimeScale(self._tick, kind_of(given[0][0]))
         chunk = self._chunk(columns, scale)

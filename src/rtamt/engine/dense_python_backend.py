@@ -14,10 +14,10 @@ from rtamt.engine.dense_reference import DenseReferenceMonitor
 from rtamt.engine.python_backend import Refused
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
     from fractions import Fraction
 
-    from rtamt.engine.dense_reference import Known
+    from rtamt.engine.dense_reference import Events, Known
     from rtamt.engine.dense_signals import Samples
     from rtamt.engine.ticks import TimeScale
     from rtamt.language.formula import Formula
@@ -28,9 +28,13 @@ class PythonDenseMonitor:
 
     def __init__(self, formulas: Sequence[Formula], names: tuple[str, ...], tick: Fraction) -> None:
         self._names = names
+        self._tick = tick
         self._monitor = DenseReferenceMonitor(formulas, names, tick)
         self._outputs = len(formulas)
+        self._last: list[int | None]
+        self._until: list[int | None]  # how far each output was told
         self._told: list[Samples]  # what the last update made known
+        self._latest: tuple[Mapping[str, Events], Sequence[Events]]  # the trace before it, and its chunk
         self._start_over()
 
     @property
@@ -55,10 +59,12 @@ class PythonDenseMonitor:
         """Refuse: there is no quick way here."""
         raise Refused("time")
 
-    def push(self, columns: Sequence[Samples]) -> Samples:
+    def push(self, columns: Sequence[Events]) -> Samples:
         """Take a chunk, checked by the caller; return what became known of the first output."""
         given = dict(zip(self._names, columns, strict=True))
+        before = self._monitor.kept
         self._told = self._closed(self._monitor.push(given))
+        self._latest = before, columns
         for i, (ticks, _) in enumerate(columns):
             if len(ticks):
                 self._counts[i] += len(ticks)
@@ -74,16 +80,34 @@ class PythonDenseMonitor:
         """Return what the last update made known of an output."""
         return self._told[output]
 
+    def part(self, formula: Formula) -> Samples:
+        """Return what the last chunk made known of a formula: it is taken once more, for this one alone."""
+        before, columns = self._latest
+        again = PythonDenseMonitor((formula,), self._names, self._tick)
+        again.push([before.get(name, ([], [])) for name in self._names])
+        return again.push(columns)
+
     def reset(self) -> None:
         """Forget the trace."""
         self._monitor.reset()
         self._start_over()
 
+    def state(self) -> tuple[Any, ...]:
+        """Return what the samples so far have left behind."""
+        mine = self._counts, self._last, self._until, self._values, self._told
+        return tuple(list(items) for items in mine), self._latest, self._monitor.state()
+
+    def restore(self, state: tuple[Any, ...]) -> None:
+        """Go on as the monitor of this state would, which was made like this one."""
+        (self._counts, self._last, self._until, self._values, self._told), self._latest, definition = state
+        self._monitor.restore(definition)
+
     def _start_over(self) -> None:
         self._counts = [0 for _ in self._names]
-        self._last: list[int | None] = [None for _ in self._names]
-        self._until: list[int | None] = [None] * self._outputs
+        self._last = [None for _ in self._names]
+        self._until = [None] * self._outputs
         self._values = [float("nan")] * self._outputs  # the last values told
+        self._latest = ({}, [([], []) for _ in self._names])
         self._told = [(np.empty(0, np.int64), np.empty(0))] * self._outputs
 
     def _closed(self, known: Sequence[Known]) -> list[Samples]:

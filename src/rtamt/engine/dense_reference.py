@@ -12,7 +12,7 @@ no NaN.
 from __future__ import annotations
 
 from math import isnan
-from typing import TYPE_CHECKING, NamedTuple, TypeAlias
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -117,6 +117,19 @@ class DenseReferenceMonitor:
         self._kept: dict[str, tuple[list[int], list[float]]] = {}
         self._until: list[int | None] = [None for _ in self._formulas]
         self._finished = False
+
+    @property
+    def kept(self) -> Mapping[str, Events]:
+        """The trace so far; never changed in place."""
+        return self._kept
+
+    def state(self) -> tuple[Any, ...]:
+        """Return what the samples so far have left behind; none of it is ever changed in place."""
+        return self._kept, self._until, self._finished
+
+    def restore(self, state: tuple[Any, ...]) -> None:
+        """Go on as the monitor of this state would, which was made like this one."""
+        self._kept, self._until, self._finished = state
 
     def push(self, chunks: Mapping[str, Events]) -> list[Known]:
         """Take new events of some of the variables, times later than all that came before of the same one.

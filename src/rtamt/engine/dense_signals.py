@@ -79,7 +79,8 @@ def split(samples: Any, name: str) -> tuple[Any, Any]:
 def columns_of(data: Any, names: Sequence[str], known: Collection[str] = ()) -> dict[str, tuple[Any, Any]]:
     """Return times (an array or a list) and values (as given) of each variable that is in the data.
 
-    With a key ``"time"`` all variables share its stamps. A variable with fields (``req.value``) may be
+    With a key ``"time"`` all variables share its stamps, unless the formula reads a variable of that
+    name. A variable with fields (``req.value``) may be
     given as ``req``, whose values are objects that have them.
     """
     if isinstance(data, signals.Clocked):
@@ -92,7 +93,8 @@ def columns_of(data: Any, names: Sequence[str], known: Collection[str] = ()) -> 
             )
         data = {name: data[name] for name in (*names, signals.TIME) if name in data.columns}
     signals.refuse_unknown(list(data), names, known)
-    shared = sequence_of(data[signals.TIME], signals.TIME) if signals.TIME in data else None
+    stamped = signals.TIME in data and signals.TIME not in names
+    shared = sequence_of(data[signals.TIME], signals.TIME) if stamped else None
     columns = {}
     for name in names:
         head, *path = (name,) if name in data else name.split(".")

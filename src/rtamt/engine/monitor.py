@@ -12,20 +12,19 @@ from rtamt.engine import python_backend, signals
 from rtamt.engine.compile import compile_program
 from rtamt.engine.core import check_call, core, core_monitor
 from rtamt.engine.evaluate import undefined
+from rtamt.engine.online import OnlineMonitor, Watched, depth_of
 from rtamt.engine.signals import Signal
 from rtamt.errors import TraceError, UsageError, shown
-from rtamt.language.formula import variables
 from rtamt.rewrite.check import check_bounds, check_online
 from rtamt.rewrite.desugar import desugar
-from rtamt.rewrite.horizon import horizon
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Sequence
+    from collections.abc import Callable, Collection, Sequence
 
     from rtamt.language.formula import Formula
 
 
-class Monitor:
+class Monitor(OnlineMonitor):
     """Watches one formula over a stream of samples in discrete time.
 
     Built by ``Specification.monitor``. Feed it with one of :meth:`update` (a sample by name),
@@ -39,7 +38,11 @@ class Monitor:
     [None, 1.0, 1.0]
     >>> monitor.finish()
     Signal(times=array([2.]), values=array([3.]))
+
+    ``copy.copy`` branches a monitor: the copy has the same state and goes its own way. So does pickling.
     """
+
+    _remembered = ("_finished", "_news")
 
     def __init__(
         self,
@@ -50,36 +53,46 @@ class Monitor:
         tolerance: float = signals.TOLERANCE,
         backend: str = "cpp",
         known: Collection[str] = (),
+        watch: Sequence[Watched] = (),
+        again: Callable[[], OnlineMonitor] | None = None,
     ) -> None:
-        check_bounds(formula, period, text)
-        check_online(formula, text)
+        for watched in (Watched("", formula, text), *watch):
+            check_bounds(watched.formula, period, watched.text)
+            check_online(watched.formula, watched.text)
         signals.check_tolerance(tolerance)
-        depth = horizon(formula, period)
-        assert depth is not None
+        super().__init__(formula, watch, known, again)
         self._period = period
         self._tolerance = tolerance
-        self._depth = depth
-        self._lag = int(depth / period)
-        self.input_names: tuple[str, ...] = variables(formula)
-        self._known = frozenset(known)
-        self._finished = False
+        self._depths = [depth_of(formula, period) for formula in self._formulas]
+        self._lags = [int(depth / period) for depth in self._depths]
+        self._oldest = max(self._lags)  # samples that may still have a value to come
+        # What the last chunk made known, and how many samples there were then: after any other update
+        # there are more.
+        self._news: tuple[int, list[Signal]] = (0, [])
         self._program = None
-        if backend == "python":
-            self._backend: Any = python_backend.PythonMonitor((formula,), self.input_names, period, tolerance)
-            self._refused: Any = python_backend.Refused
-            self._undefined: Any = ()
-        else:
-            _core = core()
-            self._program = compile_program((desugar(formula),), period, self.input_names)
-            self._backend = core_monitor(self._program, float(period), tolerance)
-            self._refused, self._undefined = _core.Refused, _core.Undefined
-        self._update = self._backend.update
-        self._step = self._backend.step
+        if backend != "python":
+            outputs = [desugar(formula) for formula in self._formulas]
+            self._program = compile_program(outputs, period, self.input_names)
+        self._connect(self._open())
+
+    def _open(self) -> Any:
+        if self._program is None:
+            return python_backend.PythonMonitor(
+                self._formulas, self.input_names, self._period, self._tolerance
+            )
+        return core_monitor(self._program, float(self._period), self._tolerance)
+
+    def _connect(self, backend: Any) -> None:
+        self._backend = backend
+        self._update = backend.update
+        self._step = backend.step
+        self._refused: Any = python_backend.Refused if self._program is None else core().Refused
+        self._undefined: Any = () if self._program is None else core().Undefined
 
     @property
     def horizon(self) -> float:
         """Seconds after t at which ρ at t is known."""
-        return float(self._depth)
+        return float(self._depths[0])
 
     @property
     def period(self) -> Fraction:
@@ -90,11 +103,6 @@ class Monitor:
     def samples(self) -> int:
         """How many samples the monitor has taken since the start or the last reset."""
         return int(self._backend.samples)
-
-    @property
-    def memory(self) -> int:
-        """Bytes of state."""
-        return int(self._backend.state_bytes)
 
     def update(self, time: float, /, **values: float) -> float | None:
         """Take one sample: ``time`` in seconds and a number for every variable.
@@ -158,12 +166,19 @@ class Monitor:
         if self._finished:
             raise self._is_finished()
         times, columns = self._chunk(data)
-        before = self._backend.recent(min(self._lag, self.samples))
+        samples = self.samples
+        before = self._backend.recent(min(self._oldest, samples))
         try:
-            known = self._backend.push(times, columns)[0]
+            known = self._backend.push(times, columns)
         except self._undefined as error:
             raise self._no_value(error, times) from None
-        return Signal(np.concatenate((before, times))[: len(known)], known)
+        stamps = np.concatenate((before, times))
+        news = []
+        for lag, values in zip(self._lags, known, strict=True):
+            first = len(before) - min(lag, samples)
+            news.append(Signal(stamps[first : first + len(values)], values))
+        self._news = samples + len(times), news
+        return news[0]
 
     def finish(self) -> Signal:
         """Say that no more samples will come; returns the values that were still unknown.
@@ -177,11 +192,31 @@ class Monitor:
         if self._finished:
             return Signal(np.empty(0), np.empty(0))
         try:
-            values = self._backend.finish()[0]
+            known = self._backend.finish()
         except self._undefined as error:
             raise self._no_value(error, ()) from None
         self._finished = True
-        return Signal(self._backend.recent(len(values)), values)
+        news = [Signal(self._backend.recent(len(values)), values) for values in known]
+        self._news = self.samples, news
+        return news[0]
+
+    def __getitem__(self, name: str) -> float | Signal | None:
+        """Return what the last update made known of a formula that is watched (see ``Specification.monitor``).
+
+        ``name``: as given to ``watch=``. After :meth:`update` and :meth:`step` the value at the time of
+        the sample less the formula's own horizon, None before that; after :meth:`update_many` and
+        :meth:`finish` a Signal. Raises :class:`UsageError` for what is not watched.
+
+        >>> import rtamt
+        >>> monitor = rtamt.parse("eventually[0:1](x >= 3)").monitor(watch=["x >= 3"])
+        >>> print(monitor.update(0.0, x=1), monitor["x >= 3"])
+        None -2.0
+        """
+        output = self._output(name)
+        samples, news = self._news
+        if news and samples == self.samples:
+            return news[output]
+        return self._backend.latest(output)  # type: ignore[no-any-return]
 
     def reset(self) -> None:
         """Forget the trace; the next sample is the first.
@@ -196,16 +231,7 @@ class Monitor:
         """
         self._backend.reset()
         self._finished = False
-
-    def _read_by_formula(self, values: dict[str, Any]) -> dict[str, Any]:
-        """Return what the formula reads: objects taken apart, declared variables it does not read left out."""
-        heads = {name.split(".")[0] for name in self.input_names}
-        flat = {k: v for k, v in values.items() if k in self.input_names or k not in self._known | heads}
-        for name in self.input_names:
-            head, *path = name.split(".")
-            if path and name not in values and head in values:
-                flat[name] = signals.field_of(values[head], head, path, self.samples)
-        return flat
+        self._news = (0, [])
 
     def _next_time(self) -> float:
         return float(self._backend.last_time) + float(self._period) if self.samples else 0.0
@@ -243,7 +269,7 @@ class Monitor:
         instruction, sample, *_ = error.args
         assert self._program is not None
         check_call(error, self._program.origins[instruction])
-        stamps = np.concatenate((self._backend.recent(min(self._lag, self.samples)), new))
+        stamps = np.concatenate((self._backend.recent(min(self._oldest, self.samples)), new))
         first = self.samples + len(new) - len(stamps)
         return undefined(self._program.origins[instruction], sample, float(stamps[sample - first]))
 

@@ -66,6 +66,7 @@ class PythonMonitor:
         self._stamps: deque[float] = deque(maxlen=max(lags, default=0) + 1)
         self._values: dict[str, float] = {}
         self._finished = False
+        self._news: list[FloatArray] = [np.empty(0) for _ in formulas]  # of the last update
         self.violations = 0
 
     @property
@@ -86,6 +87,11 @@ class PythonMonitor:
     def last(self, part: Formula) -> float:
         """Return the value at the last sample of a past formula: one of the monitor's, or a part of one."""
         return self._monitor.last(part)
+
+    def latest(self, output: int) -> float | None:
+        """Return the value of an output that the last sample made known, or None."""
+        news = self._news[output]
+        return float(news[-1]) if len(news) else None
 
     def recent(self, count: int) -> FloatArray:
         """Return the stamps of the last ``count`` samples."""
@@ -120,7 +126,7 @@ class PythonMonitor:
         off = [self._off(a, b) for a, b in zip([self.last_time, *times], times, strict=False)]
         if len(times):
             self._begin(float(times[0]))
-        known = self._monitor.push(list(columns) or [np.zeros(len(times))])
+        known = self._news = self._monitor.push(list(columns) or [np.zeros(len(times))])
         self._stamps.extend(float(time) for time in times)
         self.violations += sum(off)
         if len(times):
@@ -139,7 +145,19 @@ class PythonMonitor:
         self._finished = False
         self._stamps.clear()
         self._values = {}
+        self._news = [np.empty(0) for _ in self._news]
         self.violations = 0
+
+    def state(self) -> tuple[Any, ...]:
+        """Return what the samples so far have left behind."""
+        mine = tuple(self._stamps), self._values, self._news, self._finished, self.violations
+        return mine, self._monitor.state()
+
+    def restore(self, state: tuple[Any, ...]) -> None:
+        """Go on as the monitor of this state would, which was made like this one."""
+        (stamps, self._values, self._news, self._finished, self.violations), definition = state
+        self._stamps.extend(stamps)
+        self._monitor.restore(definition)
 
     def _take(self, time: Any, values: Mapping[str, float]) -> float | None:
         time = _number(time)
@@ -152,7 +170,8 @@ class PythonMonitor:
             raise Refused("period")
         columns = [np.array([values[name]]) for name in self._names] or [np.zeros(1)]
         self._begin(time)
-        known = self._monitor.push(columns)[0]
+        self._news = self._monitor.push(columns)
+        known = self._news[0]
         self._stamps.append(time)
         self._values = dict(values)
         self.violations += off
@@ -169,7 +188,16 @@ class PythonMonitor:
 
 
 class _Questioned(ReferenceMonitor):
-    """The definition's monitor, which also tells the last value of parts of its formulas."""
+    """The definition's monitor, which also tells the last value of parts of its formulas, and its state."""
+
+    def state(self) -> tuple[Any, ...]:
+        """Return what the samples so far have left behind; none of it is ever changed in place."""
+        return self.start, self._samples, self._first, tuple(self._kept), self._finished
+
+    def restore(self, state: tuple[Any, ...]) -> None:
+        """Go on as the monitor of this state would."""
+        self.start, self._samples, self._first, kept, self._finished = state
+        self._kept = list(kept)
 
     def last(self, part: Formula) -> float:
         """Return the value of ``part`` at the last sample: that sample is taken once more, for the part alone."""

@@ -10,8 +10,8 @@ import numpy as np
 
 from rtamt.engine import dense_evaluate, dense_reference, evaluate, reference
 from rtamt.engine.dense_evaluate import DenseRecording
-from rtamt.engine.dense_signals import kind_of
 from rtamt.engine.signals import TOLERANCE, Recording, is_number
+from rtamt.engine.ticks import kind_of
 from rtamt.errors import StlError, UsageError, shown
 from rtamt.explain.cells import NEVER, Steps
 from rtamt.language.formula import Apply, postorder
@@ -189,8 +189,9 @@ class DenseTimeline(Timeline):
         """See :class:`Timeline`."""
         scale = self._recording.scale
         try:
-            stamps = [at] if scale.kind != "ns" else np.array([at])
-            found = int(scale.ticks(stamps, "at")[0]) - self._start if kind_of(stamps) == scale.kind else -1
+            stamps = [at] if scale.kind != "nanoseconds" else np.array([at])
+            kind = "seconds" if scale.kind == "units" else scale.kind
+            found = int(scale.ticks(stamps, "at")[0]) - self._start if kind_of(stamps) == kind else -1
         except (StlError, TypeError, ValueError):
             found = -1
         if 0 <= found <= self._last:
@@ -205,7 +206,7 @@ class DenseTimeline(Timeline):
         if cell >= NEVER // 2:
             return None
         time = self._recording.scale.times(np.array([cell + self._start], np.int64))[0]
-        return time if self._recording.scale.kind == "datetime" else time.item()
+        return time.item() if self._recording.scale.kind in ("seconds", "nanoseconds") else time
 
     def show(self, cell: int) -> str:
         """See :class:`Timeline`."""

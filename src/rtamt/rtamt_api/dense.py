@@ -6,11 +6,13 @@ from typing import TYPE_CHECKING, Any
 
 from rtamt.engine import dense_evaluate, signals
 from rtamt.engine.dense_monitor import DenseMonitor
+from rtamt.engine.online import Watched
 from rtamt.engine.ticks import NANOSECOND, TimeScale, all_integers
 from rtamt.errors import NameInFormulaError, TraceError, UsageError, shown
 from rtamt.language.formula import Var, postorder, variables
+from rtamt.language.printer import canonical
 from rtamt.language.units import UNITS
-from rtamt.rewrite.check import check_bounds, check_dense
+from rtamt.rewrite.check import check_bounds, check_dense, has_future
 from rtamt.rtamt_api.backends import check_language, dense_signal, is_compiled
 from rtamt.rtamt_api.declarations import head_of
 from rtamt.rtamt_api.explained import ExplainedSpecification
@@ -135,6 +137,7 @@ class StlDenseTimeOnlineSpecification(OnlineSpecification, DenseTimeSpecificatio
     def __init__(self) -> None:
         super().__init__()
         self._monitor: DenseMonitor | None = None  # made by the first update
+        self._watched: tuple[Formula, ...] = ()  # by it
         self._whole = True  # whether all times so far were integers
 
     @raises_rtamt
@@ -157,7 +160,7 @@ class StlDenseTimeOnlineSpecification(OnlineSpecification, DenseTimeSpecificatio
         self._objects.update({name: values[-1] for name, (_, values) in given.items() if values})
         if len(signal):
             self._publish(float(signal.values[-1]))
-        self._value_of = None
+        self._value_of = self._told
         return _points(signal, self._whole)
 
     def reset(self) -> None:
@@ -167,19 +170,14 @@ class StlDenseTimeOnlineSpecification(OnlineSpecification, DenseTimeSpecificatio
         if self._monitor is not None:
             self._monitor.reset()
 
-    @raises_rtamt
-    def get_value(self, var_name: str) -> Any:
-        """Return the latest value of a variable or of the result, as a number (or object).
-
-        Values of sub-formulas are not kept online: each would be known up to a time of its own. After
-        ``evaluate``, where the class has it, they are there as ``[[time, value], ...]``.
-        """
-        if self._value_of is None and self._monitor is not None and var_name not in self._objects:
+    def _told(self, part: Formula) -> list[list[float]]:
+        """Return what the latest update made known of a part of the specification."""
+        if not any(part == node for formula in self._watched for node in postorder(formula)):
             raise UsageError(
-                f"'{var_name}' is not kept while signals are watched in dense time; ask for "
-                f"{', '.join(self._objects)}, or evaluate the finished signals offline"
+                f"'{canonical(part)}' is no part of what is watched: the result, and past assertions that read "
+                f"no other variables; evaluate the finished signals offline"
             )
-        return super().get_value(var_name)
+        return _points(self._require_monitor().part(self._worth(part)), self._whole)
 
     def _start_over(self, formulas: dict[str, Formula]) -> None:
         super()._start_over(formulas)
@@ -191,8 +189,21 @@ class StlDenseTimeOnlineSpecification(OnlineSpecification, DenseTimeSpecificatio
             formula, text = self._result, self._parsed_document.text
             require_past(formula, text)
             backend = "cpp" if is_compiled() else "python"
+            # Of variables that the result does not read, samples need not come.
+            reads = set(variables(formula))
+            others = [
+                other
+                for other in self._formulas.values()
+                if other is not formula and reads.issuperset(variables(other)) and not has_future(other)
+            ]
+            self._watched = (formula, *others)
             self._monitor = DenseMonitor(
-                self._judged(formula), text=text, backend=backend, scale=self._scale
+                self._judged(formula),
+                text=text,
+                backend=backend,
+                watch=[Watched(str(i), self._judged(other), text) for i, other in enumerate(others)],
+                scale=self._scale,
+                parts=True,
             )
         return self._monitor
 

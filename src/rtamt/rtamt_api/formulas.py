@@ -100,13 +100,14 @@ class Formulas(Declarations):
 
         ``var_name``: the name of a variable or assertion, or the text of a formula, such as its
         canonical text ``'(a)>=(2.0)'``. After ``evaluate`` the value is a list: one number a sample,
-        in dense time ``[[time, value], ...]``. After ``update`` it is the latest number; before both
-        it is what was declared. A variable of a message class gives its object.
+        in dense time ``[[time, value], ...]``. After ``update`` it is the latest number, in dense time
+        again a list: what the update made known. Before both it is what was declared. A variable of a
+        message class gives its object.
         """
         if var_name in self._objects and (self._value_of is None or self._holds(var_name)):
             return self._objects[var_name]
         if self._value_of is None:
-            hint = did_you_mean(var_name, [*self._objects, *self._formulas])
+            hint = "" if var_name in self._formulas else did_you_mean(var_name, self._objects)
             raise UsageError(f"'{var_name}' has no value yet{hint}; call update() or evaluate() first")
         return self._value_of(self._formula_named(var_name))
 

@@ -46,6 +46,14 @@ class Online {
         : outputs(executor.program().outputs.size()), executor_(executor), trace_(trace),
           accepted_(trace.size(), 0) {}
 
+    // The same trace from here on into a copy of the executor.
+    Online(Executor& executor, const Online& first)
+        : outputs(first.outputs.size()), executor_(executor), trace_(first.trace_),
+          accepted_(first.accepted_) {
+        for (std::size_t i = 0; i < outputs.size(); ++i)
+            outputs[i].append(first.outputs[i].view());
+    }
+
     // So many of the next events of each input, in memory of their own that is gone afterwards.
     std::optional<Failure> push(const std::vector<std::size_t>& counts) {
         Trace chunk;
@@ -118,8 +126,39 @@ class Online {
     std::vector<std::size_t> accepted_;
 };
 
-// The one thing to check of a program that cannot fail: offline, online in any chunks, and again
-// after a reset, it gives what the definition gives, never twice and never late.
+// Makes an executor that has run go on where another one of the same program is.
+inline void copy(Executor& from, Executor& to) {
+    rtamt::Snapshot written;
+    from.transfer(written);
+    rtamt::Snapshot read(written.bytes());
+    to.transfer(read);
+    read.end();
+}
+
+// A copy made anywhere in the trace goes on as if it had seen all of it, whatever the original
+// does.
+inline void check_copy(const Program& program, const Trace& trace, Random& random,
+                       const std::vector<Signal>& expected, const std::string& note) {
+    Executor original(program);
+    Online begun(original, trace);
+    for (std::int64_t updates = random.between(0, 6); updates > 0; --updates)
+        CHECK_NOTE(!begun.push(begun.random_counts(random, 5)), note);
+    Executor twin(program);
+    copy(original, twin);
+    Online branch(twin, begun);
+    CHECK_NOTE(!original.finish(begun.outputs), note);
+    while (!branch.done()) {
+        CHECK_NOTE(!branch.push(branch.random_counts(random, 20)), note);
+        CHECK_NOTE(branch.exact(expected), note);
+    }
+    CHECK_NOTE(!twin.finish(branch.outputs), note);
+    CHECK_NOTE(signals_of(branch.outputs) == expected, note);
+    copy(twin, original);
+    CHECK(original.finished() && original.known_until(0) == twin.known_until(0));
+}
+
+// The one thing to check of a program that cannot fail: offline, online in any chunks, copied, and
+// again after a reset, it gives what the definition gives, never twice and never late.
 inline void check_all_ways(const Program& program, const Trace& trace, Random& random,
                            const std::string& note) {
     const auto expected = dense_oracle::answer(program, trace);
@@ -140,6 +179,7 @@ inline void check_all_ways(const Program& program, const Trace& trace, Random& r
         CHECK(executor.known_until(0) == dense_oracle::end_of(trace));
         executor.reset();
     }
+    check_copy(program, trace, random, expected.outputs, note);
 }
 
 } // namespace ways

@@ -232,6 +232,32 @@ def test_step_takes_as_many_values_as_inputs() -> None:
     assert refused(monitor(), "step", 1.0, 2.0, 3.0) == "count"
 
 
+def test_the_latest_value_of_each_output_is_there_once_it_is_known() -> None:
+    m = _core.Monitor(LATE, ["a", "b"])
+    assert [m.latest(0), m.latest(1)] == [None, None]
+    for a in (5.0, 4.0, 6.0):
+        m.step(a, 1.0)
+        assert m.latest(1) == a - 1.0
+    assert m.latest(0) == 5.0
+    with pytest.raises(IndexError, match=r"^There is no output 2\.$"):
+        m.latest(2)
+
+
+def test_another_monitor_goes_on_from_a_state() -> None:
+    m, other = _core.Monitor(LATE, ["a", "b"]), _core.Monitor(LATE, ["a", "b"])
+    for t, a in enumerate((5.0, 4.0)):
+        m.update(t + 0.5, {"a": a, "b": 1.0})
+    other.step(9.0, 0.0)
+    other.restore(m.state())
+    for each in (m, other):
+        assert each.update_pairs(2.5, [("a", 2.0)]) == 4.0
+        assert (each.samples, each.last_time) == (3, 2.5)
+        assert each.recent(3).tolist() == [0.5, 1.5, 2.5]
+    assert m.state() == other.state()
+    with pytest.raises(ValueError, match=r"^This is not the state of a monitor of this program\.$"):
+        monitor().restore(m.state())
+
+
 def test_wrong_calls_say_what_is_wrong() -> None:
     m = monitor()
     with pytest.raises(TypeError, match=r"^Monitor.update takes 2 arguments, got 1.$"):

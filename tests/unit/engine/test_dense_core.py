@@ -217,6 +217,20 @@ def test_an_update_that_makes_nan_names_instruction_and_tick_and_leaves_the_moni
     assert caught.value.args == (1, 6)
 
 
+def test_another_monitor_goes_on_from_a_state() -> None:
+    m, other = monitor(TWO, ["a", "b"]), monitor(TWO, ["a", "b"])
+    m.push([events([0, 4, 9], [1, 2, 3]), events([2, 5], [0, 7])])
+    other.update(50, {"a": 1.0})
+    other.restore(m.state())
+    for each in (m, other):
+        assert (state(each), each.counts) == ((2, 5, [9, 5]), [3, 2])
+        assert known(each.told(1)) == ([2, 4, 5], [1.0, 2.0, 2.0])
+        assert told(each.update(6, {"b": 1.0})) == ([6], [2.0])
+        assert known(each.finish()) == ([9], [3.0])
+    with pytest.raises(ValueError, match=r"^This is not the state of a monitor of this program\.$"):
+        monitor(ALWAYS, ["a"]).restore(m.state())
+
+
 def test_a_number_that_comes_back_into_its_own_update_is_told_off() -> None:
     m = monitor(ALWAYS, ["a"])
     complaints: list[str] = []

@@ -237,7 +237,9 @@ def test_bounds_of_a_tenth_are_met_by_stamps_of_tenths_that_count_from_1970(star
 
 def test_pandas_series_and_timestamps() -> None:
     pandas = pytest.importorskip("pandas")
-    naive = pandas.Series(pandas.to_datetime(["2026-01-01T12:00:00.000000001", "2026-01-01T12:00:01"]))
+    naive = pandas.Series(
+        pandas.to_datetime(["2026-01-01T12:00:00.000000001", "2026-01-01T12:00:01"], format="ISO8601")
+    )
     zoned = naive.dt.tz_localize("Europe/Berlin")
     in_utc = zoned.dt.tz_convert(None).to_numpy()
     for way in WAYS:

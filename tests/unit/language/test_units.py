@@ -83,7 +83,7 @@ def test_unusable_duration(call, sentence):
         (Fraction(1, 8), "125 ms"),
         (Fraction(25, 10**7), "2.5 us"),
         (Fraction(1, 10**9), "1 ns"),
-        (Fraction(1, 10**10), "0.0000000001 s"),
+        (Fraction(1, 10**10), "0.1 ns"),
         (Fraction(1, 3), "1/3 s"),
         (Fraction(-1, 10), "-100 ms"),
     ],

@@ -1,0 +1,80 @@
+// What samples have left behind in a monitor, as bytes: written by one, read by another one of the
+// same program, which then goes on as the first would.
+//
+// Every part lists what it holds once, in its transfer(), for both directions. Buffers that only
+// serve within an update are no part of it. The bytes are those of this machine and this layout.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <span>
+#include <stdexcept>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+namespace rtamt {
+
+class Snapshot {
+  public:
+    // For writing.
+    Snapshot() { put(&layout, sizeof(layout)); }
+
+    // For reading; the bytes must outlive it.
+    explicit Snapshot(std::span<const std::uint8_t> bytes) : rest_(bytes), loading_(true) {
+        std::uint32_t found = 0;
+        item(found);
+        if (found != layout) foreign();
+    }
+
+    [[nodiscard]] bool loading() const noexcept { return loading_; }
+
+    // One value, copied as it lies in memory.
+    template <class Value>
+        requires std::is_trivially_copyable_v<Value>
+    void item(Value& value) {
+        cells(&value, 1);
+    }
+
+    // As many as both sides know.
+    template <class Cell>
+        requires std::is_trivially_copyable_v<Cell>
+    void cells(Cell* cells, std::size_t count) {
+        if (count == 0) return; // then there may be no memory
+        loading_ ? get(cells, count, sizeof(Cell)) : put(cells, count * sizeof(Cell));
+    }
+
+    // What was written.
+    [[nodiscard]] const std::vector<std::uint8_t>& bytes() const noexcept { return written_; }
+
+    // Nothing may be left to read.
+    void end() const {
+        if (!rest_.empty()) foreign();
+    }
+
+  private:
+    // To be raised whenever a part holds something else than before.
+    static constexpr std::uint32_t layout = 1;
+
+    std::vector<std::uint8_t> written_;
+    std::span<const std::uint8_t> rest_;
+    bool loading_ = false;
+
+    [[noreturn]] static void foreign() {
+        throw std::invalid_argument("This is not the state of a monitor of this program.");
+    }
+
+    void put(const void* memory, std::size_t size) {
+        const auto* bytes = static_cast<const std::uint8_t*>(memory);
+        written_.insert(written_.end(), bytes, bytes + size);
+    }
+
+    void get(void* memory, std::size_t count, std::size_t size) {
+        if (count > rest_.size() / size) foreign();
+        std::memcpy(memory, rest_.data(), count * size);
+        rest_ = rest_.subspan(count * size);
+    }
+};
+
+} // namespace rtamt

@@ -1,0 +1,160 @@
+"""What the monitors of both time domains share: formulas that are watched beside the first, and copies."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
+
+from rtamt.engine import signals
+from rtamt.errors import UsageError, did_you_mean
+from rtamt.language.formula import variables
+from rtamt.rewrite.horizon import horizon
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Collection, Mapping, Sequence
+
+    from rtamt.engine.program import Program
+    from rtamt.language.formula import Formula
+
+    Self = TypeVar("Self", bound="OnlineMonitor")
+
+
+@dataclass(frozen=True, slots=True)
+class Watched:
+    """A formula whose values are kept beside those of the result; ``text`` is where its spans point."""
+
+    name: str
+    formula: Formula
+    text: str | None
+
+
+class OnlineMonitor(ABC):
+    """A monitor of either time domain. Not made by users."""
+
+    #: What a monitor remembers by itself, beside what its back end does.
+    _remembered: ClassVar[tuple[str, ...]]
+
+    _backend: Any
+    _program: Program | None
+
+    def __init__(
+        self,
+        formula: Formula,
+        watch: Sequence[Watched],
+        known: Collection[str],
+        again: Callable[[], OnlineMonitor] | None,
+    ) -> None:
+        self.input_names: tuple[str, ...] = variables(formula)
+        for watched in watch:
+            for name in variables(watched.formula):
+                if name not in self.input_names:
+                    raise UsageError(
+                        f"'{watched.name}' reads '{name}', which the formula does not"
+                        f"{did_you_mean(name, self.input_names)}; watch what reads "
+                        f"{', '.join(self.input_names) or 'no variable'} only"
+                    )
+        self._formulas = (formula, *(watched.formula for watched in watch))
+        self._output_of = {watched.name: output for output, watched in enumerate(watch, 1)}
+        self._known = frozenset(known)
+        self._again = again
+        self._finished = False
+
+    @property
+    @abstractmethod
+    def samples(self) -> int:
+        """How many samples the monitor has taken since the start or the last reset."""
+
+    @property
+    def memory(self) -> int:
+        """Bytes of state: that of what is inside the windows."""
+        return int(self._backend.state_bytes)
+
+    @property
+    def _unread(self) -> frozenset[str]:
+        """Declared variables that the formula does not read, which an update may hold."""
+        return self._known - {head for name in self.input_names for head in (name, name.split(".")[0])}
+
+    def _output(self, name: str) -> int:
+        output = self._output_of.get(name)
+        if output is None:
+            watches = ", ".join(f"'{watched}'" for watched in self._output_of)
+            raise UsageError(
+                f"'{name}' is not watched{did_you_mean(name, self._output_of)}; "
+                + (f"the monitor watches {watches}" if watches else "name it in monitor(watch=...)")
+            )
+        return output
+
+    def _read_by_formula(self, values: Mapping[str, Any]) -> dict[str, Any]:
+        """Return what the formula reads: objects taken apart, declared variables it does not read left out."""
+        heads = {name.split(".")[0] for name in self.input_names}
+        flat = {k: v for k, v in values.items() if k in self.input_names or k not in self._known | heads}
+        for name in self.input_names:
+            head, *path = name.split(".")
+            if path and name not in values and head in values:
+                flat[name] = signals.field_of(values[head], head, path, self.samples)
+        return flat
+
+    # ---- copies ----------------------------------------------------------------------------------
+
+    @abstractmethod
+    def _open(self) -> Any:
+        """Return a back end that has taken no sample."""
+
+    @abstractmethod
+    def _connect(self, backend: Any) -> None:
+        """Go on with this back end."""
+
+    def __copy__(self: Self) -> Self:
+        twin = object.__new__(type(self))
+        twin.__dict__.update(self.__dict__)  # nothing in it is changed in place
+        twin._resume(self._state())
+        return twin
+
+    def __deepcopy__(self: Self, memo: dict[int, Any]) -> Self:
+        return self.__copy__()
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        if self._again is None:
+            raise UsageError("only a monitor that Specification.monitor() has made can be pickled")
+        return _resumed, (self._again, self._state())
+
+    def _state(self) -> tuple[Any, ...]:
+        if self._program is not None and self._program.calls:
+            name = self._program.calls[0].op.name
+            raise UsageError(
+                f"a monitor of '{name}' can be neither copied nor pickled: only the operator's own code knows what "
+                f"it remembers; use backend='python'"
+            )
+        remembered = {name: getattr(self, name) for name in self._remembered}
+        return self._fingerprint(), remembered, self._backend.state()
+
+    def _resume(self, state: tuple[Any, ...]) -> None:
+        fingerprint, remembered, of_backend = state
+        if fingerprint != self._fingerprint():
+            raise UsageError(
+                "the monitor was pickled by a version of rtamt that compiles its formula to another program; "
+                "make a new monitor"
+            )
+        self.__dict__.update(remembered)
+        backend = self._open()
+        backend.restore(of_backend)
+        self._connect(backend)
+
+    def _fingerprint(self) -> bytes:
+        """The checksum at the end of the program."""
+        return b"" if self._program is None else self._program.code()[-4:]
+
+
+def depth_of(formula: Formula, period: Fraction = Fraction(1)) -> Fraction:
+    """Return the horizon of a formula whose future is bounded, in seconds."""
+    depth = horizon(formula, period)
+    assert depth is not None, "unbounded future is refused before"
+    return depth
+
+
+def _resumed(again: Callable[[], OnlineMonitor], state: tuple[Any, ...]) -> OnlineMonitor:
+    monitor = again()
+    monitor._resume(state)
+    return monitor
