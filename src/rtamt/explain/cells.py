@@ -102,8 +102,12 @@ class Cells:
         return len(self.starts)
 
     def __contains__(self, cell: int) -> bool:
-        i = int(np.searchsorted(self.starts, cell, side="right")) - 1
-        return i >= 0 and cell < int(self.ends[i])
+        return self.meets(cell, cell + 1)
+
+    def meets(self, begin: int, end: int) -> bool:
+        """Tell whether any cell is in [begin, end)."""
+        i = int(np.searchsorted(self.starts, end, side="left")) - 1
+        return i >= 0 and begin < int(self.ends[i])
 
     @property
     def count(self) -> int:

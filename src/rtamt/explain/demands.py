@@ -93,12 +93,15 @@ class Demands:
 
     def _having(self, node: Formula, sign: int) -> Cells:
         """Return where a sub-formula has the truth that is asked of places of a sign."""
-        having = self._holds[node] if self.truth(sign) else self._all - self._holds[node]
+        having = self._support(node, sign)
         if self._dense and len(having) and having.ends[-1] >= self._end:
             having = having | Cells.of([(int(having.starts[-1]), 4 * NEVER)])
         elif self._dense:
             having = having.within(0, self._end)
         return having
+
+    def _support(self, node: Formula, sign: int) -> Cells:
+        return self._holds[node] if self.truth(sign) else self._all - self._holds[node]
 
     def _pass_on(self, node: Apply, sign: int, asked: Asked) -> None:
         """Ask the operands for what makes ``node`` have its truth."""
@@ -130,20 +133,34 @@ class Demands:
         elif isinstance(kernel, Window):
             self._add(node.args[0], sign, Asked(self._witnesses(node, kernel.reduce, sign, cells)))
         else:
-            first, last = window_of(node, self._period)
-            turned = isinstance(kernel, Since)
-            choose = reaching if self.truth(sign) else blocking
-            hold = self._having(node.args[0], sign)
-            goal = self._having(node.args[1], sign if choose is reaching else -sign)
-            if turned:  # since is until, backwards
-                cells, hold, goal = cells.mirrored(), hold.mirrored(), goal.mirrored()
-            elif node.op.tense is Tense.PAST:  # precedes is until, read from where the window begins
-                cells = cells.widened(-last, -last)
-                if choose is reaching:  # and asks nothing of φ before the start
-                    hold = hold | Cells.of([(-2 * NEVER, 0)])
-            holds, goals = choose(cells, hold, goal, first, last, whole=self._dense)
-            for arg, found in zip(node.args, (holds, goals), strict=True):
-                self._add(arg, sign, Asked(found.mirrored() if turned else found))
+            self._choose_in_time(node, sign, cells)
+
+    def _choose_in_time(self, node: Apply, sign: int, cells: Cells) -> None:
+        """Choose cells of both operands of until, and of since and precedes, which are until in disguise."""
+        window = window_of(node, self._period)
+        hold, goal = (self._having(arg, sign) for arg in node.args)
+        if not self.truth(sign):  # then the question is where ψ may hold
+            goal = self._all - goal
+        turned = isinstance(node.op.kernel, Since)
+        if turned:  # since is until, backwards
+            cells, hold, goal = cells.mirrored(), hold.mirrored(), goal.mirrored()
+        elif node.op.tense is Tense.PAST:  # precedes is until, read from where the window begins
+            cells = cells.widened(-window[1], -window[1])
+            if self.truth(sign):  # and asks nothing of φ before the start
+                hold = hold | Cells.of([(-2 * NEVER, 0)])
+        for arg, found in zip(node.args, self._until(node, sign, cells, (hold, goal), window), strict=True):
+            self._add(arg, sign, Asked(found.mirrored() if turned else found))
+
+    def _until(
+        self, node: Apply, sign: int, cells: Cells, having: tuple[Cells, Cells], window: tuple[int, int]
+    ) -> tuple[Cells, Cells]:
+        """Return the cells of φ and ψ on which it is to rest that φ until ψ holds, or fails, at ``cells``.
+
+        ``having``: where φ has the truth that is asked of it, and where ψ holds.
+        """
+        del node  # whatever its operands are
+        choose = reaching if self.truth(sign) else blocking
+        return choose(cells, *having, *window, whole=self._dense)
 
     def _choose_operands(self, node: Apply, sign: int, cells: Cells) -> None:
         """Rest on the operand that does for most cells, and on the other one for the rest.

@@ -9,7 +9,8 @@ from rtamt.engine.signals import Recording
 from rtamt.explain.cells import NEVER, Steps, two_valued
 from rtamt.explain.critical import Walk
 from rtamt.explain.demands import Demands
-from rtamt.explain.minimise import Forcing, minimal
+from rtamt.explain.minimise import Forcing, intervals_of, minimal
+from rtamt.explain.needs import Needs
 from rtamt.explain.report import CriticalPoint, Explanation, Stretch
 from rtamt.explain.sentences import formula_text, predicate_text, sentences
 from rtamt.explain.signals import Signals, truths
@@ -70,7 +71,7 @@ class _Explainer:
         self._values: dict[str, Steps] = dict(zip(leaves, steps[: len(leaves)], strict=True))
         self._truth: dict[str, Steps] = dict(zip(leaves, steps[len(leaves) :], strict=True))
         self._signals = Signals(self._structure, self._line, self._values)
-        self._holds = truths(self._structure, self._line, self._truth)
+        self._holds = truths(self._structure.order, self._line, self._truth)
         self._walk = Walk(self._signals, self._line.period, self._line.end)
 
     def at(self, at: Any) -> Explanation:
@@ -142,16 +143,19 @@ class _Explainer:
 
     def _implicant(self, cell: int, satisfied: bool) -> list[Interval]:
         period, end = self._line.period, self._line.end
-        demands = Demands(
-            self._structure, self._holds, self._signals, self._walk, period, end, dense=self._dense
-        )
+        given = (self._structure, self._holds, self._signals, self._walk, period, end)
+        demands = Demands(*given, dense=self._dense)
         demands.ask(cell, satisfied=satisfied)
         fixed = {
             leaf.name: _infinite(self._truth[leaf.name])
             for leaf in self._structure.leaves.values()
             if leaf.fixed
         }
-        found = minimal(Forcing(self._structure, demands, self._line, fixed), demands)
+        forcing = Forcing(self._structure, demands, self._line, fixed)
+        candidates = intervals_of(demands)
+        needs = Needs(*given, dense=self._dense).given(forcing.support(candidates))
+        needs.ask(cell, satisfied=satisfied)
+        found = minimal(candidates, needs, forcing)
         places = {name: i for i, name in enumerate(self._structure.leaves)}
         return sorted(found, key=lambda interval: (places[interval.name], interval.start, interval.sign))
 

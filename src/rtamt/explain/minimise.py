@@ -13,13 +13,14 @@ from math import inf
 from typing import TYPE_CHECKING
 
 from rtamt.explain.cells import NONE, Cells, Steps, two_valued
+from rtamt.explain.signals import truths
 from rtamt.explain.structure import literal, reaches
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
     from rtamt.explain.demands import Demands
-    from rtamt.explain.structure import Structure
+    from rtamt.explain.structure import Place, Structure
     from rtamt.explain.timeline import Timeline
 
 
@@ -39,7 +40,9 @@ class Forcing:
     def __init__(
         self, structure: Structure, demands: Demands, timeline: Timeline, fixed: Mapping[str, Steps]
     ) -> None:
+        self._structure = structure
         self._demands = demands
+        self._timeline = timeline
         self._end = timeline.end
         self._fixed = fixed
         self._literals = [
@@ -54,10 +57,8 @@ class Forcing:
         self.behind = max((found[node][0] for node in nodes), default=0)
         self.ahead = max((found[node][1] for node in nodes), default=0)
 
-    def failures(self, intervals: Iterable[Interval]) -> Cells:
-        """Return the cells at which something falls that the verdict cannot do without."""
-        if self._run is None:
-            return NONE
+    def _signals(self, intervals: Iterable[Interval]) -> dict[str, Steps]:
+        """Return the stand-ins for the predicates: as they are on the intervals, the worst elsewhere."""
         known: dict[tuple[str, int], list[tuple[int, int]]] = {}
         for interval in intervals:
             known.setdefault((interval.name, interval.sign), []).append((interval.start, interval.end))
@@ -66,6 +67,24 @@ class Forcing:
             good = inf if self._demands.truth(sign) else -inf
             cells = Cells.of(known.get((name, sign), ()))
             signals[literal(name, sign)] = two_valued(cells, good, -good, self._end)
+        return signals
+
+    def support(self, intervals: Iterable[Interval]) -> dict[Place, Cells]:
+        """Return where each place has the truth that is asked of it, by the intervals alone."""
+        polar = self._structure.polar
+        order = tuple(dict.fromkeys(polar.values()))
+        holds = truths(order, self._timeline, self._signals(intervals))
+        whole = Cells.of([(0, self._end)])
+        return {
+            (node, sign): holds[formula] if self._demands.truth(sign) else whole - holds[formula]
+            for (node, sign), formula in polar.items()
+        }
+
+    def failures(self, intervals: Iterable[Interval]) -> Cells:
+        """Return the cells at which something falls that the verdict cannot do without."""
+        if self._run is None:
+            return NONE
+        signals = self._signals(intervals)
         failed = NONE
         for ((_, sign), surely), steps in zip(self._choices, self._run(signals), strict=True):
             holds = Cells.where(steps.changes, (steps.values > 0) == self._demands.truth(sign), self._end)
@@ -73,18 +92,28 @@ class Forcing:
         return failed
 
 
-def minimal(forcing: Forcing, demands: Demands) -> list[Interval]:
-    """Return intervals that force the verdict, none of which can be taken away.
+def intervals_of(demands: Demands) -> list[Interval]:
+    """Return what is asked of the predicates as intervals, which force the verdict."""
+    return [
+        Interval(start, end, name, sign)
+        for (name, sign), asked in demands.leaves.items()
+        for start, end in asked.cells
+    ]
 
-    Taken away on trial are first large groups of neighbours, then smaller ones. Groups so far apart that
-    nothing looks at two of them are tried in one run.
+
+def minimal(intervals: Sequence[Interval], needs: Demands, forcing: Forcing) -> list[Interval]:
+    """Return those of ``intervals`` that are left when as many as possible are taken away.
+
+    Taken away on trial, where it is not plain from ``needs`` that they cannot be, are first large groups
+    of neighbours, then smaller ones. Groups so far apart that nothing looks at two of them are tried in
+    one run.
     """
     kept: list[Interval] = []
     open_: list[Interval] = []
-    for (name, sign), asked in demands.leaves.items():
-        for start, end in asked.cells:
-            sure = len(asked.surely & Cells.of([(start, end)])) > 0
-            (kept if sure else open_).append(Interval(start, end, name, sign))
+    for interval in intervals:
+        asked = needs.leaves.get((interval.name, interval.sign))
+        plain = asked is not None and asked.cells.meets(interval.start, interval.end)
+        (kept if plain else open_).append(interval)
     open_.sort(key=lambda interval: (interval.start, interval.end))
     size = 1 << max(len(open_) - 1, 0).bit_length()
     groups = [open_] if open_ else []

@@ -12,7 +12,7 @@ from rtamt.explain.structure import CHOOSING, NEGATION, opcode
 from rtamt.language.formula import Apply, Const, Formula, Var, children
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
     from rtamt.explain.structure import Structure
     from rtamt.explain.timeline import Timeline
@@ -72,16 +72,19 @@ def _chosen(code: str | None, values: list[float]) -> float:
     return min(values) if code == CHOOSING[0] else max(values)
 
 
-def truths(structure: Structure, timeline: Timeline, leaves: Mapping[str, Steps]) -> dict[Formula, Cells]:
-    """Return where each sub-formula holds, given signals of its leaves that are above 0 where they hold."""
+def truths(order: Sequence[Formula], timeline: Timeline, leaves: Mapping[str, Steps]) -> dict[Formula, Cells]:
+    """Return where each sub-formula holds, given signals of its leaves that are above 0 where they hold.
+
+    ``order``: the distinct sub-formulas, operands first.
+    """
     whole = Cells.of([(0, timeline.end)])
     bold = {name: two_valued(steps.positive(), inf, -inf, steps.end) for name, steps in leaves.items()}
-    asked = [node for node in structure.order if isinstance(node, Apply) and opcode(node) is None]
+    asked = [node for node in order if isinstance(node, Apply) and opcode(node) is None]
     found: dict[Formula, Steps] = {}
     if asked:
         found.update(zip(asked, timeline.runner(asked)(bold), strict=True))
     holds: dict[Formula, Cells] = {}
-    for node in structure.order:
+    for node in order:
         code = opcode(node)
         if isinstance(node, Var):
             holds[node] = leaves[node.name].positive()

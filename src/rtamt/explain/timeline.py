@@ -147,6 +147,7 @@ class DenseTimeline(Timeline):
         self.period = recording.scale.tick
         self.end = NEVER
         self._last = recording.end - self._start
+        self._grains: dict[Formula, int] = {}
         if self._last >= NEVER // 2:
             raise UsageError(
                 "the recording has too many ticks to be explained; choose a coarser resolution, such as "
@@ -223,12 +224,19 @@ class DenseTimeline(Timeline):
         [2 s, 5 s] and [2 s, 5 s + 1 tick) are the same ticks, as are [2 s, 5 s) and [2 s, 5 s - 1 tick]. What
         is meant is the end on the grid that all samples and bounds share.
         """
+        grain = self._grains.get(formula)
+        if grain is None:
+            grain = self._grains[formula] = self._grain(formula)
+        return (end + self._start) % grain != 0 == (end + self._start - 1) % grain
+
+    def _grain(self, formula: Formula) -> int:
+        """Return the ticks from line to line of the finest grid that holds all samples and bounds."""
         grain = math.gcd(*(int(np.gcd.reduce(ticks)) for ticks, _ in self._recording.columns.values()))
         for node in postorder(formula):
             if isinstance(node, Apply) and node.interval is not None:
                 bounds = node.interval.begin, node.interval.end or 0
                 grain = math.gcd(grain, *(int(bound / self.period) for bound in bounds))
-        return (end + self._start) % max(grain, 1) != 0 == (end + self._start - 1) % max(grain, 1)
+        return grain or 1
 
 
 def timeline(recording: Recording | DenseRecording, backend: str) -> Timeline:

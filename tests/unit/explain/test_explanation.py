@@ -258,3 +258,19 @@ def test_a_long_recording_of_many_pulses_is_explained_by_what_each_of_them_needs
     implicant = explained("always(req >= 3 -> eventually[0:5](gnt >= 3))", {"req": req, "gnt": gnt}).implicant
     assert sum(s.predicate == "req >= 3" for s in implicant) == 201
     assert sum(s.predicate == "gnt >= 3" for s in implicant) == 200
+
+
+def test_stretches_that_nothing_can_stand_in_for_are_not_tried_one_by_one():
+    req, gnt = np.zeros(20_000), np.zeros(20_000)
+    for k in range(4):
+        req[50 + k :: 100] = 5
+    gnt[53::100] = 5
+    text = "always(req >= 3 -> (req >= 3 until gnt >= 3))"
+    implicant = explained(text, {"req": req, "gnt": gnt}).implicant
+    assert [(s.predicate, s.holds, s.start, s.end) for s in implicant[:3]] == [
+        ("req >= 3", False, 0, 49),
+        ("req >= 3", True, 50, 52),
+        ("req >= 3", False, 54, 149),
+    ]
+    assert sum(s.predicate == "gnt >= 3" for s in implicant) == 200
+    assert len(implicant) == 601
