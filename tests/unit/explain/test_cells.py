@@ -33,7 +33,7 @@ def test_sets(a, b, before, length):
     }
     assert numbers(cells(a).within(before, before + length)) == a & set(range(before, before + length))
     assert all((k in cells(a)) == (k in a) for k in range(-14, 15))
-    assert cells(a).meets(before, before + length) == bool(a & set(range(before, before + length)))
+    assert cells(a).meets(before, before + length + 1) == bool(a & set(range(before, before + length + 1)))
     assert cells(a).count == len(a)
     assert cells(a).lone == (next(iter(a)) if len(a) == 1 else None)
 
