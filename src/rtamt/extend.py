@@ -19,9 +19,10 @@ from pathlib import Path
 
 from rtamt.engine.core import core
 from rtamt.language.dense_definitions import QUARTERS, Steps
-from rtamt.language.formula import Apply, Const, Formula, Interval, Var
+from rtamt.language.formula import Apply, Const, Formula, Interval, Var, variables
 from rtamt.language.operators import STL
 from rtamt.language.records import Blocks, Bounds, Compiled, Fixity, Language, Operator, Sort, Tense
+from rtamt.rewrite.interface import truth
 
 __all__ = [
     "QUARTERS",
@@ -42,6 +43,8 @@ __all__ = [
     "Var",
     "get_cmake_dir",
     "get_include",
+    "truth",
+    "variables",
 ]
 
 

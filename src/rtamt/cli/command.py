@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from math import isfinite
 from typing import TYPE_CHECKING, NoReturn
 
+from rtamt.cli.language import add_language_option, read_language
 from rtamt.engine.core import core
 from rtamt.engine.signals import TIME
 from rtamt.errors import SpecificationError, StlError, UsageError
@@ -83,6 +84,7 @@ def add_specification_options(parser: argparse.ArgumentParser) -> None:
         help=f"what a predicate is worth: {', '.join(SEMANTICS)} (default: standard, its robustness); "
         f"which variables are inputs is declared in the specification",
     )
+    add_language_option(parser)
 
 
 def add_time_option(parser: argparse.ArgumentParser) -> None:
@@ -111,6 +113,7 @@ def read_specification(args: argparse.Namespace, time: str = "discrete") -> Spec
         "backend": args.backend,
         "time": time,
         "semantics": args.semantics,
+        "language": read_language(args.language),
     }
     if os.path.isfile(spec):
         if os.path.splitext(spec)[1].lower() in set(READERS) - {".txt"}:

@@ -8,15 +8,16 @@ import textwrap
 from typing import TYPE_CHECKING
 
 from rtamt.cli.command import OK, Command
+from rtamt.cli.language import add_language_option, read_language
 from rtamt.cli.terminal import table, use_color
 from rtamt.errors import UsageError, did_you_mean
-from rtamt.language.operators import STL, Bounds, Fixity
+from rtamt.language.operators import Bounds, Fixity
 from rtamt.language.units import UNITS
 
 if TYPE_CHECKING:
     import argparse
 
-    from rtamt.language.operators import Operator
+    from rtamt.language.operators import Language, Operator
 
 _DESCRIPTION = "List the operators of the language, those that bind tightest first."
 
@@ -31,17 +32,21 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.description = _DESCRIPTION
     parser.epilog = _EPILOG
     parser.add_argument("names", metavar="OPERATOR", nargs="*", help="a name or spelling (default: all)")
+    add_language_option(parser)
 
 
 def run(args: argparse.Namespace) -> int:
     """Print the operators asked for."""
-    tightest_first = sorted(STL, key=lambda op: -op.power)
-    chosen = tightest_first if not args.names else [op for name in args.names for op in _called(name)]
+    language = read_language(args.language)
+    tightest_first = sorted(language, key=lambda op: -op.power)
+    chosen = (
+        tightest_first if not args.names else [op for name in args.names for op in _called(name, language)]
+    )
     rows = [("name", "written", "example", "meaning")]
     rows += [(op.name, _written(op), op.example, op.doc) for op in chosen]
     print(_fitted(rows))
     if not args.names:
-        print(f"\n{_notes()}")
+        print(f"\n{_notes(language)}")
     return OK
 
 
@@ -56,8 +61,8 @@ def _fitted(rows: list[tuple[str, str, str, str]]) -> str:
     return "\n".join(f"{line}\n    {meaning}" for line, (*_, meaning) in zip(lines, rows, strict=True))
 
 
-def _notes() -> str:
-    right = ", ".join(op.spellings[0] for op in STL if op.fixity is Fixity.RIGHT)
+def _notes(language: Language) -> str:
+    right = ", ".join(op.spellings[0] for op in language if op.fixity is Fixity.RIGHT)
     notes = (
         f"[a:b] is an interval, also written [a,b], with or without units ({', '.join(UNITS)}), as in "
         f"always[0:500ms](x >= 3); [a:b]? may be left out: the window is then unbounded. Operators with "
@@ -67,10 +72,10 @@ def _notes() -> str:
     return textwrap.fill(notes, min(100, shutil.get_terminal_size().columns))
 
 
-def _called(name: str) -> list[Operator]:
-    found = [op for op in STL if name == op.name or name in op.spellings]
+def _called(name: str, language: Language) -> list[Operator]:
+    found = [op for op in language if name == op.name or name in op.spellings]
     if not found:
-        known = sorted({word for op in STL for word in (op.name, *op.spellings)})
+        known = sorted({word for op in language for word in (op.name, *op.spellings)})
         raise UsageError(f"there is no operator '{name}'{did_you_mean(name, known)}; see 'rtamt operators'")
     return found
 
