@@ -4,7 +4,6 @@
 // Memory: its own; longer sentences are cut.
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <string_view>
@@ -17,12 +16,13 @@ class Fault {
     explicit Fault(const char* sentence) noexcept : present_(sentence != nullptr) {
         if (!present_) return;
         const std::string_view text(sentence);
-        size_ = std::min(text.size(), text_.size());
-        std::copy_n(text.data(), size_, text_.data());
+        size_ = text.copy(text_.data(), text_.size());
     }
 
     explicit operator bool() const noexcept { return present_; }
-    [[nodiscard]] std::string_view text() const noexcept { return {text_.data(), size_}; }
+    [[nodiscard]] std::string_view text() const noexcept { return {data(), size_}; }
+    [[nodiscard]] const char* data() const noexcept { return text_.data(); }
+    [[nodiscard]] std::size_t size() const noexcept { return size_; }
 
   private:
     std::array<char, 256> text_{};

@@ -152,17 +152,17 @@ class Checker {
     void call() const {
         const std::int64_t n = instruction_.n;
         if (program_.calls.empty()) fail("runs code of its own, which bytes cannot carry");
-        if (n < 0 || n >= static_cast<std::int64_t>(program_.calls.size())) {
+        if (n < 0 || std::cmp_greater_equal(n, program_.calls.size())) {
             fail("is call " + std::to_string(n) + " of " + std::to_string(program_.calls.size()));
         }
         const CallSite& site = program_.calls[static_cast<std::size_t>(n)];
         if (site.operands.empty()) fail("lacks an operand");
         for (const std::uint32_t operand : site.operands)
             before(operand);
-        if (site.kernel->version != RTAMT_KERNEL_VERSION) {
+        if (site.kernel->version != rtamt_kernel_version) {
             fail("was built for version " + std::to_string(site.kernel->version) +
                  " of rtamt/kernel.hpp, this core has version " +
-                 std::to_string(RTAMT_KERNEL_VERSION) + "; build it again");
+                 std::to_string(rtamt_kernel_version) + "; build it again");
         }
         if (dense_ ? site.kernel->advance == nullptr : site.kernel->run == nullptr) {
             fail(dense_ ? "is for discrete time, and dense time is wanted here"

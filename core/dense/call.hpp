@@ -79,9 +79,9 @@ class Call final : public Kernel {
     struct Sink {
         EventList& list;
         Told told;
-        std::int64_t origin;
-        std::int64_t due;
-        std::int64_t lag;
+        std::int64_t origin = 0;
+        std::int64_t due = 0;
+        std::int64_t lag = 0;
         std::int64_t undefined = never;
         const char* fault = nullptr;
 

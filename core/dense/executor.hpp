@@ -38,7 +38,7 @@ namespace rtamt::dense {
 struct Failure {
     std::uint32_t instruction;
     std::int64_t time;
-    Fault fault{};
+    Fault fault;
 };
 
 class Executor {

@@ -32,7 +32,7 @@ namespace rtamt::discrete {
 struct Failure {
     std::uint32_t instruction;
     std::int64_t sample;
-    Fault fault{};
+    Fault fault;
 };
 
 enum class Outcome : std::uint8_t { failed, silent, known };

@@ -40,7 +40,7 @@ template <class Item>
 struct Calls::Driven {
     nb::object make;
     nb::object error; // what was raised last
-    rtamt_kernel table{RTAMT_KERNEL_VERSION, this,     create, destroy, reset,
+    rtamt_kernel table{rtamt_kernel_version, this,     create, destroy, reset,
                        checkpoint,           rollback, run,    advance};
 
     explicit Driven(nb::object function) : make(std::move(function)) {}
@@ -112,7 +112,7 @@ struct Calls::Driven {
                 operands.append(nb::make_tuple(array(events.times, events.count),
                                                array(events.values, events.count)));
             }
-            const nb::tuple result = nb::cast<nb::tuple>(of(state).driver.attr("advance")(
+            const auto result = nb::cast<nb::tuple>(of(state).driver.attr("advance")(
                 operands, stretch->start, stretch->until, stretch->due));
             const auto times = nb::cast<Times>(result[0]);
             const auto values = nb::cast<Column>(result[1]);

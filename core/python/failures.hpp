@@ -7,7 +7,6 @@
 #include <nanobind/nanobind.h>
 
 #include <cstdint>
-#include <string_view>
 
 namespace rtamt::python {
 
@@ -23,10 +22,9 @@ inline void set_undefined(const Exceptions& exceptions, Calls& calls, std::uint3
     const auto when = static_cast<long long>(moment);
     PyObject* raised = nullptr;
     if (fault) {
-        const std::string_view text = fault.text(); // of whoever wrote the kernel
-        const auto size = static_cast<Py_ssize_t>(text.size());
+        const auto size = static_cast<Py_ssize_t>(fault.size()); // bytes of whoever wrote it
         raised = PyObject_CallFunction(exceptions.undefined.ptr(), "ILN", instruction, when,
-                                       PyUnicode_DecodeUTF8(text.data(), size, "replace"));
+                                       PyUnicode_DecodeUTF8(fault.data(), size, "replace"));
     } else {
         raised = PyObject_CallFunction(exceptions.undefined.ptr(), "IL", instruction, when);
     }

@@ -77,8 +77,11 @@ namespace {
 class Own {
   public:
     explicit Own(const rtamt_setup& /*setup*/) {}
+    ~Own() = default;
     Own(const Own&) = delete;
     Own& operator=(const Own&) = delete;
+    Own(Own&&) = delete;
+    Own& operator=(Own&&) = delete;
     void run(const rtamt_samples& samples) { *samples.out = ++runs_; }
     void checkpoint() { saved_ = runs_; }
     void rollback() { runs_ = saved_; }

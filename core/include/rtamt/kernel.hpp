@@ -24,7 +24,8 @@
 #include <type_traits>
 #include <utility>
 
-#define RTAMT_KERNEL_VERSION 1
+// The version of the tables that this header describes.
+inline constexpr std::uint32_t rtamt_kernel_version = 1;
 
 extern "C" {
 
@@ -69,7 +70,7 @@ struct rtamt_stretch {
 // A table of functions: all that the core knows of a kernel. `run` or `advance` is null, for dense
 // or discrete time. They return null, or what went wrong, valid until the next call.
 struct rtamt_kernel {
-    std::uint32_t version; // RTAMT_KERNEL_VERSION
+    std::uint32_t version; // rtamt_kernel_version
     void* context;
     // The state of one instruction; null, and the reason in `error`, where there can be none.
     void* (*create)(void* context, const rtamt_setup* setup, const char** error);
@@ -201,7 +202,7 @@ class KernelOf {
 
   public:
     static rtamt_kernel table() noexcept {
-        rtamt_kernel kernel{RTAMT_KERNEL_VERSION, nullptr,  create,  destroy, reset,
+        rtamt_kernel kernel{rtamt_kernel_version, nullptr,  create,  destroy, reset,
                             checkpoint,           rollback, nullptr, nullptr};
         if constexpr (discrete) kernel.run = call<rtamt_samples>;
         if constexpr (dense) kernel.advance = call<rtamt_stretch>;
