@@ -15,7 +15,7 @@ CXX_FILES := find core tests/cpp tests/fuzz benchmarks -name
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help run test test-python test-cpp test-install lint format bench fuzz clean
+.PHONY: help run test test-python test-cpp test-install lint format bench peers conformance soak fuzz clean
 
 help: ## list the tasks
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-13s %s\n", $$1, $$2 }' Makefile
@@ -58,6 +58,15 @@ bench: $(VENV)/.core $(VENV)/.extras ## what a sample costs, beside the figures 
 	$(RUN) benchmarks/run.py
 	$(RUN) benchmarks/dense_memory.py
 	$(RUN) benchmarks/stream.py
+
+peers: $(VENV)/.made ## install the tools that we are compared with, each into an environment of its own
+	$(RUN) benchmarks/peers/peers.py
+
+conformance: $(VENV)/.core peers ## ask every peer the conformance corpus: benchmarks/CONFORMANCE.md
+	$(RUN) benchmarks/conformance.py
+
+soak: $(VENV)/.core ## watch 10^8 samples and hours of dense stamps: memory flat, every value that of offline
+	$(RUN) benchmarks/soak.py
 
 FUZZ_SECONDS ?= 60
 fuzz: $(VENV)/.core $(VENV)/.group-test $(VENV)/.group-build ## look for input that breaks the core, the parser or the readers: FUZZ_SECONDS, then some minutes

@@ -1,0 +1,66 @@
+"""mstlo, by its documentation: https://INTO-CPS-Association.github.io/mstlo. Bounded future, online."""
+
+from importlib.metadata import version
+
+import mstlo_python as mstlo
+from protocol import UnsupportedError, Writer, plain, serve
+
+SIGNS = {"ge": ">=", "gt": ">", "le": "<=", "lt": "<"}
+TABLE = {
+    "true": "true",
+    "false": "false",
+    "not": "!({0})",
+    "and": "({0}) && ({1})",
+    "or": "({0}) || ({1})",
+    "implies": "({0}) -> ({1})",
+    "always": "G{I}({0})",
+    "eventually": "F{I}({0})",
+    "until": "({0}) U{I} ({1})",
+}
+
+
+class Dsl(Writer):
+    """Its language: intervals [a, b] with a < b, always written."""
+
+    def interval(self, bounds):
+        """Refuse what its documentation leaves out."""
+        begin, end = bounds
+        if end is None or begin == end:
+            raise UnsupportedError("an interval other than [a, b], a < b")
+        return f"[{begin}, {end}]"
+
+    def write(self, node):
+        """Write predicates by themselves."""
+        if node.get("op") in SIGNS:
+            name, value = plain(node)
+            return f"{name} {SIGNS[node['op']]} {value}"
+        if "op" not in node:
+            raise UnsupportedError("a number as a formula")
+        if node["op"] in ("always", "eventually", "until") and node.get("interval") is None:
+            raise UnsupportedError("an interval left out")
+        return super().write(node)
+
+
+def answer(formula, time, mode, signals, end):  # noqa: ARG001 - the whole trace is told
+    """Feed its monitor sample by sample, in the order of time."""
+    if (time, mode) != ("dense", "online"):
+        raise UnsupportedError(f"{time} {mode}")
+    monitor = mstlo.Monitor(mstlo.parse_formula(Dsl(TABLE).write(formula)), semantics="DelayedQuantitative")
+    told = {}
+    samples = [(t, name, v) for name, pairs in signals.items() for t, v in pairs]
+    for t, name, value in sorted(samples, key=lambda sample: sample[0]):
+        told.update(monitor.update(name, value, float(t)).verdicts())
+    values = sorted(map(list, told.items()))
+    return {"values": values, "until": values[-1][0] if values else 0}
+
+
+serve(
+    {
+        "peer": f"mstlo {version('mstlo-python')}",
+        "modes": [["dense", "online"]],
+        "conventions": {"until": "closed"},
+        "notes": "bounded future, intervals longer than a point, predicates of a variable and a number; "
+        "until by its documentation",
+    },
+    answer,
+)

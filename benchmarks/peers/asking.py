@@ -1,0 +1,277 @@
+"""Questions to peers: a case of the corpus translated, asked of a process, and its answer judged."""
+
+from __future__ import annotations
+
+import json
+import math
+import selectors
+import subprocess
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import rtamt
+from rtamt.errors import EvaluationError
+from rtamt.language.formula import Apply, Const, Formula, Interval, Var, fold, postorder, variables
+from rtamt.language.operators import STL
+from rtamt.language.records import Bounds, Tense
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+    from fractions import Fraction
+
+    from tests.conformance.cases import Case
+
+PATIENCE = 20.0  # seconds for an answer
+CLOSE = 1e-9  # relative; a tool may round where the definition does not
+
+
+class Talk:
+    """A conversation with the adapter of a tool; begun anew where the tool breaks down."""
+
+    def __init__(self, command: Sequence[str]) -> None:
+        self._command = list(command)
+        self._start()
+        self.peer: str = self._declared["peer"]
+        self.modes: list[tuple[str, str]] = [(time, mode) for time, mode in self._declared["modes"]]
+        self.conventions: dict[str, str] = self._declared["conventions"]
+        self.notes: str = self._declared["notes"]
+
+    def ask(self, question: Mapping[str, Any]) -> dict[str, Any]:
+        """Return the answer; ``{"crash": why}`` where none came."""
+        assert self._process.stdin is not None
+        try:
+            self._process.stdin.write(json.dumps(question) + "\n")
+            self._process.stdin.flush()
+            said = self._read()
+        except BrokenPipeError:
+            said = None
+        if said is not None:
+            return said
+        silent = self._process.poll() is None
+        self.close()
+        self._start()
+        return {"crash": f"no answer in {PATIENCE:g} s" if silent else "the process ended"}
+
+    def close(self) -> None:
+        """End the process."""
+        self._process.kill()
+        self._process.communicate()
+
+    def _start(self) -> None:
+        self._process = subprocess.Popen(
+            self._command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True
+        )
+        declared = self._read()
+        if declared is None:
+            raise RuntimeError(f"{self._command[-1]} does not start")
+        self._declared = declared
+
+    def _read(self) -> dict[str, Any] | None:
+        """Return the next line; None where the process ends or says nothing."""
+        assert self._process.stdout is not None
+        with selectors.DefaultSelector() as selector:
+            selector.register(self._process.stdout, selectors.EVENT_READ)
+            if not selector.select(PATIENCE):
+                return None
+        line = self._process.stdout.readline()
+        if line:
+            said: dict[str, Any] = json.loads(line)
+            return said
+        self._process.wait()
+        return None
+
+
+@dataclass(frozen=True)
+class Question:
+    """A formula whose bounds are whole steps, a trace that begins at 0, and how it is to be evaluated.
+
+    ``alone`` is the one operator that the formula asks about, "" where it is nested.
+    """
+
+    formula: Formula
+    mode: tuple[str, str]
+    signals: dict[str, list[Any]]
+    conventions: dict[str, str]
+    alone: str = ""
+
+    @cached_property
+    def text(self) -> str:
+        """The formula, in our language."""
+        return str(self.formula)
+
+    @cached_property
+    def operators(self) -> set[str]:
+        """The names of its operators."""
+        return {node.op.name for node in postorder(self.formula) if isinstance(node, Apply)}
+
+    @cached_property
+    def size(self) -> int:
+        """How much there is to read."""
+        return len(self.text) + sum(len(json.dumps(samples)) for samples in self.signals.values())
+
+    @cached_property
+    def end(self) -> int | None:
+        """The instant up to which windows end inside the trace, not included; None for nowhere."""
+        depth = _inside(self.formula)
+        columns = list(self.signals.values())
+        last = len(columns[0]) if self.mode[0] == "discrete" else max(samples[-1][0] for samples in columns)
+        return None if depth is None or last - depth <= 0 else last - depth
+
+    def expected(self) -> list[list[Any]]:
+        """Return the answer of the definition, changes as [instant, value]."""
+        meant = fold(self.formula, self._meant)
+        spec = rtamt.parse(str(meant), backend="python", time=self.mode[0])
+        signal = spec.evaluate(self.signals).signal
+        return [list(pair) for pair in zip(signal.times.tolist(), signal.values.tolist(), strict=True)]
+
+    def _meant(self, node: Formula, args: tuple[Formula, ...]) -> Formula:
+        """Say in our language what the peer means."""
+        if not isinstance(node, Apply):
+            return node
+        closed = self.conventions.get("until", "")
+        if node.op.name == "until" and (closed == "closed" or (closed and node.interval is not None)):
+            args = (args[0], STL["and"](*args))
+        return Apply(node.op, args, node.interval)
+
+
+@dataclass(frozen=True)
+class Asked:
+    """What came of a question: agrees, disagrees, error, crash or unsupported."""
+
+    kind: str
+    expected: Any = None
+    got: Any = None
+
+
+def question_of(case: Case, mode: tuple[str, str], conventions: dict[str, str]) -> Question | None:
+    """Translate a case; None where nothing of it can be judged."""
+    formula = fold(rtamt.parse(case.formula).formula, lambda node, args: _in_steps(node, args, case.seconds))
+    signals = case.signals if case.time == "discrete" else together(case.signals)
+    _, asked, *_ = case.id.split("/")
+    question = Question(formula, mode, signals, conventions, asked if STL.get(asked) else "")
+    return None if question.end is None else question
+
+
+def together(signals: Mapping[str, Sequence[Sequence[Any]]]) -> dict[str, list[Any]]:
+    """Return dense signals that all begin at 0, the latest first time, and end at the latest last one."""
+    start = max(samples[0][0] for samples in signals.values())
+    last = max(samples[-1][0] for samples in signals.values())
+    result = {}
+    for name, samples in signals.items():
+        held = [v for t, v in samples if t <= start][-1]
+        result[name] = [[0, held], *([t - start, v] for t, v in samples if t > start)]
+        if result[name][-1][0] < last - start:
+            result[name].append([last - start, result[name][-1][1]])
+    return result
+
+
+def ask(talk: Talk, question: Question) -> Asked:
+    """Ask a peer, and judge what it says."""
+    time, mode = question.mode
+    said = talk.ask(
+        {
+            "formula": fold(question.formula, _tree),
+            "time": time,
+            "mode": mode,
+            "signals": question.signals,
+            "end": question.end,
+        }
+    )
+    for kind in ("unsupported", "error", "crash"):
+        if kind in said:
+            # The definition has no value for some of these either (0/0): then nobody is at fault.
+            return Asked(
+                kind, None if kind == "unsupported" else _cut(question.expected(), question), said[kind]
+            )
+    expected = question.expected()
+    if time == "discrete":
+        got = [[i, v] for i, v in enumerate(said["values"])]
+        agrees = len(got) >= (question.end or 0) and all(
+            _same(expected[i][1], got[i][1]) for i in range(question.end or 0)
+        )
+        return Asked("agrees" if agrees else "disagrees", _cut(expected, question), _cut(got, question))
+    points = said.get("points")
+    got = points if points is not None else said["values"]
+    kind = "agrees" if _agree(expected, got, said, question.end or 0) else "disagrees"
+    until = said.get("until", question.end)
+    told = (
+        _cut(got, question) if until >= (question.end or 0) else f"{_cut(got, question)}, told up to {until}"
+    )
+    return Asked(kind, _cut(expected, question), told)
+
+
+def _agree(expected: list[Any], got: list[Any], said: Mapping[str, Any], end: int) -> bool:
+    """Tell whether two step functions are one on [0, end), or agree at the points that were asked."""
+    if "points" in said:
+        return all(_same(_at(expected, t), v) for t, v in got if t < end)
+    if not got or said.get("until", end) < end or got[0][0] > 0:
+        return False
+    instants = sorted({t for t, _ in (*expected, *got) if 0 <= t < end} | {0})
+    return all(_same(_at(expected, t), _at(got, t)) for t in instants)
+
+
+def _at(steps: Sequence[Sequence[Any]], t: float) -> float:
+    return float([v for at, v in steps if at <= t][-1])
+
+
+def _same(a: float, b: float | None) -> bool:
+    return b is not None and (a == b or math.isclose(a, b, rel_tol=CLOSE, abs_tol=CLOSE))
+
+
+def _cut(steps: Sequence[Any], question: Question) -> list[Any]:
+    """Return what is judged of an answer: of a discrete one the values, of a dense one its changes."""
+    kept = [[t, v] for t, v in steps if t < (question.end or 0)]
+    if question.mode[0] == "discrete":
+        return [v for _, v in kept]
+    return [pair for k, pair in enumerate(kept) if k == 0 or pair[1] != kept[k - 1][1]]
+
+
+def _in_steps(node: Formula, args: tuple[Formula, ...], step: Fraction) -> Formula:
+    if not isinstance(node, Apply):
+        return node
+    bounds = node.interval
+    if bounds is not None:
+        bounds = Interval(bounds.begin / step, None if bounds.end is None else bounds.end / step)
+    return Apply(node.op, args, bounds)
+
+
+def _tree(node: Formula, args: tuple[Any, ...]) -> dict[str, Any]:
+    if isinstance(node, Var):
+        return {"var": node.name}
+    if isinstance(node, Const):
+        return {"const": node.value}
+    assert isinstance(node, Apply)
+    bounds = node.interval
+    ends = None if bounds is None else [int(bounds.begin), None if bounds.end is None else int(bounds.end)]
+    return {"op": node.op.name, "args": list(args), "interval": ends}
+
+
+def _inside(formula: Formula) -> int | None:
+    """Return how far ahead windows reach; None where an unbounded one reads what is cut at the end."""
+
+    def depth(node: Formula, below: tuple[int | None, ...]) -> int | None:
+        if None in below:
+            return None
+        deepest = max((d for d in below if d is not None), default=0)
+        if not isinstance(node, Apply) or node.op.tense is not Tense.FUTURE:
+            return deepest
+        if node.op.bounds is Bounds.NONE:
+            return deepest + (node.op.reach or 0)
+        if node.interval is None or node.interval.end is None:
+            begin = 0 if node.interval is None else int(node.interval.begin)
+            return None if deepest else begin
+        return int(node.interval.end) + deepest
+
+    return fold(formula, depth)
+
+
+def answerable(question: Question) -> bool:
+    """Tell whether the definition has an answer, and of some instant."""
+    if question.end is None or not variables(question.formula):
+        return False
+    try:
+        question.expected()
+    except EvaluationError:
+        return False
+    return True
