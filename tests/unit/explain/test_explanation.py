@@ -274,3 +274,8 @@ def test_stretches_that_nothing_can_stand_in_for_are_not_tried_one_by_one():
     ]
     assert sum(s.predicate == "gnt >= 3" for s in implicant) == 200
     assert len(implicant) == 601
+
+
+def test_a_predicate_with_and_without_negation_is_two():
+    explanation = explained("x >= 3 or not (x >= 3)", {"x": [1]})
+    assert [(s.predicate, s.holds) for s in explanation.implicant] == [("x >= 3", False)]
