@@ -37,6 +37,50 @@ def test_a_class_over_blocks_obeys_the_laws() -> None:
     check_operator(TOTAL, infinite=False, examples=6)
 
 
+class Flips:
+    """FLIPS over stretches of events: the instants at which a change enters the window, and leaves it."""
+
+    def __init__(self, a: int, b: int) -> None:
+        self.a, self.b = a, b
+        self.changes: list[int] = []
+        self.last: float | None = None
+        self.told: int | None = None
+
+    def push(self, events: Any, *, until: int) -> Any:
+        times, values = events
+        begin = int(times[0]) if self.told is None else self.told + 1
+        for time, value in zip(times.tolist(), values.tolist(), strict=True):
+            if self.last is not None and value != self.last:
+                self.changes.append(time)
+            self.last = value
+        moves = {c + shift for c in self.changes for shift in (self.a, self.b)}
+        instants = sorted(
+            {m for m in moves if begin <= m <= until} | ({begin} if self.told is None else set())
+        )
+        self.told = until
+        return np.array(instants, np.int64), [
+            float(sum(t - self.b < c <= t - self.a for c in self.changes)) for t in instants
+        ]
+
+
+def test_a_class_over_events_obeys_the_laws() -> None:
+    check_operator(replace(FLIPS, kernel=Blocks(dense=Flips)), infinite=False, examples=8)
+
+
+def test_a_class_over_events_that_tells_too_much_is_told() -> None:
+    class Early(Flips):
+        def push(self, events: Any, *, until: int) -> Any:
+            return super().push(events, until=until + 5)
+
+    language = STL.extend(replace(FLIPS, kernel=Blocks(dense=Early)))
+    spec = rtamt.parse("flips[0:3ns] x", language=language, time="dense")
+    with pytest.raises(rtamt.EvaluationError) as info:
+        spec.evaluate({"x": (np.array([0, 3, 4]), [1.0, 2.0, 3.0])})
+    assert str(info.value) == (
+        "the kernel of 'flips' failed in 'flips[0:3ns] x': it gave a value that is not due yet; mend the kernel"
+    )
+
+
 class Forgetful:
     """A sum that begins anew with every block."""
 
