@@ -7,6 +7,7 @@ from functools import cache
 from pathlib import Path
 
 import numpy as np
+import openpyxl
 import pyarrow as pa
 import pytest
 from hypothesis import given
@@ -43,6 +44,11 @@ def written(suffix: str) -> bytes:
             parquet.write_table(TABLE, path)
         elif suffix == ".arrow":
             feather.write_feather(TABLE, path)
+        elif suffix == ".xlsx":
+            book = openpyxl.Workbook()
+            for row in (("t", "x", "note"), (0, 1.5, "go"), (1, None, "on"), (2, 3, "stop")):
+                book.worksheets[0].append(row)
+            book.save(path)
         else:
             path.write_text(CSV)
         return path.read_bytes()
@@ -87,7 +93,7 @@ def test_any_csv_file_is_a_trace_or_an_error_that_names_it(data: bytes) -> None:
     read(data, ".csv")
 
 
-@pytest.mark.parametrize("suffix", [".parquet", ".arrow"])
+@pytest.mark.parametrize("suffix", [".parquet", ".arrow", ".xlsx"])
 @given(data=st.data())
 def test_any_binary_file_is_a_trace_or_an_error_that_names_it(data: st.DataObject, suffix: str) -> None:
     read(data.draw(damaged(suffix)), suffix)

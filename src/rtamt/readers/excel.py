@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import zlib
 from contextlib import ExitStack
 from itertools import chain
 from typing import TYPE_CHECKING, Any
@@ -15,18 +16,32 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
 
+# What openpyxl lets through of a damaged workbook, when it is opened and when its rows are read.
+_DAMAGE = (
+    BadZipFile,
+    zlib.error,
+    SyntaxError,
+    LookupError,
+    ValueError,
+    TypeError,
+    AttributeError,
+    EOFError,
+    RuntimeError,
+)
+
+
 def open_excel(path: str, sheet: str | None = None) -> Source:
     """Open a workbook. ``sheet``: by default the one sheet that has something in it."""
     openpyxl = library("openpyxl", "Excel")
     exceptions = library("openpyxl.utils.exceptions", "Excel")
     with ExitStack() as stack:
-        with opening(path, "Excel", BadZipFile, KeyError, exceptions.InvalidFileException):
+        with opening(path, "Excel", exceptions.InvalidFileException, *_DAMAGE):
             file = stack.enter_context(open(path, "rb"))
             book = openpyxl.load_workbook(file, read_only=True, data_only=True)
         stack.callback(book.close)
         found = {page.title: page for page in book.worksheets}
         name = _choose(path, found, sheet)
-        rows = _filled(found[name])
+        rows = _filled(found[name], path)
         header = next(rows, None)
         if header is None:
             raise TraceError(f"{path} is empty: it needs a row of column names, then a row for each sample")
@@ -46,7 +61,7 @@ def _choose(path: str, found: dict[str, Any], sheet: str | None) -> str:
                 f"{path} has no sheet '{sheet}', only {', '.join(found)}{did_you_mean(sheet, found)}"
             )
         return sheet
-    full = [name for name, page in found.items() if next(_filled(page), None) is not None]
+    full = [name for name, page in found.items() if next(_filled(page, path), None) is not None]
     if len(full) > 1:
         raise TraceError(
             f"{path} has several sheets: {', '.join(full)}; choose one with sheet=, or on the command line --sheet"
@@ -54,12 +69,13 @@ def _choose(path: str, found: dict[str, Any], sheet: str | None) -> str:
     return full[0] if full else next(iter(found))
 
 
-def _filled(page: Any) -> Iterator[Sequence[Any]]:
+def _filled(page: Any, path: str) -> Iterator[Sequence[Any]]:
     """Yield the rows that have a value in them, all as long as the first one."""
     width = None
-    for row in page.iter_rows(values_only=True):
-        if all(cell is None for cell in row):
-            continue
-        if width is None:
-            width = max(i for i, cell in enumerate(row) if cell is not None) + 1
-        yield tuple(chain(row, [None] * (width - len(row))))[:width]
+    with opening(path, "Excel", *_DAMAGE):
+        for row in page.iter_rows(values_only=True):
+            if all(cell is None for cell in row):
+                continue
+            if width is None:
+                width = max(i for i, cell in enumerate(row) if cell is not None) + 1
+            yield tuple(chain(row, [None] * (width - len(row))))[:width]
