@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
-from rtamt.cli.command import OK, Command, add_specification_options, read_specification
+from rtamt.cli.command import OK, Command, add_specification_options, add_time_option, read_specification
 from rtamt.cli.terminal import is_printable, printed
 from rtamt.engine.compile import compile_program
 from rtamt.engine.core import core
@@ -33,15 +33,18 @@ operators only (its pastified form), and what an online monitor of it runs and k
 
 _EPILOG = """\
 In the listing of the program every line is an instruction: %0, %1, ... are results, n is a width in
-samples, and a lag is the number of samples after which a result is known.
+samples, and a lag is the number of samples after which a result is known. With --time dense both
+are counted in ticks of the resolution.
 
---json prints one object: {"name", "formula", "latex", "semantics", "variables", "period", "horizon",
-"pastified", "program", "memory", "offline_only"}; what does not exist is null. Durations are in seconds,
-memory in bytes. The program is that of the semantics, the pastified form serves each.
+--json prints one object: {"name", "formula", "latex", "semantics", "variables", "period", "resolution",
+"horizon", "pastified", "program", "memory", "offline_only"}; what does not exist is null: dense time has
+no period, and its memory depends on the data. Durations are in seconds, memory in bytes. The program is
+that of the semantics, the pastified form serves each.
 
 examples:
   rtamt info examples/request_grant/spec.stl
   rtamt info "always[0:10]((req >= 3) -> eventually[0:500ms](gnt >= 3))" --period 100ms
+  rtamt info "always(alarm -> eventually[0:70ms](stop))" --time dense
   rtamt info "x >= 3 until[0:5] y >= 3" --latex"""
 
 
@@ -50,11 +53,11 @@ class Facts:
     """What there is to tell of a requirement; None is for what it does not have."""
 
     spec: Specification
-    period: Fraction
+    step: Fraction  # seconds in which bounds are counted: the period, or in dense time the tick
     horizon: Fraction | None = None
     pastified: Formula | None = None
     program: Program | None = None
-    memory: int | None = None  # bytes; also None where there is no compiled core to ask
+    memory: int | None = None  # bytes; also None in dense time, or where there is no compiled core to ask
     offline_only: str | None = None  # why there is no program
 
 
@@ -63,13 +66,14 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.description = _DESCRIPTION
     parser.epilog = _EPILOG
     add_specification_options(parser)
+    add_time_option(parser)
     parser.add_argument("--latex", action="store_true", help="print the formula as LaTeX, and nothing else")
     parser.add_argument("--json", action="store_true", help="print JSON: one object")
 
 
 def run(args: argparse.Namespace) -> int:
     """Print what there is to tell."""
-    spec = read_specification(args)
+    spec = read_specification(args, args.time)
     if args.latex:
         print(spec.formula.latex())
         return OK
@@ -80,19 +84,22 @@ def run(args: argparse.Namespace) -> int:
 
 def gather(spec: Specification) -> Facts:
     """Find out all there is to tell; what an online monitor cannot have stays None."""
-    period = spec.period or Fraction(1)
-    facts = Facts(spec, period)
+    dense = spec.time == "dense"
+    step = spec.resolution if dense else spec.period or Fraction(1)
+    facts = Facts(spec, step)
     judged = spec.judged(spec.formula)
     try:
         check_online(spec.formula, spec.text)
         facts = replace(
-            facts, horizon=horizon(spec.formula, period), pastified=pastify(spec.formula, period, spec.text)
+            facts, horizon=horizon(spec.formula, step), pastified=pastify(spec.formula, step, spec.text)
         )
-        check_bounds(spec.formula, period, spec.text)
+        if not dense:  # whose bounds have been looked at when the text was read
+            check_bounds(spec.formula, step, spec.text)
     except BoundError as error:
         return replace(facts, offline_only=error.message)
-    program = compile_program((desugar(judged),), period, spec.input_names)
-    memory = None if spec.backend == "python" else int(core().memory(program.code(), calls_of(program)))
+    program = compile_program((desugar(judged),), step, spec.input_names, domain=spec.time)
+    unknown = dense or spec.backend == "python"
+    memory = None if unknown else int(core().memory(program.code(), calls_of(program)))
     return replace(facts, program=program, memory=memory)
 
 
@@ -128,8 +135,11 @@ def _lines(facts: Facts) -> Iterator[str]:
         yield f"{'' if i else 'variables':<11}{' '.join(word for word in words if word)}"
     if not spec.input_names:
         yield "variables  none"
-    default = "" if spec.period else " (the default; --period sets it)"
-    yield f"period     {format_duration(facts.period)}{default}"
+    if spec.time == "dense":
+        yield f"resolution {format_duration(facts.step)}, the tick in which time is counted"
+    else:
+        default = "" if spec.period else " (the default; --period sets it)"
+        yield f"period     {format_duration(facts.step)}{default}"
     if facts.horizon is not None:
         ahead = format_duration(facts.horizon)
         yield f"horizon    {ahead}: the value at t is known at t + {ahead}"
@@ -138,7 +148,9 @@ def _lines(facts: Facts) -> Iterator[str]:
     if facts.program is None:
         yield f"online     no: {facts.offline_only}"
         return
-    if facts.memory is None:
+    if spec.time == "dense":
+        yield "memory     that of the changes inside the windows, whatever the length of the trace"
+    elif facts.memory is None:
         yield "memory     only the compiled core can tell (leave out --backend python)"
     else:
         doubles = round(facts.memory / 8)
@@ -157,7 +169,8 @@ def _as_json(facts: Facts) -> str:
             "latex": spec.formula.latex() if is_printable(spec.formula) else None,
             "semantics": spec.semantics,
             "variables": _variables(spec),
-            "period": float(facts.period),
+            "period": None if spec.time == "dense" else float(facts.step),
+            "resolution": float(facts.step) if spec.time == "dense" else None,
             "horizon": None if facts.horizon is None else float(facts.horizon),
             "pastified": None if facts.pastified is None else printed(facts.pastified),
             "program": None if facts.program is None else facts.program.disassemble().splitlines(),

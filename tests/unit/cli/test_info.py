@@ -78,6 +78,7 @@ def test_json(run):
         "semantics": "standard",
         "variables": [{"name": "req.value", "type": None, "role": None, "topic": None}],
         "period": 1.0,
+        "resolution": None,
         "horizon": 1.0,
         "pastified": "req.value >= 3",
         "program": [
@@ -132,3 +133,71 @@ def test_the_program_is_that_of_the_semantics(run):
     ]
     assert answer.out.splitlines()[-1] == "  %2   lag 0    holds_ge %0 %1  -> output"
     assert json.loads(run("info", "x", "--semantics", "boolean", "--json").out)["semantics"] == "boolean"
+
+
+# ---- dense time --------------------------------------------------------------------------------------
+
+DENSE = (
+    "formula    always[0:10](req >= 3 -> eventually[0:70ms](gnt >= 3))\n"
+    "variables  req\n"
+    "           gnt\n"
+    "resolution 1 ns, the tick in which time is counted\n"
+    "horizon    10.07 s: the value at t is known at t + 10.07 s\n"
+    "pastified  historically[0:10](once[70ms:70ms](req >= 3) -> once[0:70ms](gnt >= 3))\n"
+    "memory     that of the changes inside the windows, whatever the length of the trace\n"
+    "program\n"
+    "  %0   lag 0    input req\n"
+    "  %1   lag 0    const 3.0\n"
+    "  %2   lag 0    sub %0 %1\n"
+    "  %3   lag 0    neg %2\n"
+    "  %4   lag 0    input gnt\n"
+    "  %5   lag 0    sub %4 %1\n"
+    "  %6   lag 70000000 slide_max %5 n=70000000\n"
+    "  %7   lag 70000000 shift %3 n=70000000 fill=0.0\n"
+    "  %8   lag 70000000 max %7 %6\n"
+    "  %9   lag 10070000000 slide_min %8 n=10000000000  -> output\n"
+)
+
+
+@pytest.mark.parametrize("backend", ["cpp", "python"])
+def test_in_dense_time_everything_is_counted_in_ticks(run, backend):
+    formula = "always[0:10]((req >= 3) -> eventually[0:70ms](gnt >= 3))"
+    assert run("info", formula, "--time", "dense", "--backend", backend) == (0, DENSE, "")
+
+
+def test_json_in_dense_time(run):
+    found = json.loads(run("info", "once[0:1ms](x)", "--time", "dense", "--json").out)
+    assert [found[key] for key in ("period", "resolution", "horizon", "memory")] == [None, 1e-9, 0.0, None]
+    assert found["program"][-1] == "%1   lag 0    slide_max %0 n=1000000  -> output"
+
+
+def test_unbounded_future_in_dense_time_is_offline_only(run):
+    answer = run("info", "always(x >= 3)", "--time", "dense")
+    assert answer.out.splitlines()[-1] == (
+        "online     no: 'always' without an upper bound needs the whole future and cannot be monitored "
+        "online; give it a bound, such as always[0:10], or evaluate the finished trace offline"
+    )
+
+
+def test_what_dense_time_does_not_have_is_shown_at_its_place(run):
+    assert run("info", "y or prev(x)", "--time", "dense") == (
+        2,
+        "",
+        "rtamt: 'prev' means one sample away, which dense time does not have; "
+        "use a window such as once[0:1], or discrete time\n"
+        "  line 1, column 6:\n"
+        "    y or prev(x)\n"
+        "         ^^^^^^^\n",
+    )
+
+
+def test_a_bound_of_more_ticks_than_can_be_counted_says_what_to_do(run):
+    assert run("info", "once[0:1e8](x)", "--time", "dense") == (
+        2,
+        "",
+        "rtamt: 100000000 s is 1e+17 ticks of 1 ns, more than can be counted; "
+        "shorten the bound, leave it open with inf, or choose a coarser resolution\n"
+        "  line 1, column 5:\n"
+        "    once[0:1e8](x)\n"
+        "        ^^^^^^^\n",
+    )
