@@ -208,7 +208,7 @@ class _DenseStream(_Stream):
 
     def take(self, chunk: Any) -> None:
         columns = dense_signals.columns_of(chunk, self.spec.input_names, self.declared)
-        given = {name: column for name, column in columns.items() if np.size(column[0])}
+        given = {name: column for name, column in columns.items() if len(column[0])}
         if not given:
             return
         for formula, monitor in self.monitors.items():

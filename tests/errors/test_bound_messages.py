@@ -63,3 +63,22 @@ def test_unbounded_future_cannot_be_pastified() -> None:
 def test_tenths_are_exact_multiples() -> None:
     spec = rtamt.parse("always[0:0.3](x >= 3)", period=0.1)
     assert spec.evaluate({"x": [4, 5, 6, 1]}).robustness == -2
+
+
+def test_nested_bounds_that_add_up_to_more_than_ticks_can_count():
+    text = "always[0:7e7] " * 40 + "x"
+    message = (
+        "the bounds from here inwards add up to 2310000000 s, 2.31e+18 ticks of 1 ns, more than can be counted; "
+        "shorten them, or choose a coarser resolution"
+    )
+    spec = rtamt.parse(text)
+    for call in (
+        lambda: rtamt.parse(text, time="dense"),
+        lambda: spec.evaluate({"x": [[0, 1]]}, time="dense"),
+        lambda: spec.monitor(time="dense"),
+    ):
+        with pytest.raises(rtamt.BoundError) as info:
+            call()
+        assert info.value.message == message
+        assert info.value.span.start == 7 * len("always[0:7e7] ") + len("always")
+    assert spec.evaluate({"x": [[0, 1]]}, time="dense", resolution="1us").robustness == 1.0

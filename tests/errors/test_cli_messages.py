@@ -5,6 +5,7 @@ import sys
 
 import pytest
 
+from rtamt.readers.formats import SUFFIXES
 from tests.unit.cli import invoke
 
 USE_PYTHON = "; on the command line: --backend python\n"
@@ -102,7 +103,7 @@ def run(capsys, monkeypatch, tmp_path):
         (["check", "x", "nowhere.csv"], "there is no file 'nowhere.csv'"),
         (
             ["check", "x", "folder"],
-            "cannot tell how to read 'folder': its name ends in none of .csv, .tsv, .txt",
+            f"cannot tell how to read 'folder': its name ends in none of {', '.join(SUFFIXES)}",
         ),
         (["check", "y", "good.csv"], "good.csv has no column 'y', only time, x"),
         (
@@ -180,7 +181,14 @@ def test_messages(run, args, message):
             '{"x": NaN}\n',
             "stdin, line 1: 'x' is NaN at sample 0, time 0 s: fill the gap or leave the sample out",
         ),
-        ('{"time": "now", "x": 1}\n', "stdin, line 1: 'time' is \"now\", expected a number"),
+        (
+            '{"time": "now", "x": 1}\n',
+            "stdin, line 1: 'time' is \"now\", expected a number, or a date such as 2026-05-01T12:00:00.5",
+        ),
+        (
+            '{"time": "2026-02-30", "x": 1}\n',
+            "stdin, line 1: 'time' is '2026-02-30', which is no date of the calendar",
+        ),
         (b'{"x": "\xff"}\n', "stdin, line 1: not UTF-8 text"),
     ],
 )

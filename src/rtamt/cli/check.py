@@ -7,6 +7,8 @@ import sys
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from rtamt.cli.command import (
     ERROR,
     OK,
@@ -14,12 +16,14 @@ from rtamt.cli.command import (
     Command,
     CommandError,
     add_specification_options,
+    add_stamp_options,
     add_time_option,
     complain,
     json_number,
     read_specification,
     read_trace,
     short,
+    stamp_text,
 )
 from rtamt.cli.terminal import Progress, printed, table, use_color
 from rtamt.engine.signals import Recording
@@ -40,12 +44,13 @@ the recording is from violating the requirement, or below 0 from satisfying it) 
 Exit code: 0 all satisfied, 1 some violated, 2 some could not be evaluated."""
 
 _EPILOG = """\
-A trace is a CSV file whose header names the columns. Time stamps (seconds, or the unit in the
-header: 't [ms]') are in the column called time, t, timestamp or stamp; without one, samples are
-one period apart. Columns that the formula does not read may hold anything.
+A trace is a CSV file whose header names the columns. Time stamps are in the column called time, t,
+timestamp, stamp or datetime; without one, samples are one period apart. They are dates (ISO 8601) or
+numbers: seconds, or the unit in the header ('t [ms]') or of --time-unit; integers too large for
+seconds are ms, us or ns since 1970. Columns that the formula does not read may hold anything.
 
-With --time dense a value holds until the next one, and time stamps may lie anywhere; then -o
-writes the robustness where it changes, and at the end.
+With --time dense a value holds until the next one, and time stamps may lie anywhere; a variable has
+no sample where its cell is empty. Then -o writes the robustness where it changes, and at the end.
 
 --json prints one object a line: {"trace", "satisfied", "robustness", "samples", "period"}, or
 {"trace", "error"}. The period of dense time is null. JSON has no infinities: they are the
@@ -80,7 +85,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add_specification_options(parser)
     parser.add_argument("traces", metavar="TRACE", nargs="+", help="a CSV file")
     add_time_option(parser)
-    parser.add_argument("--time-column", metavar="NAME", help="the column of time stamps; '' for none")
+    add_stamp_options(parser, "column")
     parser.add_argument("-o", "--output", metavar="FILE", help="write the robustness at every sample as CSV")
     parser.add_argument("--json", action="store_true", help="print JSON, one object a line")
     parser.add_argument("--quiet", action="store_true", help="print errors only: the exit code has it all")
@@ -99,7 +104,8 @@ def run(args: argparse.Namespace) -> int:
     with Progress() as progress:
         for number, trace in enumerate(args.traces, 1):
             label = f"{number}/{len(args.traces)} {trace}"
-            outcome = _evaluate(spec, trace, args.time_column, progress, label)
+            progress.show(label)
+            outcome = _evaluate(spec, trace, args.time_column, args.time_unit)
             outcomes.append(outcome)
             if outcome.error:
                 progress.clear()
@@ -114,14 +120,9 @@ def run(args: argparse.Namespace) -> int:
     return max(_CODES[outcome.verdict] for outcome in outcomes)
 
 
-def _evaluate(
-    spec: Specification, trace: str, time_column: str | None, progress: Progress, label: str
-) -> Outcome:
-    progress.show(label)
+def _evaluate(spec: Specification, trace: str, time_column: str | None, time_unit: str | None) -> Outcome:
     try:
-        data = read_trace(
-            spec, trace, time_column, lambda samples: progress.show(f"{label}: {samples:,} samples")
-        )
+        data = read_trace(spec, trace, time_column, time_unit)
     except StlError as error:
         return Outcome(trace, "error", error=str(error))
     try:
@@ -167,18 +168,18 @@ def _as_table(spec: Specification, outcomes: list[Outcome], color: bool) -> str:
 
 
 def _samples(trace: Recording | DenseRecording) -> int:
-    """Return the number of rows that were read: all columns share the stamps, also in dense time."""
-    return (
-        len(trace) if isinstance(trace, Recording) else max(len(ticks) for ticks, _ in trace.columns.values())
-    )
+    """Return the number of samples; in dense time that of the instants at which any variable has one."""
+    if isinstance(trace, Recording):
+        return len(trace)
+    return len(np.unique(np.concatenate([ticks for ticks, _ in trace.columns.values()])))
 
 
 def _write(result: Result, path: str) -> None:
-    rows = zip(result.signal.times.tolist(), result.signal.values.tolist(), strict=True)
+    rows = zip(map(stamp_text, result.signal.times), result.signal.values.tolist(), strict=True)
     try:
         with open(path, "w", encoding="utf-8", newline="") as file:
             file.write("time,robustness\n")
-            file.writelines(f"{time!r},{value!r}\n" for time, value in rows)
+            file.writelines(f"{time},{value!r}\n" for time, value in rows)
     except OSError as error:
         raise CommandError(f"cannot write '{path}': {error.strerror}") from None
 

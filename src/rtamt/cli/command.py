@@ -7,23 +7,28 @@ import os
 import re
 import sys
 import textwrap
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from fractions import Fraction
 from math import isfinite
-from typing import TYPE_CHECKING, NoReturn
+from typing import TYPE_CHECKING, Any, NoReturn
+
+import numpy as np
 
 from rtamt.cli.language import add_language_option, read_language
 from rtamt.engine.core import core
 from rtamt.engine.signals import TIME
 from rtamt.errors import SpecificationError, StlError, UsageError
-from rtamt.language.units import UNITS
-from rtamt.readers import READERS, read
+from rtamt.language.units import UNITS, decimal
+from rtamt.readers import READERS
+from rtamt.readers.assemble import trace_of
+from rtamt.readers.reading import choice, opened
 from rtamt.rewrite.interface import SEMANTICS
 from rtamt.specification import Specification, load, parse
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable
 
-    from rtamt.engine.signals import FloatArray
+    from rtamt.engine.trace import Trace
     from rtamt.settings import Settings
 
 OK, VIOLATED, ERROR = 0, 1, 2
@@ -97,6 +102,17 @@ def add_time_option(parser: argparse.ArgumentParser) -> None:
     )
 
 
+def add_stamp_options(parser: argparse.ArgumentParser, what: str) -> None:
+    """Add where the time stamps are and in what unit; ``what`` they are: a column, a key."""
+    parser.add_argument("--time-column", metavar="NAME", help=f"the {what} of time stamps; '' for none")
+    parser.add_argument(
+        "--time-unit",
+        metavar="UNIT",
+        choices=tuple(UNITS),
+        help=f"of time stamps that are numbers: {', '.join(UNITS)} (default: what the header says, else s)",
+    )
+
+
 def read_specification(args: argparse.Namespace, time: str = "discrete") -> Specification:
     """Read SPEC: the file of that name, else the text itself; ``time``: discrete or dense."""
     spec: str = args.spec
@@ -135,11 +151,15 @@ def read_trace(
     spec: Specification,
     trace: str,
     time_column: str | None = None,
-    progress: Callable[[int], None] | None = None,
-) -> Mapping[str, FloatArray]:
-    """Read what a specification reads from a trace; ``progress`` is told how many samples there are so far."""
-    data = read(trace, spec.input_names, time_column=time_column, progress=progress)
-    if spec.time == "dense" and TIME not in data:
+    time_unit: str | None = None,
+) -> Trace:
+    """Read what a specification reads from a trace; a value may be missing in dense time."""
+    dense = spec.time == "dense"
+    units = None if time_unit is None else {TIME: time_unit}
+    wanted = choice(time_column, spec.input_names or None, None, units)
+    with opened(trace) as source:
+        data = trace_of(source, replace(wanted, gaps=dense))
+    if dense and data.start is None:
         problem = "dense time needs a column of time stamps: call it 'time', or name it with --time-column"
         raise CommandError(f"{trace}: {problem}")
     return data
@@ -158,6 +178,17 @@ def json_number(value: float) -> float | str:
     ('-inf', 2.5, 0.0)
     """
     return value + 0.0 if isfinite(value) else str(value)
+
+
+def stamp_text(time: Any) -> str:
+    """Return a time as text: a date, or seconds with every nanosecond.
+
+    >>> stamp_text(np.float64(0.1)), stamp_text(np.int64(1700000000100000001))
+    ('0.1', '1700000000.100000001')
+    """
+    if isinstance(time, np.integer):
+        return str(decimal(Fraction(int(time), 10**9)))
+    return str(time) if isinstance(time, np.datetime64) else repr(float(time))
 
 
 def short(value: float) -> str:

@@ -5,17 +5,21 @@ from __future__ import annotations
 import json
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from rtamt.cli.command import (
     OK,
     VIOLATED,
     Command,
     CommandError,
     add_specification_options,
+    add_stamp_options,
     add_time_option,
     read_specification,
     read_trace,
 )
 from rtamt.cli.terminal import Progress
+from rtamt.engine.ticks import NANOSECOND, TimeScale
 from rtamt.errors import StlError
 
 if TYPE_CHECKING:
@@ -52,7 +56,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("trace", metavar="TRACE", help="a CSV file")
     add_time_option(parser)
     parser.add_argument("--at", metavar="T", type=float, help="seconds: the instant (default: the first)")
-    parser.add_argument("--time-column", metavar="NAME", help="the column of time stamps; '' for none")
+    add_stamp_options(parser, "column")
     parser.add_argument("--json", action="store_true", help="print JSON")
 
 
@@ -61,11 +65,12 @@ def run(args: argparse.Namespace) -> int:
     spec = read_specification(args, args.time)
     with Progress() as progress:
         progress.show(args.trace)
-        data = read_trace(
-            spec, args.trace, args.time_column, lambda n: progress.show(f"{args.trace}: {n:,} samples")
-        )
+        data = read_trace(spec, args.trace, args.time_column, args.time_unit)
+        at = args.at
+        if at is not None and spec.time == "dense" and isinstance(data.start, np.integer):
+            (at,) = TimeScale(NANOSECOND, "seconds").ticks([at], "--at")
         try:
-            explanation = spec.evaluate(data).explain(args.at)
+            explanation = spec.evaluate(data).explain(at)
         except StlError as error:
             raise CommandError(f"{args.trace}: {error}") from error
     print(_as_json(args.trace, explanation) if args.json else explanation)
@@ -73,7 +78,7 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _as_json(trace: str, explanation: Explanation) -> str:
-    return json.dumps({"trace": trace, **explanation.to_dict()})
+    return json.dumps({"trace": trace, **explanation.to_dict()}, default=str)  # dates are texts
 
 
 COMMAND = Command("explain", "tell which instants of which signals decide the verdict", configure, run)

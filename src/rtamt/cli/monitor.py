@@ -8,16 +8,20 @@ from collections import deque
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from rtamt.cli.command import (
     ERROR,
     OK,
     Command,
     CommandError,
     add_specification_options,
+    add_stamp_options,
     add_time_option,
     complain,
     json_number,
     read_specification,
+    stamp_text,
 )
 from rtamt.cli.samples import STDIN, Samples
 from rtamt.engine.signals import TOLERANCE
@@ -37,15 +41,17 @@ follows at the end of input)."""
 
 _EPILOG = """\
 input: JSON objects, one a line, or CSV with a header row. What the formula does not read is left
-out of account. Time stamps (seconds) are in time, t, timestamp or stamp; without one, samples are
-one period apart (--period, default 1 s). Fields: {"req": {"value": 3}} or {"req.value": 3}.
+out of account. Time stamps are in time, t, timestamp or stamp: seconds (--time-unit, or the unit in
+a CSV header: 't [ms]', says otherwise) or dates (ISO 8601); without one, samples are one period apart
+(--period, default 1 s). Fields: {"req": {"value": 3}} or {"req.value": 3}.
 
 With --time dense signals change at any instant, each on its own clock: a JSON object may hold some of
-the variables, and a line of output is printed for every change and at the last known instant.
+the variables, a cell of CSV may be empty, and a line of output is printed for every change and at the
+last known instant.
 
-output: {"time": 0.0, "robustness": 3.0}. JSON has no infinities: they are the strings "inf" and
-"-inf", here and in the input. With --semantics boolean a line has the verdict too: {"time": 0.0,
-"robustness": "inf", "satisfied": true}.
+output: {"time": 0.0, "robustness": 3.0}; the time is seconds, or in dense time a date where the input
+has dates. JSON has no infinities: they are the strings "inf" and "-inf", here and in the input. With
+--semantics boolean a line has the verdict too: {"time": 0.0, "robustness": "inf", "satisfied": true}.
 
 A line that is no sample ends the monitor with exit code 2. With --keep-going it is reported and
 left out, and the exit code is 2 at the end. A sample that is left out leaves a gap in time, which
@@ -63,7 +69,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.epilog = _EPILOG
     add_specification_options(parser)
     add_time_option(parser)
-    parser.add_argument("--time-column", metavar="NAME", help="the key or column of time stamps; '' for none")
+    add_stamp_options(parser, "key or column")
     parser.add_argument(
         "--tolerance",
         type=float,
@@ -86,7 +92,7 @@ def run(args: argparse.Namespace) -> int:
         if dense
         else Watched(spec.monitor(tolerance=args.tolerance), told)
     )
-    samples = Samples(watched.monitor.input_names, args.time_column, partial=dense)
+    samples = Samples(watched.monitor.input_names, args.time_column, dense=dense, unit=args.time_unit)
     if sys.stdin.isatty():
         complain("reading samples from the terminal, one JSON object a line; Ctrl-D ends")
     code = OK
@@ -116,15 +122,17 @@ class Output:
 
     def signal(self, signal: Signal) -> None:
         """Print every point of a signal."""
-        for time, robustness in zip(signal.times.tolist(), signal.values.tolist(), strict=True):
+        for time, robustness in zip(signal.times, signal.values.tolist(), strict=True):
             self.point(time, robustness)
 
-    def point(self, time: float, robustness: float) -> None:
+    def point(self, time: Any, robustness: float) -> None:
         """Print the robustness at one instant."""
-        line: dict[str, Any] = {"time": time, "robustness": json_number(robustness)}
+        # The time by hand: it may have more digits than a double.
+        stamp = f'"{stamp_text(time)}"' if isinstance(time, np.datetime64) else stamp_text(time)
+        rest: dict[str, Any] = {"robustness": json_number(robustness)}
         if self.verdicts:
-            line["satisfied"] = robustness > 0
-        print(json.dumps(line), flush=True)
+            rest["satisfied"] = robustness > 0
+        print(f'{{"time": {stamp}, {json.dumps(rest)[1:]}', flush=True)
 
 
 class Watched:
@@ -161,7 +169,7 @@ class DenseWatched:
         self.monitor = monitor
         self._output = output
 
-    def take(self, time: float | None, values: dict[str, float], line: int) -> str:
+    def take(self, time: Any, values: dict[str, float], line: int) -> str:
         """Take a sample and print what became known; return what is wrong with the sample, if anything is."""
         if time is None:
             return f"{STDIN}, line {line}: in dense time every sample needs its time"

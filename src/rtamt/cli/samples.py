@@ -4,11 +4,26 @@ from __future__ import annotations
 
 import csv
 import json
+from math import isfinite
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from rtamt.engine.signals import missing_variable
+from rtamt.engine.ticks import FARTHEST
 from rtamt.errors import TraceError
-from rtamt.readers.csv import TIME_NAMES, Column, Header, find, find_time, numbers, read_header, time_divisor
+from rtamt.language.units import UNITS, exact
+from rtamt.readers.cells import DATE, EXAMPLE, Cells
+from rtamt.readers.csv import (
+    TIME_NAMES,
+    Header,
+    check_width,
+    find,
+    find_time,
+    numbers,
+    read_header,
+    time_unit,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -16,7 +31,8 @@ if TYPE_CHECKING:
 #: What messages call the input.
 STDIN = "stdin"
 
-Sample = tuple["float | None", dict[str, float]]
+#: The time (None if there are no stamps) and the values.
+Sample = tuple[Any, dict[str, float]]
 
 _INFINITIES = ("inf", "-inf")
 
@@ -24,13 +40,23 @@ _INFINITIES = ("inf", "-inf")
 class Samples:
     """Reads one sample from each line: its time stamp (None if there are none) and the values wanted.
 
-    ``partial``: a JSON object may hold some of the values only, as in dense time.
+    A stamp is seconds; ``dense``: or nanoseconds (integers of numpy) where the unit is less than a
+    second, or a date, and a sample may hold some of the values only. ``unit``: of stamps that are
+    numbers, by default what a CSV header says, else seconds.
     """
 
-    def __init__(self, names: Sequence[str], time_name: str | None = None, *, partial: bool = False) -> None:
-        self._partial = partial
+    def __init__(
+        self,
+        names: Sequence[str],
+        time_name: str | None = None,
+        *,
+        dense: bool = False,
+        unit: str | None = None,
+    ) -> None:
         self._names = tuple(names)
         self._time_name = time_name
+        self._dense = dense
+        self._unit = unit
         self._read: Callable[[str, int], Sample] | None = None
 
     def read(self, line: bytes, number: int) -> Sample | None:
@@ -47,21 +73,22 @@ class Samples:
         if self._read is not None:
             return self._read(text, number)
         if text.lstrip().startswith("{"):
-            reader = JsonSamples(self._names, self._time_name, self._partial)
+            reader = JsonSamples(self._names, self._time_name, self._dense, self._unit)
             sample = reader.read(text, number)
             self._read = reader.read
             return sample
-        self._read = CsvSamples(self._names, self._time_name, text, number).read
+        self._read = CsvSamples(self._names, self._time_name, self._dense, self._unit, text, number).read
         return None
 
 
 class JsonSamples:
     """Samples as JSON objects; the first one tells where the time stamp is."""
 
-    def __init__(self, names: tuple[str, ...], time_name: str | None, partial: bool) -> None:
+    def __init__(self, names: tuple[str, ...], time_name: str | None, dense: bool, unit: str | None) -> None:
         self._names = names
-        self._partial = partial
+        self._dense = dense
         self._time_name = time_name
+        self._unit = unit or "s"
 
     def read(self, text: str, number: int) -> Sample:
         """Return the sample in one line."""
@@ -76,15 +103,32 @@ class JsonSamples:
         if self._time_name is None:
             lowered = {key.lower(): key for key in reversed(data)}
             self._time_name = next((lowered[name] for name in TIME_NAMES if name in lowered), "")
-        time = _number(data, self._time_name, number) if self._time_name else None
-        names = [name for name in self._names if not self._partial or _has(data, name)]
+        time = self._time(data, self._time_name, number) if self._time_name else None
+        names = [name for name in self._names if not self._dense or _has(data, name)]
         return time, {name: _number(data, name, number) for name in names}
+
+    def _time(self, data: dict[str, Any], name: str, number: int) -> Any:
+        value = data.get(name)
+        if isinstance(value, str):
+            return _stamp(value, self._unit, self._dense, name, number)
+        seconds = _number(data, name, number)
+        text = str(int(value)) if isinstance(value, int) else repr(seconds)  # an integer to its last digit
+        return _stamp(text, self._unit, self._dense, name, number)
 
 
 class CsvSamples:
     """Samples as rows of CSV under a header row."""
 
-    def __init__(self, names: tuple[str, ...], time_name: str | None, text: str, number: int) -> None:
+    def __init__(
+        self,
+        names: tuple[str, ...],
+        time_name: str | None,
+        dense: bool,
+        unit: str | None,
+        text: str,
+        number: int,
+    ) -> None:
+        self._dense = dense
         self._header, _ = read_header(iter([text]), STDIN, number - 1)
         known = {cell.lower() for cell in self._header.names}
         if names and known.isdisjoint({*TIME_NAMES, *(name.lower() for name in names)}):
@@ -96,8 +140,8 @@ class CsvSamples:
             )
         self._columns = [find(self._header, name) for name in names]
         time = find_time(self._header, time_name)
-        self._time: list[Column] = [] if time is None else [time]
-        self._divisor = 1.0 if time is None else time_divisor(self._header, time)
+        self._time = time
+        self._unit = unit or ("s" if time is None else time_unit(self._header, time))
 
     def read(self, text: str, number: int) -> Sample:
         """Return the sample in one line."""
@@ -106,10 +150,36 @@ class CsvSamples:
             row = next(csv.reader([text], delimiter=header.delimiter, skipinitialspace=True))
         except csv.Error as error:
             raise header.error(number, str(error)) from None
-        values = numbers(row, header, number, self._columns)
-        stamp = numbers(row, header, number, self._time)
-        time = stamp[0] / self._divisor if stamp else None
-        return time, {column.name: value for column, value in zip(self._columns, values, strict=True)}
+        check_width(row, header, number)
+        given = [c for c in self._columns if not self._dense or row[c.position].strip()]
+        values = dict(zip((c.name for c in given), numbers(row, header, number, given), strict=True))
+        if self._time is None:
+            return None, values
+        text, name = row[self._time.position].strip(), header.names[self._time.position]
+        if DATE.fullmatch(text) is None:
+            numbers(row, header, number, [self._time])  # says what is wrong
+        return _stamp(text, self._unit, self._dense, name, number), values
+
+
+def _stamp(text: str, unit: str, dense: bool, name: str, number: int) -> Any:
+    """Return a number or a date as a time."""
+    if DATE.fullmatch(text) is not None:
+        cells = Cells(Header(STDIN, (name,), ",", 0), name)
+        cells.extend([text], [number])
+        moment = cells.values()[0]
+        return moment if dense else float(moment.astype(np.int64) / 1e9)
+    try:
+        value = float(text)
+        if not dense or unit == "s" or not isfinite(value):
+            # A division by a whole number rounds once; a product with 0.001 would round twice.
+            return value / float(1 / UNITS[unit])
+        nanoseconds = round(exact(text) * UNITS[unit] * 10**9)
+    except ValueError:
+        problem = f"expected a number, or a date such as {EXAMPLE}"
+        raise _error(number, f"'{name}' is {_shown(text)}, {problem}") from None
+    if abs(nanoseconds) >= FARTHEST:
+        raise _error(number, f"'{name}' is {text} {unit}, too far from 0: subtract a start time")
+    return np.int64(nanoseconds)
 
 
 def _number(data: dict[str, Any], name: str, number: int) -> float:
@@ -129,10 +199,9 @@ def _number(data: dict[str, Any], name: str, number: int) -> float:
 
 def _has(data: dict[str, Any], name: str) -> bool:
     try:
-        _member(data, name)
+        return _member(data, name) is not None
     except KeyError:
         return False
-    return True
 
 
 def _member(data: dict[str, Any], name: str) -> Any:

@@ -95,6 +95,8 @@ class TimeScale:
             kinds = {("seconds" if kind == "nanoseconds" else kind): i for kind, i in kinds.items()}
             if set(kinds) - {"seconds"}:
                 raise self._not_numbers(times, name, first)
+        if self.kind == "zoned" and isinstance(times, np.ndarray) and times.dtype.kind == "M":
+            return  # as times() tells them: in UTC
         if len(kinds) > 1:
             (a, i), (b, j) = list(kinds.items())[:2]
             raise TraceError(

@@ -29,6 +29,8 @@ class Choice:
     columns: tuple[str, ...] | None = None
     names: Mapping[str, str] = dataclasses.field(default_factory=dict)
     units: Mapping[str, str] = dataclasses.field(default_factory=dict)
+    #: Whether a value may be missing; discrete time needs one of every signal at every sample.
+    gaps: bool = True
 
 
 @dataclass(frozen=True, slots=True)
@@ -225,8 +227,15 @@ def _channels(
             continue
         mine = times
         if missing is not None and missing.any():
+            row = before + int(missing.argmax())
+            if not choice.gaps:
+                raise TraceError(
+                    f"'{name}' is missing at sample {row} of {source.name}, but discrete time needs a value at "
+                    f"every sample: fill the gap, or use dense time (--time dense)",
+                    variable=name,
+                    index=row,
+                )
             if times is None:
-                row = before + int(missing.argmax())
                 raise TraceError(
                     f"'{name}' is missing at sample {row} of {source.name}: fill the gap, or name the "
                     f"column of time stamps, so that each signal has a clock of its own",

@@ -100,7 +100,7 @@ def read_csv(
     result = {column.name: np.frombuffer(values) for column, values in zip(columns, data, strict=True)}
     if time is not None:
         # A division by a whole number rounds once; a product with 0.001 would round twice.
-        result[TIME] = result[TIME] / time_divisor(header, time)
+        result[TIME] = result[TIME] / float(1 / UNITS[time_unit(header, time)])
     return result
 
 
@@ -183,16 +183,16 @@ def split_unit(cell: str) -> tuple[str, str]:
     return (match["name"], match["unit"]) if match else (cell, "")
 
 
-def time_divisor(header: Header, column: Column) -> float:
-    """Return how many of the time column's units make a second."""
+def time_unit(header: Header, column: Column) -> str:
+    """Return the unit of the time column, seconds where the header says none."""
     cell = header.names[column.position]
     unit = split_unit(cell)[1]
     if unit in ("", "sec", "seconds"):
-        return 1.0
+        return "s"
     if unit not in UNITS:
         known = ", ".join(UNITS)
         raise header.error(header.line, f"the unit of the time column '{cell}' is none of {known}", cell)
-    return float(1 / UNITS[unit])
+    return unit
 
 
 # ---- the rows ------------------------------------------------------------------------------------
@@ -241,21 +241,40 @@ def _checked(
     lines: Iterator[str], header: Header, before: int, columns: Sequence[Column]
 ) -> Iterator[list[float]]:
     """Yield the numbers of each row; raise :class:`TraceError` where there is none."""
+    for line, row in _cells(lines, header, before):
+        yield numbers(row, header, line, columns)
+
+
+def blocks(lines: Iterator[str], header: Header) -> Iterator[list[tuple[int, list[str]]]]:
+    """Yield the rows after the header, many at a time, each with its line: as many cells as there are columns."""
+    cells = _cells(lines, header, header.line)
+    while block := list(islice(cells, _BLOCK)):
+        for line, row in block:
+            check_width(row, header, line)
+        yield block
+
+
+def _cells(lines: Iterator[str], header: Header, before: int) -> Iterator[tuple[int, list[str]]]:
     reader = csv.reader(lines, delimiter=header.delimiter, skipinitialspace=True)
     try:
         for row in reader:
             if not row or (len(row) == 1 and not row[0].strip()) or row[0].startswith("#"):
                 continue
-            yield numbers(row, header, before + reader.line_num, columns)
+            yield before + reader.line_num, row
     except csv.Error as error:
         raise header.error(before + reader.line_num, str(error)) from None
 
 
-def numbers(row: list[str], header: Header, line: int, columns: Collection[Column]) -> list[float]:
-    """Return the numbers of one row, those of ``columns``."""
+def check_width(row: list[str], header: Header, line: int) -> None:
+    """Raise :class:`TraceError` unless a row has a cell for each column."""
     if len(row) != len(header.names):
         count = f"{len(row)} value{'s' * (len(row) != 1)}"
         raise header.error(line, f"{count}, but {len(header.names)} columns ({_listing(header)})")
+
+
+def numbers(row: list[str], header: Header, line: int, columns: Collection[Column]) -> list[float]:
+    """Return the numbers of one row, those of ``columns``."""
+    check_width(row, header, line)
     return [number(row[column.position], header.names[column.position], header, line) for column in columns]
 
 

@@ -6,7 +6,8 @@ import csv
 from itertools import islice
 from typing import TYPE_CHECKING
 
-from rtamt.readers.csv import read_csv, read_header
+from rtamt.readers.cells import Cells
+from rtamt.readers.csv import blocks, read_header
 from rtamt.readers.frames import field_of
 from rtamt.readers.source import Field, Source, Table, opening
 
@@ -31,8 +32,15 @@ def open_csv(path: str) -> Source:
         fields.append(field_of(column, "text" if text else "number"))
 
     def load(wanted: Sequence[Field]) -> list[Raw]:
-        data = read_csv(path, [field.column for field in wanted], time_column="")
-        return [data[field.column] for field in wanted]
+        with opening(path, "CSV", UnicodeDecodeError), open(path, encoding="utf-8-sig", newline="") as lines:
+            header, rows = read_header(lines, path)
+            columns = [Cells(header, field.column) for field in wanted]
+            positions = [header.names.index(field.column) for field in wanted]
+            for block in blocks(rows, header):
+                numbers = [line for line, _ in block]
+                for cells, position in zip(columns, positions, strict=True):
+                    cells.extend([row[position] for _, row in block], numbers)
+        return [cells.values() for cells in columns]
 
     return Source(path, (Table(tuple(fields), load),))
 

@@ -2,20 +2,19 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from fractions import Fraction
 
 from rtamt.errors import BoundError, SpecificationError
-from rtamt.language.formula import Apply, Formula, postorder
+from rtamt.language.formula import Apply, Formula, children, postorder
 from rtamt.language.operators import Bounds, Tense
 from rtamt.language.units import format_duration
 from rtamt.rewrite.desugar import spelled_out
 
-if TYPE_CHECKING:
-    from fractions import Fraction
-
 #: The longest bound; sums of many such lags still fit into an int64.
 _MOST_PERIODS = 2**44
 _MOST_TICKS = 2**56
+#: The longest sum of bounds of nested operators in dense time, where it is added to stamps.
+_FARTHEST_TICKS = 2**61
 
 
 def check_bounds(
@@ -51,6 +50,26 @@ def check_bounds(
                     text,
                     node.interval.span or node.span,
                 )
+    if not discrete:
+        _check_sums(spelled_out(formula), period, text)
+
+
+def _check_sums(formula: Formula, tick: Fraction, text: str | None) -> None:
+    """Raise :class:`BoundError` at an operator whose bounds, with those of its operands, reach too far."""
+    reach: dict[int, Fraction] = {}
+    for node in postorder(formula):
+        far = max((reach[id(operand)] for operand in children(node)), default=Fraction(0))
+        if isinstance(node, Apply) and node.interval is not None:
+            far += node.interval.begin if node.interval.end is None else node.interval.end
+            if far / tick > _FARTHEST_TICKS:
+                raise BoundError(
+                    f"the bounds from here inwards add up to {format_duration(far)}, {float(far / tick):.3g} ticks "
+                    f"of {format_duration(tick)}, more than can be counted; shorten them, or choose a coarser "
+                    f"resolution",
+                    text,
+                    node.interval.span or node.span,
+                )
+        reach[id(node)] = far
 
 
 def check_online(formula: Formula, text: str | None = None) -> None:

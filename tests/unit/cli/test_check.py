@@ -184,6 +184,49 @@ def test_dense_time_has_no_period(run, write):
     }
 
 
+def test_in_dense_time_a_variable_has_no_sample_where_its_cell_is_empty(run, write):
+    write("events.csv", "time,x,y\n0,5,\n0.1,,1\n0.3,2,\n1,,\n")
+    answer = run("check", "x >= 3 and y >= 0", "events.csv", "--time", "dense", "-o", "rho.csv")
+    assert (answer.code, answer.err) == (0, "")
+    assert answer.out.splitlines()[-1].split() == ["events.csv", "3", "dense", "1", "satisfied"]
+    assert Path("rho.csv").read_text() == "time,robustness\n0.1,1.0\n0.3,-1.0\n"
+    assert run("check", "x >= 3", "events.csv") == (
+        2,
+        "",
+        "rtamt: 'x' is missing at sample 1 of events.csv, but discrete time needs a value at every sample: "
+        "fill the gap, or use dense time (--time dense)\n",
+    )
+
+
+@pytest.mark.parametrize(("header", "options"), [("t", ["--time-unit", "ns"]), ("t [ns]", []), ("t", [])])
+def test_integer_nanoseconds_are_exact(run, write, header, options):
+    start = 1_700_000_000 * 10**9
+    write("log.csv", f"{header},x\n{start},5\n{start + 1},1\n{start + 100_000_001},5\n")
+    answer = run("check", "once[100ms:100ms] x", "log.csv", "--time", "dense", "-o", "rho.csv", *options)
+    assert answer.code == 1
+    assert Path("rho.csv").read_text() == (
+        "time,robustness\n1700000000,-inf\n1700000000.1,5.0\n1700000000.100000001,1.0\n"
+    )
+
+
+def test_a_unit_of_stamps_in_discrete_time(run, write):
+    write("log.csv", "t,x\n0,5\n100,4\n200,3\n")
+    answer = json.loads(run("check", "always[0:0.2](x)", "log.csv", "--time-unit", "ms", "--json").out)
+    assert (answer["robustness"], answer["period"]) == (3.0, 0.1)
+
+
+def test_dates_are_time_stamps_in_both_domains(run, write):
+    write(
+        "log.csv", "time,x\n2026-01-01T00:00:00Z,5\n2026-01-01T01:00:00.1+01:00,1\n2026-01-01 00:00:00.2Z,4\n"
+    )
+    assert run("check", "once[0.2:0.2] x or x", "log.csv", "--time", "dense", "-o", "rho.csv").code == 0
+    assert Path("rho.csv").read_text() == (
+        "time,robustness\n2026-01-01T00:00:00.000000000,5.0\n2026-01-01T00:00:00.100000000,1.0\n"
+        "2026-01-01T00:00:00.200000000,5.0\n"
+    )
+    assert json.loads(run("check", "x", "log.csv", "--json").out)["period"] == 0.1
+
+
 @pytest.mark.parametrize(
     ("args", "message"),
     [

@@ -159,3 +159,45 @@ def test_the_monitor_takes_every_semantics_and_prints_no_minus_before_zero(run):
     text = "input float u; output float y; u >= 3 -> not (y >= 3)"
     answer = run("monitor", text, "--semantics", "input-vacuity", stdin=jsonl({"time": 0, "u": 5, "y": 9}))
     assert answer == (0, '{"time": 0.0, "robustness": 0.0}\n', "")
+
+
+def watch(run, formula, stdin, *options):
+    answer = run("monitor", formula, "--time", "dense", *options, stdin=stdin)
+    return answer.out.splitlines(), answer.err
+
+
+def test_dense_cells_may_be_empty(run):
+    told, errors = watch(run, "x >= 3 and y >= 0", "time,x,y\n0,5,\n0.5,,1\n1,2,2\n")
+    assert (told, errors) == (['{"time": 0.5, "robustness": 1.0}', '{"time": 1.0, "robustness": -1.0}'], "")
+    answer = run("monitor", "x >= 3 and y >= 0", stdin="time,x,y\n0,5,\n")
+    assert (answer.code, answer.err) == (2, "rtamt: stdin, line 2: 'y' is empty, expected a number\n")
+
+
+def test_dense_nanoseconds_are_exact(run):
+    start = 1_700_000_000 * 10**9
+    stdin = jsonl({"time": start + 1, "x": 5}, {"time": start + 9, "x": None}, {"time": start + 11, "x": 1})
+    expected = [
+        '{"time": 1700000000.000000001, "robustness": "-inf"}',
+        '{"time": 1700000000.000000011, "robustness": 5.0}',
+    ]
+    told, errors = watch(run, "once[10ns:10ns] x", stdin, "--time-unit", "ns")
+    assert (told, errors) == (expected, "")
+    told, errors = watch(run, "once[10ns:10ns] x", f"t [ns],x\n{start + 1},5\n{start + 11},1\n")
+    assert (told, errors) == (expected, "")
+
+
+def test_dense_stamps_may_be_dates(run):
+    stdin = jsonl({"time": "2026-01-01T02:00:00+02:00", "x": 5}, {"time": "2026-01-01T00:00:01.5Z", "x": 2})
+    told, errors = watch(run, "x >= 3", stdin)
+    assert errors == ""
+    assert [json.loads(line) for line in told] == [
+        {"time": "2026-01-01T00:00:00.000000000", "robustness": 2.0},
+        {"time": "2026-01-01T00:00:01.500000000", "robustness": -1.0},
+    ]
+
+
+def test_a_dense_stamp_too_far_from_0(run):
+    _, errors = watch(run, "x", jsonl({"time": 10**30, "x": 5}), "--time-unit", "us")
+    assert errors == (
+        "rtamt: stdin, line 1: 'time' is 1000000000000000000000000000000 us, too far from 0: subtract a start time\n"
+    )

@@ -1,0 +1,131 @@
+"""Columns of text to columns of numbers or dates, as exact as they are written; an empty cell is a missing value."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rtamt.readers.csv import Header, number
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from rtamt.errors import TraceError
+    from rtamt.readers.source import Raw
+
+#: What messages show.
+EXAMPLE = "2026-05-01T12:00:00.5"
+
+#: ISO 8601: a date, perhaps a time, perhaps a time zone.
+DATE = re.compile(
+    r"(?P<date>\d{4}-\d\d-\d\d)(?:[T ](?P<time>\d\d:\d\d(?::\d\d(?:\.\d{1,9})?)?)(?P<zone>Z|[+-]\d\d:?\d\d)?)?"
+)
+#: Years that nanoseconds since 1970 can hold.
+_YEARS = range(1678, 2262)
+#: From here on a double may not be the integer that was written.
+_LARGE = 2.0**53
+
+
+class Cells:
+    """One column of a file, which grows by blocks of rows.
+
+    What its first cell is, a number or a date, all others must be.
+    """
+
+    def __init__(self, header: Header, name: str) -> None:
+        self._header = header
+        self._name = name
+        self._dated: bool | None = None  # not known before the first cell that is not empty
+        self._zoned: bool | None = None
+        self._whole = True  # whether all numbers are integers that an int64 holds
+        self._parts: list[Raw] = []
+        self._missing: list[Raw] = []
+
+    def extend(self, texts: Sequence[str], lines: Sequence[int]) -> None:
+        """Add cells, each with its line in the file; raise :class:`TraceError` at one that is neither."""
+        texts = [text.strip() for text in texts]
+        missing = np.array([not text for text in texts], dtype=bool)
+        given = [(text, line) for text, line in zip(texts, lines, strict=True) if text]
+        if self._dated is None and given:
+            self._dated = DATE.fullmatch(given[0][0]) is not None
+        values = self._dates(given) if self._dated else self._numbers(given)
+        if missing.any():
+            part = np.zeros(len(texts), values.dtype)
+            part[~missing] = values
+            values = part
+        self._parts.append(values)
+        self._missing.append(missing)
+
+    def values(self) -> Raw:
+        """Return all cells: int64 where all are integers, else float64, or datetime64[ns]; masked where empty."""
+        parts = self._parts
+        if not self._dated:
+            parts = [part.astype(np.int64 if self._whole else np.float64) for part in parts]
+        result = np.concatenate(parts) if parts else np.empty(0)
+        missing = np.concatenate(self._missing) if parts else np.empty(0, dtype=bool)
+        return np.ma.masked_array(result, missing) if missing.any() else result
+
+    def _numbers(self, given: Sequence[tuple[str, int]]) -> Raw:
+        texts = [text for text, _ in given]
+        together = "".join(texts)
+        try:
+            values = np.array(texts, dtype=np.float64)
+        except ValueError:
+            values = np.array([np.nan])
+        if np.isnan(values).any() or "_" in together or not together.isascii():
+            values = np.array([number(text, self._name, self._header, line) for text, line in given])
+        if self._whole and len(values):
+            largest = float(np.abs(values).max())
+            if largest >= _LARGE:
+                exact = _integers(texts)
+                self._whole = exact is not None
+                return values if exact is None else exact
+            self._whole = bool((values == np.rint(values)).all())
+        return values
+
+    def _dates(self, given: Sequence[tuple[str, int]]) -> Raw:
+        stamps, offsets = [], []
+        for text, line in given:
+            match = DATE.fullmatch(text)
+            if match is None:
+                raise self._error(line, text, f"expected a date such as {EXAMPLE}, like those before")
+            zone = match["zone"]
+            if self._zoned is None:
+                self._zoned = zone is not None
+            if self._zoned != (zone is not None):
+                has = "a time zone, and those before have" if zone else "no time zone, and those before have"
+                raise self._error(line, text, f"with {has} {'none' if zone else 'one'}; use one way for all")
+            stamps.append(f"{match['date']}T{match['time'] or '00:00'}")
+            minutes = 0
+            if zone not in (None, "Z"):
+                minutes = (int(zone[1:3]) * 60 + int(zone[-2:])) * (-1 if zone[0] == "-" else 1)
+            offsets.append(minutes)
+            if int(text[:4]) not in _YEARS:
+                raise self._error(line, text, "a year that nanoseconds since 1970 cannot reach")
+        try:
+            times: Raw = np.array(stamps, dtype="M8[ns]") - np.array(offsets, dtype="m8[m]")
+        except ValueError:
+            pairs = zip(stamps, given, strict=True)
+            text, line = next(cell for stamp, cell in pairs if _is_no_date(stamp))
+            raise self._error(line, text, "which is no date of the calendar") from None
+        return times
+
+    def _error(self, line: int, text: str, problem: str) -> TraceError:
+        return self._header.error(line, f"'{self._name}' is '{text}', {problem}", self._name)
+
+
+def _integers(texts: Sequence[str]) -> Raw | None:
+    try:
+        return np.array([int(text) for text in texts], dtype=np.int64)
+    except (ValueError, OverflowError):
+        return None
+
+
+def _is_no_date(stamp: str) -> bool:
+    try:
+        np.datetime64(stamp, "ns")
+    except ValueError:
+        return True
+    return False
