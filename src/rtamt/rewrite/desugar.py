@@ -36,7 +36,7 @@ def spelled_out(formula: Formula) -> Formula:
     >>> nand = replace(STL["and"], name="nand", definition=None, kernel=None,
     ...     expansion=lambda a, b, _i: STL["not"](STL["and"](a, b)))
     >>> str(spelled_out(nand(Var("x"), Var("y"))))
-    'not (x and y)'
+    'not(x and y)'
     """
     if not any(isinstance(node, Apply) and node.op.definition is None for node in postorder(formula)):
         return formula
