@@ -116,7 +116,7 @@ class DiscreteTimeline(Timeline):
                 return nearest
         raise UsageError(
             f"there is no sample at {shown(at)}; the recording has {self.end}, "
-            f"from {times[0]:.12g} s to {times[-1]:.12g} s"
+            f"from {times[0]:.15g} s to {times[-1]:.15g} s"
         )
 
     def time(self, cell: int) -> Any:
@@ -125,7 +125,7 @@ class DiscreteTimeline(Timeline):
 
     def show(self, cell: int) -> str:
         """See :class:`Timeline`."""
-        return f"{self._recording.times[cell]:.12g} s"
+        return f"{self._recording.times[cell]:.15g} s"
 
     @property
     def last(self) -> int:

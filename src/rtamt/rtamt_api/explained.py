@@ -38,9 +38,9 @@ class ExplainedSpecification(Formulas):
     def explain(self, at: Any = None) -> Explanation:
         """Tell why the latest ``evaluate`` found the specification satisfied or violated.
 
-        ``at``: an instant, in seconds; by default the first. The answer prints as sentences and is data:
-        ``.critical``, ``.implicant``, ``.to_dict()``, all times in seconds. Raises
-        :class:`RTAMTException` before the first ``evaluate``.
+        ``at``: an instant; by default the first. The answer prints as sentences and is data:
+        ``.critical``, ``.implicant``, ``.to_dict()``. Times are seconds in discrete time, and in
+        :attr:`unit` in dense time. Raises :class:`RTAMTException` before the first ``evaluate``.
 
         >>> import rtamt
         >>> spec = rtamt.StlDiscreteTimeOfflineSpecification()

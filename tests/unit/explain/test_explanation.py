@@ -279,3 +279,10 @@ def test_stretches_that_nothing_can_stand_in_for_are_not_tried_one_by_one():
 def test_a_predicate_with_and_without_negation_is_two():
     explanation = explained("x >= 3 or not (x >= 3)", {"x": [1]})
     assert [(s.predicate, s.holds) for s in explanation.implicant] == [("x >= 3", False)]
+
+
+def test_stamps_that_count_from_1970_are_told_to_the_millisecond():
+    times = [1700000000.123, 1700000000.124, 1700000000.125]
+    explanation = explained("always(x >= 3)", {"time": times, "x": [5, 1, 4]}, period="1ms")
+    assert explanation.sentences[0] == "violated by 2 at 1700000000.123 s: always(x >= 3)"
+    assert explanation.sentences[3] == "  'x >= 3' failed at 1700000000.124 s (-2)"
