@@ -7,14 +7,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 _Events: TypeAlias = tuple[NDArray[np.int64], NDArray[np.float64]]
+# Of each call: a capsule "rtamt.kernel" or what makes a driver, its interval (-1: no end), seconds in a
+# step, and the instructions that it reads.
+_Calls: TypeAlias = list[tuple[Any, int, int, float, tuple[int, ...]]]
 
 class Refused(Exception):  # noqa: N818 - a word that reads well after except
     """An update was refused; the monitor is as it was."""
 
 class Undefined(Exception):  # noqa: N818
-    """An operation made NaN; args are the instruction and the sample, or the tick in dense time."""
+    """An operation made NaN; args are the instruction and the sample, or the tick in dense time.
 
-    args: tuple[int, int]
+    Or a call failed: a third one is what it said, and the cause what a Python operator raised.
+    """
+
+    args: tuple[int, int] | tuple[int, int, str]
 
 class Monitor:
     """Runs a program online, one sample or one chunk at a time."""
@@ -27,6 +33,7 @@ class Monitor:
         tolerance: float = ...,
         strict: bool = True,
         ignored: Collection[str] | None = None,
+        calls: _Calls = ...,
     ) -> None: ...
     def update(self, t: float, values: Mapping[str, Any], /) -> float | None:
         """Take the sample of time t, a dict of every input; return what became known, or None."""
@@ -83,7 +90,11 @@ class DenseMonitor:
     """Runs a program online in dense time, one instant or one chunk at a time; times are ticks."""
 
     def __init__(
-        self, program: bytes, names: Sequence[str], ignored: Collection[str] | None = None
+        self,
+        program: bytes,
+        names: Sequence[str],
+        ignored: Collection[str] | None = None,
+        calls: _Calls = ...,
     ) -> None: ...
     def tell(self, signal: type, scale: Any, rate: float | None) -> None:
         """Say how update() tells time: in seconds of so many ticks, or (None) by integers that are ticks.
@@ -143,16 +154,20 @@ class DenseMonitor:
 def opcode_names() -> list[str]:
     """The names of the opcodes, in the order of their codes."""
 
-def evaluate(program: bytes, columns: Sequence[NDArray[np.float64]], n: int) -> list[NDArray[np.float64]]:
+def evaluate(
+    program: bytes, columns: Sequence[NDArray[np.float64]], n: int, calls: _Calls = ...
+) -> list[NDArray[np.float64]]:
     """Run a program over a whole trace of n samples; return n values an output."""
 
 def scan(kind: str, a: NDArray[np.float64], b: NDArray[np.float64] | None = None) -> NDArray[np.float64]:
     """Unbounded future over a whole column: run_max, run_min, or until."""
 
-def memory(program: bytes) -> int:
+def memory(program: bytes, calls: _Calls = ...) -> int:
     """Bytes of state of a new monitor of this program."""
 
-def dense_evaluate(program: bytes, columns: Sequence[_Events], extra: int = 0) -> list[_Events]:
+def dense_evaluate(
+    program: bytes, columns: Sequence[_Events], extra: int = 0, calls: _Calls = ...
+) -> list[_Events]:
     """Run a program over whole signals, up to their last time and extra ticks more."""
 
 def dense_scan(kind: str, a: _Events, b: _Events | None = None) -> _Events:
