@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
+from datetime import timezone
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
@@ -14,7 +15,7 @@ from rtamt.engine.dense_evaluate import reach
 from rtamt.engine.dense_monitor import DenseMonitor
 from rtamt.engine.monitor import Monitor
 from rtamt.engine.signals import Signal
-from rtamt.engine.ticks import TimeScale, kind_of
+from rtamt.engine.ticks import TimeScale, kind_of, sequence_of
 from rtamt.errors import TraceError, UsageError
 from rtamt.rewrite.anchor import Leaf, anchor, check_in_chunks
 from rtamt.rewrite.check import check_bounds, check_dense
@@ -22,7 +23,7 @@ from rtamt.rewrite.desugar import desugar
 from rtamt.rewrite.horizon import horizon
 from rtamt.rewrite.interface import semantics_of
 from rtamt.settings import positive_period, time_domain
-from rtamt.verdicts import Tracker, together, value_of, violation_of
+from rtamt.verdicts import Tracker, ticks_of, together, value_of, violation_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
@@ -208,7 +209,11 @@ class _DenseStream(_Stream):
 
     def take(self, chunk: Any) -> None:
         columns = dense_signals.columns_of(chunk, self.spec.input_names, self.declared)
-        given = {name: column for name, column in columns.items() if len(column[0])}
+        given = {
+            name: (_in_utc(sequence_of(times, name)), values)
+            for name, (times, values) in columns.items()
+            if len(times)
+        }
         if not given:
             return
         for formula, monitor in self.monitors.items():
@@ -223,8 +228,7 @@ class _DenseStream(_Stream):
         self.samples += max(len(times) for times, _ in given.values())
 
     def _take(self, formula: Formula, signal: Signal, last: int | None = None) -> None:
-        assert self._scale is not None
-        ticks = self._scale.ticks(signal.times, "robustness")
+        ticks = ticks_of(signal, self.spec.resolution)
         if self._start is None and len(ticks):
             self._start = int(ticks[0])
         self.told(formula, ticks - (self._start or 0), signal, last)
@@ -242,3 +246,10 @@ class _DenseStream(_Stream):
             for signal in (monitor.update_many(held), monitor.finish()):
                 self._take(formula, signal, last=end - (self._start or 0))
         return self.result(None)
+
+
+def _in_utc(times: Any) -> Any:
+    """Return datetimes with time zones as those of numpy, which know of none; other times as they are."""
+    if kind_of(times) != "zoned":
+        return times
+    return np.array([time.astimezone(timezone.utc).replace(tzinfo=None) for time in times], dtype="M8[us]")

@@ -9,6 +9,7 @@ import numpy as np
 
 from rtamt.engine.dense_evaluate import DenseRecording, reach
 from rtamt.engine.signals import Recording
+from rtamt.engine.ticks import TimeScale, kind_of
 from rtamt.language.formula import Const, Var
 from rtamt.language.operators import STL
 from rtamt.rewrite.anchor import Anchored, Leaf, anchor
@@ -51,7 +52,7 @@ def first_violation(result: Result) -> Any:
             tracker.take(np.arange(len(signal)), signal)
         else:
             signal = spec.signal_of(formula, settled(recording, formula))
-            tracker.take(recording.scale.ticks(signal.times, "robustness") - recording.start, signal)
+            tracker.take(ticks_of(signal, unit) - recording.start, signal)
         tracker.finish()
     return violation_of(spec, anchored, trackers, result.signal.times[0])
 
@@ -62,6 +63,11 @@ def together(formula: Formula, names: Sequence[str]) -> Formula:
     for name in names[1:]:
         everything = STL["and"](everything, Var(name))
     return STL["and"](formula, STL["or"](Const(float("inf")), everything))
+
+
+def ticks_of(signal: Signal, tick: Fraction) -> Positions:
+    """Return the times of a dense robustness signal in ticks."""
+    return TimeScale(tick, kind_of(signal.times)).ticks(signal.times, "robustness")
 
 
 def settled(recording: DenseRecording, formula: Formula) -> DenseRecording:

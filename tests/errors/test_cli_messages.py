@@ -29,7 +29,7 @@ def run(capsys, monkeypatch, tmp_path):
         ),
         (["--verion"], "unrecognized arguments: --verion; see 'rtamt --help'"),
         (["check"], "the following arguments are required: SPEC, TRACE; see 'rtamt check --help'"),
-        (["check", "x"], "the following arguments are required: TRACE; see 'rtamt check --help'"),
+        (["check", "x"], "there is no trace to check: name a file, or --sql URL; see 'rtamt check --help'"),
         (
             ["check", "x", "good.csv", "--jsn"],
             "unrecognized arguments: --jsn; see 'rtamt check --help'",

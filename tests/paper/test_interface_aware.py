@@ -8,7 +8,6 @@ from typing import Any
 import pytest
 
 import rtamt
-from rtamt.readers import read
 from rtamt.rtamt_api import interface_aware
 
 FOLDER = "examples/request_grant"
@@ -28,7 +27,7 @@ BACKENDS = pytest.mark.parametrize("backend", ["cpp", "python"])
 @pytest.mark.parametrize(("name", "semantics"), CASES)
 def test_fig_4_in_all_four_modes(name: str, semantics: str, backend: str) -> None:
     spec = rtamt.load(f"{FOLDER}/spec.stl", semantics=semantics, backend=backend)
-    data = read(f"{FOLDER}/{name}.csv", spec.input_names)
+    data = rtamt.read(f"{FOLDER}/{name}.csv", columns=spec.input_names)
     expected = FIG4[name][semantics]
     assert spec.evaluate(data).robustness == expected
     assert spec.evaluate(data, time="dense").robustness == expected
@@ -70,7 +69,8 @@ def ways(semantics: rtamt.Semantics, time: str, mode: str) -> list[Any]:
 @pytest.mark.parametrize(("name", "semantics"), [case for case in CASES if case[1] != "boolean"])
 def test_fig_4_through_the_papers_api(name: str, semantics: str) -> None:
     chosen = rtamt.Semantics[semantics.upper()]
-    data = {k: column.tolist() for k, column in read(f"{FOLDER}/{name}.csv", ("req", "gnt")).items()}
+    trace = rtamt.read(f"{FOLDER}/{name}.csv", columns=("req", "gnt"))
+    data = {k: column.tolist() for k, column in trace.on_one_clock(("req", "gnt")).items()}
     expected = FIG4[name][semantics]
     pairs = [[k, list(map(list, zip(data["time"], data[k], strict=True)))] for k in ("req", "gnt")]
     for spec in ways(chosen, "Discrete", "Offline"):

@@ -75,10 +75,8 @@ FIG4 = {
 
 @pytest.mark.parametrize("name", FIG4)
 def test_fig_4_as_shipped(name: str) -> None:
-    from rtamt.readers import read
-
     spec = rtamt.load("examples/request_grant/spec.stl")
-    result = spec.evaluate(read(f"examples/request_grant/{name}.csv", spec.input_names))
+    result = spec.evaluate(rtamt.read(f"examples/request_grant/{name}.csv", columns=spec.input_names))
     assert (result.robustness, result.satisfied) == FIG4[name]
 
 

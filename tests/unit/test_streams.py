@@ -2,6 +2,7 @@
 
 import sqlite3
 from contextlib import closing
+from datetime import datetime, timedelta, timezone
 
 import numpy as np
 import pyarrow as pa
@@ -12,7 +13,8 @@ from pyarrow import feather, parquet
 
 import rtamt
 from rtamt.language.operators import STL
-from rtamt.readers import arrow, rows
+from rtamt.readers import arrow, csv, rows
+from rtamt.readers import text as text_module
 from rtamt.verdicts import first_violation
 from tests import strategies
 
@@ -149,6 +151,10 @@ def test_files_and_queries_in_chunks(tmp_path, monkeypatch):
     table = pa.table({"t_ms": np.arange(95) * 100, "x": np.cos(np.arange(95)), "note": ["a"] * 95})
     parquet.write_table(table, tmp_path / "log.parquet", row_group_size=33)
     feather.write_feather(table, str(tmp_path / "log.feather"))
+    monkeypatch.setattr(csv, "BLOCK", 9)
+    monkeypatch.setattr(text_module, "BLOCK", 9)
+    lines = [f"{100 * i},{float(np.cos(i))!r},a" for i in range(95)]
+    (tmp_path / "log.csv").write_text("t_ms,x,note\n" + "\n".join(lines))
     with closing(sqlite3.connect(tmp_path / "log.db")) as database:
         database.execute("create table log (t_ms integer, x real)")
         database.executemany(
@@ -158,6 +164,7 @@ def test_files_and_queries_in_chunks(tmp_path, monkeypatch):
     spec = rtamt.parse("always(x >= 0 -> eventually[0:500ms](x <= 0))")
     whole = spec.evaluate(rtamt.read(table))
     for source, options in [
+        (tmp_path / "log.csv", {}),
         (tmp_path / "log.parquet", {}),
         (tmp_path / "log.feather", {}),
         (f"sqlite:///{tmp_path}/log.db", {"query": "select t_ms, x from log order by t_ms"}),
@@ -174,3 +181,13 @@ def test_what_cannot_be_read_in_chunks():
         rtamt.UsageError, match=r"^a dict cannot be read in chunks; read it whole with rtamt.read$"
     ):
         next(rtamt.scan({"x": [1]}))
+
+
+def test_datetimes_with_a_time_zone_in_chunks():
+    zone = timezone(timedelta(hours=9))
+    moments = [datetime(2024, 5, 1, 19, 0, second, tzinfo=zone) for second in range(4)]
+    spec = rtamt.parse("always(x >= 3)", time="dense")
+    chunks = [{"x": (moments[:2], [5, 4])}, {"x": (moments[2:], [1, 0])}]
+    streamed = rtamt.check_stream(spec, chunks)
+    same(streamed, spec.evaluate({"x": (moments, [5, 4, 1, 0])}))
+    assert str(streamed.first_violation).startswith("2024-05-01T10:00:02")

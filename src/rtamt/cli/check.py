@@ -1,13 +1,11 @@
-"""``rtamt check``: does each recording satisfy the requirement? The exit code serves a CI job."""
+"""``rtamt check``: does each recording satisfy each requirement? The exit code serves a CI job."""
 
 from __future__ import annotations
 
 import json
 import sys
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
-
-import numpy as np
+from argparse import Namespace
+from typing import TYPE_CHECKING, Any
 
 from rtamt.cli.command import (
     ERROR,
@@ -15,65 +13,68 @@ from rtamt.cli.command import (
     VIOLATED,
     Command,
     CommandError,
+    add_reading_options,
     add_specification_options,
-    add_stamp_options,
     add_time_option,
     complain,
     json_number,
+    names_of,
     read_specification,
-    read_trace,
     short,
     stamp_text,
 )
+from rtamt.cli.matrix import Outcome, Reading, Requirement, outcomes
+from rtamt.cli.reports import REPORTS, write_report
 from rtamt.cli.terminal import Progress, printed, table, use_color
-from rtamt.engine.signals import Recording
-from rtamt.errors import StlError
 from rtamt.language.units import format_duration
 
 if TYPE_CHECKING:
     import argparse
+    from collections.abc import Sequence
 
-    from rtamt.engine.dense_evaluate import DenseRecording
     from rtamt.results import Result
-    from rtamt.specification import Specification
 
 _DESCRIPTION = """\
-Evaluate recordings against a requirement: the robustness at the first instant (how far
-the recording is from violating the requirement, or below 0 from satisfying it) and the verdict.
+Evaluate recordings against requirements, every requirement over every recording: the robustness at the
+first instant (how far the recording is from violating the requirement, or below 0 from satisfying it)
+and the verdict.
 
 Exit code: 0 all satisfied, 1 some violated, 2 some could not be evaluated."""
 
 _EPILOG = """\
-A trace is a CSV file whose header names the columns. Time stamps are in the column called time, t,
-timestamp, stamp or datetime; without one, samples are one period apart. They are dates (ISO 8601) or
-numbers: seconds, or the unit in the header ('t [ms]') or of --time-unit; integers too large for
-seconds are ms, us or ns since 1970. Columns that the formula does not read may hold anything.
+SPEC is a file (.stl) or a formula in quotes; more .stl files may follow. A trace is a CSV, Parquet,
+Arrow, Excel, PX4 ULog or MDF file, or the rows of a query (--sql URL --query TEXT). Time stamps are in the
+column called time, t, timestamp, stamp or datetime; without one, samples are one period apart. They are
+dates (ISO 8601) or numbers: seconds, or the unit in the header ('t [ms]') or of --time-unit; integers
+too large for seconds are ms, us or ns since 1970. Columns that no formula reads may hold anything.
+'rtamt info TRACE' tells what is in a file, and what is guessed of it.
 
 With --time dense a value holds until the next one, and time stamps may lie anywhere; a variable has
 no sample where its cell is empty. Then -o writes the robustness where it changes, and at the end.
 
---json prints one object a line: {"trace", "satisfied", "robustness", "samples", "period"}, or
-{"trace", "error"}. The period of dense time is null. JSON has no infinities: they are the
-strings "inf" and "-inf".
+Large files are read in chunks, in memory that does not grow with them, where the future of the formula
+is bounded (but for always and eventually at its top). Many files are read on all cores.
+
+--json prints one object a line: {"requirement", "trace", "satisfied", "robustness", "first_violation",
+"samples", "period"}, or {"requirement", "trace", "error"}. The first violation of 'always f' is the first
+instant at which f does not hold, of a conjunction the first of its parts, of anything else the first
+instant of the trace: seconds, or a date where the trace has dates; null where there is none. The period
+of dense time is null. JSON has no infinities: they are the strings "inf" and "-inf". The reports for
+--junit and --sarif say the same.
 
 examples:
   rtamt check examples/request_grant/spec.stl examples/request_grant/*.csv
   rtamt check "always((req >= 3) -> eventually[0:5](gnt >= 3))" log.csv --json
   rtamt check "always[0:500ms](speed <= 30)" drive.csv --period 100ms -o robustness.csv
   rtamt check "always(alarm -> eventually[0:70ms](stop))" events.csv --time dense
-  rtamt check examples/request_grant/spec.stl examples/request_grant/b_vacuous.csv --semantics input_vacuity"""
+  rtamt check examples/request_grant/spec.stl examples/request_grant/b_vacuous.csv --semantics input_vacuity
+  rtamt check specs/*.stl logs/*.csv --junit report.xml --html report.html
+  rtamt check "always(v >= 14)" flight.ulg --time dense --name "v=battery_status[1].voltage_v"
+  rtamt check limits.stl --sql sqlite:///log.db --query "select time, speed from log"
+"""
 
 
-@dataclass(frozen=True, slots=True)
-class Outcome:
-    """What came of one trace: a result, or the reason why there is none."""
-
-    trace: str
-    verdict: str  # satisfied, violated or error
-    result: Result | None = None
-    error: str = ""
-
-
+_REPORT_NAMES = {"junit": "JUnit XML", "sarif": "SARIF 2.1.0", "html": "an HTML page"}
 _KINDS = {"satisfied": "good", "violated": "bad", "error": "error"}
 _CODES = {"satisfied": OK, "violated": VIOLATED, "error": ERROR}
 
@@ -83,11 +84,14 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.description = _DESCRIPTION
     parser.epilog = _EPILOG
     add_specification_options(parser)
-    parser.add_argument("traces", metavar="TRACE", nargs="+", help="a CSV file")
+    parser.add_argument("traces", metavar="TRACE", nargs="*", help="a recording; before it more SPECs (.stl)")
     add_time_option(parser)
-    add_stamp_options(parser, "column")
+    add_reading_options(parser)
     parser.add_argument("-o", "--output", metavar="FILE", help="write the robustness at every sample as CSV")
     parser.add_argument("--json", action="store_true", help="print JSON, one object a line")
+    for kind in REPORTS:
+        parser.add_argument(f"--{kind}", metavar="FILE", help=f"write a report as {_REPORT_NAMES[kind]}")
+    parser.add_argument("--jobs", type=int, metavar="N", help="processes (default: one a core, if it pays)")
     parser.add_argument("--quiet", action="store_true", help="print errors only: the exit code has it all")
     parser.add_argument(
         "--color", default="auto", metavar="{auto,always,never}", help="colour (default: auto, on a terminal)"
@@ -95,83 +99,120 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Evaluate every trace, print what came of it."""
+    """Evaluate every requirement over every trace, print what came of it."""
     color = use_color(args.color, sys.stdout)
-    if args.output is not None and len(args.traces) > 1:
-        raise CommandError(f"--output takes the robustness of one trace, got {len(args.traces)} traces")
-    spec = read_specification(args, args.time)
-    outcomes: list[Outcome] = []
+    given, traces = _split(args)
+    pairs = len(given) * len(traces)
+    if args.output is not None and pairs > 1:
+        what = (
+            f"{len(traces)} traces"
+            if len(given) == 1
+            else f"{len(given)} requirements and {len(traces)} traces"
+        )
+        raise CommandError(f"--output takes the robustness of one trace, got {what}")
+    if args.jobs is not None and args.jobs < 1:
+        raise CommandError(f"--jobs is {args.jobs}; give a number of processes, 1 or more")
+    requirements = _requirements(args, given)
+    reading = _reading(args, requirements)
+    found: list[Outcome] = []
     with Progress() as progress:
-        for number, trace in enumerate(args.traces, 1):
-            label = f"{number}/{len(args.traces)} {trace}"
-            progress.show(label)
-            outcome = _evaluate(spec, trace, args.time_column, args.time_unit)
-            outcomes.append(outcome)
+        progress.show(f"0/{pairs}")
+        for outcome in outcomes(requirements, traces, reading, args.jobs):
+            found.append(outcome)
             if outcome.error:
                 progress.clear()
                 complain(outcome.error)
             if args.json and not args.quiet:
                 progress.clear()
                 print(_as_json(outcome), flush=True)
-    if not args.json and not args.quiet and any(outcome.result for outcome in outcomes):
-        print(_as_table(spec, outcomes, color))
-    if args.output is not None and outcomes[0].result is not None:
-        _write(outcomes[0].result, args.output)
-    return max(_CODES[outcome.verdict] for outcome in outcomes)
+            progress.bar(len(found), pairs, outcome.trace)
+    if not args.json and not args.quiet and any(not outcome.error for outcome in found):
+        print(_as_table(requirements, found, color))
+    if found[0].result is not None and args.output is not None:
+        _write(found[0].result, args.output)
+    for kind in REPORTS:
+        if getattr(args, kind) is not None:
+            write_report(kind, getattr(args, kind), requirements, found)
+    return max(_CODES[outcome.verdict] for outcome in found)
 
 
-def _evaluate(spec: Specification, trace: str, time_column: str | None, time_unit: str | None) -> Outcome:
-    try:
-        data = read_trace(spec, trace, time_column, time_unit)
-    except StlError as error:
-        return Outcome(trace, "error", error=str(error))
-    try:
-        result = spec.evaluate(data)
-        return Outcome(trace, "satisfied" if result.satisfied else "violated", result)
-    except StlError as error:
-        return Outcome(trace, "error", error=f"{trace}: {error}")
+def _split(args: argparse.Namespace) -> tuple[list[str], list[str]]:
+    """Return the specifications and the traces."""
+    given, traces = [args.spec], list(args.traces)
+    while traces and traces[0].lower().endswith(".stl") and given[-1].lower().endswith(".stl"):
+        given.append(traces.pop(0))
+    if args.sql is not None:
+        if traces:
+            raise CommandError(f"--sql reads a database; leave out the trace '{traces[0]}', or --sql")
+        return given, [args.sql]
+    if not traces:
+        raise CommandError("there is no trace to check: name a file, or --sql URL; see 'rtamt check --help'")
+    return given, traces
+
+
+def _requirements(args: argparse.Namespace, given: Sequence[str]) -> list[Requirement]:
+    specs = [read_specification(Namespace(**{**vars(args), "spec": text}), args.time) for text in given]
+    names = [spec.name for spec in specs]
+    return [
+        Requirement(spec, text, spec.name if spec.name and names.count(spec.name) == 1 else text)
+        for spec, text in zip(specs, given, strict=True)
+    ]
+
+
+def _reading(args: argparse.Namespace, requirements: Sequence[Requirement]) -> Reading:
+    names = names_of(args.name)
+    read = {name for requirement in requirements for name in requirement.spec.input_names}
+    for name in names:
+        if name not in read:
+            raise CommandError(f"--name {name}={names[name]}: no formula reads '{name}'")
+    return Reading(
+        args.time_column,
+        names,
+        args.time_unit,
+        args.sheet,
+        args.query,
+        args.resample,
+        args.how,
+        whole=args.output is not None,
+    )
 
 
 def _as_json(outcome: Outcome) -> str:
-    result = outcome.result
-    if result is None:
-        return json.dumps({"trace": outcome.trace, "error": outcome.error})
+    row: dict[str, Any] = {"requirement": outcome.requirement, "trace": outcome.trace}
+    if outcome.error:
+        return json.dumps({**row, "error": outcome.error})
     return json.dumps(
         {
-            "trace": outcome.trace,
+            **row,
             "satisfied": outcome.verdict == "satisfied",
-            "robustness": json_number(result.robustness),
-            "samples": _samples(result.trace),
-            "period": float(result.trace.period) if isinstance(result.trace, Recording) else None,
+            "robustness": json_number(outcome.robustness),
+            "first_violation": outcome.first_violation,
+            "samples": outcome.samples,
+            "period": None if outcome.period is None else float(outcome.period),
         }
     )
 
 
-def _as_table(spec: Specification, outcomes: list[Outcome], color: bool) -> str:
-    rows = [("trace", "samples", "period", "robustness", "verdict")]
-    for outcome in outcomes:
+def _as_table(requirements: Sequence[Requirement], found: Sequence[Outcome], color: bool) -> str:
+    rows = [("requirement", "trace", "samples", "period", "robustness", "verdict")]
+    for outcome in found:
         cells = ("-", "-", "-")
-        if outcome.result is not None:
-            trace = outcome.result.trace
-            period = format_duration(trace.period) if isinstance(trace, Recording) else "dense"
-            cells = (str(_samples(trace)), period, short(outcome.result.robustness))
-        rows.append((outcome.trace, *cells, outcome.verdict))
-    kinds = [_KINDS[outcome.verdict] for outcome in outcomes]
-    formula = printed(spec.formula)
-    title = f"{spec.name}: {formula}" if spec.name else formula
-    text = f"{title}\n\n{table(rows, right=(1, 2, 3), kinds=kinds, color=color)}"
-    if len(outcomes) > 1:
-        verdicts = [outcome.verdict for outcome in outcomes]
+        if not outcome.error:
+            period = "dense" if outcome.period is None else format_duration(outcome.period)
+            cells = (str(outcome.samples), period, short(outcome.robustness))
+        rows.append((outcome.requirement, outcome.trace, *cells, outcome.verdict))
+    kinds = [_KINDS[outcome.verdict] for outcome in found]
+    if len(requirements) > 1:
+        text = table(rows, right=(2, 3, 4), kinds=kinds, color=color)
+    else:
+        spec = requirements[0].spec
+        title = f"{spec.name}: {printed(spec.formula)}" if spec.name else printed(spec.formula)
+        text = f"{title}\n\n{table([row[1:] for row in rows], right=(1, 2, 3), kinds=kinds, color=color)}"
+    if len(found) > 1:
+        verdicts = [outcome.verdict for outcome in found]
         counts = [f"{verdicts.count(verdict)} {verdict}" for verdict in _CODES if verdict in verdicts]
         text += f"\n\n{', '.join(counts)}"
     return text
-
-
-def _samples(trace: Recording | DenseRecording) -> int:
-    """Return the number of samples; in dense time that of the instants at which any variable has one."""
-    if isinstance(trace, Recording):
-        return len(trace)
-    return len(np.unique(np.concatenate([ticks for ticks, _ in trace.columns.values()])))
 
 
 def _write(result: Result, path: str) -> None:

@@ -19,19 +19,21 @@ from rtamt.engine.core import core
 from rtamt.engine.signals import TIME
 from rtamt.errors import SpecificationError, StlError, UsageError
 from rtamt.language.units import UNITS, decimal
-from rtamt.readers import READERS
 from rtamt.readers.assemble import trace_of
+from rtamt.readers.formats import SUFFIXES
 from rtamt.readers.reading import choice, opened
 from rtamt.rewrite.interface import SEMANTICS
 from rtamt.specification import Specification, load, parse
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
 
     from rtamt.engine.trace import Trace
     from rtamt.settings import Settings
 
 OK, VIOLATED, ERROR = 0, 1, 2
+
+NO_STAMPS = "dense time needs a column of time stamps: call it 'time', or name it with --time-column"
 INTERRUPTED, BROKEN_PIPE = 130, 141  # what a shell reports for a program ended by these signals
 
 _SPECIFICATION_SUFFIXES = (".stl",)
@@ -113,6 +115,46 @@ def add_stamp_options(parser: argparse.ArgumentParser, what: str) -> None:
     )
 
 
+def add_reading_options(parser: argparse.ArgumentParser) -> None:
+    """Add how recordings are read; see :func:`rtamt.read`."""
+    add_stamp_options(parser, "column")
+    parser.add_argument(
+        "--name",
+        metavar="NAME=COLUMN",
+        action="append",
+        default=[],
+        help="the column of a variable that is called otherwise; may be given again",
+    )
+    parser.add_argument("--sheet", metavar="NAME", help="of an Excel workbook with several")
+    parser.add_argument("--sql", metavar="URL", help="read a database, such as sqlite:///log.db")
+    parser.add_argument("--query", metavar="TEXT", help="what to read of it: its rows are samples")
+    parser.add_argument(
+        "--resample", metavar="DURATION", help="put all signals on one clock, a sample every so often"
+    )
+    parser.add_argument(
+        "--how",
+        default="hold",
+        metavar="{hold,linear}",
+        help="between two samples the last one holds, or a line (default: hold)",
+    )
+
+
+def names_of(texts: Sequence[str]) -> dict[str, str]:
+    """Return variables and their columns from texts such as ``v=battery_status[1].voltage_v``."""
+    names = {}
+    for text in texts:
+        name, equals, column = text.partition("=")
+        if not (name.strip() and equals and column.strip()):
+            raise CommandError(f"--name is '{text}'; give a variable and its column, such as v=voltage")
+        names[name.strip()] = column.strip()
+    return names
+
+
+def is_trace(path: str) -> bool:
+    """Tell whether a text is a file of recordings; a ``.txt`` may be a specification as well."""
+    return os.path.isfile(path) and os.path.splitext(path)[1].lower() in set(SUFFIXES) - {".txt"}
+
+
 def read_specification(args: argparse.Namespace, time: str = "discrete") -> Specification:
     """Read SPEC: the file of that name, else the text itself; ``time``: discrete or dense."""
     spec: str = args.spec
@@ -132,7 +174,7 @@ def read_specification(args: argparse.Namespace, time: str = "discrete") -> Spec
         "language": read_language(args.language),
     }
     if os.path.isfile(spec):
-        if os.path.splitext(spec)[1].lower() in set(READERS) - {".txt"}:
+        if is_trace(spec):
             raise CommandError(f"'{spec}' is a trace; the specification comes before the traces")
         try:
             return load(spec, **options)
@@ -160,8 +202,7 @@ def read_trace(
     with opened(trace) as source:
         data = trace_of(source, replace(wanted, gaps=dense))
     if dense and data.start is None:
-        problem = "dense time needs a column of time stamps: call it 'time', or name it with --time-column"
-        raise CommandError(f"{trace}: {problem}")
+        raise CommandError(f"{trace}: {NO_STAMPS}")
     return data
 
 

@@ -7,13 +7,21 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
-from rtamt.cli.command import OK, Command, add_specification_options, add_time_option, read_specification
+from rtamt.cli.command import (
+    OK,
+    Command,
+    add_specification_options,
+    add_time_option,
+    is_trace,
+    read_specification,
+)
 from rtamt.cli.terminal import is_printable, printed
 from rtamt.engine.compile import compile_program
 from rtamt.engine.core import core
 from rtamt.engine.drivers import calls_of
 from rtamt.errors import BoundError
 from rtamt.language.units import format_duration
+from rtamt.readers.reading import read
 from rtamt.rewrite.check import check_bounds, check_online
 from rtamt.rewrite.desugar import desugar
 from rtamt.rewrite.horizon import horizon
@@ -29,7 +37,8 @@ if TYPE_CHECKING:
 
 _DESCRIPTION = """\
 Tell what a requirement reads, how far ahead it looks (its horizon), the same requirement with past
-operators only (its pastified form), and what an online monitor of it runs and keeps in memory."""
+operators only (its pastified form), and what an online monitor of it runs and keeps in memory. Of a
+recording (CSV, Parquet, Excel, ...): which signals are in it, and what was guessed."""
 
 _EPILOG = """\
 In the listing of the program every line is an instruction: %0, %1, ... are results, n is a width in
@@ -43,6 +52,7 @@ that of the semantics, the pastified form serves each.
 
 examples:
   rtamt info examples/request_grant/spec.stl
+  rtamt info examples/request_grant/a_satisfied.csv
   rtamt info "always[0:10]((req >= 3) -> eventually[0:500ms](gnt >= 3))" --period 100ms
   rtamt info "always(alarm -> eventually[0:70ms](stop))" --time dense
   rtamt info "x >= 3 until[0:5] y >= 3" --latex"""
@@ -73,6 +83,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Print what there is to tell."""
+    if is_trace(args.spec):
+        print(read(args.spec))
+        return OK
     spec = read_specification(args, args.time)
     if args.latex:
         print(spec.formula.latex())

@@ -95,6 +95,8 @@ class Progress:
 
     #: Seconds before the line appears, and between two changes of it.
     PAUSE = 0.25
+    #: Characters of a bar.
+    WIDTH = 24
 
     def __init__(self, stream: TextIO | None = None) -> None:
         self._stream = sys.stderr if stream is None else stream
@@ -109,6 +111,11 @@ class Progress:
             self._shown = True
             self._stream.write(f"\r\x1b[K{text}")
             self._stream.flush()
+
+    def bar(self, done: int, total: int, text: str) -> None:
+        """Show how much of the work is done."""
+        filled = self.WIDTH * done // total
+        self.show(f"[{'#' * filled}{'.' * (self.WIDTH - filled)}] {done}/{total} {text}")
 
     def clear(self) -> None:
         """Take the line away."""

@@ -25,7 +25,7 @@ DATE = re.compile(
 #: Years that nanoseconds since 1970 can hold.
 _YEARS = range(1678, 2262)
 #: From here on a double may not be the integer that was written.
-_LARGE = 2.0**53
+LARGEST = 2.0**53
 
 
 class Cells:
@@ -34,10 +34,10 @@ class Cells:
     What its first cell is, a number or a date, all others must be.
     """
 
-    def __init__(self, header: Header, name: str) -> None:
+    def __init__(self, header: Header, name: str, dated: bool | None = None) -> None:
         self._header = header
         self._name = name
-        self._dated: bool | None = None  # not known before the first cell that is not empty
+        self._dated = dated  # None: not known before the first cell that is not empty
         self._zoned: bool | None = None
         self._whole = True  # whether all numbers are integers that an int64 holds
         self._parts: list[Raw] = []
@@ -67,6 +67,12 @@ class Cells:
         missing = np.concatenate(self._missing) if parts else np.empty(0, dtype=bool)
         return np.ma.masked_array(result, missing) if missing.any() else result
 
+    def take(self) -> Raw:
+        """Return all cells since the last call, and forget them."""
+        values = self.values()
+        self._parts, self._missing = [], []
+        return values
+
     def _numbers(self, given: Sequence[tuple[str, int]]) -> Raw:
         texts = [text for text, _ in given]
         together = "".join(texts)
@@ -78,7 +84,7 @@ class Cells:
             values = np.array([number(text, self._name, self._header, line) for text, line in given])
         if self._whole and len(values):
             largest = float(np.abs(values).max())
-            if largest >= _LARGE:
+            if largest >= LARGEST:
                 exact = _integers(texts)
                 self._whole = exact is not None
                 return values if exact is None else exact

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rtamt.errors import TraceError, UsageError
+from rtamt.errors import TraceError
 from rtamt.language.units import UNITS
 
 if TYPE_CHECKING:
@@ -103,7 +103,7 @@ def clock_of(field: Field, raw: Raw, unit: str | None, guessed: bool) -> Clock:
 def _unit(text: str, field: Field) -> str:
     unit = _UNIT_OF.get(text.strip().lower()) or (text if text in UNITS else None)
     if unit is None:
-        raise UsageError(
+        raise TraceError(
             f"the unit of the time column '{field.column}' is '{text}', which is none of {', '.join(UNITS)}"
         )
     return unit

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import csv
-import os
 import re
-from array import array
 from contextlib import suppress
 from dataclasses import dataclass
 from itertools import chain, islice
@@ -14,12 +12,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rtamt.engine.signals import TIME
 from rtamt.errors import TraceError, did_you_mean
 from rtamt.language.units import UNITS
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
+    from collections.abc import Collection, Iterator, Sequence
 
     from rtamt.engine.signals import FloatArray
 
@@ -28,7 +25,7 @@ TIME_NAMES = ("time", "t", "timestamp", "stamp")
 
 DELIMITERS = (",", ";", "\t")
 
-_BLOCK = 65_536  # lines at a time: enough to keep numpy busy, little enough to keep memory flat
+BLOCK = 65_536  # lines at a time: enough to keep numpy busy, little enough to keep memory flat
 _NAME_WITH_UNIT = re.compile(r"(?P<name>.*\S)\s*[\[(]\s*(?P<unit>[^\[\]()]+?)\s*[\])]", re.DOTALL)
 
 
@@ -52,56 +49,6 @@ class Column:
 
     name: str
     position: int
-
-
-def read_csv(
-    path: str | os.PathLike[str],
-    names: Iterable[str] | None = None,
-    *,
-    time_column: str | None = None,
-    progress: Callable[[int], None] | None = None,
-) -> dict[str, FloatArray]:
-    """Read a CSV file; arguments and result as for :func:`rtamt.readers.read`.
-
-    Values are separated by commas, semicolons or tabs (the header tells which), may be quoted and
-    padded with spaces; empty lines and lines that begin with ``#`` are left out. A unit in the header
-    (``req [V]``) need not be given; that of the time column (``t [ms]``) is taken into account.
-    """
-    file = os.fspath(path)
-    if os.path.isdir(file):
-        raise TraceError(f"'{file}' is a directory, expected a CSV file")
-    try:
-        with open(file, encoding="utf-8-sig", newline="") as lines:
-            header, rows = read_header(lines, file)
-            time = find_time(header, time_column)
-            wanted = header.names if names is None else list(names)
-            if names is not None and TIME in wanted and time is not None and time.name != TIME:
-                raise TraceError(
-                    f"the formula reads '{TIME}', but the time stamps of '{file}' are its column '{time.name}'; "
-                    f"name that column '{TIME}', or the variable something else"
-                )
-            columns = [find(header, name) for name in dict.fromkeys(wanted) if time is None or name != TIME]
-            if time is not None:
-                columns = [
-                    Column(TIME, time.position),
-                    *(c for c in columns if names is not None or c != time),
-                ]
-            data = _read_rows(rows, header, columns, progress)
-    except FileNotFoundError:
-        raise TraceError(f"there is no file '{file}'") from None
-    except OSError as error:
-        raise TraceError(f"cannot read '{file}': {error.strerror}") from None
-    except UnicodeDecodeError:
-        raise TraceError(
-            f"'{file}' is not UTF-8 text; save it as CSV in UTF-8 (spreadsheets offer this under 'save as')"
-        ) from None
-    if data and not data[0]:
-        raise TraceError(f"'{file}' has column names but no samples: give at least one")
-    result = {column.name: np.frombuffer(values) for column, values in zip(columns, data, strict=True)}
-    if time is not None:
-        # A division by a whole number rounds once; a product with 0.001 would round twice.
-        result[TIME] = result[TIME] / float(1 / UNITS[time_unit(header, time)])
-    return result
 
 
 # ---- the header ----------------------------------------------------------------------------------
@@ -198,31 +145,7 @@ def time_unit(header: Header, column: Column) -> str:
 # ---- the rows ------------------------------------------------------------------------------------
 
 
-def _read_rows(
-    lines: Iterator[str],
-    header: Header,
-    columns: Sequence[Column],
-    progress: Callable[[int], None] | None,
-) -> list[array[float]]:
-    """Read the rest of the file: numpy's parser as long as it is plain, row by row from there on."""
-    data = [array("d") for _ in columns]
-    line = header.line
-    while block := list(islice(lines, _BLOCK)):
-        values = _plain(block, header, columns)
-        if values is None:
-            for row in _checked(chain(block, lines), header, line, columns):
-                for column, value in zip(data, row, strict=True):
-                    column.append(value)
-        else:
-            for column, part in zip(data, values, strict=True):
-                column.frombytes(part.tobytes())
-        line += len(block)
-        if progress is not None:
-            progress(len(data[0]) if data else line - header.line)
-    return data
-
-
-def _plain(block: list[str], header: Header, columns: Sequence[Column]) -> FloatArray | None:
+def plain(block: list[str], header: Header, columns: Sequence[Column]) -> FloatArray | None:
     """Return the values of a block of lines, one row for each column; None if anything is unusual."""
     text = "".join(block)
     if '"' in text or "#" in text or not columns or any(not line or line.isspace() for line in block):
@@ -237,24 +160,17 @@ def _plain(block: list[str], header: Header, columns: Sequence[Column]) -> Float
     return None  # the slow way finds the cell that is no number
 
 
-def _checked(
-    lines: Iterator[str], header: Header, before: int, columns: Sequence[Column]
-) -> Iterator[list[float]]:
-    """Yield the numbers of each row; raise :class:`TraceError` where there is none."""
-    for line, row in _cells(lines, header, before):
-        yield numbers(row, header, line, columns)
-
-
 def blocks(lines: Iterator[str], header: Header) -> Iterator[list[tuple[int, list[str]]]]:
     """Yield the rows after the header, many at a time, each with its line: as many cells as there are columns."""
-    cells = _cells(lines, header, header.line)
-    while block := list(islice(cells, _BLOCK)):
+    checked = rows(lines, header, header.line)
+    while block := list(islice(checked, BLOCK)):
         for line, row in block:
             check_width(row, header, line)
         yield block
 
 
-def _cells(lines: Iterator[str], header: Header, before: int) -> Iterator[tuple[int, list[str]]]:
+def rows(lines: Iterator[str], header: Header, before: int) -> Iterator[tuple[int, list[str]]]:
+    """Yield the cells of each row with its line; ``before``: lines of the file before these."""
     reader = csv.reader(lines, delimiter=header.delimiter, skipinitialspace=True)
     try:
         for row in reader:

@@ -76,16 +76,16 @@ def scan(
 ) -> Iterator[Trace]:
     r"""Read a recording in chunks, in memory that does not grow with its length; arguments as for :func:`read`.
 
-    For :func:`rtamt.check_stream` and ``update_many``. Parquet, Arrow and Excel files and SQL queries can
-    be read in chunks; what the first chunk tells of the time stamps holds for all. Give
+    For :func:`rtamt.check_stream` and ``update_many``. CSV, Parquet, Arrow and Excel files and SQL queries
+    can be read in chunks; what the first chunk tells of the time stamps holds for all. Give
     ``columns=spec.input_names``, so that only what a formula reads is read.
 
     >>> import pathlib, tempfile
-    >>> import pyarrow, pyarrow.parquet, rtamt
+    >>> import rtamt
     >>> spec = rtamt.parse("always(speed <= 30)")
     >>> with tempfile.TemporaryDirectory() as folder:
-    ...     path = pathlib.Path(folder, "log.parquet")
-    ...     pyarrow.parquet.write_table(pyarrow.table({"t": [0, 1, 2], "speed": [5, 31, 4]}), path)
+    ...     path = pathlib.Path(folder, "log.csv")
+    ...     _ = path.write_text("t,speed\n0,5\n1,31\n2,4\n")
     ...     result = rtamt.check_stream(spec, rtamt.scan(path, columns=spec.input_names))
     >>> result.robustness, result.first_violation
     (-1.0, 1.0)

@@ -29,7 +29,7 @@ def open_sql(url: str, query: str | None) -> Source:
     exceptions = library("sqlalchemy.exc", "databases")
     if query is None:
         raise UsageError(
-            f"'{_shown(url)}' is a database: say what to read with query=, or on the command line --query"
+            f"'{shown(url)}' is a database: say what to read with query=, or on the command line --query"
         )
     with ExitStack() as stack:
         try:
@@ -40,21 +40,21 @@ def open_sql(url: str, query: str | None) -> Source:
             # What looks like a parameter (:name) is part of the query: nobody gives values for it.
             result = streaming.execute(sqlalchemy.text(query.replace(":", r"\:")))
         except exceptions.NoSuchModuleError as error:
-            raise UsageError(f"there is no driver for '{_shown(url)}': {_first_line(error)}") from None
+            raise UsageError(f"there is no driver for '{shown(url)}': {_first_line(error)}") from None
         except ModuleNotFoundError as error:
             raise UsageError(
-                f"'{_shown(url)}' needs the Python module '{error.name}', which is not installed"
+                f"'{shown(url)}' needs the Python module '{error.name}', which is not installed"
             ) from None
         except exceptions.SQLAlchemyError as error:
-            raise TraceError(f"cannot read from '{_shown(url)}': {_first_line(error)}") from None
+            raise TraceError(f"cannot read from '{shown(url)}': {_first_line(error)}") from None
         if not result.returns_rows:
-            raise TraceError(f"the query on '{_shown(url)}' returns no rows; give a SELECT")
+            raise TraceError(f"the query on '{shown(url)}' returns no rows; give a SELECT")
         columns = list(result.keys())
-        return Source(_shown(url), (table_of_rows(columns, result),), close=stack.pop_all().close)
+        return Source(shown(url), (table_of_rows(columns, result),), close=stack.pop_all().close)
 
 
-def _shown(url: str) -> str:
-    """Return the address without a password."""
+def shown(url: str) -> str:
+    """Return an address without its password; anything else as it is."""
     return re.sub(r"(://[^:/@]*):[^@]*@", r"\1:***@", url)
 
 

@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
-import csv
-from itertools import islice
+from dataclasses import replace
+from itertools import chain, islice
 from typing import TYPE_CHECKING
 
-from rtamt.readers.cells import Cells
-from rtamt.readers.csv import blocks, read_header
+import numpy as np
+
+from rtamt.errors import TraceError
+from rtamt.readers.cells import DATE, LARGEST, Cells
+from rtamt.readers.csv import BLOCK, Column, Header, blocks, plain, read_header, rows
 from rtamt.readers.frames import field_of
 from rtamt.readers.source import Field, Source, Table, opening
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
 
     from rtamt.readers.source import Raw
 
@@ -23,26 +26,65 @@ _SAMPLE = 100
 def open_csv(path: str) -> Source:
     """Open a CSV file; columns whose first lines hold no number at all are text."""
     with opening(path, "CSV"), open(path, encoding="utf-8-sig", newline="", errors="replace") as lines:
-        header, rows = read_header(lines, path)
-        sample = [row for row in csv.reader(islice(rows, _SAMPLE), delimiter=header.delimiter) if row]
-    fields = []
-    for i, column in enumerate(header.names):
-        cells = [row[i].strip() for row in sample if len(row) > i and row[i].strip()]
-        text = bool(cells) and not any(_is_number(cell) for cell in cells)
-        fields.append(field_of(column, "text" if text else "number"))
+        header, rest = read_header(lines, path)
+        sample = [row for _, row in islice(rows(rest, header, header.line), _SAMPLE)]
+    fields = [
+        field_of(column, _kind([row[i].strip() for row in sample if len(row) > i and row[i].strip()]))
+        for i, column in enumerate(header.names)
+    ]
+
+    def chunks(wanted: Sequence[Field]) -> Iterator[list[Raw]]:
+        try:
+            with opening(path, "CSV"), open(path, encoding="utf-8-sig", newline="") as lines:
+                _, rest = read_header(lines, path)
+                yield from _blocks(rest, header, [field.column for field in wanted])
+        except UnicodeDecodeError:
+            raise TraceError(
+                f"'{path}' is not UTF-8 text; save it as CSV in UTF-8 (spreadsheets offer this under 'save as')"
+            ) from None
 
     def load(wanted: Sequence[Field]) -> list[Raw]:
-        with opening(path, "CSV", UnicodeDecodeError), open(path, encoding="utf-8-sig", newline="") as lines:
-            header, rows = read_header(lines, path)
-            columns = [Cells(header, field.column) for field in wanted]
-            positions = [header.names.index(field.column) for field in wanted]
-            for block in blocks(rows, header):
-                numbers = [line for line, _ in block]
-                for cells, position in zip(columns, positions, strict=True):
-                    cells.extend([row[position] for _, row in block], numbers)
-        return [cells.values() for cells in columns]
+        parts = list(chunks(wanted))
+        return [_joined([part[i] for part in parts]) for i in range(len(wanted))]
 
-    return Source(path, (Table(tuple(fields), load),))
+    return Source(path, (Table(tuple(fields), load, chunks),))
+
+
+def _blocks(lines: Iterator[str], header: Header, names: Sequence[str]) -> Iterator[list[Raw]]:
+    """Yield columns block by block: by numpy as long as lines are plain numbers, cell by cell from there on."""
+    columns = [Column(name, header.names.index(name)) for name in names]
+    line = header.line
+    while block := list(islice(lines, BLOCK)):
+        values = plain(block, header, columns)
+        if values is None or np.abs(values).max(initial=0) >= LARGEST:
+            break
+        yield [_whole(column) for column in values]
+        line += len(block)
+    # What was a number so far stays one.
+    cells = [Cells(header, name, dated=False if line > header.line else None) for name in names]
+    for several in blocks(chain(block, lines), replace(header, line=line)):
+        numbers = [number for number, _ in several]
+        for column, place in zip(cells, columns, strict=True):
+            column.extend([row[place.position] for _, row in several], numbers)
+        yield [column.take() for column in cells]
+
+
+def _whole(column: Raw) -> Raw:
+    """Return a column of integers as int64: stamps are exact then, and told apart by their size."""
+    return column.astype(np.int64) if (np.isfinite(column) & (column == np.rint(column))).all() else column
+
+
+def _joined(parts: Sequence[Raw]) -> Raw:
+    if any(isinstance(part, np.ma.MaskedArray) for part in parts):
+        joined: Raw = np.ma.concatenate(parts)  # type: ignore[no-untyped-call]
+        return joined
+    return np.concatenate(parts) if parts else np.empty(0)
+
+
+def _kind(cells: Sequence[str]) -> str:
+    if cells and all(DATE.fullmatch(cell) for cell in cells):
+        return "time"
+    return "text" if cells and not any(map(_is_number, cells)) else "number"
 
 
 def _is_number(cell: str) -> bool:

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from rtamt.readers import read
+import rtamt
 
 EXAMPLES = Path(__file__).parents[3] / "examples" / "request_grant"
 GOOD = "time,x\n0,5\n1,4\n2,6\n"
@@ -81,8 +81,20 @@ def test_json_is_one_object_a_line_and_infinities_are_text(run, write):
     write("a.csv", "time,x\n0,1\n0.5,2\n")
     answer = run("check", "once[1:1](x > 0)", "a.csv", "nowhere.csv", "--json")
     assert [json.loads(line) for line in answer.out.splitlines()] == [
-        {"trace": "a.csv", "satisfied": False, "robustness": "-inf", "samples": 2, "period": 0.5},
-        {"trace": "nowhere.csv", "error": "there is no file 'nowhere.csv'"},
+        {
+            "requirement": "once[1:1](x > 0)",
+            "trace": "a.csv",
+            "satisfied": False,
+            "robustness": "-inf",
+            "first_violation": 0,
+            "samples": 2,
+            "period": 0.5,
+        },
+        {
+            "requirement": "once[1:1](x > 0)",
+            "trace": "nowhere.csv",
+            "error": "there is no file 'nowhere.csv'",
+        },
     ]
     assert (answer.code, answer.err) == (2, "rtamt: there is no file 'nowhere.csv'\n")
 
@@ -121,7 +133,8 @@ def test_period_unit_and_time_column(run, write):
     args = ("check", "eventually[0:200](x >= 3)", "a.csv", "--unit", "ms", "--json")
     answer = run(*args, "--time-column", "clock", "--period", "100ms")
     assert json.loads(answer.out) == {
-        "trace": "a.csv", "satisfied": True, "robustness": 6.0, "samples": 3, "period": 0.1,
+        "requirement": "eventually[0:200](x >= 3)", "trace": "a.csv", "satisfied": True, "robustness": 6.0,
+        "first_violation": None, "samples": 3, "period": 0.1,
     }  # fmt: skip
     assert json.loads(run(*args, "--time-column", "", "--period", "0.2").out)["period"] == 0.2
 
@@ -130,7 +143,7 @@ def test_output_writes_the_robustness_signal(run, write):
     write("a.csv", "t,x\n0,1\n0.1,inf\n0.2,5\n")
     assert run("check", "x >= 0.7", "a.csv", "-o", "rho.csv", "--quiet") == (0, "", "")
     assert Path("rho.csv").read_text() == f"time,robustness\n0.0,{1 - 0.7!r}\n0.1,inf\n0.2,4.3\n"
-    assert read("rho.csv")["robustness"].tolist() == [1 - 0.7, float("inf"), 4.3]
+    assert rtamt.read("rho.csv")["robustness"].values.tolist() == [1 - 0.7, float("inf"), 4.3]
 
 
 def test_colour_where_it_is_asked_for(run, write, monkeypatch):
@@ -176,9 +189,11 @@ def test_dense_time_has_no_period(run, write):
     assert Path("rho.csv").read_text() == "time,robustness\n0.0,0.5\n2.0,0.5\n"
     answer = run("check", formula, "events.csv", "--time", "dense", "--json")
     assert json.loads(answer.out) == {
+        "requirement": formula,
         "trace": "events.csv",
         "satisfied": True,
         "robustness": 0.5,
+        "first_violation": None,
         "samples": 4,
         "period": None,
     }

@@ -20,7 +20,7 @@ def read(tmp_path, monkeypatch):
 
 @pytest.mark.parametrize("block", [1, 2, 65_536])
 def test_every_signal_has_the_samples_that_its_cells_hold(read, monkeypatch, block):
-    monkeypatch.setattr(csv_module, "_BLOCK", block)
+    monkeypatch.setattr(csv_module, "BLOCK", block)
     trace = read("time,x,y\n0,5,\n0.5, ,1\n1,inf,\n")
     np.testing.assert_array_equal(trace["x"].times, [0, 1])
     np.testing.assert_array_equal(trace["x"].values, [5, np.inf])
@@ -29,7 +29,7 @@ def test_every_signal_has_the_samples_that_its_cells_hold(read, monkeypatch, blo
 
 @pytest.mark.parametrize("block", [1, 65_536])
 def test_integers_that_a_double_cannot_hold_are_exact(read, monkeypatch, block):
-    monkeypatch.setattr(csv_module, "_BLOCK", block)
+    monkeypatch.setattr(csv_module, "BLOCK", block)
     trace = read("time,x\n7,1\n1700000000000000001,2\n1700000000000000003,\n", units={"time": "ns"})
     np.testing.assert_array_equal(trace["x"].times, np.array([7, 1700000000000000001]))
     assert trace["x"].times.dtype == np.int64

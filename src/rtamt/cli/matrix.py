@@ -1,0 +1,240 @@
+"""Every requirement over every recording: on all cores, each recording read once."""
+
+from __future__ import annotations
+
+import os
+import time
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass, field, replace
+from multiprocessing import get_context
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rtamt.cli.command import NO_STAMPS
+from rtamt.engine.signals import TIME, Recording
+from rtamt.errors import BoundError, StlError, TraceError
+from rtamt.readers.assemble import chunks_of, trace_of
+from rtamt.readers.reading import choice, opened
+from rtamt.readers.sql import is_url, shown
+from rtamt.streams import check_stream, check_streamable
+from rtamt.verdicts import first_violation
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping, Sequence
+    from fractions import Fraction
+
+    from rtamt.engine.dense_evaluate import DenseRecording
+    from rtamt.engine.trace import Trace
+    from rtamt.readers.assemble import Choice
+    from rtamt.results import Result
+    from rtamt.specification import Specification
+
+#: Bytes of a file from which on it is read in chunks, where format and formula allow it.
+LARGE = 256 * 2**20
+#: Bytes of all files together from which on starting a process for each core pays.
+_WORTH_PROCESSES = 16 * 2**20
+
+
+@dataclass(frozen=True, slots=True)
+class Requirement:
+    """A specification, the file or text that it was given as, and what reports call it."""
+
+    spec: Specification
+    given: str
+    label: str
+
+
+@dataclass(frozen=True, slots=True)
+class Reading:
+    """How recordings are read: the options of ``rtamt.read``, and a clock chosen for all signals."""
+
+    time: str | None = None
+    names: Mapping[str, str] = field(default_factory=dict)
+    unit: str | None = None
+    sheet: str | None = None
+    query: str | None = None
+    resample: str | None = None
+    how: str = "hold"
+    #: Never in chunks: somebody wants the whole signal.
+    whole: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """What came of one requirement over one recording, or the sentence that says why nothing did.
+
+    ``first_violation``: seconds, or a date; None where there is none. ``period``: None in dense time.
+    ``seconds``: how long it took. ``result`` stays in the process that made it.
+    """
+
+    requirement: str
+    trace: str
+    verdict: str  # satisfied, violated or error
+    robustness: float = float("nan")
+    first_violation: float | str | None = None
+    samples: int = 0
+    period: Fraction | None = None
+    error: str = ""
+    seconds: float = 0.0
+    result: Result | None = None
+
+
+def outcomes(
+    requirements: Sequence[Requirement], traces: Sequence[str], reading: Reading, jobs: int | None = None
+) -> Iterator[Outcome]:
+    """Yield what comes of every requirement over every recording, recording by recording, in order.
+
+    ``jobs``: processes; by default one for each core, where there is enough to do.
+    """
+    count = min(jobs or _processes(traces), len(traces))
+    if count <= 1 or reading.whole:
+        for trace in traces:
+            yield from evaluate(requirements, trace, reading)
+        return
+    # Reading a text file is Python's work, which threads could not share. Processes start afresh, so
+    # that nothing of this one (locks, threads of libraries) is copied into them.
+    with ProcessPoolExecutor(count, mp_context=get_context("spawn")) as pool:
+        work = [pool.submit(_apart, requirements, trace, reading) for trace in traces]
+        try:
+            for future in work:
+                yield from future.result()
+        finally:
+            pool.shutdown(wait=True, cancel_futures=True)
+
+
+def _apart(requirements: Sequence[Requirement], trace: str, reading: Reading) -> list[Outcome]:
+    """Return outcomes without what cannot leave a process."""
+    return [replace(outcome, result=None) for outcome in evaluate(requirements, trace, reading)]
+
+
+def _processes(traces: Sequence[str]) -> int:
+    sizes = (os.path.getsize(trace) for trace in traces if os.path.isfile(trace))
+    return (os.cpu_count() or 1) if sum(sizes) >= _WORTH_PROCESSES else 1
+
+
+# ---- one recording -------------------------------------------------------------------------------
+
+
+def evaluate(requirements: Sequence[Requirement], trace: str, reading: Reading) -> list[Outcome]:
+    """Check requirements over one recording, which is read once if that goes well."""
+    if _is_large(trace, reading):
+        return [_alone(requirement, trace, reading) for requirement in requirements]
+    try:
+        whole = _read(trace, requirements, reading)
+    except StlError:  # each reads what it needs, and says what is wrong with that
+        return [_check(requirement, trace, None, reading) for requirement in requirements]
+    return [_check(requirement, trace, whole, reading) for requirement in requirements]
+
+
+def _is_large(trace: str, reading: Reading) -> bool:
+    if reading.whole or reading.resample is not None:
+        return False
+    return is_url(trace) or (os.path.isfile(trace) and os.path.getsize(trace) >= LARGE)
+
+
+def _alone(requirement: Requirement, trace: str, reading: Reading) -> Outcome:
+    """Check in chunks if format and formula allow it, else read the recording whole."""
+    begin = time.perf_counter()
+    try:
+        check_streamable(requirement.spec)
+        with opened(trace, reading.sheet, reading.query) as source:
+            chunked = all(table.chunks is not None for table in source.tables) and len(source.tables) == 1
+            if chunked:
+                chunks = _Chunks(chunks_of(source, _choice([requirement], reading)))
+                found = check_stream(requirement.spec, chunks)
+    except BoundError:
+        chunked = False
+    except StlError as error:
+        # Whatever reads says where; whatever computes does not know.
+        place = "" if shown(trace) in str(error) else f"{shown(trace)}: "
+        return _failed(requirement, trace, f"{place}{error}", begin)
+    if not chunked:
+        return _check(requirement, trace, None, reading)
+    return Outcome(
+        requirement.label,
+        shown(trace),
+        "satisfied" if found.satisfied else "violated",
+        found.robustness,
+        None if found.first_violation is None else _told(found.first_violation, chunks.dated),
+        found.samples,
+        found.period,
+        seconds=time.perf_counter() - begin,
+    )
+
+
+def _check(requirement: Requirement, trace: str, data: Trace | None, reading: Reading) -> Outcome:
+    """Check over a recording that is in memory, or read what the requirement needs of it."""
+    begin = time.perf_counter()
+    spec = requirement.spec
+    try:
+        data = data or _read(trace, [requirement], reading)
+    except StlError as error:
+        return _failed(requirement, trace, str(error), begin)
+    try:
+        if spec.time == "dense" and data.start is None:
+            raise TraceError(NO_STAMPS)
+        if reading.resample is not None:
+            data = data.resample(reading.resample, reading.how)
+        result = spec.evaluate(data)
+        violated = first_violation(result)
+    except StlError as error:
+        return _failed(requirement, trace, f"{shown(trace)}: {error}", begin)
+    recording = result.trace
+    return Outcome(
+        requirement.label,
+        shown(trace),
+        "satisfied" if result.satisfied else "violated",
+        result.robustness,
+        None if violated is None else _told(violated, isinstance(data.start, np.datetime64)),
+        _samples(recording),
+        recording.period if isinstance(recording, Recording) else None,
+        seconds=time.perf_counter() - begin,
+        result=result,
+    )
+
+
+def _failed(requirement: Requirement, trace: str, error: str, begin: float) -> Outcome:
+    return Outcome(requirement.label, shown(trace), "error", error=error, seconds=time.perf_counter() - begin)
+
+
+def _read(trace: str, requirements: Sequence[Requirement], reading: Reading) -> Trace:
+    with opened(trace, reading.sheet, reading.query) as source:
+        return trace_of(source, _choice(requirements, reading))
+
+
+def _choice(requirements: Sequence[Requirement], reading: Reading) -> Choice:
+    columns = dict.fromkeys(name for requirement in requirements for name in requirement.spec.input_names)
+    units = None if reading.unit is None else {TIME: reading.unit}
+    # In discrete time a gap is an error, unless a clock of its own for each signal is what is resampled.
+    gaps = requirements[0].spec.time == "dense" or reading.resample is not None
+    return replace(choice(reading.time, columns or None, reading.names, units), gaps=gaps)
+
+
+def _samples(recording: Recording | DenseRecording) -> int:
+    """Return the number of samples; in dense time that of the instants at which any variable has one."""
+    if isinstance(recording, Recording):
+        return len(recording)
+    return len(np.unique(np.concatenate([ticks for ticks, _ in recording.columns.values()])))
+
+
+def _told(moment: Any, dated: bool) -> float | str:
+    """Return a time for reports: a date where the recording has dates (discrete time counts seconds), else seconds."""
+    if dated and not isinstance(moment, np.datetime64):
+        moment = np.datetime64(round(moment * 1e9), "ns")
+    if isinstance(moment, np.datetime64):
+        return str(moment)
+    return moment / 1e9 if isinstance(moment, int) else float(moment)
+
+
+class _Chunks:
+    """Chunks, and whether their stamps are dates."""
+
+    def __init__(self, chunks: Iterator[Trace]) -> None:
+        self._chunks = chunks
+        self.dated = False
+
+    def __iter__(self) -> Iterator[Trace]:
+        for chunk in self._chunks:
+            self.dated = isinstance(chunk.start, np.datetime64)
+            yield chunk

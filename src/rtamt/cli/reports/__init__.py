@@ -1,0 +1,35 @@
+"""Reports of a check that other programs, and people, read: a module for each kind."""
+
+from __future__ import annotations
+
+from types import MappingProxyType
+from typing import TYPE_CHECKING
+
+from rtamt.cli.command import CommandError
+from rtamt.cli.reports.html import as_html
+from rtamt.cli.reports.junit import as_junit
+from rtamt.cli.reports.sarif import as_sarif
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+
+    from rtamt.cli.matrix import Outcome, Requirement
+
+    Report = Callable[[Sequence[Requirement], Sequence[Outcome]], str]
+
+#: Option of ``rtamt check`` to what makes the text of the file.
+REPORTS: Mapping[str, Report] = MappingProxyType({"junit": as_junit, "sarif": as_sarif, "html": as_html})
+
+
+def write_report(
+    kind: str, path: str, requirements: Sequence[Requirement], outcomes: Sequence[Outcome]
+) -> None:
+    """Write the report of one kind."""
+    try:
+        with open(path, "w", encoding="utf-8", newline="\n") as file:
+            file.write(REPORTS[kind](requirements, outcomes))
+    except OSError as error:
+        raise CommandError(f"cannot write '{path}': {error.strerror}") from None
+
+
+__all__ = ["REPORTS", "write_report"]

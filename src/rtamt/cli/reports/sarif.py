@@ -1,0 +1,78 @@
+"""SARIF 2.1.0, which code hosts show beside the code: a rule for each requirement, a result for each recording."""
+
+from __future__ import annotations
+
+import json
+import os
+from pathlib import PurePath
+from typing import TYPE_CHECKING, Any
+from urllib.parse import quote
+
+import rtamt
+from rtamt.cli.command import json_number
+from rtamt.cli.reports.words import sentence
+from rtamt.cli.terminal import printed
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from rtamt.cli.matrix import Outcome, Requirement
+
+_SCHEMA = "https://json.schemastore.org/sarif-2.1.0.json"
+
+
+def as_sarif(requirements: Sequence[Requirement], outcomes: Sequence[Outcome]) -> str:
+    """Return the report: a violation is a failed result, what could not be evaluated a notification."""
+    rules = [
+        {"id": requirement.label, "shortDescription": {"text": printed(requirement.spec.formula)}}
+        for requirement in requirements
+    ]
+    numbers = {requirement.label: i for i, requirement in enumerate(requirements)}
+    errors = [outcome for outcome in outcomes if outcome.error]
+    run = {
+        "tool": {"driver": {"name": "rtamt", "version": rtamt.__version__, "rules": rules}},
+        "invocations": [
+            {
+                "executionSuccessful": not errors,
+                "toolExecutionNotifications": [
+                    {
+                        "level": "error",
+                        "message": {"text": sentence(outcome)},
+                        "associatedRule": {"id": outcome.requirement, "index": numbers[outcome.requirement]},
+                        "locations": [_location(outcome.trace)],
+                    }
+                    for outcome in errors
+                ],
+            }
+        ],
+        "results": [
+            _result(outcome, numbers[outcome.requirement], requirements)
+            for outcome in outcomes
+            if not outcome.error
+        ],
+    }
+    return json.dumps({"$schema": _SCHEMA, "version": "2.1.0", "runs": [run]}, indent=2) + "\n"
+
+
+def _result(outcome: Outcome, number: int, requirements: Sequence[Requirement]) -> dict[str, Any]:
+    violated = outcome.verdict == "violated"
+    result = {
+        "ruleId": outcome.requirement,
+        "ruleIndex": number,
+        "kind": "fail" if violated else "pass",
+        "level": "error" if violated else "none",
+        "message": {"text": sentence(outcome)},
+        "locations": [_location(outcome.trace)],
+        "properties": {
+            "robustness": json_number(outcome.robustness),
+            "firstViolation": outcome.first_violation,
+        },
+    }
+    if os.path.isfile(requirements[number].given):
+        result["relatedLocations"] = [_location(requirements[number].given)]
+    return result
+
+
+def _location(path: str) -> dict[str, Any]:
+    uri = path if "://" in path else quote(PurePath(path).as_posix())
+    return {"physicalLocation": {"artifactLocation": {"uri": uri}}}
