@@ -57,7 +57,7 @@ def trace_of(source: Source, choice: Choice) -> Trace:
     notes = list(source.notes)
     for selection in select(source, choice):
         raws = selection.table.load(selection.fields)
-        clock = _clock(selection, raws, choice)
+        clock = _clock(source, selection, raws, choice)
         notes += [] if clock is None else [note for note in clock.notes if note not in notes]
         made, left_out = _channels(source, selection, clock, raws, choice)
         channels.update(made)
@@ -77,7 +77,7 @@ def chunks_of(source: Source, choice: Choice) -> Iterator[Trace]:
     clock: Clock | None = None
     before = 0
     for raws in selection.table.chunks(selection.fields):
-        clock = clock or _clock(selection, raws, choice)
+        clock = clock or _clock(source, selection, raws, choice)
         made, _ = _channels(source, selection, clock, raws, choice, before)
         before += len(raws[0]) if raws else 0
         notes = () if clock is None else clock.notes
@@ -195,12 +195,14 @@ def _time_field(source: Source, table: Table, choice: Choice) -> tuple[Field | N
 # ---- values --------------------------------------------------------------------------------------
 
 
-def _clock(selection: Selection, raws: Sequence[Raw], choice: Choice) -> Clock | None:
+def _clock(source: Source, selection: Selection, raws: Sequence[Raw], choice: Choice) -> Clock | None:
     if selection.clock is None:
         return None
     unit = choice.units.get(selection.clock.column, choice.units.get(TIME))
     guessed = selection.guessed and selection.clock.column.lower() != TIME
-    return clocks.clock_of(selection.clock, _dated(raws[0], selection.clock.column), unit, guessed)
+    return clocks.clock_of(
+        selection.clock, _dated(raws[0], selection.clock.column), unit, guessed, source.name
+    )
 
 
 def _channels(

@@ -75,7 +75,7 @@ def guess_field(fields: Sequence[Field], source: str, wanted: Sequence[str]) -> 
     return free[0] if free else None
 
 
-def clock_of(field: Field, raw: Raw, unit: str | None, guessed: bool) -> Clock:
+def clock_of(field: Field, raw: Raw, unit: str | None, guessed: bool, source: str) -> Clock:
     """Return how ``raw``, the first stamps of a column, become times. ``unit``: what the caller says of it."""
     why = "by its name" if looks_like_stamps(field) else "the one column of dates"
     notes = [f"time is '{field.column}', {why}"] if guessed else []
@@ -83,9 +83,9 @@ def clock_of(field: Field, raw: Raw, unit: str | None, guessed: bool) -> Clock:
         return Clock(field, "", "datetime", tuple(notes))
     raw, unit = (_nanoseconds(raw), "ns") if raw.dtype.kind == "m" else (raw, unit)
     if unit is not None:
-        unit = _unit(unit, field)
+        unit = _unit(unit, field, source)
     elif field.unit:
-        unit = _unit(field.unit, field)
+        unit = _unit(field.unit, field, source)
     else:
         match = _STAMPS.fullmatch(field.name.lower())
         unit = _UNIT_OF[match["unit"]] if match and match["unit"] else None
@@ -100,11 +100,11 @@ def clock_of(field: Field, raw: Raw, unit: str | None, guessed: bool) -> Clock:
     return Clock(field, unit, "ns" if exact else "seconds", tuple(notes))
 
 
-def _unit(text: str, field: Field) -> str:
+def _unit(text: str, field: Field, source: str) -> str:
     unit = _UNIT_OF.get(text.strip().lower()) or (text if text in UNITS else None)
     if unit is None:
         raise TraceError(
-            f"the unit of the time column '{field.column}' is '{text}', which is none of {', '.join(UNITS)}"
+            f"the unit of the time column '{field.column}' of {source} is '{text}', which is none of {', '.join(UNITS)}"
         )
     return unit
 

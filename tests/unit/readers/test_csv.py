@@ -197,7 +197,7 @@ LONG = "time,x\n" + "0,1\n" * 10 + "1,{}\n" + "0,1\n" * 10
         (
             "t [min],req\n0,1\n",
             ["req"],
-            "the unit of the time column 't [min]' is 'min', which is none of s, ms, us, ns",
+            "the unit of the time column 't [min]' of log.csv is 'min', which is none of s, ms, us, ns",
         ),
         (
             "0,1\n1,2\n",

@@ -188,7 +188,7 @@ def test_the_data_of_the_caller_is_not_shared():
         (lambda: rtamt.read({"x": [1]}, columns="x"),
          "columns is the text 'x'; give a list of names, such as ['x']"),
         (lambda: rtamt.read({"time": [1], "x": [1]}, units={"time": "min"}),
-         "the unit of the time column 'time' is 'min', which is none of s, ms, us, ns"),
+         "the unit of the time column 'time' of a dict is 'min', which is none of s, ms, us, ns"),
         (lambda: rtamt.read({"t": [0, 1], "x": [1, 2]}, columns=["time", "x"]),
          "the formula reads 'time', but the time stamps of a dict are its column 't'; "
          "name that column 'time', or the variable something else"),
