@@ -1,6 +1,7 @@
 #include "program.hpp"
 
 #include "crc32.hpp"
+#include "reader.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -10,7 +11,6 @@
 #include <limits>
 #include <stdexcept>
 #include <string_view>
-#include <type_traits>
 #include <utility>
 
 namespace rtamt {
@@ -28,32 +28,6 @@ constexpr std::size_t checksum_size = 4;
 [[noreturn]] void refuse(const std::string& reason) {
     throw std::invalid_argument("This is not a program that can be run: " + reason + ".");
 }
-
-// Reads numbers in little endian order; the caller has checked that the bytes are there.
-class Reader {
-  public:
-    explicit Reader(std::span<const std::uint8_t> bytes) noexcept : bytes_(bytes) {}
-
-    template <class Unsigned>
-    [[nodiscard]] Unsigned take() noexcept {
-        static_assert(std::is_unsigned_v<Unsigned>);
-        std::uint64_t value = 0;
-        for (std::size_t i = 0; i < sizeof(Unsigned); ++i) {
-            value |= std::uint64_t{bytes_[i]} << (8U * i);
-        }
-        bytes_ = bytes_.subspan(sizeof(Unsigned));
-        return static_cast<Unsigned>(value);
-    }
-
-    [[nodiscard]] std::string text(std::size_t length) {
-        const auto part = bytes_.first(length);
-        bytes_ = bytes_.subspan(length);
-        return {part.begin(), part.end()};
-    }
-
-  private:
-    std::span<const std::uint8_t> bytes_;
-};
 
 struct Header {
     std::uint8_t domain = 0;

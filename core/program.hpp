@@ -15,7 +15,7 @@
 //         32         instructions, 40 bytes each: u8 opcode, 3 B 0, u32 a, u32 b, u32 0,
 //                    i64 n, f64 x, i64 lag; an operand that is not used is 0xFFFFFFFF
 //                    outputs, one u32 instruction index each
-//                    the note: bytes for whoever carries the program (JSON), not interpreted
+//                    the note: what a carrier tells its users (metadata.hpp); may be empty
 //                    u32 CRC-32 of everything before it
 //
 // An instruction with lag L yields, at slot s, the value for time (sample index) s - L. In dense

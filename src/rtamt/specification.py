@@ -8,7 +8,7 @@ from functools import cached_property, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, overload
 
-from rtamt.engine import dense_evaluate, dense_reference, reference, signals
+from rtamt.engine import carry, dense_evaluate, dense_reference, reference, signals
 from rtamt.engine.dense_monitor import DenseMonitor
 from rtamt.engine.evaluate import Evaluator
 from rtamt.engine.monitor import Monitor
@@ -36,6 +36,7 @@ if TYPE_CHECKING:
     from typing_extensions import Unpack
 
     from rtamt.engine.dense_evaluate import DenseRecording
+    from rtamt.engine.program import Program
     from rtamt.engine.signals import FloatArray
     from rtamt.rewrite.interface import Judge
     from rtamt.settings import Duration, Semantics, Settings
@@ -225,6 +226,36 @@ class Specification:
             known=self._declared,
             watch=watched,
             again=again,
+        )
+
+    def compile(
+        self,
+        *,
+        time: str | None = None,
+        period: Duration | None = None,
+        resolution: Duration | None = None,
+        semantics: Semantics | None = None,
+    ) -> Program:
+        """Return the requirement as a program, whose bytes run wherever the core does, without Python.
+
+        Its outputs are ``robustness`` (ρ, or what ``semantics`` says) and ``verdict`` (+inf where the
+        formula holds, -inf where it does not). The named constants of the specification are parameters
+        of the program, except those that bound an interval. Settings and errors as for :meth:`monitor`.
+
+        >>> import rtamt
+        >>> program = rtamt.parse("always[0:200ms](x >= 3)").compile(period="100ms")
+        >>> program.lags, len(program.to_bytes())
+        ((2, 2), 472)
+        """
+        domain = self._time(time)
+        step = self._resolution(resolution) if domain == "dense" else self._period(period) or Fraction(1)
+        return carry.carried_program(
+            self.formula,
+            judged=self.judged(self.formula, self._semantics(semantics)),
+            period=step,
+            domain=domain,
+            text=self.text,
+            name=self.name,
         )
 
     def judged(self, formula: Formula, semantics: str | Judge | None = None) -> Formula:

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "crc32.hpp"
+#include "metadata.hpp"
 #include "program.hpp"
 
 #include <bit>
@@ -87,7 +88,7 @@ inline std::vector<std::uint8_t> bytes_of(const Program& program) {
     for (const char letter : std::string("RTAMTPRG"))
         put(bytes, static_cast<std::uint8_t>(letter));
     put(bytes, std::uint16_t{1});
-    put(bytes, std::uint16_t{0});
+    put(bytes, static_cast<std::uint16_t>(program.domain));
     put(bytes, static_cast<std::uint32_t>(program.instructions.size()));
     put(bytes, program.inputs);
     put(bytes, static_cast<std::uint32_t>(program.outputs.size()));
@@ -108,6 +109,60 @@ inline std::vector<std::uint8_t> bytes_of(const Program& program) {
         put(bytes, static_cast<std::uint8_t>(letter));
     put(bytes, std::uint32_t{0});
     return sealed(std::move(bytes));
+}
+
+inline void put_text(std::vector<std::uint8_t>& bytes, const std::string& text) {
+    put(bytes, static_cast<std::uint32_t>(text.size()));
+    bytes.insert(bytes.end(), text.begin(), text.end());
+}
+
+// The note that metadata.hpp reads: names, steps of 1/10 s.
+inline std::string note_of(const rtamt::Metadata& metadata) {
+    std::vector<std::uint8_t> bytes;
+    put(bytes, static_cast<std::uint64_t>(metadata.numerator));
+    put(bytes, static_cast<std::uint64_t>(metadata.denominator));
+    put_text(bytes, metadata.name);
+    put_text(bytes, metadata.formula);
+    for (const std::string& name : metadata.inputs)
+        put_text(bytes, name);
+    for (const std::string& name : metadata.outputs)
+        put_text(bytes, name);
+    put(bytes, static_cast<std::uint32_t>(metadata.parameters.size()));
+    for (const rtamt::Parameter& parameter : metadata.parameters) {
+        put_text(bytes, parameter.name);
+        put(bytes, static_cast<std::uint32_t>(parameter.instructions.size()));
+        for (const std::uint32_t instruction : parameter.instructions)
+            put(bytes, instruction);
+    }
+    put(bytes, static_cast<std::uint32_t>(metadata.meanings.size()));
+    for (const auto& [instruction, text] : metadata.meanings) {
+        put(bytes, instruction);
+        put_text(bytes, text);
+    }
+    return {bytes.begin(), bytes.end()};
+}
+
+// always[0:0.3](a / b >= limit), and a / b beside it, with all that a carrier wants to know.
+inline Program carried(rtamt::Domain domain = rtamt::Domain::discrete) {
+    Builder builder;
+    const auto a = builder.input();
+    const auto b = builder.input();
+    const auto limit = builder.constant(1.5);
+    const auto quotient = builder.pointwise(Opcode::div, a, b);
+    const auto margin = builder.pointwise(Opcode::sub, quotient, limit);
+    const std::int64_t width = domain == rtamt::Domain::dense ? 3 : 4;
+    builder.output(builder.unary(Opcode::slide_min, margin, width, 3)).output(quotient);
+    Program program = builder.program();
+    program.domain = domain;
+    program.note = note_of({1,
+                            10,
+                            "ratio",
+                            "always[0:0.3](a / b >= limit)",
+                            {"a", "b"},
+                            {"robustness", "ratio"},
+                            {{"limit", {limit}}},
+                            {{quotient, "a / b"}, {margin, "a / b - limit"}}});
+    return program;
 }
 
 } // namespace programs

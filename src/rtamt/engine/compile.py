@@ -17,7 +17,7 @@ from rtamt.rewrite.check import reads_unbounded_future, unbounded_future
 from rtamt.rewrite.horizon import horizon
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     from rtamt.engine.program import Program
 
@@ -72,13 +72,15 @@ def compile_program(
     inputs: tuple[str, ...] | None = None,
     clip: int | None = None,
     domain: str = "discrete",
+    parameters: Mapping[str, float] | None = None,
 ) -> Program:
     """Compile core formulas (see ``desugar``) whose future is bounded into one program.
 
     ``period`` is the sampling period, in dense time the length of a tick (seconds). ``inputs`` fixes
     the order of the inputs; by default the variables in order of appearance. ``clip`` is the number
     of samples of a finished trace: bounds beyond it are cut to it, which
-    changes no value and saves memory.
+    changes no value and saves memory. ``parameters``: variables that are constants of their own,
+    merged with no other, and the values these begin with.
 
     >>> from fractions import Fraction
     >>> from rtamt.language.parser import parse_formula
@@ -89,7 +91,7 @@ def compile_program(
     """
     if inputs is None:
         inputs = _read_by(outputs)
-    lowering = LOWERINGS[domain](period, inputs, clip)
+    lowering = LOWERINGS[domain](period, inputs, clip, parameters or {})
     indices = [lowering.lower(formula) for formula in outputs]
     if clip is None:  # online: each output is known at its horizon, even where less would do
         depths = (horizon(formula, period) for formula in outputs)

@@ -31,10 +31,13 @@ class Lowering(ABC):
     #: The width of the window [0, 0].
     point: int
 
-    def __init__(self, period: Fraction, inputs: tuple[str, ...], clip: int | None) -> None:
+    def __init__(
+        self, period: Fraction, inputs: tuple[str, ...], clip: int | None, parameters: Mapping[str, float]
+    ) -> None:
         self.period = period
         self.inputs = inputs
         self.clip = clip
+        self.parameters = parameters
         self.instructions: list[Instruction] = []
         self.origins: list[Formula | None] = []
         self.index_of: dict[tuple[Instruction, float], int] = {}
@@ -64,6 +67,9 @@ class Lowering(ABC):
     def _lower_node(self, node: Formula) -> int:
         if isinstance(node, Const):
             return self.emit(Instruction("const", x=node.value), node)
+        if isinstance(node, Var) and node.name in self.parameters:
+            # Merged with no other constant: it may get a value of its own.
+            return self.append(Instruction("const", x=self.parameters[node.name]), node)
         if isinstance(node, Var):
             return self.emit(Instruction("input", n=self.inputs.index(node.name)), node)
         assert isinstance(node, Apply)
@@ -88,10 +94,14 @@ class Lowering(ABC):
         key = (instruction, copysign(1.0, instruction.x))  # 0.0 == -0.0, but they are two constants
         index = self.index_of.get(key)
         if index is None:
-            index = self.index_of[key] = len(self.instructions)
-            self.instructions.append(instruction)
-            self.origins.append(origin)
+            index = self.index_of[key] = self.append(instruction, origin)
         return index
+
+    def append(self, instruction: Instruction, origin: Formula) -> int:
+        """Return the index of a new instruction."""
+        self.instructions.append(instruction)
+        self.origins.append(origin)
+        return len(self.instructions) - 1
 
     def lag(self, index: int) -> int:
         """Return how many steps late an instruction is known."""

@@ -6,17 +6,20 @@ What lies outside the trace is *absent*: kernels skip it, which cuts windows at 
 program serves offline and online alike, and nothing needs pastification.
 
 The bytes are those of core/program.hpp (documented there and in ``to_bytes``): header, records of
-40 bytes, outputs, metadata as JSON, CRC-32.
+40 bytes, outputs, a note, CRC-32. The note is empty in programs that stay in Python; in those that
+leave it (``carry.py``) it is their metadata (``metadata.py``).
 """
 
 from __future__ import annotations
 
-import json
 import struct
 import zlib
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from math import isnan
+from types import MappingProxyType
 from typing import TYPE_CHECKING
 
+from rtamt.engine.metadata import Metadata, damaged
 from rtamt.errors import UsageError
 
 if TYPE_CHECKING:
@@ -40,6 +43,9 @@ DOMAINS = ("discrete", "dense")
 NO_OPERAND = 0xFFFFFFFF
 _HEADER = struct.Struct("<8sHBBIIIII")
 _RECORD = struct.Struct("<B3xIIIqdq")
+_MAGIC = b"RTAMTPRG"
+_VERSION = 1
+_CHECKSUM = 4
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,17 +114,19 @@ class Program:
 
     ``period`` is the sampling period, in dense time the length of a tick (seconds). ``outputs`` are
     indices of instructions; ``lags`` tells after how many samples or ticks each output is known.
-    ``value_of`` maps each core sub-formula to its instruction, ``origins`` the other way.
+    ``value_of`` maps each core sub-formula to its instruction, ``origins`` the other way; what was
+    read from bytes has neither. ``metadata`` is what carriers need to know.
     """
 
     instructions: tuple[Instruction, ...]
     inputs: tuple[str, ...]
     outputs: tuple[int, ...]
     period: Fraction
-    value_of: Mapping[Formula, int]
-    origins: tuple[Formula | None, ...]
+    value_of: Mapping[Formula, int] = field(default_factory=lambda: MappingProxyType({}))
+    origins: tuple[Formula | None, ...] = ()
     domain: str = "discrete"
     calls: tuple[CallSite, ...] = ()
+    metadata: Metadata | None = None
 
     @property
     def lags(self) -> tuple[int, ...]:
@@ -139,28 +147,48 @@ class Program:
 
     def code(self) -> bytes:
         """Return what the core runs in this process, together with the calls."""
-        meta = json.dumps({"inputs": self.inputs, "period": str(self.period)}, separators=(",", ":")).encode()
-        parts = [
-            _HEADER.pack(
-                b"RTAMTPRG",
-                1,
-                DOMAINS.index(self.domain),
-                0,
-                len(self.instructions),
-                len(self.inputs),
-                len(self.outputs),
-                len(meta),
-                0,
-            )
-        ]
+        note = b"" if self.metadata is None else self.metadata.to_bytes(self.inputs, self.period)
+        domain = DOMAINS.index(self.domain)
+        counts = (len(self.instructions), len(self.inputs), len(self.outputs), len(note), 0)
+        parts = [_HEADER.pack(_MAGIC, _VERSION, domain, 0, *counts)]
         for ins in self.instructions:
             a = NO_OPERAND if ins.a is None else ins.a
             b = NO_OPERAND if ins.b is None else ins.b
             parts.append(_RECORD.pack(OPCODES.index(ins.opcode), a, b, 0, ins.n, ins.x, ins.lag))
-        parts.append(struct.pack(f"<{len(self.outputs)}I", *self.outputs))
-        parts.append(meta)
+        parts += [struct.pack(f"<{len(self.outputs)}I", *self.outputs), note]
         body = b"".join(parts)
         return body + struct.pack("<I", zlib.crc32(body))
+
+    @staticmethod
+    def from_bytes(code: bytes) -> Program:
+        """Read what ``to_bytes`` of a program with metadata wrote; raise :class:`UsageError` for anything else.
+
+        >>> import rtamt
+        >>> program = rtamt.parse("always[0:200ms](x >= 3)").compile(period="100ms")
+        >>> Program.from_bytes(program.to_bytes()).disassemble() == program.disassemble()
+        True
+        """
+        if len(code) < _HEADER.size + _CHECKSUM or not code.startswith(_MAGIC):
+            raise damaged(f"it does not begin with '{_MAGIC.decode()}'")
+        _, version, domain, _, size, inputs, outputs, length, _ = _HEADER.unpack_from(code)
+        if version != _VERSION:
+            raise damaged(f"its format has version {version}, and this is for version {_VERSION}")
+        expected = _HEADER.size + _RECORD.size * size + 4 * outputs + length + _CHECKSUM
+        if len(code) != expected:
+            raise damaged(f"it has {len(code)} bytes where its header promises {expected}")
+        body, (checksum,) = code[:-_CHECKSUM], struct.unpack("<I", code[-_CHECKSUM:])
+        if zlib.crc32(body) != checksum:
+            raise damaged("its checksum does not match, so it was damaged on the way")
+        if length == 0 or domain >= len(DOMAINS):
+            raise damaged("it has no metadata" if length == 0 else f"its time domain is {domain}")
+        records = _RECORD.iter_unpack(body[_HEADER.size : _HEADER.size + _RECORD.size * size])
+        instructions = tuple(_instruction(i, record, inputs) for i, record in enumerate(records))
+        end = len(body) - length
+        told = struct.unpack(f"<{outputs}I", body[end - 4 * outputs : end])
+        if any(place >= size for place in told):
+            raise damaged("it has an output that is no instruction")
+        metadata, names, period = Metadata.from_bytes(body[end:], inputs, outputs)
+        return Program(instructions, names, told, period, domain=DOMAINS[domain], metadata=metadata)
 
     def disassemble(self) -> str:
         """Return a listing: index, lag in samples, instruction.
@@ -179,3 +207,18 @@ class Program:
             mark = "  -> output" if i in self.outputs else ""
             lines.append(f"%{i:<3} lag {ins.lag:<4} {ins.describe(self.inputs, self.calls)}{mark}")
         return "\n".join(lines)
+
+
+def _instruction(index: int, record: tuple[int, int, int, int, int, float, int], inputs: int) -> Instruction:
+    code, a, b, _, n, x, lag = record
+    if code >= len(OPCODES):
+        raise damaged(f"instruction {index} has the unknown opcode {code}")
+    opcode = OPCODES[code]
+    if opcode == "call":
+        raise damaged(f"instruction {index} calls an operator that bytes cannot carry")
+    if any(operand >= index for operand in (a, b) if operand != NO_OPERAND):
+        raise damaged(f"instruction {index} ({opcode}) reads one that is not before it")
+    if (opcode == "input" and not 0 <= n < inputs) or isnan(x):
+        raise damaged(f"instruction {index} ({opcode}) holds a number that it cannot have")
+    first, second = (None if operand == NO_OPERAND else operand for operand in (a, b))
+    return Instruction(opcode, first, second, n, x, lag)

@@ -36,7 +36,8 @@ class Span:
 class Interval:
     """A closed interval ``[begin, end]`` of seconds, exact; ``end=None`` means unbounded.
 
-    ``begin_unit`` and ``end_unit`` only remember how the bounds were written, for printing.
+    ``begin_unit``, ``end_unit`` and ``constants`` (the named ones) only remember how the bounds were
+    written.
     """
 
     begin: Fraction
@@ -44,6 +45,7 @@ class Interval:
     begin_unit: str = field(default="", compare=False)
     end_unit: str = field(default="", compare=False)
     span: Span | None = field(default=None, compare=False, repr=False)
+    constants: tuple[str, ...] = field(default=(), compare=False, repr=False)
 
 
 class Formula:
@@ -70,10 +72,14 @@ class Formula:
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Const(Formula):
-    """A number (IEEE double; never NaN). 0.0 and -0.0 are different numbers: 1/x tells them apart."""
+    """A number (IEEE double; never NaN). 0.0 and -0.0 are different numbers: 1/x tells them apart.
+
+    ``name`` only remembers that a named constant was written.
+    """
 
     value: float
     span: Span | None = field(default=None, compare=False, repr=False)
+    name: str | None = field(default=None, compare=False, repr=False)
 
     def __hash__(self) -> int:
         return hash((self.value, copysign(1.0, self.value)))

@@ -36,6 +36,7 @@ def parse_interval(parser: FormulaParser, op: Operator, token: Token) -> Interva
     if op.bounds is Bounds.NONE:
         raise parser.error(f"'{token.text}' takes no interval", opening.span)
     parser.next()
+    first = parser.index
     begin, begin_unit, begin_span = _bound(parser)
     separator = parser.token
     if not parser.accept(":") and not parser.accept(","):
@@ -62,7 +63,9 @@ def parse_interval(parser: FormulaParser, op: Operator, token: Token) -> Interva
             raise parser.error(
                 f"the interval {written} is reversed: it ends before it begins", span, BoundError
             )
-    return Interval(begin, end, begin_unit, "" if end is None else end_unit, span)
+    names = tuple(token.text for token in parser.tokens[first : parser.index] if token.kind == "name")
+    constants = tuple(name for name in names if name in parser.scope.constants)
+    return Interval(begin, end, begin_unit, "" if end is None else end_unit, span, constants)
 
 
 def _unbounded(parser: FormulaParser, token: Token, span: Span) -> SpecificationError:

@@ -257,7 +257,7 @@ class FormulaParser:
             return definition
         value = scope.constants.get(name)
         if value is not None:
-            return Const(float(value), span)
+            return Const(float(value), span, name)
         if scope.variables is not None and name in scope:
             return Var(name, span)
         if name == INFINITY and plain:

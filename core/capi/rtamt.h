@@ -1,0 +1,156 @@
+/* Monitors for Signal Temporal Logic, from C: a serialised program in, robustness out.
+ *
+ * `rtamt compile` writes a program; docs/reference/program.md describes its bytes. A monitor runs
+ * one program, in discrete or in dense time, whichever the program is for:
+ *
+ *     rtamt_monitor* monitor;
+ *     char message[256];
+ *     if (rtamt_create(bytes, size, &monitor, message, sizeof message) != RTAMT_OK) ...
+ *     double known[2];
+ *     rtamt_status status = rtamt_step(monitor, inputs, 2, known, 2);
+ *     if (status != RTAMT_OK) puts(rtamt_message(monitor));
+ *     rtamt_destroy(monitor);
+ *
+ * A call that fails leaves the monitor as it was. There is no global state: monitors are
+ * independent of each other, and each may be used by one thread at a time. Nothing is thrown.
+ */
+#ifndef RTAMT_H
+#define RTAMT_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#if defined(RTAMT_BUILD) && defined(_WIN32)
+#define RTAMT_API __declspec(dllexport)
+#elif defined(RTAMT_BUILD)
+#define RTAMT_API __attribute__((visibility("default")))
+#else
+#define RTAMT_API
+#endif
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Raised when a function changes its meaning or its arguments; functions may be added without. */
+#define RTAMT_ABI 1
+
+typedef enum rtamt_status {
+    RTAMT_OK = 0,
+    RTAMT_REFUSED = 1,   /* the call or its data is wrong */
+    RTAMT_UNDEFINED = 2, /* an operation has no value, such as 0/0: see rtamt_failure */
+    RTAMT_NO_MEMORY = 3  /* in rtamt_push and rtamt_finish, only rtamt_reset helps then */
+} rtamt_status;
+
+/* The values of the domain byte of a program. */
+typedef enum rtamt_domain { RTAMT_DISCRETE = 0, RTAMT_DENSE = 1 } rtamt_domain;
+
+typedef struct rtamt_monitor rtamt_monitor;
+
+/* A sample of one input in dense time. */
+typedef struct rtamt_sample {
+    int64_t tick;
+    double value;
+    uint32_t input;
+} rtamt_sample;
+
+/* RTAMT_ABI as the library was built. */
+RTAMT_API uint32_t rtamt_abi(void);
+
+/* ---- life ------------------------------------------------------------------------------------ */
+
+/* A new monitor of a program; the bytes may go afterwards. A program that is damaged or cannot be
+ * run is refused, and the sentence that says why is put into `message`, cut to `room` bytes; both
+ * may be 0. */
+RTAMT_API rtamt_status rtamt_create(const void* program, size_t size, rtamt_monitor** monitor,
+                                    char* message, size_t room);
+
+/* Frees a monitor; NULL is none. */
+RTAMT_API void rtamt_destroy(rtamt_monitor* monitor);
+
+/* The sentence that says why the last call failed, valid until the next call. */
+RTAMT_API const char* rtamt_message(const rtamt_monitor* monitor);
+
+/* After RTAMT_UNDEFINED: the instruction without a value, and the index of the sample, or in dense
+ * time the tick. */
+RTAMT_API void rtamt_failure(const rtamt_monitor* monitor, uint32_t* instruction, int64_t* step);
+
+/* ---- what the program says of itself --------------------------------------------------------- */
+
+RTAMT_API rtamt_domain rtamt_time(const rtamt_monitor* monitor);
+RTAMT_API const char* rtamt_name(const rtamt_monitor* monitor);    /* may be empty */
+RTAMT_API const char* rtamt_formula(const rtamt_monitor* monitor); /* as text */
+
+/* Seconds of a step, exact: the sampling period, in dense time the length of a tick. */
+RTAMT_API void rtamt_period(const rtamt_monitor* monitor, int64_t* numerator, int64_t* denominator);
+
+RTAMT_API uint32_t rtamt_inputs(const rtamt_monitor* monitor);
+RTAMT_API uint32_t rtamt_outputs(const rtamt_monitor* monitor);
+RTAMT_API uint32_t rtamt_parameters(const rtamt_monitor* monitor);
+
+/* Names, valid as long as the monitor; NULL beyond the last one. */
+RTAMT_API const char* rtamt_input(const rtamt_monitor* monitor, uint32_t input);
+RTAMT_API const char* rtamt_output(const rtamt_monitor* monitor, uint32_t output);
+RTAMT_API const char* rtamt_parameter(const rtamt_monitor* monitor, uint32_t parameter);
+
+/* Steps after which the value of an output at an instant is known: its horizon; -1 if there is no
+ * such output. */
+RTAMT_API int64_t rtamt_lag(const rtamt_monitor* monitor, uint32_t output);
+
+/* ---- parameters: the named constants of the specification ------------------------------------ */
+
+/* NaN if there is no such parameter. */
+RTAMT_API double rtamt_parameter_value(const rtamt_monitor* monitor, uint32_t parameter);
+
+/* Only before the first sample, or after rtamt_reset. */
+RTAMT_API rtamt_status rtamt_set_parameter(rtamt_monitor* monitor, uint32_t parameter,
+                                           double value);
+
+/* ---- a trace --------------------------------------------------------------------------------- */
+
+/* Discrete time: takes the next sample, `count` values, one an input. Into `known` goes for each of
+ * the first `outputs` outputs the value that has become known, the one `lag` samples ago, or NaN as
+ * long as there is none; a known value is never NaN. Allocates nothing. */
+RTAMT_API rtamt_status rtamt_step(rtamt_monitor* monitor, const double* values, size_t count,
+                                  double* known, size_t outputs);
+
+/* Dense time: takes samples; those of one input at increasing ticks. rtamt_told has what became
+ * known. */
+RTAMT_API rtamt_status rtamt_push(rtamt_monitor* monitor, const rtamt_sample* samples,
+                                  size_t count);
+
+/* No more samples will come: rtamt_told has the rest. Then only rtamt_reset helps. */
+RTAMT_API rtamt_status rtamt_finish(rtamt_monitor* monitor);
+
+/* Forgets the trace; parameters stay. */
+RTAMT_API void rtamt_reset(rtamt_monitor* monitor);
+
+/* What the last rtamt_push or rtamt_finish made known of an output: answers how many values, and
+ * where their steps (indices of samples, in dense time ticks from which on the value holds) and the
+ * values themselves are, valid until the next call. */
+RTAMT_API size_t rtamt_told(const rtamt_monitor* monitor, uint32_t output, const int64_t** steps,
+                            const double** values);
+
+/* Answers 1 and the last step at which an output is known, or 0 if it is not known anywhere. */
+RTAMT_API int rtamt_known_until(const rtamt_monitor* monitor, uint32_t output, int64_t* step);
+
+/* Discrete time: how many samples came. */
+RTAMT_API int64_t rtamt_samples(const rtamt_monitor* monitor);
+
+/* ---- state ----------------------------------------------------------------------------------- */
+
+/* Another monitor in the same state. */
+RTAMT_API rtamt_status rtamt_clone(rtamt_monitor* monitor, rtamt_monitor** copy);
+
+/* Writes the state, parameters included, if `room` is enough; `size` is how many bytes it takes.
+ * The bytes are for this version of the library on this kind of machine. */
+RTAMT_API rtamt_status rtamt_save(rtamt_monitor* monitor, void* state, size_t room, size_t* size);
+
+/* Takes over a state that a monitor of the same program has saved; a damaged one is refused. */
+RTAMT_API rtamt_status rtamt_restore(rtamt_monitor* monitor, const void* state, size_t size);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

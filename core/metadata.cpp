@@ -1,0 +1,120 @@
+#include "metadata.hpp"
+
+#include "reader.hpp"
+
+#include <bit>
+#include <span>
+#include <stdexcept>
+
+namespace rtamt {
+
+namespace {
+
+[[noreturn]] void refuse(const std::string& reason) {
+    throw std::invalid_argument("This is not a program that can be carried: " + reason + ".");
+}
+
+// Reads a note, whose lengths may be anything.
+class NoteReader {
+  public:
+    explicit NoteReader(const Program& program)
+        : program_(program),
+          reader_({reinterpret_cast<const std::uint8_t*>(program.note.data()), // bytes as they are
+                   program.note.size()}) {}
+
+    template <class Unsigned>
+    [[nodiscard]] Unsigned number() {
+        need(sizeof(Unsigned));
+        return reader_.take<Unsigned>();
+    }
+
+    // So many records follow, each of at least 4 bytes.
+    [[nodiscard]] std::uint32_t count() {
+        const auto count = number<std::uint32_t>();
+        need(std::size_t{4} * count);
+        return count;
+    }
+
+    [[nodiscard]] std::string text() {
+        const auto length = number<std::uint32_t>();
+        need(length);
+        std::string text = reader_.text(length);
+        if (text.find('\0') != std::string::npos) refuse("a name in it has a zero byte");
+        return text;
+    }
+
+    [[nodiscard]] std::vector<std::string> texts(std::size_t count) {
+        need(4 * count);
+        std::vector<std::string> texts;
+        texts.reserve(count);
+        for (std::size_t i = 0; i < count; ++i)
+            texts.push_back(text());
+        return texts;
+    }
+
+    [[nodiscard]] std::uint32_t instruction() {
+        const auto index = number<std::uint32_t>();
+        if (index >= program_.instructions.size()) {
+            refuse("its metadata speaks of instruction " + std::to_string(index) + " of " +
+                   std::to_string(program_.instructions.size()));
+        }
+        return index;
+    }
+
+    [[nodiscard]] Parameter parameter() {
+        Parameter parameter{text(), {}};
+        const auto places = count();
+        for (std::uint32_t i = 0; i < places; ++i) {
+            const auto place = instruction();
+            if (program_.instructions[place].opcode != Opcode::constant) {
+                refuse("its parameter '" + parameter.name + "' is instruction " +
+                       std::to_string(place) + ", which is no constant");
+            }
+            parameter.instructions.push_back(place);
+        }
+        if (places == 0) refuse("its parameter '" + parameter.name + "' stands nowhere");
+        return parameter;
+    }
+
+    void end() const {
+        if (reader_.left() != 0) refuse("its metadata is longer than it should be");
+    }
+
+  private:
+    const Program& program_;
+    Reader reader_;
+
+    void need(std::size_t size) const {
+        if (size > reader_.left()) refuse("its metadata is shorter than it should be");
+    }
+};
+
+} // namespace
+
+Metadata Metadata::parse(const Program& program) {
+    if (program.note.empty()) refuse("it has no metadata, so nobody knows the names of its inputs");
+    NoteReader note(program);
+    Metadata metadata;
+    metadata.numerator = std::bit_cast<std::int64_t>(note.number<std::uint64_t>());
+    metadata.denominator = std::bit_cast<std::int64_t>(note.number<std::uint64_t>());
+    if (metadata.numerator <= 0 || metadata.denominator <= 0) {
+        refuse("the length of its step is " + std::to_string(metadata.numerator) + "/" +
+               std::to_string(metadata.denominator) + " s");
+    }
+    metadata.name = note.text();
+    metadata.formula = note.text();
+    metadata.inputs = note.texts(program.inputs);
+    metadata.outputs = note.texts(program.outputs.size());
+    const auto parameters = note.count();
+    for (std::uint32_t i = 0; i < parameters; ++i)
+        metadata.parameters.push_back(note.parameter());
+    const auto meanings = note.count();
+    for (std::uint32_t i = 0; i < meanings; ++i) {
+        const auto instruction = note.instruction();
+        metadata.meanings[instruction] = note.text();
+    }
+    note.end();
+    return metadata;
+}
+
+} // namespace rtamt

@@ -1,0 +1,49 @@
+// What a carrier of a program tells its users: names, the period, and what an instruction means.
+//
+// Layout of the note of a program, little endian; a text is u32 length and so many bytes of UTF-8:
+//
+//     i64, i64   seconds of a step, numerator and denominator: the sampling period in discrete
+//                time, the length of a tick in dense time
+//     text       name of the specification, may be empty
+//     text       formula
+//     text       of each input, its name
+//     text       of each output, its name
+//     u32        number of parameters; of each: text name, u32 number of instructions, and the u32
+//                indices of these, constants all of them, which have the value of the parameter
+//     u32        number of meanings; of each: u32 instruction, text of the formula it computes
+#pragma once
+
+#include "program.hpp"
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace rtamt {
+
+struct Parameter {
+    std::string name;
+    std::vector<std::uint32_t> instructions; // at least one
+};
+
+struct Metadata {
+    std::int64_t numerator = 1;
+    std::int64_t denominator = 1;
+    std::string name;
+    std::string formula;
+    std::vector<std::string> inputs;
+    std::vector<std::string> outputs;
+    std::vector<Parameter> parameters;
+    std::map<std::uint32_t, std::string> meanings; // by instruction
+
+    // Reads and checks the note of a program; throws std::invalid_argument with one sentence.
+    [[nodiscard]] static Metadata parse(const Program& program);
+
+    // Seconds of a step.
+    [[nodiscard]] double seconds() const noexcept {
+        return static_cast<double>(numerator) / static_cast<double>(denominator);
+    }
+};
+
+} // namespace rtamt

@@ -1,0 +1,109 @@
+"""What a program says of itself to whoever carries it: names, the period, what instructions mean.
+
+The bytes are those of core/metadata.hpp, where each field is described.
+"""
+
+from __future__ import annotations
+
+import struct
+from dataclasses import dataclass, field
+from fractions import Fraction
+from types import MappingProxyType
+from typing import TYPE_CHECKING
+
+from rtamt.errors import UsageError
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+_COUNT = struct.Struct("<I")
+_STEP = struct.Struct("<qq")
+
+
+@dataclass(frozen=True, slots=True)
+class Metadata:
+    """Names and texts of a program.
+
+    ``formula`` as text. ``outputs`` are their names. ``parameters`` maps a named constant to the
+    instructions that hold its value. ``meanings`` maps an instruction to the formula it computes.
+    """
+
+    name: str = ""
+    formula: str = ""
+    outputs: tuple[str, ...] = ()
+    parameters: Mapping[str, tuple[int, ...]] = field(default_factory=lambda: MappingProxyType({}))
+    meanings: Mapping[int, str] = field(default_factory=lambda: MappingProxyType({}))
+
+    def to_bytes(self, inputs: tuple[str, ...], period: Fraction) -> bytes:
+        """Serialise, with what the program itself knows: the names of its inputs and its period."""
+        try:
+            step = _STEP.pack(period.numerator, period.denominator)
+        except struct.error:
+            raise UsageError(f"the period of {period} s does not fit into a program: round it") from None
+        parts = [step, *map(_text, (self.name, self.formula, *inputs, *self.outputs))]
+        parts.append(_COUNT.pack(len(self.parameters)))
+        for name, places in self.parameters.items():
+            parts += [_text(name), struct.pack(f"<{len(places) + 1}I", len(places), *places)]
+        parts.append(_COUNT.pack(len(self.meanings)))
+        for place, text in self.meanings.items():
+            parts += [_COUNT.pack(place), _text(text)]
+        return b"".join(parts)
+
+    @staticmethod
+    def from_bytes(note: bytes, inputs: int, outputs: int) -> tuple[Metadata, tuple[str, ...], Fraction]:
+        """Read metadata, the names of the inputs, and the period; the counts are those of the program."""
+        reader = _Reader(note)
+        numerator, denominator = reader.take(_STEP)
+        if numerator <= 0 or denominator <= 0:
+            raise damaged(f"the length of its step is {numerator}/{denominator} s")
+        name, formula = reader.text(), reader.text()
+        names = tuple(reader.text() for _ in range(inputs))
+        told = tuple(reader.text() for _ in range(outputs))
+        parameters = {reader.text(): tuple(reader.numbers()) for _ in range(reader.number())}
+        meanings = {reader.number(): reader.text() for _ in range(reader.number())}
+        reader.end()
+        metadata = Metadata(name, formula, told, MappingProxyType(parameters), MappingProxyType(meanings))
+        return metadata, names, Fraction(numerator, denominator)
+
+
+def damaged(reason: str) -> UsageError:
+    """Return the error for bytes that are no program."""
+    return UsageError(f"this is not a program that can be read: {reason}")
+
+
+def _text(text: str) -> bytes:
+    encoded = text.encode()
+    return _COUNT.pack(len(encoded)) + encoded
+
+
+class _Reader:
+    """Takes fields from the front; lengths may be anything."""
+
+    def __init__(self, note: bytes) -> None:
+        self._note = note
+        self._at = 0
+
+    def take(self, layout: struct.Struct) -> tuple[int, ...]:
+        return layout.unpack(self._bytes(layout.size))
+
+    def number(self) -> int:
+        return self.take(_COUNT)[0]
+
+    def numbers(self) -> list[int]:
+        return [self.number() for _ in range(self.number())]
+
+    def text(self) -> str:
+        try:
+            return self._bytes(self.number()).decode()
+        except UnicodeDecodeError:
+            raise damaged("a text in its metadata is not UTF-8") from None
+
+    def end(self) -> None:
+        if self._at != len(self._note):
+            raise damaged("its metadata is longer than it should be")
+
+    def _bytes(self, size: int) -> bytes:
+        if size > len(self._note) - self._at:
+            raise damaged("its metadata is shorter than it should be")
+        self._at += size
+        return self._note[self._at - size : self._at]

@@ -1,0 +1,156 @@
+"""A program that left Python gives what the monitor in Python gives, to the last bit, in both time domains."""
+
+from __future__ import annotations
+
+import re
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+
+from rtamt.engine.carry import carried_program
+from rtamt.engine.dense_monitor import DenseMonitor
+from rtamt.engine.monitor import Monitor
+from rtamt.engine.program import Program
+from rtamt.errors import EvaluationError
+from rtamt.language.formula import Apply, Const, Formula, fold, variables
+from rtamt.rewrite.interface import boolean
+from tests import capi
+from tests.strategies import dense_chunkings, dense_traces, formulas, traces
+
+ONE = Fraction(1)
+
+
+def carried(formula: Formula, domain: str = "discrete") -> bytes:
+    return carried_program(formula, period=ONE, domain=domain).to_bytes()
+
+
+def bits(values: Any) -> list[int]:
+    """Return doubles as integers: 0.0 and -0.0 differ."""
+    return np.array(values, np.float64).view(np.int64).tolist()
+
+
+def rows_of(formula: Formula, columns: dict[str, Any]) -> list[tuple[float, ...]]:
+    names = variables(formula)
+    return [tuple(columns[name][i] for name in names) for i in range(len(columns["x"]))]
+
+
+@settings(max_examples=50)
+@given(st.data())
+def test_samples_in_the_same_bits_out(data: st.DataObject) -> None:
+    formula, columns = data.draw(formulas()), data.draw(traces(infinite=True))
+    rows = rows_of(formula, columns)
+    here, there, truth = Monitor(formula), capi.Monitor(carried(formula)), Monitor(boolean(formula))
+    cut = data.draw(st.integers(0, len(rows)))
+    for i, row in enumerate(rows):
+        if i == cut:  # a state can go to another monitor
+            state, there = there.save(), capi.Monitor(carried(formula))
+            there.restore(state)
+        try:
+            expected = here.step(*row)
+            named = dict(zip(here.input_names, row, strict=True))
+            holds = truth.step(*(named[name] for name in truth.input_names))
+        except EvaluationError as error:
+            sentence = re.escape(f"{error}.")
+            with pytest.raises(capi.RefusedError, match=sentence):
+                there.step(row)
+            return
+        got = there.step(row)
+        assert bits(got[0]) == bits(np.nan if expected is None else expected)
+        assert bits(got[1]) == bits(np.nan if holds is None else holds)
+    try:
+        rest = here.finish()
+    except EvaluationError:
+        return
+    assert bits(there.finish()[1]) == bits(rest.values)
+    there.reset()
+    first = Monitor(formula).step(*rows[0])
+    assert bits(there.step(rows[0])[0]) == bits(np.nan if first is None else first)
+
+
+@settings(max_examples=50)
+@given(st.data())
+def test_events_in_the_same_events_out(data: st.DataObject) -> None:
+    formula = data.draw(formulas(discrete=False))
+    names = variables(formula)
+    assume(names)
+    trace = {name: column for name, column in data.draw(dense_traces()).items() if name in names}
+    updates = data.draw(dense_chunkings(trace))
+    here, there = DenseMonitor(formula, resolution=ONE), capi.Monitor(carried(formula, "dense"))
+    cut = data.draw(st.integers(0, len(updates)))
+    try:
+        for i, update in enumerate(updates):
+            if i == cut:
+                state, there = there.save(), capi.Monitor(carried(formula, "dense"))
+                there.restore(state)
+            samples = [
+                (names.index(name), int(tick), float(value))
+                for name, column in update.items()
+                for tick, value in zip(*column, strict=True)
+            ]
+            seconds = {name: (times.astype(float), values) for name, (times, values) in update.items()}
+            assert_same_steps(there.push(samples), here.update_many(seconds))
+        assert_same_steps(there.finish(), here.finish())
+    except (EvaluationError, capi.RefusedError):
+        assume(False)
+
+
+def assert_same_steps(got: tuple[Any, Any], expected: Any) -> None:
+    """The monitor in Python tells the last known instant too, where nothing changes."""
+    told = dict(zip(expected.times.tolist(), bits(expected.values), strict=True))
+    changes = dict(zip(got[0].tolist(), bits(got[1]), strict=True))
+    assert changes.items() <= told.items()
+    extra = {time: value for time, value in told.items() if time not in changes}
+    assert len(extra) <= 1
+    if changes and extra:
+        assert list(extra.values()) == [list(changes.values())[-1]]
+
+
+@settings(max_examples=50)
+@given(st.data())
+def test_what_is_written_is_read(data: st.DataObject) -> None:
+    domain = data.draw(st.sampled_from(("discrete", "dense")))
+    formula = data.draw(formulas(discrete=domain == "discrete"))
+    assume(variables(formula))
+    program = carried_program(formula, period=ONE, domain=domain)
+    code = program.to_bytes()
+    read = Program.from_bytes(code)
+    assert read.to_bytes() == code
+    assert read.disassemble() == program.disassemble()
+    assert read.metadata == program.metadata
+
+
+@settings(max_examples=50)
+@given(st.data())
+def test_a_parameter_has_the_value_that_is_set(data: st.DataObject) -> None:
+    formula, columns = data.draw(formulas()), data.draw(traces())
+    named = fold(formula, name_finite_numbers)
+    program = carried_program(named, period=ONE, domain="discrete")
+    names = list(program.metadata.parameters)
+    values = {name: data.draw(st.integers(-6, 6)) / 2 for name in names}
+
+    def set_value(node: Formula, args: tuple[Formula, ...]) -> Formula:
+        if isinstance(node, Const) and node.name in values:
+            return Const(values[node.name])
+        return Apply(node.op, args, node.interval) if isinstance(node, Apply) else node
+
+    here, there = Monitor(fold(named, set_value)), capi.Monitor(program.to_bytes())
+    for index, name in enumerate(names):
+        there.set_parameter(index, values[name])
+    order = here.input_names
+    for i in range(len(columns["x"])):
+        row = [columns[name][i] for name in order]
+        try:
+            expected = here.step(*row)
+        except EvaluationError:
+            return
+        assert bits(there.step(row)[0]) == bits(np.nan if expected is None else expected)
+
+
+def name_finite_numbers(node: Formula, args: tuple[Formula, ...]) -> Formula:
+    if isinstance(node, Const) and np.isfinite(node.value):
+        return Const(node.value, name=f"c{node.value}")
+    return Apply(node.op, args, node.interval) if isinstance(node, Apply) else node
