@@ -210,7 +210,7 @@ int rtamt_known_until(const rtamt_monitor* monitor, uint32_t output, int64_t* st
     return until ? 1 : 0;
 }
 
-int64_t rtamt_samples(const rtamt_monitor* monitor) {
+int64_t rtamt_sample_count(const rtamt_monitor* monitor) {
     return monitor->monitor.samples();
 }
 

@@ -91,23 +91,35 @@ void Monitor::set_parameter(std::size_t index, double value) {
 void Monitor::step(std::span<const double> row, std::span<double> known) {
     DiscreteRunner& runner = discrete();
     require_ready();
+    check_row(row, known.size());
+    runner.step(row.data(), known);
+}
+
+void Monitor::hold(std::span<const double> row, std::size_t count, std::span<double> known) {
+    DiscreteRunner& runner = discrete();
+    require_ready();
+    check_row(row, known.size());
+    unbroken([&] { runner.hold(row, count, known); });
+}
+
+// Refuses a sample that has the wrong number of values, or NaN among them.
+void Monitor::check_row(std::span<const double> row, std::size_t outputs) const {
+    const std::int64_t sample = samples();
     if (row.size() != metadata_.inputs.size()) {
-        refuse("Sample " + std::to_string(runner.samples()) +
-               " has the wrong number of values: expected " +
+        refuse("Sample " + std::to_string(sample) + " has the wrong number of values: expected " +
                std::to_string(metadata_.inputs.size()) + " (" + listed(metadata_.inputs) +
                "), got " + std::to_string(row.size()) + ".");
     }
-    if (known.size() > program().outputs.size()) {
+    if (outputs > program().outputs.size()) {
         refuse("The program has " + std::to_string(program().outputs.size()) + " outputs, not " +
-               std::to_string(known.size()) + ".");
+               std::to_string(outputs) + ".");
     }
     for (std::size_t i = 0; i < row.size(); ++i) {
         if (std::isnan(row[i])) {
-            refuse("'" + metadata_.inputs[i] + "' is NaN at " + time_of(runner.samples()) +
+            refuse("'" + metadata_.inputs[i] + "' is NaN at " + time_of(sample) +
                    ": fill the gap or leave the sample out.");
         }
     }
-    runner.step(row.data(), known);
 }
 
 void Monitor::push(std::span<const rtamt_sample> samples) {

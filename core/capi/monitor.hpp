@@ -35,6 +35,9 @@ class Monitor {
 
     void set_parameter(std::size_t index, double value);
     void step(std::span<const double> row, std::span<double> known);
+
+    // The same sample `count` times, all of them or none; what the last one made known.
+    void hold(std::span<const double> row, std::size_t count, std::span<double> known);
     void push(std::span<const rtamt_sample> samples);
     void finish();
     void reset() noexcept;
@@ -54,6 +57,7 @@ class Monitor {
     [[nodiscard]] std::string time_of(std::int64_t step) const;
     [[nodiscard]] DiscreteRunner& discrete() const;
     [[nodiscard]] DenseRunner& dense() const;
+    void check_row(std::span<const double> row, std::size_t outputs) const;
     void require_whole() const;
     void require_ready() const;
     void add(DenseRunner& runner, const rtamt_sample& sample) const;

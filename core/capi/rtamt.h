@@ -135,7 +135,7 @@ RTAMT_API size_t rtamt_told(const rtamt_monitor* monitor, uint32_t output, const
 RTAMT_API int rtamt_known_until(const rtamt_monitor* monitor, uint32_t output, int64_t* step);
 
 /* Discrete time: how many samples came. */
-RTAMT_API int64_t rtamt_samples(const rtamt_monitor* monitor);
+RTAMT_API int64_t rtamt_sample_count(const rtamt_monitor* monitor);
 
 /* ---- state ----------------------------------------------------------------------------------- */
 

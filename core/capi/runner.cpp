@@ -19,6 +19,31 @@ void DiscreteRunner::step(const double* row, std::span<double> known) {
     }
     for (dense::EventList& list : told_)
         list.resize(0);
+    last_known(known);
+}
+
+void DiscreteRunner::hold(std::span<const double> row, std::size_t count, std::span<double> known) {
+    if (count == 1) return step(row.data(), known);
+    std::vector<std::vector<double>> columns;
+    std::vector<const double*> pointers;
+    for (const double value : row)
+        pointers.push_back(columns.emplace_back(count, value).data());
+    std::vector<std::vector<double>> values;
+    std::vector<double*> buffers;
+    for (std::size_t output = 0; output < told_.size(); ++output) {
+        values.emplace_back(executor_.known(output, count));
+        buffers.push_back(values.back().data());
+    }
+    if (const auto failure = executor_.push(pointers, count, buffers)) {
+        throw Undefined{failure->instruction, failure->sample};
+    }
+    for (dense::EventList& list : told_)
+        list.resize(0);
+    last_known(known);
+}
+
+// What the last sample made known of the first outputs.
+void DiscreteRunner::last_known(std::span<double> known) const noexcept {
     for (std::size_t output = 0; output < known.size(); ++output) {
         const std::uint32_t instruction = program().outputs[output];
         known[output] = executor_.samples() > program().instructions[instruction].lag

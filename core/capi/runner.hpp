@@ -56,6 +56,9 @@ class DiscreteRunner final : public Runner {
 
     // One value an input; the answers of the first outputs, NaN where there is none yet.
     void step(const double* row, std::span<double> known);
+
+    // The same sample `count` times, all of them or none.
+    void hold(std::span<const double> row, std::size_t count, std::span<double> known);
     [[nodiscard]] std::int64_t samples() const noexcept { return executor_.samples(); }
 
     [[nodiscard]] const Program& program() const noexcept override { return executor_.program(); }
@@ -69,6 +72,8 @@ class DiscreteRunner final : public Runner {
 
   private:
     discrete::Executor executor_;
+
+    void last_known(std::span<double> known) const noexcept;
 };
 
 class DenseRunner final : public Runner {

@@ -101,7 +101,7 @@ TEST(samples_in_robustness_out) {
     CHECK(same(step(monitor, {9.0, 1.0}), {2.5, 9.0}));
     std::int64_t until = 0;
     CHECK(rtamt_known_until(monitor.get(), 0, &until) == 1 && until == 1);
-    CHECK(rtamt_samples(monitor.get()) == 5);
+    CHECK(rtamt_sample_count(monitor.get()) == 5);
     CHECK(rtamt_finish(monitor.get()) == RTAMT_OK);
     const std::int64_t* steps = nullptr;
     const double* values = nullptr;
@@ -116,7 +116,8 @@ TEST(samples_in_robustness_out) {
     CHECK(rtamt_message(monitor.get()) ==
           std::string("The trace has ended: reset the monitor before the next sample."));
     rtamt_reset(monitor.get());
-    CHECK(rtamt_known_until(monitor.get(), 0, &until) == 0 && rtamt_samples(monitor.get()) == 0);
+    CHECK(rtamt_known_until(monitor.get(), 0, &until) == 0 &&
+          rtamt_sample_count(monitor.get()) == 0);
     CHECK(std::isnan(step(monitor, row)[0]));
 }
 

@@ -25,7 +25,8 @@ def run(capsys, monkeypatch, tmp_path):
     [
         (
             ["chek"],
-            "there is no command 'chek', only check, explain, monitor, info, operators; did you mean 'check'?",
+            "there is no command 'chek', only check, explain, monitor, info, compile, fmu, operators; "
+            "did you mean 'check'?",
         ),
         (["--verion"], "unrecognized arguments: --verion; see 'rtamt --help'"),
         (["check"], "the following arguments are required: SPEC, TRACE; see 'rtamt check --help'"),

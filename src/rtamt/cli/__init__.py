@@ -8,7 +8,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 import rtamt
-from rtamt.cli import check, explain, info, monitor, operators
+from rtamt.cli import check, compile, explain, fmu, info, monitor, operators  # noqa: A004 - named as the command is
 from rtamt.cli.command import BROKEN_PIPE, ERROR, INTERRUPTED, OK, Command, Help, Parser, complain
 from rtamt.errors import StlError, UsageError, did_you_mean
 
@@ -16,7 +16,18 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
 COMMANDS: Mapping[str, Command] = MappingProxyType(
-    {c.name: c for c in (check.COMMAND, explain.COMMAND, monitor.COMMAND, info.COMMAND, operators.COMMAND)}
+    {
+        c.name: c
+        for c in (
+            check.COMMAND,
+            explain.COMMAND,
+            monitor.COMMAND,
+            info.COMMAND,
+            compile.COMMAND,
+            fmu.COMMAND,
+            operators.COMMAND,
+        )
+    }
 )
 
 _EXAMPLES = """\

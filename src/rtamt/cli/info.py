@@ -1,4 +1,4 @@
-"""``rtamt info``: what a requirement reads, how far it looks ahead, what it becomes, what it costs."""
+"""``rtamt info``: what a requirement, or a program of one, reads, how far it looks, what it becomes and costs."""
 
 from __future__ import annotations
 
@@ -15,11 +15,12 @@ from rtamt.cli.command import (
     is_trace,
     read_specification,
 )
+from rtamt.cli.compiled import compiled, listing
 from rtamt.cli.terminal import is_printable, printed
 from rtamt.engine.compile import compile_program
 from rtamt.engine.core import core
 from rtamt.engine.drivers import calls_of
-from rtamt.errors import BoundError
+from rtamt.errors import BoundError, UsageError
 from rtamt.language.units import format_duration
 from rtamt.readers.reading import read
 from rtamt.rewrite.check import check_bounds, check_online
@@ -38,7 +39,8 @@ if TYPE_CHECKING:
 _DESCRIPTION = """\
 Tell what a requirement reads, how far ahead it looks (its horizon), the same requirement with past
 operators only (its pastified form), and what an online monitor of it runs and keeps in memory. Of a
-recording (CSV, Parquet, Excel, ...): which signals are in it, and what was guessed."""
+recording (CSV, Parquet, Excel, ...): which signals are in it, and what was guessed. Of a program that
+'rtamt compile' wrote: what it holds."""
 
 _EPILOG = """\
 In the listing of the program every line is an instruction: %0, %1, ... are results, n is a width in
@@ -85,6 +87,12 @@ def run(args: argparse.Namespace) -> int:
     """Print what there is to tell."""
     if is_trace(args.spec):
         print(read(args.spec))
+        return OK
+    program = compiled(args.spec)
+    if program is not None:
+        if args.latex or args.json:
+            raise UsageError(f"'{args.spec}' is a program: --latex and --json are for requirements")
+        print("\n".join(listing(program)))
         return OK
     spec = read_specification(args, args.time)
     if args.latex:

@@ -43,7 +43,8 @@ DOMAINS = ("discrete", "dense")
 NO_OPERAND = 0xFFFFFFFF
 _HEADER = struct.Struct("<8sHBBIIIII")
 _RECORD = struct.Struct("<B3xIIIqdq")
-_MAGIC = b"RTAMTPRG"
+#: What every program begins with.
+MAGIC = b"RTAMTPRG"
 _VERSION = 1
 _CHECKSUM = 4
 
@@ -150,7 +151,7 @@ class Program:
         note = b"" if self.metadata is None else self.metadata.to_bytes(self.inputs, self.period)
         domain = DOMAINS.index(self.domain)
         counts = (len(self.instructions), len(self.inputs), len(self.outputs), len(note), 0)
-        parts = [_HEADER.pack(_MAGIC, _VERSION, domain, 0, *counts)]
+        parts = [_HEADER.pack(MAGIC, _VERSION, domain, 0, *counts)]
         for ins in self.instructions:
             a = NO_OPERAND if ins.a is None else ins.a
             b = NO_OPERAND if ins.b is None else ins.b
@@ -168,8 +169,8 @@ class Program:
         >>> Program.from_bytes(program.to_bytes()).disassemble() == program.disassemble()
         True
         """
-        if len(code) < _HEADER.size + _CHECKSUM or not code.startswith(_MAGIC):
-            raise damaged(f"it does not begin with '{_MAGIC.decode()}'")
+        if len(code) < _HEADER.size + _CHECKSUM or not code.startswith(MAGIC):
+            raise damaged(f"it does not begin with '{MAGIC.decode()}'")
         _, version, domain, _, size, inputs, outputs, length, _ = _HEADER.unpack_from(code)
         if version != _VERSION:
             raise damaged(f"its format has version {version}, and this is for version {_VERSION}")

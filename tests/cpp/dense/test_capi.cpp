@@ -88,7 +88,8 @@ TEST(samples_in_events_out) {
     CHECK(push(monitor, {{7, 2.0, 1}, {6, 4.0, 0}}) == Told({{0, 1.5}}));
     std::int64_t until = 0;
     CHECK(rtamt_known_until(monitor.get(), 0, &until) == 1 && until == 3);
-    CHECK(rtamt_known_until(monitor.get(), 2, &until) == 0 && rtamt_samples(monitor.get()) == 0);
+    CHECK(rtamt_known_until(monitor.get(), 2, &until) == 0 &&
+          rtamt_sample_count(monitor.get()) == 0);
     CHECK(rtamt_finish(monitor.get()) == RTAMT_OK);
     CHECK(told(monitor) == Told({{4, 0.5}}));
     CHECK(rtamt_known_until(monitor.get(), 0, &until) == 1 && until == 7);

@@ -1,0 +1,265 @@
+#include "component.hpp"
+
+#include "../crc32.hpp"
+#include "../reader.hpp"
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <iterator>
+#include <limits>
+#include <stdexcept>
+#include <utility>
+
+namespace rtamt::fmi {
+
+namespace {
+
+constexpr std::size_t checksum_size = 4;
+
+// How far, as a part of the period, a communication point may miss a sampling instant.
+constexpr double tolerance = 1e-6;
+
+// Places of the outputs after the inputs.
+enum class Output : std::uint32_t { robustness, verdict, known, since, count };
+
+[[noreturn]] void refuse(const std::string& sentence) {
+    throw std::invalid_argument(sentence);
+}
+
+[[nodiscard]] std::string shown(double number) {
+    std::array<char, 32> text{};
+    (void)std::snprintf(text.data(), text.size(), "%.12g", number);
+    return text.data();
+}
+
+[[nodiscard]] std::vector<std::uint8_t> read(const std::string& path) {
+    std::ifstream file(path, std::ios::binary);
+    if (!file) refuse("The program '" + path + "' cannot be read.");
+    return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
+// The checksum at the end of a program names it.
+[[nodiscard]] std::string token_of(std::span<const std::uint8_t> program) {
+    std::array<char, 20> text{};
+    const auto sum = Reader(program.last(checksum_size)).take<std::uint32_t>();
+    (void)std::snprintf(text.data(), text.size(), "rtamt-%08x", sum);
+    return text.data();
+}
+
+[[nodiscard]] int hexadecimal(char digit) noexcept {
+    if (digit >= '0' && digit <= '9') return digit - '0';
+    if (digit >= 'a' && digit <= 'f') return digit - 'a' + 10;
+    if (digit >= 'A' && digit <= 'F') return digit - 'A' + 10;
+    return -1;
+}
+
+} // namespace
+
+std::string path_of(const std::string& uri) {
+    std::string rest = uri;
+    for (const std::string prefix : {"file://localhost/", "file:///", "file:/"}) {
+        if (uri.starts_with(prefix)) {
+            rest = uri.substr(prefix.size() - 1);
+            break;
+        }
+    }
+    std::string path;
+    for (std::size_t i = 0; i < rest.size(); ++i) {
+        const bool escaped = rest[i] == '%' && i + 2 < rest.size() &&
+                             hexadecimal(rest[i + 1]) >= 0 && hexadecimal(rest[i + 2]) >= 0;
+        path += escaped
+                    ? static_cast<char>(16 * hexadecimal(rest[i + 1]) + hexadecimal(rest[i + 2]))
+                    : rest[i];
+        i += escaped ? 2 : 0;
+    }
+    const bool drive = path.size() > 2 && path[0] == '/' && path[2] == ':'; // of Windows
+    return drive ? path.substr(1) : path;
+}
+
+Component::Component(const std::string& folder, const std::string& token)
+    : program_(read(folder + "/program.rtamt")),
+      monitor_(std::make_unique<capi::Monitor>(program_)) {
+    if (token != token_of(program_)) {
+        refuse("The model description is for the program '" + token + "', but the unit carries '" +
+               token_of(program_) + "'.");
+    }
+    now_.inputs.resize(monitor_->metadata().inputs.size());
+}
+
+void Component::reset() {
+    monitor_ = std::make_unique<capi::Monitor>(program_);
+    Now fresh;
+    fresh.inputs.resize(now_.inputs.size());
+    now_ = std::move(fresh);
+}
+
+// ---- steps --------------------------------------------------------------------------------------
+
+void Component::advance(double time, double length) {
+    if (now_.phase != Phase::stepping) {
+        refuse(
+            "There is no step before the end of the initialisation, and none after the end of the "
+            "simulation.");
+    }
+    if (!std::isfinite(time) || !(length >= 0.0) || !std::isfinite(time + length)) {
+        refuse("A step from " + shown(time) + " s of " + shown(length) +
+               " s is none: both must be finite, and the length not negative.");
+    }
+    if (length == 0.0) return; // an iteration at an event: nothing passes
+    if (monitor_->program().domain == Domain::dense) {
+        advance_dense(time);
+    } else {
+        advance_discrete(time, time + length);
+    }
+    now_.reached = time + length;
+}
+
+// The index of the sample at this time.
+std::int64_t Component::instant(double time) const {
+    const double place = (time - now_.start) / step();
+    const double nearest = std::round(place);
+    // Far from zero, time itself is not told more exactly.
+    const double rounding = 4.0 * std::numeric_limits<double>::epsilon() * std::abs(time) / step();
+    constexpr double most = 9e15;
+    if (!(std::abs(place - nearest) <= tolerance + rounding) || nearest > most) {
+        refuse("The communication point " + shown(time) +
+               " s is no sampling instant: points must be " + shown(now_.start) +
+               " s plus a multiple of the period, " + shown(step()) + " s.");
+    }
+    return static_cast<std::int64_t>(nearest);
+}
+
+void Component::advance_discrete(double time, double end) {
+    const std::int64_t first = instant(time);
+    const std::int64_t last = instant(end);
+    if (first != monitor_->samples()) {
+        refuse("The step begins at " + shown(time) + " s, but the last one ended at " +
+               shown(now_.reached) + " s.");
+    }
+    std::array<double, 2> known{};
+    monitor_->hold(now_.inputs, static_cast<std::size_t>(last - first), known);
+    if (std::isnan(known[0])) return;
+    now_.known = true;
+    now_.robustness = known[0];
+    now_.verdict = known[1];
+    now_.since = now_.start + static_cast<double>(*monitor_->runner().known_until(0)) * step();
+}
+
+void Component::advance_dense(double time) {
+    if (time != now_.reached && std::abs(time - now_.reached) > step()) {
+        refuse("The step begins at " + shown(time) + " s, but the last one ended at " +
+               shown(now_.reached) + " s.");
+    }
+    const double ticks_a_second = static_cast<double>(monitor_->metadata().denominator) /
+                                  static_cast<double>(monitor_->metadata().numerator);
+    const double tick = std::nearbyint(time * ticks_a_second);
+    constexpr double farthest = 4e18;
+    if (!(std::abs(tick) < farthest)) {
+        refuse("The communication point " + shown(time) + " s is too far from 0 for ticks of " +
+               shown(step()) + " s.");
+    }
+    std::vector<rtamt_sample> samples;
+    samples.reserve(now_.inputs.size());
+    for (std::uint32_t input = 0; input < now_.inputs.size(); ++input)
+        samples.push_back({static_cast<std::int64_t>(tick), now_.inputs[input], input});
+    monitor_->push(samples);
+    const dense::Events robustness = monitor_->runner().told(0);
+    const dense::Events verdict = monitor_->runner().told(1);
+    if (robustness.count != 0) now_.robustness = robustness.values[robustness.count - 1];
+    if (verdict.count != 0) now_.verdict = verdict.values[verdict.count - 1];
+    if (const auto until = monitor_->runner().known_until(0)) {
+        now_.known = true;
+        now_.since = static_cast<double>(*until) / ticks_a_second;
+    }
+}
+
+// ---- variables ----------------------------------------------------------------------------------
+
+double Component::real(std::uint32_t reference) const {
+    if (reference < outputs()) return now_.inputs[reference];
+    const std::uint32_t place = reference - outputs();
+    constexpr auto parameters = static_cast<std::uint32_t>(Output::count);
+    if (place == static_cast<std::uint32_t>(Output::robustness)) return now_.robustness;
+    if (place == static_cast<std::uint32_t>(Output::since)) return now_.since;
+    const std::size_t count = monitor_->metadata().parameters.size();
+    if (place >= parameters && place - parameters < count) {
+        return monitor_->parameter(place - parameters);
+    }
+    if (place == parameters + count) return now_.reached; // time, which FMI 3.0 has as a variable
+    refuse("There is no real variable with the reference " + std::to_string(reference) + ".");
+}
+
+std::int32_t Component::integer(std::uint32_t reference) const {
+    if (reference != outputs() + static_cast<std::uint32_t>(Output::verdict)) {
+        refuse("There is no integer variable with the reference " + std::to_string(reference) +
+               ".");
+    }
+    return now_.verdict > 0.0 ? 1 : now_.verdict < 0.0 ? -1 : 0;
+}
+
+bool Component::boolean(std::uint32_t reference) const {
+    if (reference != outputs() + static_cast<std::uint32_t>(Output::known)) {
+        refuse("There is no Boolean variable with the reference " + std::to_string(reference) +
+               ".");
+    }
+    return now_.known;
+}
+
+void Component::set_real(std::uint32_t reference, double value) {
+    if (reference < outputs()) {
+        now_.inputs[reference] = value; // NaN is refused when it becomes a sample
+        return;
+    }
+    const std::uint32_t first = outputs() + static_cast<std::uint32_t>(Output::count);
+    if (reference < first || reference - first >= monitor_->metadata().parameters.size()) {
+        refuse("The variable with the reference " + std::to_string(reference) + " cannot be set.");
+    }
+    if (now_.phase != Phase::setting) {
+        refuse("The parameter '" + monitor_->metadata().parameters[reference - first].name +
+               "' can only be set before the end of the initialisation.");
+    }
+    monitor_->set_parameter(reference - first, value);
+}
+
+// ---- state --------------------------------------------------------------------------------------
+
+void Component::Now::transfer(Snapshot& snapshot) {
+    snapshot.item(phase);
+    for (double* value : {&start, &reached, &robustness, &verdict, &since})
+        snapshot.item(*value);
+    snapshot.item(known);
+    snapshot.cells(inputs.data(), inputs.size());
+}
+
+// What is not in the monitor, its checksum, then the monitor, which has its own.
+std::vector<std::uint8_t> Component::save() {
+    Snapshot snapshot;
+    now_.transfer(snapshot);
+    std::vector<std::uint8_t> state = snapshot.bytes();
+    const std::uint32_t sum = crc32(state);
+    for (unsigned shift = 0; shift < 32; shift += 8)
+        state.push_back(static_cast<std::uint8_t>(sum >> shift));
+    const std::vector<std::uint8_t> inside = monitor_->save();
+    state.insert(state.end(), inside.begin(), inside.end());
+    return state;
+}
+
+void Component::restore(std::span<const std::uint8_t> state) {
+    Snapshot measure;
+    now_.transfer(measure);
+    const std::size_t outside = measure.bytes().size();
+    if (state.size() < outside + checksum_size ||
+        Reader(state.subspan(outside)).take<std::uint32_t>() != crc32(state.first(outside))) {
+        refuse("This is not a state of this unit, or it was damaged on the way.");
+    }
+    Now then;
+    then.inputs.resize(now_.inputs.size());
+    Snapshot snapshot(state.first(outside));
+    then.transfer(snapshot);
+    monitor_->restore(state.subspan(outside + checksum_size));
+    now_ = std::move(then);
+}
+
+} // namespace rtamt::fmi

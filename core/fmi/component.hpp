@@ -1,0 +1,85 @@
+// A monitor as a co-simulation unit, whatever the version of FMI: variables by value reference,
+// communication steps, state. What is wrong is thrown as std::invalid_argument or capi::Undefined,
+// and everything is then as it was.
+//
+// Value references: the inputs from 0 on, then robustness, verdict, known, known_since, then the
+// parameters; src/rtamt/fmi/variables.py counts in the same way.
+//
+// Discrete time: sample k is what the inputs are at start + k periods, and a step from t to t + h
+// takes the samples in [t, t + h), with the inputs held. Dense time: every communication point
+// from which a step is made is a sample of every input. No output depends on an input directly.
+#pragma once
+
+#include "../capi/monitor.hpp"
+#include "../snapshot.hpp"
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace rtamt::fmi {
+
+class Component {
+  public:
+    // `folder` is where program.rtamt lies; the token must be that of the program.
+    Component(const std::string& folder, const std::string& token);
+
+    // Initialisation: when the simulation starts, and that parameters are settled.
+    void begin(double time) noexcept { now_.start = now_.reached = time; }
+    void settle() noexcept { now_.phase = Phase::stepping; }
+    void terminate() noexcept { now_.phase = Phase::terminated; }
+    void reset();
+
+    // From the communication point `time` to `time + length`.
+    void advance(double time, double length);
+    [[nodiscard]] double reached() const noexcept { return now_.reached; }
+
+    [[nodiscard]] double real(std::uint32_t reference) const;
+    [[nodiscard]] std::int32_t integer(std::uint32_t reference) const;
+    [[nodiscard]] bool boolean(std::uint32_t reference) const;
+    void set_real(std::uint32_t reference, double value);
+
+    [[nodiscard]] std::vector<std::uint8_t> save();
+    void restore(std::span<const std::uint8_t> state);
+
+    // The sentence for a value that does not exist.
+    [[nodiscard]] std::string undefined(const capi::Undefined& failure) const {
+        return monitor_->undefined(failure);
+    }
+
+  private:
+    enum class Phase : std::uint8_t { setting, stepping, terminated };
+
+    // All that is not in the monitor.
+    struct Now {
+        Phase phase = Phase::setting;
+        double start = 0.0;
+        double reached = 0.0;
+        double robustness = 0.0;
+        double verdict = 0.0; // +inf or -inf; 0 as long as it is not known
+        double since = 0.0;
+        bool known = false;
+        std::vector<double> inputs;
+
+        void transfer(Snapshot& snapshot);
+    };
+
+    std::vector<std::uint8_t> program_;
+    std::unique_ptr<capi::Monitor> monitor_;
+    Now now_;
+
+    [[nodiscard]] double step() const noexcept { return monitor_->metadata().seconds(); }
+    [[nodiscard]] std::uint32_t outputs() const noexcept { // the first reference of one
+        return static_cast<std::uint32_t>(now_.inputs.size());
+    }
+    void advance_discrete(double time, double end);
+    void advance_dense(double time);
+    [[nodiscard]] std::int64_t instant(double time) const;
+};
+
+// The value of fmi2ResourceLocation, a file URI, as a path.
+[[nodiscard]] std::string path_of(const std::string& uri);
+
+} // namespace rtamt::fmi

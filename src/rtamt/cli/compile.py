@@ -1,0 +1,62 @@
+"""``rtamt compile``: a requirement to a program that runs without Python."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from rtamt.cli.command import (
+    OK,
+    Command,
+    CommandError,
+    add_specification_options,
+    add_time_option,
+    read_specification,
+)
+from rtamt.errors import UsageError
+
+if TYPE_CHECKING:
+    import argparse
+
+_DESCRIPTION = """\
+Compile a requirement to a program: a file that the C library of this package runs, and whoever links
+with it, without Python. Its outputs are the robustness and the verdict; the named constants of the
+requirement are its parameters."""
+
+_EPILOG = """\
+docs/reference/program.md describes the format, and rtamt/runtime/rtamt.h the C functions that run it.
+'rtamt info FILE' lists what a program holds.
+
+examples:
+  rtamt compile "always[0:10]((req >= 3) -> eventually[0:500ms](gnt >= 3))" --period 100ms --dump
+  rtamt compile "once[0:2](x >= 3)" --time dense --dump -o build/once.rtamt"""
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of the command."""
+    parser.description = _DESCRIPTION
+    parser.epilog = _EPILOG
+    add_specification_options(parser)
+    add_time_option(parser)
+    parser.add_argument("-o", "--output", metavar="FILE", help="the file to write, such as spec.rtamt")
+    parser.add_argument("--dump", action="store_true", help="list the instructions")
+
+
+def run(args: argparse.Namespace) -> int:
+    """Write the program, list it, or both."""
+    if args.output is None and not args.dump:
+        raise UsageError("nothing to do: give -o FILE to write the program, or --dump to list it")
+    spec = read_specification(args, args.time)
+    program = spec.compile()
+    if args.output is not None:
+        try:
+            size = Path(args.output).write_bytes(program.to_bytes())
+        except OSError as error:
+            raise CommandError(f"cannot write the program '{args.output}': {error.strerror}") from error
+        print(f"{args.output}: {len(program.instructions)} instructions, {size} bytes, {program.domain} time")
+    if args.dump:
+        print(program.disassemble())
+    return OK
+
+
+COMMAND = Command("compile", "requirement to a program that runs without Python", configure, run)

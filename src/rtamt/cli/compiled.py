@@ -1,0 +1,50 @@
+"""What ``rtamt info`` tells of a program that ``rtamt compile`` wrote."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from rtamt.cli.command import CommandError
+from rtamt.engine.program import MAGIC, Program
+from rtamt.errors import UsageError
+from rtamt.language.units import format_duration
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+
+def compiled(path: str) -> Program | None:
+    """Return the program in a file, if it is one."""
+    if not os.path.isfile(path):
+        return None
+    try:
+        with Path(path).open("rb") as file:
+            code = file.read(len(MAGIC))
+            return Program.from_bytes(code + file.read()) if code == MAGIC else None
+    except OSError as error:
+        raise CommandError(f"cannot read '{path}': {error.strerror}") from error
+    except UsageError as error:
+        raise CommandError(f"{path}: {error}") from error
+
+
+def listing(program: Program) -> Iterator[str]:
+    """Return what a program says of itself, line by line."""
+    metadata = program.metadata
+    assert metadata is not None
+    if metadata.name:
+        yield f"name       {metadata.name}"
+    yield f"formula    {metadata.formula}"
+    yield f"variables  {', '.join(program.inputs) or 'none'}"
+    values = (
+        f"{name} = {program.instructions[places[0]].x:g}" for name, places in metadata.parameters.items()
+    )
+    yield f"parameters {', '.join(values) or 'none'}"
+    yield f"outputs    {', '.join(metadata.outputs)}"
+    step = "period    " if program.domain == "discrete" else "tick      "
+    yield f"{step} {format_duration(program.period)}, {program.domain} time"
+    yield f"horizon    {format_duration(max(program.lags) * program.period)}"
+    yield "program"
+    for line in program.disassemble().splitlines():
+        yield f"  {line}"

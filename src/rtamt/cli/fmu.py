@@ -1,0 +1,48 @@
+"""``rtamt fmu``: a requirement to a unit that simulators import."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from rtamt import fmi
+from rtamt.cli.command import OK, Command, add_specification_options, add_time_option, read_specification
+
+if TYPE_CHECKING:
+    import argparse
+
+_DESCRIPTION = """\
+Export a requirement's monitor as a Functional Mock-up Unit for co-simulation, which Simulink, Dymola,
+OpenModelica and fmpy import. The unit needs neither Python nor a compiler."""
+
+_EPILOG = """\
+The variables of the requirement are inputs; robustness, verdict, known and known_since are outputs;
+named constants are parameters. docs/how-to/fmi.md says how communication steps become samples.
+
+examples:
+  rtamt fmu "(req >= 3) -> eventually[0:50ms](gnt >= 3)" -o build/response.fmu --period 10ms
+  rtamt fmu "historically(x <= 3)" -o build/limit.fmu --fmi 3"""
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of the command."""
+    parser.description = _DESCRIPTION
+    parser.epilog = _EPILOG
+    add_specification_options(parser)
+    add_time_option(parser)
+    parser.add_argument("-o", "--output", metavar="FILE", required=True, help="the unit to write, FILE.fmu")
+    parser.add_argument(
+        "--fmi", type=int, choices=(2, 3), default=2, help="the version: FMI 2.0 or 3.0 (default: 2)"
+    )
+
+
+def run(args: argparse.Namespace) -> int:
+    """Write the unit."""
+    fmi.export(read_specification(args, args.time), args.output, version=args.fmi)
+    print(
+        f"{args.output}: FMI {args.fmi}.0, co-simulation, {Path(args.output).stat().st_size / 1024:.0f} KiB"
+    )
+    return OK
+
+
+COMMAND = Command("fmu", "requirement to a unit that simulators import", configure, run)

@@ -1,0 +1,83 @@
+"""What a unit has for variables, in the order of their value references.
+
+The inputs from 0 on, then the outputs, then the parameters; core/fmi/component.hpp counts in the
+same way.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from rtamt.errors import UsageError
+from rtamt.language.units import format_duration
+
+if TYPE_CHECKING:
+    from rtamt.engine.program import Program
+
+#: The grammar of the naming convention "structured": names with dots, or anything in single quotes.
+_STRUCTURED = re.compile(r"[A-Za-z_]\w*(\.[A-Za-z_]\w*)*", re.ASCII)
+
+
+@dataclass(frozen=True, slots=True)
+class Variable:
+    """One variable of a unit. ``type``: real, integer or boolean; ``causality``: input, output, parameter."""
+
+    name: str
+    reference: int
+    type: str
+    causality: str
+    start: float
+    description: str
+
+
+def variables_of(program: Program) -> tuple[Variable, ...]:
+    """Return the variables of the unit that carries a program.
+
+    Raises :class:`UsageError` where two would have the same name.
+    """
+    metadata = program.metadata
+    assert metadata is not None
+    late = format_duration(program.lags[0] * program.period)
+    outputs = (
+        (
+            "robustness",
+            "real",
+            f"how far the behaviour is from violating the requirement at known_since ({late} before the last "
+            f"sample); 0 while known is false",
+        ),
+        ("verdict", "integer", "1 satisfied, -1 violated at known_since; 0 while known is false"),
+        ("known", "boolean", "whether the horizon has passed, so that robustness and verdict mean something"),
+        ("known_since", "real", "the time in s that robustness and verdict are for; 0 while known is false"),
+    )
+    found: list[Variable] = []
+
+    def add(name: str, kind: str, causality: str, start: float, description: str) -> None:
+        other = next((v for v in found if v.name == name), None)
+        if other is not None or name == "time":
+            taken = "the time" if other is None else f"an {other.causality}"
+            raise UsageError(
+                f"the {causality} '{name}' has the name that {taken} of the unit has already: rename it in the "
+                f"specification"
+            )
+        found.append(Variable(name, len(found), kind, causality, start, description))
+
+    for name in program.inputs:
+        add(name, "real", "input", 0.0, "a variable of the requirement")
+    for name, kind, description in outputs:
+        add(name, kind, "output", 0.0, description)
+    for name, places in metadata.parameters.items():
+        value = program.instructions[places[0]].x
+        add(name, "real", "parameter", value, "a constant of the requirement")
+    return tuple(found)
+
+
+def convention(variables: tuple[Variable, ...]) -> str:
+    """Return the naming convention that all names keep: ``structured`` where they do, else ``flat``.
+
+    >>> x = Variable("req.value", 0, "real", "input", 0.0, "")
+    >>> convention((x,)), convention((Variable("robot/speed", 0, "real", "input", 0.0, ""),))
+    ('structured', 'flat')
+    """
+    return "structured" if all(_STRUCTURED.fullmatch(v.name) for v in variables) else "flat"

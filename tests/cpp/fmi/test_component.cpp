@@ -1,0 +1,195 @@
+#include "fmi/component.hpp"
+
+#include "../check.hpp"
+#include "../programs.hpp"
+#include "fmi/attempt.hpp"
+
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+
+using rtamt::Domain;
+using rtamt::fmi::attempt;
+using rtamt::fmi::Component;
+using rtamt::fmi::Fate;
+
+namespace {
+// References: the inputs a and b, then the outputs, then the parameter and the time.
+enum Reference : std::uint32_t { a, b, robustness, verdict, known, since, limit, now };
+
+// A folder with the program of always[0:0.3](a / b >= limit), and its token.
+struct Folder {
+    std::filesystem::path path;
+    std::string token;
+
+    explicit Folder(Domain domain) {
+        path = std::filesystem::temp_directory_path() /
+               ("rtamt-unit-" + std::to_string(static_cast<int>(domain)) + "-" +
+                std::to_string(reinterpret_cast<std::uintptr_t>(this)));
+        std::filesystem::create_directories(path);
+        const auto bytes = programs::bytes_of(programs::carried(domain));
+        std::ofstream file(path / "program.rtamt", std::ios::binary);
+        file.write(reinterpret_cast<const char*>(bytes.data()),
+                   static_cast<std::streamsize>(bytes.size()));
+        std::uint32_t sum = 0;
+        for (std::size_t i = 0; i < 4; ++i)
+            sum |= std::uint32_t{bytes[bytes.size() - 4 + i]} << (8 * i);
+        std::array<char, 20> text{};
+        (void)std::snprintf(text.data(), text.size(), "rtamt-%08x", sum);
+        token = text.data();
+    }
+    ~Folder() { std::filesystem::remove_all(path); }
+    Folder(const Folder&) = delete;
+    Folder& operator=(const Folder&) = delete;
+    Folder(Folder&&) = delete;
+    Folder& operator=(Folder&&) = delete;
+
+    [[nodiscard]] Component component() const { return {path.string(), token}; }
+};
+
+void set(Component& component, double first, double second) {
+    component.set_real(a, first);
+    component.set_real(b, second);
+}
+
+std::string refusal(Component& component, double from, double length) {
+    std::string said = "done";
+    const auto before = component.save();
+    (void)attempt(
+        &component, [&] { component.advance(from, length); },
+        [&](Fate, const char* sentence) { said = sentence; });
+    CHECK(component.save() == before || said == "done");
+    return said;
+}
+} // namespace
+
+TEST(a_uri_becomes_a_path) {
+    CHECK(rtamt::fmi::path_of("file:///tmp/a%20b/c") == "/tmp/a b/c");
+    CHECK(rtamt::fmi::path_of("file:/tmp/%zz%4") == "/tmp/%zz%4");
+    CHECK(rtamt::fmi::path_of("file://localhost/x%2Fy") == "/x/y");
+    CHECK(rtamt::fmi::path_of("file:///C:/units") == "C:/units");
+    CHECK(rtamt::fmi::path_of("/already/a/path") == "/already/a/path");
+}
+
+TEST(a_step_takes_the_samples_in_it) {
+    const Folder folder(Domain::discrete);
+    Component component = folder.component();
+    component.begin(2.0);
+    CHECK(component.real(limit) == 1.5);
+    component.set_real(limit, 1.0);
+    component.settle();
+    set(component, 6.0, 2.0);
+    component.advance(2.0, 0.3);
+    CHECK(!component.boolean(known) && component.integer(verdict) == 0);
+    CHECK(component.real(robustness) == 0.0 && component.real(now) == 2.3);
+    set(component, 8.0, 2.0);
+    component.advance(2.3, 0.0); // nothing passes
+    component.advance(2.3, 0.1);
+    CHECK(component.boolean(known) && component.real(robustness) == 2.0);
+    CHECK(component.integer(verdict) == 1 && component.real(since) == 2.0);
+    component.advance(2.4, 0.5);
+    CHECK(component.real(robustness) == 3.0 && component.reached() == 2.4 + 0.5);
+    component.reset();
+    CHECK(!component.boolean(known) && component.real(limit) == 1.5 && component.real(a) == 0.0);
+}
+
+TEST(what_cannot_be_a_step_is_refused_and_nothing_has_changed) {
+    const Folder folder(Domain::discrete);
+    Component component = folder.component();
+    CHECK(refusal(component, 0.0, 0.1) == "There is no step before the end of the initialisation, "
+                                          "and none after the end of the simulation.");
+    component.begin(0.0);
+    component.settle();
+    set(component, 3.0, 1.0);
+    component.advance(0.0, 0.1);
+    CHECK(refusal(component, 0.1, 0.15) ==
+          "The communication point 0.25 s is no sampling instant: points must be 0 s plus a "
+          "multiple of the period, 0.1 s.");
+    CHECK(refusal(component, 0.3, 0.1) ==
+          "The step begins at 0.3 s, but the last one ended at 0.1 s.");
+    CHECK(refusal(component, 0.1, -0.1) == "A step from 0.1 s of -0.1 s is none: both must be "
+                                           "finite, and the length not negative.");
+    component.set_real(b, std::numeric_limits<double>::quiet_NaN());
+    CHECK(refusal(component, 0.1, 0.1) ==
+          "'b' is NaN at sample 1, time 0.1 s: fill the gap or leave the sample out.");
+    set(component, 0.0, 0.0);
+    CHECK(refusal(component, 0.1, 0.5).starts_with("'a / b' has no value at sample 1, time 0.1 s"));
+    set(component, 3.0, 1.0);
+    CHECK(refusal(component, 0.1, 0.1) == "done");
+    CHECK(check::message<std::invalid_argument>([&] { component.set_real(limit, 2.0); }) ==
+          "The parameter 'limit' can only be set before the end of the initialisation.");
+    CHECK(check::message<std::invalid_argument>([&] { component.set_real(known, 2.0); }) ==
+          "The variable with the reference 4 cannot be set.");
+    CHECK(check::message<std::invalid_argument>([&] { (void)component.real(99); }) ==
+          "There is no real variable with the reference 99.");
+    CHECK(check::message<std::invalid_argument>([&] { (void)component.integer(a); }) ==
+          "There is no integer variable with the reference 0.");
+    CHECK(check::message<std::invalid_argument>([&] { (void)component.boolean(a); }) ==
+          "There is no Boolean variable with the reference 0.");
+}
+
+TEST(in_dense_time_communication_points_are_samples) {
+    const Folder folder(Domain::dense);
+    Component component = folder.component();
+    component.begin(0.0);
+    component.settle();
+    set(component, 3.0, 1.0);
+    component.advance(0.0, 0.25);
+    CHECK(!component.boolean(known));
+    set(component, 9.0, 1.0);
+    component.advance(0.25, 0.35);
+    component.advance(0.6, 0.1);
+    CHECK(component.boolean(known) && component.real(robustness) == 7.5);
+    CHECK(component.real(since) == 0.3 && component.integer(verdict) == 1);
+    CHECK(refusal(component, 0.2, 0.1) ==
+          "The step begins at 0.2 s, but the last one ended at 0.7 s.");
+}
+
+TEST(a_state_goes_to_another_unit_and_a_damaged_one_nowhere) {
+    for (const Domain domain : {Domain::discrete, Domain::dense}) {
+        const Folder folder(domain);
+        Component component = folder.component();
+        component.begin(0.0);
+        component.set_real(limit, 0.5);
+        component.settle();
+        for (int i = 0; i < 7; ++i) {
+            set(component, 3.0 + i % 3, 1.0 + i % 2);
+            component.advance(0.1 * i, 0.1);
+        }
+        const auto state = component.save();
+        Component other = folder.component();
+        other.restore(state);
+        CHECK(other.save() == state && other.real(limit) == 0.5 && other.boolean(known));
+        set(component, 1.0, 1.0);
+        set(other, 1.0, 1.0);
+        component.advance(0.7, 0.1);
+        other.advance(0.7, 0.1);
+        CHECK(other.real(robustness) == component.real(robustness));
+        CHECK(other.real(since) == component.real(since) && other.reached() == 0.7 + 0.1);
+        const auto before = other.save();
+        for (std::size_t place = 0; place < state.size(); ++place) {
+            auto damaged = state;
+            damaged[place] ^= 0x10U;
+            CHECK(check::message<std::invalid_argument>([&] { other.restore(damaged); }) !=
+                  "no exception");
+            damaged.resize(place);
+            CHECK(check::message<std::invalid_argument>([&] { other.restore(damaged); }) !=
+                  "no exception");
+        }
+        CHECK(other.save() == before);
+    }
+}
+
+TEST(the_wrong_program_is_refused) {
+    const Folder folder(Domain::discrete);
+    const auto refused = [](const std::string& path, const std::string& token) {
+        return check::message<std::invalid_argument>([&] { const Component made(path, token); });
+    };
+    CHECK(refused(folder.path.string(), "rtamt-00000000") ==
+          "The model description is for the program 'rtamt-00000000', but the unit carries '" +
+              folder.token + "'.");
+    CHECK(refused("/nowhere", folder.token) ==
+          "The program '/nowhere/program.rtamt' cannot be read.");
+}

@@ -1,0 +1,78 @@
+"""``rtamt compile``, ``rtamt info`` of what it wrote, and ``rtamt fmu``."""
+
+import zipfile
+
+SPEC = "const float limit = 3  always[0:200ms](x >= limit)"
+
+LISTING = (
+    "%0   lag 0    input x\n"
+    "%1   lag 0    const 3.0\n"
+    "%2   lag 0    sub %0 %1\n"
+    "%3   lag 2    slide_min %2 n=3  -> output\n"
+    "%4   lag 0    holds_ge %0 %1\n"
+    "%5   lag 2    slide_min %4 n=3  -> output\n"
+)
+
+
+def test_a_program_is_written_and_told_about(run):
+    assert run("compile", SPEC, "--period", "100ms", "-o", "spec.rtamt") == (
+        0,
+        "spec.rtamt: 6 instructions, 505 bytes, discrete time\n",
+        "",
+    )
+    facts, _, listing = run("info", "spec.rtamt").out.partition("program\n")
+    assert facts == (
+        "formula    always[0:200ms](x >= 3)\n"
+        "variables  x\n"
+        "parameters limit = 3\n"
+        "outputs    robustness, verdict\n"
+        "period     100 ms, discrete time\n"
+        "horizon    200 ms\n"
+    )
+    assert listing.replace("\n  ", "\n").lstrip() == LISTING
+
+
+def test_a_program_is_listed(run):
+    assert run("compile", SPEC, "--period", "100ms", "--dump") == (0, LISTING, "")
+    assert "slide_min %2 n=200000000" in run("compile", SPEC, "--time", "dense", "--dump").out
+
+
+def test_what_is_said_of_a_damaged_program(run, tmp_path):
+    run("compile", SPEC, "--period", "100ms", "-o", "spec.rtamt")
+    file = tmp_path / "spec.rtamt"
+    code = file.read_bytes()
+    file.write_bytes(code[:-1])
+    assert run("info", "spec.rtamt").err == (
+        f"rtamt: spec.rtamt: this is not a program that can be read: it has {len(code) - 1} bytes where its header "
+        f"promises {len(code)}\n"
+    )
+    file.write_bytes(code[:50] + b"!" + code[51:])
+    assert run("info", "spec.rtamt").err == (
+        "rtamt: spec.rtamt: this is not a program that can be read: its checksum does not match, so it was damaged "
+        "on the way\n"
+    )
+    assert run("info", "spec.rtamt", "--json").code == 2
+
+
+def test_nothing_to_do_and_nowhere_to_write(run):
+    assert run("compile", SPEC) == (
+        2,
+        "",
+        "rtamt: nothing to do: give -o FILE to write the program, or --dump to list it\n",
+    )
+    assert run("compile", SPEC, "--period", "100ms", "-o", "nowhere/x.rtamt") == (
+        2,
+        "",
+        "rtamt: cannot write the program 'nowhere/x.rtamt': No such file or directory\n",
+    )
+
+
+def test_a_unit_is_written(run, tmp_path):
+    answer = run("fmu", SPEC, "--period", "100ms", "-o", "limit.fmu", "--fmi", "3")
+    assert answer.code == 0
+    assert answer.out.startswith("limit.fmu: FMI 3.0, co-simulation, ")
+    with zipfile.ZipFile(tmp_path / "limit.fmu") as archive:
+        assert "resources/program.rtamt" in archive.namelist()
+    unbounded = run("fmu", "always(x <= 3)", "-o", "limit.fmu")
+    assert unbounded.code == 2
+    assert unbounded.err.startswith("rtamt: 'always' without an upper bound needs the whole future")
