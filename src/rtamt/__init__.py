@@ -1,5 +1,6 @@
 """Runtime monitors for Signal Temporal Logic: requirement and signal in, robustness out."""
 
+from rtamt.batch import evaluate_all, evaluate_batch
 from rtamt.engine.dense_monitor import DenseMonitor
 from rtamt.engine.monitor import Monitor
 from rtamt.engine.signals import Signal
@@ -112,6 +113,8 @@ __all__ = [
     "TraceError",
     "UsageError",
     "check_stream",
+    "evaluate_all",
+    "evaluate_batch",
     "first_violation",
     "load",
     "parse",

@@ -19,6 +19,7 @@ the line and a caret under the place.
 
 from __future__ import annotations
 
+import copy
 import reprlib
 from difflib import get_close_matches
 from typing import TYPE_CHECKING
@@ -127,6 +128,21 @@ def caret(text: str, span: Span) -> str:
     pad = "".join("\t" if c == "\t" else " " for c in before + text[shown_from:start])
     width = max(1, min(span.end, shown_to) - start)
     return f"  line {number}, column {start - line_start + 1}:\n    {line}\n    {pad}{'^' * width}"
+
+
+def placed(error: StlError, where: str) -> StlError:
+    """Return the same error whose message begins with where it arose, one of many of its kind.
+
+    >>> raise placed(TraceError("'x' has no samples: give at least one", variable="x"), "trace 7")
+    Traceback (most recent call last):
+    rtamt.errors.TraceError: trace 7: 'x' has no samples: give at least one
+    """
+    again = copy.copy(error)
+    message, *rest = error.args
+    again.args = (f"{where}: {message}", *rest)
+    if isinstance(again, SpecificationError):
+        again.message = again.args[0]
+    return again
 
 
 def shown(value: object) -> str:

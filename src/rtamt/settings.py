@@ -43,6 +43,15 @@ class Settings(TypedDict, total=False):
     roles: Mapping[str, str] | None
 
 
+class Reading(TypedDict, total=False):
+    """How :meth:`Specification.evaluate` reads a recording, for functions that pass it on."""
+
+    time: str | None
+    period: Duration | None
+    resolution: Duration | None
+    semantics: Semantics | None
+
+
 def check_backend(backend: str) -> None:
     """Raise :class:`UsageError` unless there is such a back end."""
     if backend not in BACKENDS:

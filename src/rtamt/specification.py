@@ -8,23 +8,22 @@ from functools import cached_property, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, overload
 
-from rtamt.engine import carry, dense_evaluate, dense_reference, reference, signals
+from rtamt.engine import carry, signals
 from rtamt.engine.dense_monitor import DenseMonitor
-from rtamt.engine.evaluate import Evaluator
 from rtamt.engine.monitor import Monitor
 from rtamt.engine.online import Watched
-from rtamt.engine.signals import Recording, Signal
+from rtamt.engine.signals import Recording
 from rtamt.engine.ticks import NANOSECOND
-from rtamt.errors import BoundError, UsageError
+from rtamt.errors import UsageError
 from rtamt.language.formula import Formula, variables
 from rtamt.language.operators import STL, Language
 from rtamt.language.parser import parse_formula
 from rtamt.language.printer import to_text
 from rtamt.language.specfile import Document, parse_document
+from rtamt.offline import Evaluators, Question
 from rtamt.results import Result
 from rtamt.rewrite import interface
 from rtamt.rewrite.check import check_bounds, check_dense
-from rtamt.rewrite.desugar import desugar
 from rtamt.rewrite.horizon import horizon
 from rtamt.rewrite.pastify import pastify
 from rtamt.settings import check_backend, check_constants, positive_period, roles_of, time_domain
@@ -37,7 +36,7 @@ if TYPE_CHECKING:
 
     from rtamt.engine.dense_evaluate import DenseRecording
     from rtamt.engine.program import Program
-    from rtamt.engine.signals import FloatArray
+    from rtamt.engine.signals import Signal
     from rtamt.rewrite.interface import Judge
     from rtamt.settings import Duration, Semantics, Settings
 
@@ -131,17 +130,27 @@ class Specification:
         >>> result.robustness, result.satisfied, result.signal.values
         (1.0, True, array([1., 1., 3.]))
         """
+        question = self.question(time, period, resolution, semantics)
+        recording = question.record(data, self.input_names, self.declared, tolerance)
+        self._check(question, recording)
+        return Result(self, recording, self.signal_of(question.formula, recording), question.semantics)
+
+    def question(
+        self,
+        time: str | None = None,
+        period: Duration | None = None,
+        resolution: Duration | None = None,
+        semantics: Semantics | None = None,
+    ) -> Question:
+        """Return what :meth:`evaluate` asks of a recording; arguments and errors are those of it."""
         chosen = self._semantics(semantics)
         formula = self.judged(self.formula, chosen)
-        if self._time(time) == "dense":
-            tick = self._resolution(resolution)
-            check_dense(formula, self.text)
-            check_bounds(formula, tick, self.text, "resolution")
-            recording = dense_evaluate.trace(data, self.input_names, tick, self._declared)
-            return Result(self, recording, self.signal_of(formula, recording), chosen)
-        trace = signals.trace(data, self.input_names, self._period(period), self._declared, tolerance)
-        self._check_bounds(formula, trace)
-        return Result(self, trace, self.signal_of(formula, trace), chosen)
+        if self._time(time) == "discrete":
+            return Question(formula, self.text, "discrete", self._period(period), chosen)
+        tick = self._resolution(resolution)
+        check_dense(formula, self.text)
+        check_bounds(formula, tick, self.text, "resolution")
+        return Question(formula, self.text, "dense", tick, chosen)
 
     @overload
     def monitor(
@@ -213,7 +222,7 @@ class Specification:
                 text=self.text,
                 resolution=self._resolution(resolution),
                 backend=self.backend,
-                known=self._declared,
+                known=self.declared,
                 watch=watched,
                 again=again,
             )
@@ -223,7 +232,7 @@ class Specification:
             period=self._period(period) or Fraction(1),
             tolerance=tolerance,
             backend=self.backend,
-            known=self._declared,
+            known=self.declared,
             watch=watched,
             again=again,
         )
@@ -273,24 +282,7 @@ class Specification:
 
     def signal_of(self, formula: Formula, trace: Recording | DenseRecording) -> Signal:
         """Return the robustness signal of any formula over a normalised recording."""
-        if isinstance(trace, Recording):
-            times = trace.times.view()
-            times.flags.writeable = False  # all signals of a recording share its times
-            return Signal(times, self._robustness_of(formula, trace))
-        if self.backend == "python":
-            steps = dense_reference.evaluate(formula, trace.columns, trace.scale.tick)
-            return trace.signal(steps.times, steps.values)
-        return dense_evaluate.evaluate(desugar(formula), trace)
-
-    def _robustness_of(self, formula: Formula, trace: Recording) -> FloatArray:
-        if self.backend == "python":
-            start = float(trace.times[0])
-            return reference.evaluate(formula, trace.columns, len(trace), trace.period, start)
-        key = (formula, trace.period)
-        evaluator = self._evaluators.get(key)
-        if evaluator is None:
-            evaluator = self._evaluators[key] = Evaluator((desugar(formula),), trace.period)
-        return evaluator(trace)[0]
+        return self._evaluators((formula,), trace)[0]
 
     def named(self, name: str) -> Formula:
         """Return a named sub-specification, or the formula of any other text, parsed as part of this one.
@@ -323,12 +315,24 @@ class Specification:
     def _lowered(self) -> dict[tuple[Formula, str], Formula]:
         return {}
 
+    def _check(self, question: Question, recording: Recording | DenseRecording) -> None:
+        if isinstance(recording, Recording):  # many recordings have the same period
+            key = (question.formula, recording.period)
+            if key not in self._checked:
+                question.check(recording)
+                self._checked.add(key)
+
     @cached_property
-    def _evaluators(self) -> dict[tuple[Formula, Fraction], Evaluator]:
-        return {}
+    def _checked(self) -> set[tuple[Formula, Fraction]]:
+        return set()
+
+    @cached_property
+    def _evaluators(self) -> Evaluators:
+        return Evaluators(self.backend)
 
     @property
-    def _declared(self) -> tuple[str, ...]:
+    def declared(self) -> tuple[str, ...]:
+        """The names that the text declares: data may have them, also where the formula reads none of them."""
         return tuple(declaration.name for declaration in self.document.declarations)
 
     def _period(self, period: Duration | None) -> Fraction | None:
@@ -342,18 +346,6 @@ class Specification:
 
     def _semantics(self, semantics: Semantics | None) -> str | Judge:
         return self.semantics if semantics is None else interface.semantics_of(semantics)
-
-    def _check_bounds(self, formula: Formula, trace: Recording) -> None:
-        try:
-            check_bounds(formula, trace.period, self.text)
-        except BoundError as error:
-            if not trace.inferred:
-                raise
-            raise BoundError(
-                f"{error.message} (the period was taken from the time stamps; period= sets it)",
-                self.text,
-                error.span,
-            ) from None
 
     def __reduce__(self) -> tuple[Any, ...]:
         # The text says it all, and is read without recursion however long it is.

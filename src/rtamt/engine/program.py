@@ -15,6 +15,7 @@ from __future__ import annotations
 import struct
 import zlib
 from dataclasses import dataclass, field
+from functools import cached_property
 from math import isnan
 from types import MappingProxyType
 from typing import TYPE_CHECKING
@@ -109,7 +110,7 @@ class CallSite:
         return " ".join([f"call {self.op.name}{interval}", *(f"%{i}" for i in self.operands)])
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Program:
     """Instructions in SSA form, equal ones merged.
 
@@ -148,6 +149,10 @@ class Program:
 
     def code(self) -> bytes:
         """Return what the core runs in this process, together with the calls."""
+        return self._code
+
+    @cached_property
+    def _code(self) -> bytes:
         note = b"" if self.metadata is None else self.metadata.to_bytes(self.inputs, self.period)
         domain = DOMAINS.index(self.domain)
         counts = (len(self.instructions), len(self.inputs), len(self.outputs), len(note), 0)

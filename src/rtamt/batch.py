@@ -1,0 +1,204 @@
+"""One requirement over many recordings, on all cores; many requirements over one, in one program."""
+
+from __future__ import annotations
+
+import os
+import threading
+from collections.abc import Iterable, Sized
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
+from dataclasses import replace
+from functools import partial
+from typing import TYPE_CHECKING, Any, TypeVar
+
+from rtamt.engine.signals import TOLERANCE, Recording, is_number
+from rtamt.errors import StlError, UsageError, placed, shown
+from rtamt.offline import Evaluators
+from rtamt.results import Result
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Hashable, Iterator, Sequence
+
+    from typing_extensions import Unpack
+
+    from rtamt.engine.dense_evaluate import DenseRecording
+    from rtamt.offline import Question
+    from rtamt.settings import Reading
+    from rtamt.specification import Specification
+
+
+AnyRecording = TypeVar("AnyRecording", bound="Recording | DenseRecording")
+
+
+# ---- many recordings -----------------------------------------------------------------------------
+
+
+def evaluate_batch(
+    spec: Specification,
+    traces: Iterable[Any],
+    *,
+    workers: int | None = None,
+    tolerance: float = TOLERANCE,
+    **reading: Unpack[Reading],
+) -> list[Result]:
+    """Evaluate one requirement over many finished recordings, in threads; results in their order.
+
+    ``traces``: each what :meth:`Specification.evaluate` takes, and so are the other arguments
+    (``time=``, ``period=``, ...). It is compiled once. The compiled core runs without the interpreter's
+    lock, so that long recordings keep every core of the machine busy; short ones cost what their checks
+    in Python cost. An iterator is read one recording at a time, as threads become free.
+    ``workers``: threads; by default one for each core.
+
+    Raises what ``evaluate`` raises at the first recording that is wrong, its number (from 0) in front.
+
+    >>> import rtamt
+    >>> spec = rtamt.parse("always(x >= 3)")
+    >>> results = rtamt.evaluate_batch(spec, [{"x": [5, 4]}, {"x": [2]}])
+    >>> [result.robustness for result in results]
+    [1.0, -1.0]
+    >>> rtamt.evaluate_batch(spec, [{"x": [5, 4]}, {"x": [float("nan")]}])
+    Traceback (most recent call last):
+    rtamt.errors.TraceError: trace 1: 'x' is NaN at sample 0, time 0 s: fill the gap or leave the sample out
+    """
+    if workers is not None and (not is_number(workers) or workers != int(workers) or workers < 1):
+        raise UsageError(f"workers is {shown(workers)}; give a number of threads, 1 or more")
+    if not isinstance(traces, Iterable):
+        raise UsageError(f"traces is {shown(traces)}; give a list of recordings")
+    count = int(workers or os.cpu_count() or 1)
+    if isinstance(traces, Sized):
+        count = min(count, len(traces))
+    work = _Work(partial(spec.evaluate, tolerance=tolerance, **reading), traces)
+    if count <= 1:
+        work.run()
+    else:
+        with ThreadPoolExecutor(count, "rtamt") as pool:
+            try:
+                for done in [pool.submit(work.run) for _ in range(count)]:
+                    done.result()
+            finally:
+                work.stop()
+    return work.results()
+
+
+class _Work:
+    """Recordings that any number of threads take one after the other until none is left or one is wrong."""
+
+    def __init__(self, evaluate: Callable[[Any], Result], traces: Iterable[Any]) -> None:
+        self._evaluate = evaluate
+        self._traces: Iterator[tuple[int, Any]] = enumerate(traces)
+        self._lock = threading.Lock()
+        self._results: dict[int, Result] = {}
+        self._errors: dict[int, Exception] = {}
+
+    def run(self) -> None:
+        """Evaluate until there is nothing left to do; for one thread."""
+        while True:
+            with self._lock:
+                item = None if self._errors else next(self._traces, None)
+            if item is None:
+                return
+            number, trace = item
+            try:
+                self._results[number] = self._evaluate(trace)
+            except Exception as error:  # noqa: BLE001 - kept for results(), which raises it
+                self._errors[number] = error
+
+    def stop(self) -> None:
+        """Let no thread take another recording."""
+        with self._lock:
+            self._traces = iter(())
+
+    def results(self) -> list[Result]:
+        """Return the results in order, or raise what went wrong first."""
+        for number in sorted(self._errors):
+            error = self._errors[number]
+            raise placed(error, f"trace {number}") if isinstance(error, StlError) else error
+        return [self._results[number] for number in range(len(self._results))]
+
+
+# ---- many requirements ---------------------------------------------------------------------------
+
+
+def evaluate_all(
+    specs: Sequence[Specification], data: Any, *, tolerance: float = TOLERANCE, **reading: Unpack[Reading]
+) -> list[Result]:
+    """Evaluate many requirements over one finished recording, in one program; results in their order.
+
+    ``data`` and the other arguments (``time=``, ``period=``, ...) are those of
+    :meth:`Specification.evaluate`; ``data`` has the variables of all. They are checked once, and what
+    the formulas have in common is computed once. Each result is the one that ``evaluate`` gives; in
+    dense time all signals must have an instant in common.
+
+    Raises what ``evaluate`` raises; the number (from 0) of the requirement is in front of an error in
+    its bounds.
+
+    >>> import rtamt
+    >>> specs = [rtamt.parse(text) for text in ("always(x >= 3)", "always(x >= 3 or y >= 1)")]
+    >>> [result.robustness for result in rtamt.evaluate_all(specs, {"x": [5, 2], "y": [0, 2]})]
+    [-1.0, 1.0]
+    """
+    questions = []
+    for number, spec in enumerate(specs):
+        with _place(number):
+            questions.append(spec.question(**reading))
+    # One program serves all that read the recording alike.
+    alike: dict[Hashable, list[int]] = {}
+    for number, (spec, question) in enumerate(zip(specs, questions, strict=True)):
+        alike.setdefault((question.time, question.step, spec.backend), []).append(number)
+    results: dict[int, Result] = {}
+    for numbers in alike.values():
+        asked = {number: (specs[number], questions[number]) for number in numbers}
+        results.update(_evaluate_alike(asked, data, tolerance))
+    return [results[number] for number in range(len(specs))]
+
+
+_Asked = dict[int, tuple["Specification", "Question"]]
+
+
+def _evaluate_alike(asked: _Asked, data: Any, tolerance: float) -> Iterator[tuple[int, Result]]:
+    """Yield numbers and results of questions that read the recording by the same clock."""
+    names = tuple(dict.fromkeys(name for spec, _ in asked.values() for name in spec.input_names))
+    known = {name for spec, _ in asked.values() for name in spec.declared}
+    spec, question = next(iter(asked.values()))
+    whole = question.record(data, names, known, tolerance)
+    parts: Iterable[tuple[Recording | DenseRecording, list[int]]] = [(whole, list(asked))]
+    if not isinstance(whole, Recording):
+        parts = _together(asked, whole)
+    else:
+        for number, (_, question) in asked.items():
+            with _place(number):
+                question.check(whole)
+    evaluators = Evaluators(spec.backend)
+    for recording, numbers in parts:
+        formulas = tuple(asked[number][1].formula for number in numbers)
+        for number, signal in zip(numbers, evaluators(formulas, recording), strict=True):
+            spec, question = asked[number]
+            yield number, Result(spec, _of(whole, spec.input_names), signal, question.semantics)
+
+
+def _together(asked: _Asked, whole: DenseRecording) -> Iterator[tuple[DenseRecording, list[int]]]:
+    """Yield the parts of a dense recording that one program can run over, and whose questions each answers.
+
+    A recording begins and ends with the signals that a formula reads.
+    """
+    spans: dict[tuple[int, int], list[int]] = {}
+    for number, (spec, _) in asked.items():
+        own = _of(whole, spec.input_names)
+        spans.setdefault((own.start, own.end), []).append(number)
+    for numbers in spans.values():
+        names = dict.fromkeys(name for number in numbers for name in asked[number][0].input_names)
+        yield _of(whole, names), numbers
+
+
+def _of(recording: AnyRecording, names: Iterable[str]) -> AnyRecording:
+    """Return a recording of these variables alone."""
+    own: Any = {name: recording.columns[name] for name in names}
+    return replace(recording, columns=own)
+
+
+@contextmanager
+def _place(number: int) -> Iterator[None]:
+    try:
+        yield
+    except StlError as error:
+        raise placed(error, f"specification {number}") from None
