@@ -94,7 +94,7 @@ $(VENV)/.group-%: pyproject.toml $(VENV)/.made
 
 # What readers and adapters need is tested as users install it: with the extras. Installed already, rtamt
 # itself is left as it is.
-EXTRAS := data
+EXTRAS := data,falsify,plot
 $(VENV)/.group-test: $(VENV)/.extras
 $(VENV)/.extras: $(VENV)/.core
 	$(RUN) -m pip install --quiet "rtamt[$(EXTRAS)]"

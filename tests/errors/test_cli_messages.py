@@ -5,6 +5,7 @@ import sys
 
 import pytest
 
+from rtamt.cli import COMMANDS
 from rtamt.readers.formats import SUFFIXES
 from tests.unit.cli import invoke
 
@@ -25,8 +26,7 @@ def run(capsys, monkeypatch, tmp_path):
     [
         (
             ["chek"],
-            "there is no command 'chek', only check, explain, monitor, info, compile, fmu, operators; "
-            "did you mean 'check'?",
+            f"there is no command 'chek', only {', '.join(COMMANDS)}; did you mean 'check'?",
         ),
         (["--verion"], "unrecognized arguments: --verion; see 'rtamt --help'"),
         (["check"], "the following arguments are required: SPEC, TRACE; see 'rtamt check --help'"),

@@ -8,7 +8,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 import rtamt
-from rtamt.cli import check, compile, explain, fmu, info, monitor, operators  # noqa: A004 - named as the command is
+from rtamt.cli import check, compile, explain, falsify, fmu, info, monitor, operators  # noqa: A004 - named as the command is
 from rtamt.cli.command import BROKEN_PIPE, ERROR, INTERRUPTED, OK, Command, Help, Parser, complain
 from rtamt.errors import StlError, UsageError, did_you_mean
 
@@ -22,6 +22,7 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             check.COMMAND,
             explain.COMMAND,
             monitor.COMMAND,
+            falsify.COMMAND,
             info.COMMAND,
             compile.COMMAND,
             fmu.COMMAND,

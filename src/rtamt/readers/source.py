@@ -9,12 +9,12 @@
 
 from __future__ import annotations
 
-import importlib
 from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from rtamt.errors import TraceError, UsageError
+from rtamt import extras
+from rtamt.errors import TraceError
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
@@ -67,15 +67,9 @@ class Source:
     close: Callable[[], None] | None = None
 
 
-def library(module: str, what: str, extra: str = "data") -> Any:
-    """Import a library that an extra of ours installs; raise :class:`UsageError` where it is not there."""
-    try:
-        return importlib.import_module(module)
-    except ImportError as error:
-        package = (error.name or module).split(".")[0]
-        raise UsageError(
-            f"reading {what} needs the package '{package}', which is not installed: pip install 'rtamt[{extra}]'"
-        ) from None
+def library(module: str, what: str) -> Any:
+    """Import a library of the extra ``data``; raise :class:`UsageError` where it is not there."""
+    return extras.library(module, f"reading {what}", "data")
 
 
 @contextmanager

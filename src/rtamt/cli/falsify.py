@@ -1,0 +1,112 @@
+"""``rtamt falsify``: search for inputs that make a plant violate its requirement."""
+
+from __future__ import annotations
+
+import json
+import sys
+from typing import TYPE_CHECKING
+
+from rtamt.cli.command import OK, VIOLATED, Command, json_number
+from rtamt.cli.terminal import Progress, paint, use_color
+from rtamt.errors import UsageError
+
+if TYPE_CHECKING:
+    import argparse
+
+    from rtamt.search.record import Evaluation
+
+_DESCRIPTION = """\
+Simulate a plant again and again with inputs chosen by an optimizer, until its requirement is
+violated or the budget is used up.
+
+Exit code: 0 no violation found, 1 violated, 2 something is wrong."""
+
+_EPILOG = """\
+The problem is a TOML file:
+
+  specification = "speed.stl"       # or formula = "always[0:30](speed <= 120)"
+  plant = "plants:transmission"     # module:function beside the file, or "plant.fmu"
+  duration = 30                     # seconds of simulated time
+  period = "10ms"
+  [inputs]
+  throttle = { kind = "piecewise_constant", points = 7, low = 0, high = 100 }
+  brake = { low = 0, high = 325 }   # other kinds: piecewise_linear, step, pulse, sine
+  [search]
+  optimizer = "cma"                 # or differential_evolution, dual_annealing, optuna, sobol, random
+  budget = 300
+  seed = 1
+
+With --record every simulation is kept; the same command goes on where it was interrupted.
+
+examples:
+  rtamt falsify examples/chasing_cars/problem.toml
+  rtamt falsify problem.toml --budget 1000 --workers 2 --record run.jsonl --plot run.png"""
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of the command."""
+    parser.description = _DESCRIPTION
+    parser.epilog = _EPILOG
+    parser.add_argument("problem", metavar="PROBLEM", help="a TOML file")
+    parser.add_argument("--optimizer", metavar="NAME", help="instead of the file's")
+    parser.add_argument("--budget", metavar="N", type=int, help="simulations at most, instead of the file's")
+    parser.add_argument("--seed", metavar="N", type=int, help="instead of the file's")
+    parser.add_argument("--workers", metavar="N", type=int, help="simulations at the same time")
+    parser.add_argument("--record", metavar="FILE", help="keep every simulation here, and go on from it")
+    parser.add_argument(
+        "--plot", metavar="FILE", help="draw the robustness over the simulations (png, svg, pdf)"
+    )
+    parser.add_argument(
+        "--json", action="store_true", help="print each simulation as JSON, one object a line"
+    )
+    parser.add_argument(
+        "--color", default="auto", metavar="{auto,always,never}", help="colour (default: auto, on a terminal)"
+    )
+
+
+def run(args: argparse.Namespace) -> int:
+    """Search, and say what was found."""
+    # Only this command needs them, and the others start faster without.
+    from rtamt.search import falsify
+    from rtamt.search.config import load_search
+
+    color = use_color(args.color, sys.stdout)
+    search = load_search(args.problem)
+    settings = dict(search.settings)
+    for name in ("optimizer", "budget", "seed", "workers", "record"):
+        if getattr(args, name) is not None:
+            settings[name] = getattr(args, name)
+    least = float("inf")
+    with Progress() as progress:
+
+        def show(evaluation: Evaluation) -> None:
+            nonlocal least
+            least = min(least, evaluation.robustness)
+            progress.show(f"simulation {evaluation.number + 1}, least robustness {least:.6g}")
+            if args.json:
+                progress.clear()
+                print(_line(evaluation))
+
+        found = falsify(search.problem, progress=show, **settings)
+    if not args.json:
+        print(paint(str(found), "bad" if found.falsified else "good", color))
+    if args.plot:
+        axes = found.plot()
+        try:
+            axes.figure.savefig(args.plot, dpi=120)
+        except (OSError, ValueError) as error:
+            raise UsageError(f"cannot write the picture '{args.plot}': {error}") from error
+    return VIOLATED if found.falsified else OK
+
+
+def _line(evaluation: Evaluation) -> str:
+    return json.dumps({
+        "simulation": evaluation.number,
+        "robustness": json_number(evaluation.robustness),
+        "satisfied": evaluation.satisfied,
+        "stopped": evaluation.stopped,
+        "point": dict(evaluation.point),
+    })  # fmt: skip
+
+
+COMMAND = Command("falsify", "search for inputs that make a plant violate its requirement", configure, run)

@@ -1,0 +1,160 @@
+"""A search written down in a TOML file: the requirement, the plant, its inputs, and how to search.
+
+::
+
+    specification = "speed.stl"            # beside this file; or formula = "always[0:30](speed <= 120)"
+    plant = "plants:transmission"          # module:function, found beside this file too; or "plant.fmu"
+    duration = 30                          # seconds
+    period = "10ms"                        # time = "dense" and semantics = "..." likewise, as for parse
+
+    [inputs]
+    brake = { low = 0, high = 325 }                                    # a Range
+    throttle = { kind = "piecewise_constant", points = 7, low = 0, high = 100 }
+    pitch = { kind = "pulse", amplitude = { low = 1, high = 1.75 }, frequency = 0.2 }
+
+    [search]
+    optimizer = "cma"
+    budget = 300
+    seed = 1
+    workers = 2
+    record = "run.jsonl"
+"""
+
+from __future__ import annotations
+
+import sys
+from dataclasses import dataclass
+from importlib import import_module
+from pathlib import Path
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any
+
+from rtamt.errors import StlError, UsageError, did_you_mean, shown
+from rtamt.extras import library
+from rtamt.search.inputs import PiecewiseConstant, PiecewiseLinear, Pulse, Range, Sine, Step
+from rtamt.search.problem import Problem
+from rtamt.specification import load, parse
+
+if TYPE_CHECKING:
+    import os
+    from collections.abc import Callable, Collection, Mapping
+    from types import ModuleType
+
+#: What ``kind`` may be.
+KINDS: Mapping[str, Any] = MappingProxyType({
+    "range": Range,
+    "piecewise_constant": PiecewiseConstant,
+    "piecewise_linear": PiecewiseLinear,
+    "step": Step,
+    "pulse": Pulse,
+    "sine": Sine,
+})  # fmt: skip
+
+_TOP = ("specification", "formula", "plant", "duration", "inputs", "search", "outputs", "step")
+_SPECIFICATION = ("period", "unit", "time", "resolution", "semantics", "backend", "constants")
+_SEARCH = ("optimizer", "budget", "seed", "workers", "record", "stop")
+
+
+@dataclass(frozen=True, slots=True)
+class Search:
+    """What a file says: the problem, and the settings of ``falsify``."""
+
+    problem: Problem
+    settings: Mapping[str, Any]
+
+
+def load_search(path: str | os.PathLike[str]) -> Search:
+    """Read a search from a TOML file; raises :class:`UsageError` that names the file and the key."""
+    place = Path(path)
+    try:
+        data = _toml().loads(place.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise UsageError(f"cannot read '{path}': {error.strerror}") from error
+    except ValueError as error:
+        raise UsageError(f"{path}: {error}") from error
+    try:
+        return _search(data, place.parent)
+    except (StlError, TypeError) as error:
+        raise UsageError(f"{path}: {error}") from error
+
+
+def _search(data: dict[str, Any], folder: Path) -> Search:
+    _known(data, (*_TOP, *_SPECIFICATION), "")
+    settings = {key: data[key] for key in _SPECIFICATION if key in data}
+    if ("specification" in data) == ("formula" in data):
+        raise UsageError("give either 'specification', a file, or 'formula', its text")
+    text = data.get("formula")
+    spec = load(folder / data["specification"], **settings) if text is None else parse(text, **settings)
+    inputs = {name: _input(name, given) for name, given in data.get("inputs", {}).items()}
+    chosen = dict(data.get("search", {}))
+    _known(chosen, _SEARCH, "search.")
+    if "record" in chosen:
+        chosen["record"] = folder / chosen["record"]
+    plant = _plant(data, folder)
+    return Search(Problem(spec, plant, inputs, data.get("duration")), MappingProxyType(chosen))
+
+
+def _input(name: str, given: Any) -> Any:
+    if not isinstance(given, dict):
+        return given
+    kind = given.get("kind", "range")
+    maker = KINDS.get(kind)
+    if maker is None:
+        hint = did_you_mean(str(kind), KINDS)
+        raise UsageError(f"the input '{name}' is of kind {shown(kind)}, not one of {', '.join(KINDS)}{hint}")
+    numbers = {
+        key: Range(**value) if isinstance(value, dict) else value
+        for key, value in given.items()
+        if key != "kind"
+    }
+    try:
+        return maker(**numbers)
+    except TypeError as error:
+        raise UsageError(f"the input '{name}': {str(error).partition('() ')[2]}") from error
+
+
+def _plant(data: dict[str, Any], folder: Path) -> Callable[..., Any]:
+    plant = data.get("plant")
+    if not isinstance(plant, str):
+        raise UsageError("give the plant: 'module:function', or an FMU file")
+    if plant.endswith(".fmu"):
+        from rtamt.search.fmu import FmuPlant
+
+        return FmuPlant(folder / plant, data.get("duration"), step=data.get("step"))
+    module, colon, name = plant.partition(":")
+    if not colon:
+        raise UsageError(f"the plant is '{plant}'; write it as 'module:function', or name an FMU file")
+    try:
+        made = _module(module, folder.resolve())
+    except ImportError as error:
+        raise UsageError(f"the plant's module '{module}' cannot be imported: {error}") from error
+    found = getattr(made, name, None)
+    if not callable(found):
+        raise UsageError(f"the module '{module}' has no function '{name}'{did_you_mean(name, dir(made))}")
+    return found  # type: ignore[no-any-return]
+
+
+def _module(name: str, folder: Path) -> ModuleType:
+    """Import a module, first of all from the folder, also where another one of that name was imported before."""
+    beside = folder / f"{name}.py"
+    before = sys.modules.get(name)
+    if beside.exists() and before is not None and getattr(before, "__file__", None) != str(beside):
+        del sys.modules[name]
+    sys.path.insert(0, str(folder))
+    try:
+        return import_module(name)
+    finally:
+        sys.path.remove(str(folder))
+
+
+def _known(data: dict[str, Any], keys: Collection[str], where: str) -> None:
+    for key in data:
+        if key not in keys:
+            raise UsageError(
+                f"'{where}{key}' is no setting; there are {', '.join(keys)}{did_you_mean(key, keys)}"
+            )
+
+
+def _toml() -> Any:
+    name = "tomllib" if sys.version_info >= (3, 11) else "tomli"
+    return library(name, "a problem file", "falsify")

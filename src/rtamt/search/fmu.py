@@ -1,0 +1,105 @@
+"""A functional mock-up unit (FMI 2.0 or 3.0, co-simulation) as a plant: stepped, so that it can be stopped."""
+
+from __future__ import annotations
+
+import shutil
+from dataclasses import dataclass
+from tempfile import mkdtemp
+from typing import TYPE_CHECKING, Any
+
+from rtamt.errors import UsageError, did_you_mean
+from rtamt.extras import library
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from pathlib import Path
+
+
+@dataclass(frozen=True)
+class FmuPlant:
+    """Simulates an FMU: called with its inputs and parameters by name, yields all of its outputs at every step.
+
+    ``duration`` is seconds; ``step`` too, by default that of the FMU's default experiment. Numbers
+    are set once, before the simulation; functions of time are set at every step. The FMU's real
+    outputs are told at every step, the first at its start.
+    """
+
+    path: Path
+    duration: float | None
+    step: float | None = None
+
+    def __call__(self, **inputs: Any) -> Iterator[tuple[float, dict[str, float]]]:
+        """Simulate; yields ``(time, {output: value})``."""
+        fmpy = library("fmpy", "an FMU", "fmi")
+        description = fmpy.read_model_description(str(self.path))
+        if description.coSimulation is None:
+            raise UsageError(f"'{self.path}' is no unit for co-simulation")
+        variables = {variable.name: variable for variable in description.modelVariables}
+        for name in inputs:
+            if name not in variables:
+                raise UsageError(f"'{self.path}' has no variable '{name}'{did_you_mean(name, variables)}")
+        step = self._step(description)
+        duration = self.duration or float(getattr(description.defaultExperiment, "stopTime", 0) or 0)
+        if duration <= 0:
+            raise UsageError(f"'{self.path}' does not say how long to simulate; give the duration")
+        folder = mkdtemp()
+        try:
+            fmpy.extract(str(self.path), folder)
+            unit = self._instance(description, folder)
+            yield from _simulate(unit, description, variables, inputs, step, round(duration / step))
+        finally:
+            shutil.rmtree(folder, ignore_errors=True)
+
+    def _step(self, description: Any) -> float:
+        step = self.step or getattr(description.defaultExperiment, "stepSize", None)
+        if step is None:
+            raise UsageError(f"'{self.path}' has no default step size; give the step in seconds")
+        return float(step)
+
+    def _instance(self, description: Any, folder: str) -> Any:
+        third = description.fmiVersion.startswith("3")
+        module = library("fmpy.fmi3" if third else "fmpy.fmi2", "an FMU", "fmi")
+        unit = (module.FMU3Slave if third else module.FMU2Slave)(
+            guid=description.guid,
+            unzipDirectory=folder,
+            modelIdentifier=description.coSimulation.modelIdentifier,
+            instanceName="plant",
+        )
+        unit.instantiate()
+        return unit
+
+
+def _simulate(
+    unit: Any, description: Any, variables: dict[str, Any], inputs: dict[str, Any], step: float, steps: int
+) -> Iterator[tuple[float, dict[str, float]]]:
+    third = description.fmiVersion.startswith("3")
+    outputs = [
+        v for v in description.modelVariables if v.causality == "output" and v.type in ("Real", "Float64")
+    ]
+    references = [variable.valueReference for variable in outputs]
+    write = unit.setFloat64 if third else unit.setReal
+    read = unit.getFloat64 if third else unit.getReal
+    moving = {variables[name].valueReference: given for name, given in inputs.items() if callable(given)}
+    fixed = {
+        variables[name].valueReference: float(given) for name, given in inputs.items() if not callable(given)
+    }
+    try:
+        if fixed:
+            write(list(fixed), list(fixed.values()))
+        if not third:
+            unit.setupExperiment(startTime=0.0)
+        unit.enterInitializationMode()
+        if moving:
+            write(list(moving), [float(signal(0.0)) for signal in moving.values()])
+        unit.exitInitializationMode()
+        for k in range(steps + 1):
+            if k:
+                unit.doStep(currentCommunicationPoint=(k - 1) * step, communicationStepSize=step)
+            time = k * step
+            values = read(references)
+            yield time, dict(zip([v.name for v in outputs], map(float, values), strict=True))
+            if moving:
+                write(list(moving), [float(signal(time)) for signal in moving.values()])
+    finally:
+        unit.terminate()
+        unit.freeInstance()

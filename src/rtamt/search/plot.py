@@ -1,0 +1,70 @@
+"""Pictures of a search: the robustness over its simulations, and over its parameters (matplotlib)."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rtamt.errors import UsageError
+from rtamt.extras import library
+
+if TYPE_CHECKING:
+    from rtamt.search.falsify import Falsification
+    from rtamt.search.sensitivity import Sensitivity
+
+
+def descent(found: Falsification, axes: Any = None) -> Any:
+    """Draw the robustness of each simulation, and the least so far."""
+    axes = _axes(axes)
+    values = np.array([evaluation.robustness for evaluation in found.evaluations])
+    number = np.arange(1, len(values) + 1)
+    axes.axhline(0, color="0.6", linewidth=1)
+    axes.plot(number, values, "o", markersize=4, color="tab:blue", label="simulation")
+    axes.step(number, np.minimum.accumulate(values), where="post", color="tab:orange", label="least so far")
+    wrong = np.array([not evaluation.satisfied for evaluation in found.evaluations])
+    if wrong.any():
+        axes.plot(number[wrong], values[wrong], "X", markersize=9, color="tab:red", label="violation")
+    axes.set_xlabel("simulation")
+    axes.set_ylabel("robustness")
+    axes.legend()
+    return axes
+
+
+def landscape(found: Sensitivity, axes: Any = None) -> Any:
+    """Draw the robustness over one parameter (a line) or two (a heat map of a grid, else coloured points)."""
+    axes = _axes(axes)
+    names = tuple(found.axes or found.problem.space)
+    if len(names) > 2:
+        raise UsageError(
+            f"there are {len(names)} parameters ({', '.join(names)}); a picture has room for two"
+        )
+    values = found.robustness
+    points = {name: np.array([e.point[name] for e in found.evaluations]) for name in names}
+    if len(names) == 1:
+        order = np.argsort(points[names[0]])
+        axes.plot(points[names[0]][order], values.ravel()[order], "o-")
+        axes.axhline(0, color="0.6", linewidth=1)
+        axes.set_ylabel("robustness")
+    else:
+        reach = float(np.max(np.abs(values[np.isfinite(values)]), initial=0.0)) or 1.0
+        colors = {"cmap": "RdYlGn", "vmin": -reach, "vmax": reach}
+        if found.axes:
+            first, second = found.axes.values()
+            made = axes.pcolormesh(first, second, values.T, shading="nearest", **colors)
+            for (i, j), value in np.ndenumerate(values):
+                axes.text(first[i], second[j], f"{value:.3g}", ha="center", va="center", fontsize=8)
+        else:
+            made = axes.scatter(*points.values(), c=values, **colors)
+        axes.figure.colorbar(made, ax=axes, label="robustness")
+        axes.set_ylabel(names[1])
+    axes.set_xlabel(names[0])
+    return axes
+
+
+def _axes(axes: Any) -> Any:
+    return (
+        library("matplotlib.pyplot", "a picture", "plot").subplots(layout="constrained")[1]
+        if axes is None
+        else axes
+    )

@@ -1,0 +1,164 @@
+"""What is searched: a requirement, a plant, and what of the plant's inputs may vary."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from math import inf
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rtamt.engine.signals import TIME, is_number
+from rtamt.errors import StlError, UsageError, did_you_mean, shown
+from rtamt.search.inputs import Range
+from rtamt.search.outlook import Outlook
+from rtamt.search.record import Evaluation
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from rtamt.search.inputs import Input
+    from rtamt.specification import Specification
+
+#: The verdict is looked at this many times in a simulation.
+LOOKS = 100
+
+
+@dataclass(frozen=True)
+class Problem:
+    """A requirement, a plant, and the inputs that a search may choose.
+
+    ``plant`` is any callable: it is called with one keyword argument for each of ``inputs``, a number
+    for a :class:`Range` (or a plain number), a function of time in seconds for an input signal. It
+    returns a recording as ``Specification.evaluate`` takes it, or yields samples
+    ``(time, {variable: value})``; a plant that yields is stopped as soon as its verdict cannot change.
+    ``duration``: seconds of simulated time; it may be left out where no input is a signal and the
+    requirement's horizon is bounded.
+
+    >>> import rtamt
+    >>> from rtamt.search import Problem, Range
+    >>> def ball(speed):
+    ...     for k in range(21):
+    ...         yield k / 10, {"height": speed * k / 10 - 4.9 * (k / 10) ** 2}
+    >>> problem = Problem(rtamt.parse("always[0:2](height <= 6)", period="100ms"), ball, {"speed": Range(1, 12)}, 2)
+    >>> evaluation = problem.run({"speed": 12.0})
+    >>> evaluation.satisfied, evaluation.stopped
+    (False, 0.8)
+    """
+
+    spec: Specification
+    plant: Callable[..., Any]
+    inputs: Mapping[str, Range | Input | float]
+    duration: float | None = None
+    #: The range of every parameter, by name.
+    space: Mapping[str, Range] = field(init=False)
+
+    def __post_init__(self) -> None:
+        if self.duration is not None and not (is_number(self.duration) and 0 < self.duration < inf):
+            raise UsageError(f"the duration is {shown(self.duration)}; give a positive number of seconds")
+        space: dict[str, Range] = {}
+        for name, given in self.inputs.items():
+            if isinstance(given, Range):
+                space[name] = given
+            elif isinstance(given, (int, float)):
+                continue
+            elif not callable(getattr(given, "signal", None)):
+                raise UsageError(
+                    f"the input '{name}' is {shown(given)}; give a Range, a number or an input signal"
+                )
+            elif self.duration is None:
+                raise UsageError(f"the input '{name}' is a signal: give the duration of a simulation too")
+            else:
+                space |= {f"{name}.{own}": part for own, part in given.parameters().items()}
+        if not space:
+            raise UsageError("nothing can vary: give at least one Range, or an input signal with a Range")
+        object.__setattr__(self, "space", space)
+
+    def arguments(self, point: Mapping[str, float]) -> dict[str, Any]:
+        """Return what the plant is called with at a point (a value for each parameter)."""
+        for name in point:
+            if name not in self.space:
+                raise UsageError(f"there is no parameter '{name}'{did_you_mean(name, tuple(self.space))}")
+        for name in self.space:
+            if name not in point:
+                raise UsageError(f"the parameter '{name}' has no value at this point")
+        arguments: dict[str, Any] = {}
+        for name, given in self.inputs.items():
+            if isinstance(given, Range):
+                arguments[name] = float(point[name])
+            elif isinstance(given, (int, float)):
+                arguments[name] = given
+            else:
+                own = {key: float(point[f"{name}.{key}"]) for key in given.parameters()}
+                arguments[name] = given.signal(own, self.duration or 0.0)
+        return arguments
+
+    def run(self, point: Mapping[str, float], number: int = 0) -> Evaluation:
+        """Simulate at a point and evaluate the requirement.
+
+        Raises :class:`UsageError` where the plant fails, and what ``evaluate`` raises where its
+        signals are wrong, with the point in the sentence.
+        """
+        arguments = self.arguments(point)
+        try:
+            try:
+                made = self.plant(**arguments)
+                if isinstance(made, Mapping) or hasattr(made, "columns") or not isinstance(made, Iterable):
+                    return self._whole(made, point, number)
+                return self._stepwise(made, point, number)
+            except StlError as error:
+                raise type(error)(f"{_where(number, point)}: {error}") from error
+        except StlError:
+            raise
+        except Exception as error:
+            raise UsageError(
+                f"{_where(number, point)}: the plant failed: {type(error).__name__}: {error}"
+            ) from error
+
+    def _whole(self, data: Any, point: Mapping[str, float], number: int) -> Evaluation:
+        result = self.spec.evaluate(data)
+        return Evaluation(number, dict(point), result.robustness, result.satisfied)
+
+    def _stepwise(self, samples: Iterable[Any], point: Mapping[str, float], number: int) -> Evaluation:
+        total = self._total()
+        outlook = Outlook(self.spec, self.spec.period, total)
+        # In dense time nobody knows how many samples will come: look again after a hundredth more.
+        look = max(1, (total or LOOKS) // LOOKS)
+        names = self.spec.input_names
+        times: list[float] = []
+        columns: dict[str, list[float]] = {name: [] for name in names}
+        for time, values in samples:
+            times.append(time)
+            for name in names:
+                if name not in values:
+                    raise UsageError(
+                        f"the plant gave no '{name}' at {time:g} s, which the requirement reads"
+                        f"{did_you_mean(name, tuple(values))}"
+                    )
+                columns[name].append(values[name])
+            if len(times) == total:
+                break
+            if len(times) % look == 0 and outlook.able and (total or self.spec.time == "dense"):
+                arrays = {name: np.asarray(column, float) for name, column in columns.items()}
+                settled = outlook.after(np.asarray(times, float), arrays)
+                if settled is not None:
+                    stopped = float(times[settled.samples - 1])
+                    return Evaluation(number, dict(point), settled.bound, settled.satisfied, stopped)
+        close = getattr(samples, "close", None)
+        if close is not None:
+            close()
+        if self.spec.time == "dense":
+            return self._whole({name: (times, column) for name, column in columns.items()}, point, number)
+        return self._whole({TIME: times, **columns}, point, number)
+
+    def _total(self) -> int | None:
+        """Return how many samples a simulation has in discrete time, None if nothing says so."""
+        if self.spec.time == "dense" or self.spec.period is None:
+            return None
+        duration = self.spec.horizon if self.duration is None else self.duration
+        return None if duration == inf else round(duration / float(self.spec.period)) + 1
+
+
+def _where(number: int, point: Mapping[str, float]) -> str:
+    return f"simulation {number} ({', '.join(f'{name}={value:.6g}' for name, value in point.items())})"

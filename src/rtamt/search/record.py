@@ -1,0 +1,105 @@
+"""Every evaluation of a search, kept in a file of JSON lines, so that a run can be looked at and resumed.
+
+The first line says what was searched; each further line is one evaluation. A resumed run asks its
+optimizer anew from the same seed and takes what is recorded instead of simulating again: it goes on
+exactly as it would have.
+"""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict, dataclass
+from math import isfinite
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from rtamt.errors import UsageError
+
+if TYPE_CHECKING:
+    import os
+    from collections.abc import Mapping
+
+
+@dataclass(frozen=True, slots=True)
+class Evaluation:
+    """One simulation: the point it was run at, and what came of it."""
+
+    number: int  # from 0
+    point: Mapping[str, float]
+    robustness: float
+    satisfied: bool
+    #: Seconds of simulated time at which the verdict was settled and the simulation stopped; None: it ran to its end.
+    #: The robustness is then a bound: it can only move away from 0.
+    stopped: float | None = None
+
+    def to_json(self) -> str:
+        """Return one line; JSON has no infinities, so they are text."""
+        data = asdict(self)
+        if not isfinite(self.robustness):
+            data["robustness"] = str(self.robustness)
+        return json.dumps(data)
+
+    @classmethod
+    def from_json(cls, data: dict[str, Any]) -> Evaluation:
+        """Read what :meth:`to_json` wrote."""
+        return cls(**{**data, "robustness": float(data["robustness"])})
+
+
+class Record:
+    """A file of evaluations; without a path, kept in memory only."""
+
+    def __init__(self, path: str | os.PathLike[str] | None, about: Mapping[str, Any]) -> None:
+        self._path = None if path is None else Path(path)
+        self._known: list[Evaluation] = []
+        if self._path is None:
+            return
+        if self._path.exists() and self._path.stat().st_size:
+            self._known = _read(self._path, about)
+        else:
+            self._append(json.dumps({"search": about}))
+
+    def recorded(self, number: int, point: Mapping[str, float]) -> Evaluation | None:
+        """Return the evaluation of that number, None if it is still to be made."""
+        if number >= len(self._known):
+            return None
+        found = self._known[number]
+        if dict(found.point) != dict(point):
+            raise UsageError(
+                f"'{self._path}' holds another point as evaluation {number}: it was made by another version of "
+                f"the optimizer; give the run a new file"
+            )
+        return found
+
+    def add(self, evaluation: Evaluation) -> None:
+        """Keep a new evaluation."""
+        if self._path is not None and evaluation.number >= len(self._known):
+            self._append(evaluation.to_json())
+
+    def _append(self, line: str) -> None:
+        assert self._path is not None
+        try:
+            with self._path.open("a", encoding="utf-8") as file:
+                file.write(line + "\n")
+        except OSError as error:
+            raise UsageError(f"cannot write the record '{self._path}': {error.strerror}") from error
+
+
+def _read(path: Path, about: Mapping[str, Any]) -> list[Evaluation]:
+    try:
+        text = path.read_text(encoding="utf-8")
+        head, *lines = text.splitlines()
+        if not text.endswith("\n"):  # the run was killed while it wrote
+            lines = lines[:-1]
+            path.write_text("\n".join((head, *lines)) + "\n", encoding="utf-8")
+        before = json.loads(head)["search"]
+        known = [Evaluation.from_json(json.loads(line)) for line in lines]
+    except (ValueError, KeyError, TypeError, OSError) as error:
+        raise UsageError(f"'{path}' is no record of a search; give the run a new file") from error
+    now = json.loads(json.dumps(about))
+    for key in now:
+        if before.get(key) != now[key]:
+            raise UsageError(
+                f"'{path}' records a search with another {key}: {before.get(key)!r} there, {now[key]!r} now; "
+                f"give the run a new file"
+            )
+    return known
