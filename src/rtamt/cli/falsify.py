@@ -30,17 +30,18 @@ The problem is a TOML file:
   period = "10ms"
   [inputs]
   throttle = { kind = "piecewise_constant", points = 7, low = 0, high = 100 }
-  brake = { low = 0, high = 325 }   # other kinds: piecewise_linear, step, pulse, sine
+  brake = { low = 0, high = 325 }   # kinds: piecewise_linear, step, pulse, sine, too
   [search]
-  optimizer = "cma"                 # or differential_evolution, dual_annealing, optuna, sobol, random
+  optimizer = "cma"                 # or differential_evolution, dual_annealing, optuna,
+                                    # sobol, random
   budget = 300
   seed = 1
 
 With --record every simulation is kept; the same command goes on where it was interrupted.
 
 examples:
-  rtamt falsify examples/chasing_cars/problem.toml
-  rtamt falsify problem.toml --budget 1000 --workers 2 --record run.jsonl --plot run.png"""
+  rtamt falsify problem.toml
+  rtamt falsify problem.toml --budget 1000 --record run.jsonl --plot run.png"""
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
