@@ -13,6 +13,7 @@ from pathlib import Path
 import pytest
 
 from rtamt.cli import COMMANDS, OK, main
+from rtamt.cli.command import VIOLATED
 from tests.unit.cli import invoke
 
 ROOT = Path(__file__).parents[2]
@@ -49,11 +50,13 @@ def test_a_command_line_of_the_readme_works(line, tmp_path, monkeypatch, capsys)
     (tmp_path / "requirement.stl").write_text(requirement, encoding="utf-8")
     samples = [{"time": time, "req": 0.0, "gnt": 5.0} for time in range(10)]
     (tmp_path / "samples.jsonl").write_text("\n".join(map(json.dumps, samples)), encoding="utf-8")
+    shutil.copytree(ROOT / "examples" / "cruise", tmp_path, dirs_exist_ok=True)
     monkeypatch.chdir(tmp_path)
     arguments, _, source = line.partition(" < ")
     stdin = (tmp_path / source).read_text(encoding="utf-8") if source else ""
     code, out, err = invoke(capsys, monkeypatch, shlex.split(arguments)[1:], stdin)
-    assert (code, err) == (OK, "")
+    # A search that finds what it looks for ends as a check does.
+    assert (code, err) == (VIOLATED if " falsify " in line else OK, "")
     assert out
 
 

@@ -40,8 +40,8 @@ The problem is a TOML file:
 With --record every simulation is kept; the same command goes on where it was interrupted.
 
 examples:
-  rtamt falsify problem.toml
-  rtamt falsify problem.toml --budget 1000 --record run.jsonl --plot run.png"""
+  rtamt falsify examples/cruise/problem.toml
+  rtamt falsify examples/cruise/problem.toml --optimizer optuna --seed 3 --json"""
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
