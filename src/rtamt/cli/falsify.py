@@ -24,17 +24,16 @@ Exit code: 0 no violation found, 1 violated, 2 something is wrong."""
 _EPILOG = """\
 The problem is a TOML file:
 
-  specification = "speed.stl"       # or formula = "always[0:30](speed <= 120)"
-  plant = "plants:transmission"     # module:function beside the file, or "plant.fmu"
-  duration = 30                     # seconds of simulated time
+  specification = "speed.stl"     # or formula = "always[0:30](speed <= 120)"
+  plant = "plants:transmission"   # module:function beside the file, or an .fmu
+  duration = 30                   # seconds of simulated time
   period = "10ms"
   [inputs]
   throttle = { kind = "piecewise_constant", points = 7, low = 0, high = 100 }
-  brake = { low = 0, high = 325 }   # kinds: piecewise_linear, step, pulse, sine, too
+  brake = { low = 0, high = 325 } # or piecewise_linear, step, pulse, sine
   [search]
-  optimizer = "cma"                 # or differential_evolution, dual_annealing, optuna,
-                                    # sobol, random
-  budget = 300
+  optimizer = "cma"               # or differential_evolution, dual_annealing,
+  budget = 300                    # optuna, sobol, random
   seed = 1
 
 With --record every simulation is kept; the same command goes on where it was interrupted.
