@@ -108,7 +108,7 @@ rtamt_status rtamt_create(const void* program, size_t size, rtamt_monitor** moni
                    [&](const char* sentence) { copy_message(sentence, message, room); });
 }
 
-void rtamt_destroy(rtamt_monitor* monitor) {
+void rtamt_destroy(rtamt_monitor* monitor) { // NOLINT(misc-const-correctness): the C API
     delete monitor;
 }
 

@@ -8,6 +8,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <exception>
 #include <memory>
 #include <optional>
 #include <span>
@@ -16,7 +17,10 @@
 namespace rtamt::capi {
 
 // An operation has no value: which instruction, and the sample or tick.
-struct Undefined {
+struct Undefined : std::exception {
+    Undefined(std::uint32_t where, std::int64_t when) noexcept : instruction(where), step(when) {}
+    [[nodiscard]] const char* what() const noexcept override { return "a value does not exist"; }
+
     std::uint32_t instruction;
     std::int64_t step;
 };

@@ -36,8 +36,8 @@ namespace rtamt::dense {
 // An operation made NaN: which instruction, and the time of the value. Or a call failed: what it
 // said.
 struct Failure {
-    std::uint32_t instruction;
-    std::int64_t time;
+    std::uint32_t instruction = 0;
+    std::int64_t time = 0;
     Fault fault;
 };
 

@@ -4,8 +4,8 @@
 #include "programs.hpp"
 
 #include <array>
+#include <bit>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <memory>
 
@@ -45,7 +45,8 @@ Bytes save(const Handle& monitor) {
 }
 
 bool same(const Row& a, const Row& b) {
-    return std::memcmp(a.data(), b.data(), sizeof a) == 0;
+    return std::bit_cast<std::array<std::uint64_t, 2>>(a) ==
+           std::bit_cast<std::array<std::uint64_t, 2>>(b);
 }
 } // namespace
 
