@@ -1,0 +1,207 @@
+"""From the annotations of a specification to topics, types and fields: what a node subscribes and publishes."""
+
+from __future__ import annotations
+
+import importlib
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+from rtamt.errors import UsageError, did_you_mean
+from rtamt.language.formula import variables
+from rtamt.ros.fields import Path, check_path, path_of
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    from rtamt.language.formula import Formula
+    from rtamt.language.specfile import Document
+    from rtamt.specification import Specification
+
+
+@dataclass(frozen=True, slots=True)
+class MessageType:
+    """The type of a message, as the specification imports it: ``from rtamt_msgs.msg import FloatStamped``."""
+
+    module: str
+    name: str
+
+    @property
+    def ros(self) -> str:
+        """What ROS calls it: ``rtamt_msgs/FloatStamped``."""
+        return f"{self.module.split('.')[0]}/{self.name}"
+
+    def load(self) -> type:
+        """Import the class; raise :class:`UsageError` where it cannot be."""
+        try:
+            module = importlib.import_module(self.module)
+        except ImportError as error:
+            raise UsageError(
+                f"the message module '{self.module}' cannot be imported: {error}; "
+                f"is the workspace built, and its setup file sourced?"
+            ) from error
+        if not hasattr(module, self.name):
+            raise UsageError(f"'{self.module}' has no '{self.name}'{did_you_mean(self.name, vars(module))}")
+        found: type = getattr(module, self.name)
+        return found
+
+
+@dataclass(frozen=True, slots=True)
+class Input:
+    """A variable that messages fill: ``fields`` are the numbers that formulas read of it, by full name."""
+
+    variable: str
+    topic: str
+    type: MessageType
+    fields: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Output:
+    """An assertion whose robustness is published: ``path`` leads to the number in the message."""
+
+    name: str
+    variable: str
+    topic: str
+    type: MessageType
+    path: Path
+    #: The assertion as a specification of its own.
+    specification: Specification
+
+
+@dataclass(frozen=True, slots=True)
+class Binding:
+    """What a specification asks of ROS."""
+
+    name: str
+    inputs: tuple[Input, ...]
+    outputs: tuple[Output, ...]
+
+    def check(self, load: Callable[[MessageType], Any] = MessageType.load) -> Mapping[MessageType, Any]:
+        """Load every type of message and make sure that it has the fields; return the classes.
+
+        ``load``: how a type becomes a class that can be called without arguments. Raises
+        :class:`UsageError`.
+        """
+        kinds = [*(known.type for known in self.inputs), *(output.type for output in self.outputs)]
+        classes = {kind: load(kind) for kind in dict.fromkeys(kinds)}
+        for known in self.inputs:
+            for name in known.fields:
+                check_path(name, classes[known.type](), known.type.ros)
+        for output in self.outputs:
+            check_path(output.name, classes[output.type](), output.type.ros)
+        return classes
+
+
+def bind(spec: Specification) -> Binding:
+    """Return the topics, types and fields that a specification names.
+
+    Every assertion whose name is a field of a declared variable is published on that variable's topic;
+    other named assertions are sub-formulas. A variable without an annotation is on ``rtamt/<name>``.
+    Source: the paper's listing 8.
+
+    Raises :class:`UsageError` where a variable is no message, or nothing is to be published.
+
+    >>> import rtamt
+    >>> binding = bind(rtamt.parse('''
+    ...     from rtamt_msgs.msg import FloatStamped
+    ...     input FloatStamped req  output FloatStamped rob
+    ...     @ topic(rob, rtamt/rob)
+    ...     rob.value = once[0:5](req.value >= 3)'''))
+    >>> [(known.topic, known.fields) for known in binding.inputs], [known.topic for known in binding.outputs]
+    ([('rtamt/req', ('req.value',))], ['rtamt/rob'])
+    """
+    document = spec.document
+    types = _types(document)
+    outputs = tuple(_outputs(spec, types))
+    if not outputs:
+        raise UsageError(
+            "the specification publishes nothing: give the requirement the name of a field of a declared "
+            "message, such as rob.value = always(...)"
+        )
+    formulas = [output.specification.formula for output in outputs]
+    inputs = tuple(_inputs(formulas, document, types))
+    _check_topics(inputs, outputs)
+    return Binding(document.name or "rtamt", inputs, outputs)
+
+
+def _types(document: Document) -> dict[str, MessageType]:
+    """Return the type of every variable that holds a message."""
+    imported = {known.name: MessageType(known.module, known.name) for known in document.imports}
+    return {d.name: imported[d.type] for d in document.declarations if d.type in imported}
+
+
+def _outputs(spec: Specification, types: Mapping[str, MessageType]) -> list[Output]:
+    document = spec.document
+    found = []
+    for index, assertion in enumerate(document.assertions):
+        variable = (assertion.name or "").split(".")[0]
+        if assertion.name is None or variable not in types:
+            continue
+        path = path_of(assertion.name)
+        if not path:
+            raise UsageError(
+                f"'{variable}' is a {types[variable].name} and no number; "
+                f"say which field is the robustness, such as {variable}.value = ..."
+            )
+        alone = replace(spec, document=replace(document, assertions=document.assertions[: index + 1]))
+        topic = _topic(document, variable)
+        found.append(Output(assertion.name, variable, topic, types[variable], path, alone))
+    return found
+
+
+def _inputs(formulas: list[Formula], document: Document, types: Mapping[str, MessageType]) -> list[Input]:
+    fields: dict[str, list[str]] = {}
+    for name in dict.fromkeys(name for formula in formulas for name in variables(formula)):
+        fields.setdefault(name.split(".")[0], []).append(name)
+    found = []
+    for variable, names in fields.items():
+        if variable not in types:
+            declared = {d.name: d.type for d in document.declarations}
+            kind = declared.get(variable)
+            what = "is not declared" if kind is None else f"is a {kind}"
+            raise UsageError(
+                f"'{variable}' {what}, and a topic carries messages: import a type and declare it, such as "
+                f"'from std_msgs.msg import Float64' and 'input Float64 {variable}', then read {variable}.data"
+            )
+        if variable in names:
+            raise UsageError(
+                f"'{variable}' is a {types[variable].name} and no number; read one of its fields, "
+                f"such as {variable}.value"
+            )
+        for name in names:
+            path_of(name)
+        found.append(Input(variable, _topic(document, variable), types[variable], tuple(names)))
+    return found
+
+
+def _topic(document: Document, variable: str) -> str:
+    return document.topics.get(variable, f"rtamt/{variable}")
+
+
+def _check_topics(inputs: tuple[Input, ...], outputs: tuple[Output, ...]) -> None:
+    """Raise where a topic would carry two things."""
+    read: dict[str, Input] = {}
+    for known in inputs:
+        other = read.setdefault(known.topic, known)
+        if other.type != known.type:
+            raise UsageError(
+                f"'{other.variable}' and '{known.variable}' are on the topic {known.topic} with different types, "
+                f"{other.type.ros} and {known.type.ros}"
+            )
+    written: dict[str, Output] = {}
+    for output in outputs:
+        if output.topic in read:
+            raise UsageError(
+                f"'{output.name}' would be published on {output.topic}, from which "
+                f"'{read[output.topic].variable}' is read; give it a topic of its own: "
+                f"@ topic({output.variable}, rtamt/{output.variable})"
+            )
+        twin = written.setdefault(output.topic, output)
+        if twin is not output:
+            raise UsageError(
+                f"'{twin.name}' and '{output.name}' would both be published on {output.topic}; give each a "
+                f"variable and a topic of its own"
+            )
+
+
+__all__ = ["Binding", "Input", "MessageType", "Output", "bind"]

@@ -1,0 +1,141 @@
+"""A number in a message, by the path that a formula writes; and a message's time stamp."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING, Any
+
+from rtamt.engine.signals import is_number
+from rtamt.errors import TraceError, UsageError, did_you_mean
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+_STEP = re.compile(r"([A-Za-z_]\w*)((?:\[\d+\])*)")
+_INDEX = re.compile(r"\[(\d+)\]")
+
+#: How a field is reached: names of attributes, and places in arrays.
+Path = tuple["str | int", ...]
+
+
+def path_of(name: str) -> Path:
+    """Return the steps from a variable to the number that a name means; the variable is left out.
+
+    Raises :class:`UsageError` for a name that is no path.
+
+    >>> path_of("scan.ranges[3]"), path_of("odom.pose.pose.position.x")
+    (('ranges', 3), ('pose', 'pose', 'position', 'x'))
+    """
+    path: list[str | int] = []
+    for step in name.split(".")[1:]:
+        match = _STEP.fullmatch(step)
+        if match is None:
+            raise UsageError(f"'{name}' is no path of fields, such as pose.position.x or ranges[3]")
+        path.append(match[1])
+        path += [int(index) for index in _INDEX.findall(match[2])]
+    return tuple(path)
+
+
+def follow(message: Any, path: Path) -> Any:
+    """Return what a path leads to; raise AttributeError, IndexError or TypeError where it leads nowhere."""
+    for step in path:
+        message = message[step] if isinstance(step, int) else getattr(message, step)
+    return message
+
+
+def reader(name: str) -> Callable[[Any], float]:
+    """Return a function that reads a number out of a message.
+
+    ``name``: as a formula writes it, the variable first. The function raises :class:`TraceError` where
+    a message has no such number: arrays differ from message to message.
+
+    >>> from types import SimpleNamespace
+    >>> reader("scan.ranges[1]")(SimpleNamespace(ranges=[0.5, 0.75]))
+    0.75
+    """
+    path = path_of(name)
+
+    def read(message: Any) -> float:
+        try:
+            value = follow(message, path)
+        except IndexError:
+            raise TraceError(f"a message has no '{name}': the array is shorter", variable=name) from None
+        except (AttributeError, TypeError):
+            raise TraceError(f"a message has no field '{name}'", variable=name) from None
+        if not is_number(value):
+            raise TraceError(f"'{name}' is {value!r} in a message, expected a number", variable=name)
+        return float(value)
+
+    return read
+
+
+def check_path(name: str, sample: Any, kind: str) -> None:
+    """Raise :class:`UsageError` unless messages like ``sample`` may have a number called ``name``.
+
+    ``kind``: what the type of message is called. An empty array says nothing of what will be in it.
+    """
+    at, done = sample, name.split(".", maxsplit=1)[0]
+    for step in path_of(name):
+        if isinstance(step, int):
+            if not hasattr(at, "__getitem__") or isinstance(at, str):
+                raise UsageError(f"'{done}' is no array, so that there is no '{name}' in a {kind}")
+            if step >= len(at):
+                return
+            at, done = at[step], f"{done}[{step}]"
+        else:
+            names = fields_of(at)
+            if not hasattr(at, step):
+                raise UsageError(
+                    f"'{done}' has no field '{step}'{did_you_mean(step, names)} (it has {', '.join(names)})"
+                    if names
+                    else f"'{done}' is a number and has no field '{step}'"
+                )
+            at, done = getattr(at, step), f"{done}.{step}"
+    if not is_number(at):
+        inside = fields_of(at)
+        such = f"; name one of its fields, such as {done}.{inside[0]}" if inside else ""
+        raise UsageError(f"'{name}' is no number but a {type(at).__name__}{such}")
+
+
+def fields_of(message: Any) -> tuple[str, ...]:
+    """Return the names of a message's fields, whatever made its class (rospy, rclpy, a dataclass).
+
+    >>> from dataclasses import make_dataclass
+    >>> fields_of(make_dataclass("Point", ["x", "y"])(1, 2)), fields_of(3.5)
+    (('x', 'y'), ())
+    """
+    if hasattr(message, "get_fields_and_field_types"):  # rclpy
+        return tuple(message.get_fields_and_field_types())
+    if hasattr(message, "__dataclass_fields__"):
+        return tuple(message.__dataclass_fields__)
+    slots = getattr(type(message), "__slots__", ())
+    return tuple(slots) or tuple(getattr(message, "__dict__", ()))
+
+
+def stamp_of(message: Any) -> int | None:
+    """Return the time in a message's header, in nanoseconds; None where it has none, or was left at 0.
+
+    >>> from types import SimpleNamespace as Some
+    >>> stamp_of(Some(header=Some(stamp=Some(sec=1, nanosec=5)))), stamp_of(Some(value=3))
+    (1000000005, None)
+    """
+    stamp = getattr(getattr(message, "header", None), "stamp", None)
+    if stamp is None:
+        return None
+    if hasattr(stamp, "nanosec"):  # ROS 2
+        total = int(stamp.sec) * 10**9 + int(stamp.nanosec)
+    elif hasattr(stamp, "nsecs"):  # ROS 1
+        total = int(stamp.secs) * 10**9 + int(stamp.nsecs)
+    else:
+        return None
+    return total or None
+
+
+def write(message: Any, path: Path, value: float) -> None:
+    """Set the number at the end of a path."""
+    *way, last = path
+    target = follow(message, tuple(way))
+    if isinstance(last, int):
+        target[last] = value
+    else:
+        setattr(target, last, value)

@@ -1,0 +1,290 @@
+"""Messages and ticks in; robustness, verdicts and conditions out. Knows no ROS: nodes carry messages to it."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import TYPE_CHECKING, Any
+
+from rtamt.errors import StlError, UsageError
+from rtamt.language.units import duration
+from rtamt.ros.fields import reader, stamp_of
+from rtamt.ros.report import Condition, Level, Notice
+from rtamt.ros.watch import DenseWatch, DiscreteWatch, Robustness, Verdict
+from rtamt.settings import positive_period, time_domain
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+
+    from rtamt.ros.binding import Binding, Output
+    from rtamt.ros.watch import Record, Watch
+    from rtamt.settings import Duration
+
+#: After how many silent periods a topic is stale, unless a time is set; in dense time, seconds.
+STALE_PERIODS = 10
+STALE_DENSE = Fraction(5)
+#: Seconds between two looks at the clock, at most: how soon silence and the end are noticed.
+PAUSE = 0.1
+
+
+class RosMonitor:
+    """Watches the requirements of a specification over messages.
+
+    ``binding``: from :func:`~rtamt.ros.binding.bind`. ``time``: ``"discrete"``, where every tick is a
+    sample of the latest messages, or ``"dense"``, where every message is a sample at the time in its
+    header, each topic on its own clock. ``period``: seconds from tick to tick, or text such as
+    ``"100ms"``. ``stale``: after how long without a message a topic is stale; 0 for never, by default
+    ten periods, in dense time 5 s. All times are integers of nanoseconds.
+
+    Bounded future is pastified (the paper's Definition 4): robustness comes from the first sample on,
+    and speaks of the instant one horizon ago; verdicts are unknown until the horizon has passed.
+
+    Nothing is told of samples that are not there. An output is silent until each of its topics has had
+    a message, and while one is stale. It begins anew when stamps go back, when a stale topic speaks
+    again, and after a number that is none; each is said once, in :meth:`notices`.
+
+    >>> from types import SimpleNamespace as Message
+    >>> import rtamt
+    >>> from rtamt.ros import RosMonitor, bind
+    >>> monitor = RosMonitor(bind(rtamt.parse('''
+    ...     from rtamt_msgs.msg import FloatStamped
+    ...     input FloatStamped req  output FloatStamped rob
+    ...     rob.value = once[0:1](req.value >= 3)''')), period=1)
+    >>> monitor.tick(0)
+    []
+    >>> monitor.message("rtamt/req", Message(value=5.0), 500_000_000)
+    []
+    >>> robustness, verdict = monitor.tick(1_000_000_000)
+    >>> robustness.stamp, robustness.value, verdict.satisfied
+    (1000000000, 2.0, True)
+    """
+
+    def __init__(
+        self,
+        binding: Binding,
+        *,
+        period: Duration = 1,
+        time: str = "discrete",
+        stale: Duration | None = None,
+    ) -> None:
+        self.binding = binding
+        self.time = time_domain(time)
+        self.period = positive_period(period)
+        if (self.period * 10**9).denominator != 1:
+            raise UsageError(f"the period {self.period} s is no whole number of nanoseconds")
+        self._step = int(self.period * 10**9)
+        self._stale = self._stale_after(stale)
+        self._readers: dict[str, list[tuple[str, Callable[[Any], float]]]] = {}
+        for known in binding.inputs:
+            self._readers.setdefault(known.topic, []).extend((name, reader(name)) for name in known.fields)
+        topic_of = {name: known.topic for known in binding.inputs for name in known.fields}
+        self._dense: list[DenseWatch] = []
+        self._discrete: list[DiscreteWatch] = []
+        if self.time == "dense":
+            self._dense = [DenseWatch(output, topic_of) for output in binding.outputs]
+        else:
+            self._discrete = [DiscreteWatch(output, topic_of, self.period) for output in binding.outputs]
+        self._values: dict[str, float] = {}
+        self._heard: dict[str, int] = {}  # when a topic last spoke
+        self._stamps: dict[str, int] = {}  # of its last message
+        self._last: int | None = None  # the latest tick or arrival
+        self._next: int | None = None  # when the next sample is due
+        self._silent: set[str] = set()
+        self._notices: list[Notice] = []
+        self._faults: dict[str, str] = {}  # of topics whose last message could not be used
+        self._repeated: set[str] = set()  # topics whose last message had the stamp of the one before
+
+    @property
+    def watches(self) -> Sequence[DiscreteWatch | DenseWatch]:
+        """The outputs, one watch each."""
+        return self._dense or self._discrete
+
+    def _stale_after(self, stale: Duration | None) -> int:
+        """Return nanoseconds; 0 for never."""
+        if stale is None:
+            dense = self.time == "dense"
+            return int((STALE_DENSE if dense else self.period * STALE_PERIODS) * 10**9)
+        exact = duration(stale)
+        if exact < 0:
+            raise UsageError(f"a topic cannot be stale after {stale!r}; give a time, or 0 for never")
+        return int(exact * 10**9)
+
+    # ---- what comes in ---------------------------------------------------------------------------
+
+    def message(self, topic: str, message: Any, now: int) -> list[Record]:
+        """Take a message that arrived at ``now``; return what became known, in dense time only."""
+        records: list[Record] = []
+        self._advance(now)
+        try:
+            values = {name: read(message) for name, read in self._readers[topic]}
+        except StlError as error:
+            self._broken(topic, str(error))
+            return records
+        stamp = stamp_of(message) or now
+        last = self._stamps.get(topic)
+        if self.time == "dense" and last is not None and stamp <= last:
+            if stamp == last:
+                self._repeat(topic)
+                return records
+            self._begin_anew(f"the stamps on {topic} went back by {_seconds(last - stamp)}")
+        self._speaks(topic, now)
+        self._stamps[topic] = stamp
+        self._faults.pop(topic, None)
+        self._repeated.discard(topic)
+        self._values.update(values)
+        for watch in self._dense:
+            if topic not in watch.topics:
+                continue
+            if self._all_speak(watch):
+                records += self._tell(watch, stamp, values)
+            else:
+                watch.hold(topic, stamp, values)
+        return records
+
+    def tick(self, now: int) -> list[Record]:
+        """Look at the clock: sample what is due by ``now`` (discrete time), and see who has gone silent.
+
+        Ticks that come late are made up for: every period has its sample. Returns what became known.
+        """
+        self._advance(now)
+        self._look_for_silence(now)
+        if self.time == "dense":
+            return []
+        records: list[Record] = []
+        due = now if self._next is None else self._next
+        while due <= now:
+            for watch in self._discrete:
+                if self._all_speak(watch):
+                    records += self._tell(watch, due, self._values)
+            due += self._step
+        self._next = due
+        return records
+
+    def pause(self, now: int) -> float:
+        """Return how many seconds a node may sleep before it calls :meth:`tick`, at most :data:`PAUSE`."""
+        if self._next is None or self.time == "dense":
+            return PAUSE
+        return min(PAUSE, max(0.0, (self._next - now) / 1e9))
+
+    def _all_speak(self, watch: Watch) -> bool:
+        return watch.topics <= self._heard.keys() and not watch.topics & self._silent
+
+    def _tell(
+        self, watch: DiscreteWatch | DenseWatch, stamp: int, values: Mapping[str, float]
+    ) -> list[Record]:
+        """Give a watch its sample; one that is refused leaves a hole, so that the watch begins anew."""
+        try:
+            records = watch.take(stamp, values)
+        except StlError as error:
+            watch.reset()
+            if watch.fault is None:
+                self._say(
+                    Level.ERROR, f"'{watch.output.name}' begins anew, its samples cannot be used: {error}"
+                )
+            watch.fault = str(error)
+            return []
+        watch.fault = None
+        return records
+
+    # ---- what goes wrong -------------------------------------------------------------------------
+
+    def _advance(self, now: int) -> None:
+        if self._last is not None and now < self._last:
+            self._begin_anew(f"the clock went back by {_seconds(self._last - now)}")
+        self._last = now
+
+    def _begin_anew(self, why: str) -> None:
+        for watch in self.watches:
+            watch.reset()
+        self._values.clear()
+        self._heard.clear()
+        self._stamps.clear()
+        self._silent.clear()
+        self._next = None
+        self._say(Level.WARN, f"{why}: all monitors begin anew")
+
+    def _broken(self, topic: str, problem: str) -> None:
+        """A message without the number that is read: what the topic said before is no value of now."""
+        if topic not in self._faults:
+            self._say(Level.ERROR, f"a message on {topic} cannot be used: {problem}")
+        self._faults[topic] = problem
+        self._forget(topic)
+
+    def _repeat(self, topic: str) -> None:
+        """A message with the stamp of the one before it: a signal has one value at an instant, the first."""
+        if topic not in self._repeated:
+            self._say(Level.WARN, f"messages on {topic} with the stamp of the one before them are left out")
+        self._repeated.add(topic)
+
+    def _forget(self, topic: str) -> None:
+        self._heard.pop(topic, None)
+        for watch in self.watches:
+            if topic in watch.topics:
+                watch.reset()
+
+    def _look_for_silence(self, now: int) -> None:
+        if not self._stale:
+            return
+        for topic, heard in self._heard.items():
+            if topic not in self._silent and now - heard > self._stale:
+                self._silent.add(topic)
+                self._say(Level.WARN, f"{topic} is stale: no message for {_seconds(now - heard)}")
+                for watch in self.watches:
+                    if topic in watch.topics:
+                        watch.reset()
+
+    def _speaks(self, topic: str, now: int) -> None:
+        if topic in self._silent:
+            self._silent.discard(topic)
+            self._say(Level.OK, f"{topic} speaks again: the monitors that read it begin anew")
+        elif self._stale and topic in self._heard and now - self._heard[topic] > self._stale:
+            # It was silent, and nobody looked meanwhile.
+            self._say(Level.WARN, f"{topic} was silent for {_seconds(now - self._heard[topic])}")
+            self._forget(topic)
+        self._heard[topic] = now
+
+    def _say(self, level: Level, message: str) -> None:
+        self._notices.append(Notice(level, message))
+
+    # ---- what is said of it ----------------------------------------------------------------------
+
+    def notices(self) -> list[Notice]:
+        """Return what happened since the last call; each is said once."""
+        said, self._notices = self._notices, []
+        return said
+
+    def conditions(self, now: int) -> list[Condition]:
+        """Return how every output is, for ``/diagnostics``."""
+        return [self._condition(watch, now) for watch in self.watches]
+
+    def _condition(self, watch: DiscreteWatch | DenseWatch, now: int) -> Condition:
+        output: Output = watch.output
+        inputs = ((name, self._values[name]) for name in watch.names if name in self._values)
+        values = (
+            *((name, f"{value:.6g}") for name, value in inputs),
+            ("topic", output.topic),
+            ("samples", str(watch.samples)),
+            ("robustness", "none" if watch.latest is None else f"{watch.latest:.6g}"),
+            ("horizon", f"{watch.horizon:.6g} s"),
+        )
+        missing = sorted(topic for topic in watch.topics if topic not in self._heard)
+        faulty = [self._faults[topic] for topic in missing if topic in self._faults]
+        silent = sorted(watch.topics & self._silent)
+        if watch.fault is not None or faulty:
+            level, text = Level.ERROR, watch.fault or faulty[0]
+        elif silent:
+            ages = [f"{topic} for {_seconds(now - self._heard[topic])}" for topic in silent]
+            level, text = Level.STALE, f"no message on {', '.join(ages)}"
+        elif missing:
+            level, text = Level.WARN, f"waiting for the first message on {', '.join(missing)}"
+        elif watch.satisfied is False:
+            level, text = Level.ERROR, "violated"
+        else:
+            level, text = Level.OK, "satisfied" if watch.satisfied else "no verdict yet"
+        return Condition(f"{self.binding.name}: {output.name}", level, text, values)
+
+
+def _seconds(nanoseconds: int) -> str:
+    return f"{nanoseconds / 1e9:.6g} s"
+
+
+__all__ = ["Robustness", "RosMonitor", "Verdict"]

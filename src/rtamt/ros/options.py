@@ -1,0 +1,90 @@
+"""The arguments that every node takes, on ROS 1, on ROS 2 and on DDS alone; and their parameters."""
+
+from __future__ import annotations
+
+import argparse
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, NoReturn
+
+from rtamt.errors import UsageError
+from rtamt.language.units import UNITS
+from rtamt.ros.binding import bind
+from rtamt.ros.monitor import RosMonitor
+from rtamt.specification import load
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+#: Names of parameters, and what holds where nothing is said.
+DEFAULTS: Mapping[str, str] = {"spec": "", "period": "1", "unit": "s", "time": "discrete", "stale": ""}
+
+
+@dataclass(frozen=True, slots=True)
+class Options:
+    """What a node is told; texts as the user wrote them, "" for what was left out."""
+
+    spec: str
+    period: str
+    unit: str
+    time: str
+    stale: str
+
+    def monitor(self) -> RosMonitor:
+        """Read the specification and make its monitor; raise :class:`StlError` where that cannot be."""
+        if not self.spec:
+            raise UsageError("no specification was given: name a file, or set the parameter spec")
+        period = self._duration(self.period)
+        dense = self.time == "dense"
+        spec = load(self.spec, time=self.time, period=None if dense else period)
+        stale = self._duration(self.stale) if self.stale else None
+        return RosMonitor(bind(spec), period=period, time=self.time, stale=stale)
+
+    def _duration(self, text: str) -> str:
+        """Return a duration with its unit: ``--unit`` is that of a plain number, as in the paper's listing 5.
+
+        Bounds in the specification are not its business: they are seconds, or have units of their own.
+        """
+        try:
+            float(text)
+        except ValueError:
+            return text
+        return f"{text}{self.unit}"
+
+
+class _Parser(argparse.ArgumentParser):
+    def error(self, message: str) -> NoReturn:
+        raise UsageError(f"{message}; see '{self.prog} --help'")
+
+
+def parser(prog: str) -> argparse.ArgumentParser:
+    """Return a parser of the arguments that every node takes; a node may add its own."""
+    made = _Parser(
+        prog=prog,
+        description="Watch a specification over topics, and publish its robustness and verdict.",
+        allow_abbrev=False,
+    )
+    made.add_argument("spec", nargs="?", help="a specification file (.stl) with topics and types")
+    made.add_argument("--period", help="from sample to sample: a number, or with a unit: 100ms (default: 1)")
+    made.add_argument(
+        "--unit", help=f"of --period and --stale where they are numbers: {', '.join(UNITS)} (default: s)"
+    )
+    made.add_argument(
+        "--time",
+        metavar="{discrete,dense}",
+        help="discrete: a sample every period; dense: every message is one, at its stamp (default: discrete)",
+    )
+    made.add_argument(
+        "--stale",
+        metavar="DURATION",
+        help="how long a topic may be silent; 0: for ever (default: ten periods, in dense time 5 s)",
+    )
+    return made
+
+
+def options(arguments: argparse.Namespace, parameters: Mapping[str, Any]) -> Options:
+    """Return what holds: an argument before a parameter before the default."""
+    chosen = {}
+    for name, default in DEFAULTS.items():
+        argument = getattr(arguments, name)
+        chosen[name] = str(parameters.get(name, default)) if argument is None else argument
+    return Options(**chosen)

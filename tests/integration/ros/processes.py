@@ -1,0 +1,130 @@
+"""Processes that tests talk to: a master, nodes, and a puppet node that publishes and listens on demand."""
+
+from __future__ import annotations
+
+import json
+import os
+import queue
+import signal
+import socket
+import subprocess
+import sys
+import threading
+import time
+from pathlib import Path
+
+#: Seconds that a slow machine may take; a test that has its answer goes on at once.
+PATIENCE = 60.0
+
+HERE = Path(__file__).parent
+
+
+def free_port():
+    """Return a port of the loopback interface that nobody uses."""
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return probe.getsockname()[1]
+
+
+def wait_for(condition, what):
+    """Wait until a condition gives something; return it."""
+    end = time.monotonic() + PATIENCE
+    while time.monotonic() < end:
+        found = condition()
+        if found:
+            return found
+        time.sleep(0.02)
+    raise AssertionError(f"waited {PATIENCE:.0f} s for {what}")
+
+
+class Process:
+    """A program that runs beside the test, its output in memory."""
+
+    def __init__(self, command, env, cwd=None):
+        self.popen = subprocess.Popen(
+            command,
+            env=env,
+            cwd=cwd,
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+            bufsize=1,
+            start_new_session=True,
+        )
+        self.lines = []
+        self._reader = threading.Thread(target=self._read, daemon=True)
+        self._reader.start()
+
+    def _read(self):
+        for line in self.popen.stdout:
+            self.lines.append(line)
+            self.heard(line)
+
+    def heard(self, line):
+        """Take a line of output."""
+
+    @property
+    def output(self):
+        """All that was printed so far."""
+        return "".join(self.lines)
+
+    def wait_for_output(self, text):
+        """Wait until the program has printed a text."""
+        wait_for(lambda: text in self.output or self._ended(text), f"{text!r} in the output")
+
+    def _ended(self, text):
+        if self.popen.poll() is not None:
+            self._reader.join(PATIENCE)
+            assert text in self.output, f"the program ended without {text!r}:\n{self.output}"
+        return False
+
+    def stop(self, how=signal.SIGINT):
+        """End the program; return its exit code."""
+        self.popen.stdin.close()
+        if self.popen.poll() is None:
+            os.killpg(self.popen.pid, how)
+            try:
+                self.popen.wait(PATIENCE)
+            except subprocess.TimeoutExpired:
+                os.killpg(self.popen.pid, signal.SIGKILL)
+                self.popen.wait(PATIENCE)
+        self._reader.join(PATIENCE)
+        self.popen.stdout.close()
+        return self.popen.returncode
+
+
+class Puppet(Process):
+    """A node of its own that does what it is told, a JSON object a line, and says what it hears."""
+
+    def __init__(self, script, env, *args):
+        self.events = []
+        self._answers = queue.Queue()
+        super().__init__([env.get("RTAMT_TEST_PYTHON", sys.executable), str(HERE / script), *args], env)
+
+    def heard(self, line):
+        """Take an answer or a message."""
+        if not line.startswith("{"):
+            return
+        event = json.loads(line)
+        if event["event"] == "message":
+            self.events.append(event)
+        else:
+            self._answers.put(event)
+
+    def ask(self, **command):
+        """Tell the puppet what to do; return its answer when it is done."""
+        self.popen.stdin.write(json.dumps(command) + "\n")
+        try:
+            return self._answers.get(timeout=PATIENCE)
+        except queue.Empty:
+            raise AssertionError(f"no answer to {command}:\n{self.output}") from None
+
+    def messages(self, topic):
+        """Return what came on a topic so far."""
+        return [event["data"] for event in self.events if event["topic"] == topic]
+
+    def wait_for(self, topic, condition=bool, what=None):
+        """Wait until what came on a topic fulfils a condition; return it."""
+        wait_for(lambda: condition(self.messages(topic)), f"{what or 'a message'} on {topic}")
+        return self.messages(topic)

@@ -1,0 +1,47 @@
+"""The arguments of the nodes: what holds where an argument, a parameter or nothing is given."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from pathlib import Path
+
+import pytest
+
+from rtamt.errors import UsageError
+from rtamt.ros.options import options, parser
+
+LISTING_8 = Path(__file__).parents[3] / "ros/rtamt4ros/specs/spec.stl"
+
+
+def monitor(*arguments, **parameters):
+    return options(parser("node").parse_args([str(a) for a in arguments]), parameters).monitor()
+
+
+def test_unit_is_that_of_the_period_and_bounds_stay_seconds_as_in_the_papers_listing_5():
+    watched = monitor(LISTING_8, "--period", "100", "--unit", "ms")
+    assert watched.period == Fraction(1, 10)
+    assert watched.watches[0].horizon == 15
+
+
+def test_an_argument_comes_before_a_parameter_and_that_before_the_default():
+    assert monitor(spec=LISTING_8).period == 1
+    assert monitor(spec=LISTING_8, period=0.5).period == Fraction(1, 2)
+    assert monitor("--period", "5s", spec=LISTING_8, period=0.5).period == 5
+    assert monitor(LISTING_8, "--time", "dense", "--stale", "0").time == "dense"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "sentence"),
+    [
+        ([], "no specification was given: name a file, or set the parameter spec"),
+        (["--pace", "3"], "unrecognized arguments: --pace; see 'node --help'"),
+        (
+            [LISTING_8, "--time", "dens"],
+            "unknown time domain 'dens'; choose from discrete, dense; did you mean 'dense'?",
+        ),
+    ],
+)
+def test_a_wrong_argument_is_a_sentence(arguments, sentence):
+    with pytest.raises(UsageError) as caught:
+        monitor(*arguments)
+    assert str(caught.value) == sentence
