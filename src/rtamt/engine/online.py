@@ -156,5 +156,6 @@ def depth_of(formula: Formula, period: Fraction = Fraction(1)) -> Fraction:
 
 def _resumed(again: Callable[[], OnlineMonitor], state: tuple[Any, ...]) -> OnlineMonitor:
     monitor = again()
+    monitor._again = again
     monitor._resume(state)
     return monitor

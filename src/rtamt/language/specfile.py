@@ -20,7 +20,7 @@ from dataclasses import dataclass, field
 from itertools import pairwise
 from math import inf
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 from rtamt.errors import NameInFormulaError, ParseError, did_you_mean
 from rtamt.language import complaints
@@ -91,6 +91,14 @@ class Document:
 
     def __hash__(self) -> int:
         return hash(self.text)
+
+    def __getstate__(self) -> dict[str, Any]:
+        # A read-only view can be neither pickled nor copied; what is behind it can.
+        return {k: dict(v) if isinstance(v, MappingProxyType) else v for k, v in self.__dict__.items()}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        for name, value in state.items():
+            object.__setattr__(self, name, MappingProxyType(value) if isinstance(value, dict) else value)
 
     @property
     def formula(self) -> Formula:

@@ -100,6 +100,7 @@ class CompiledStream:
         ignored: Collection[str],
     ) -> None:
         compiled = core()
+        self._made_of = (formulas, inputs, period, unit, tolerance, ignored)
         self._program = compile_program([desugar(formula) for formula in formulas], period, inputs)
         self._unit = float(UNITS[unit])
         self._undefined: type[Exception] = compiled.Undefined
@@ -126,11 +127,20 @@ class CompiledStream:
             raise undefined(self._program.origins[instruction], sample, timestamp * self._unit) from None
         return robustness
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _reopened, (self._made_of, self.monitor.state())
+
     def latest(self, part: Formula) -> float:
         """Return the value of a formula, or of a part of one, at the latest sample."""
         if isinstance(part, Const):
             return part.value
         return float(self.monitor.last(self._program.value_of[desugar(part)]))
+
+
+def _reopened(made_of: tuple[Any, ...], state: bytes) -> CompiledStream:
+    stream = CompiledStream(*made_of)
+    stream.monitor.restore(state)
+    return stream
 
 
 class DefinedStream:

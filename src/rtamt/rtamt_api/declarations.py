@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import builtins
+import copy
 import importlib
 import math
 from abc import ABC, abstractmethod
@@ -23,6 +24,8 @@ from rtamt.rtamt_api.failures import raises_rtamt
 if TYPE_CHECKING:
     import os
     from types import ModuleType
+
+    from typing_extensions import Self
 
     from rtamt.language.formula import Formula
 
@@ -56,6 +59,20 @@ class Declarations(ABC):
         self._constants: dict[str, float] = {}
         self._objects: dict[str, Any] = {}
         self._document: Document | None = None
+
+    # ---- copies ----------------------------------------------------------------------------------
+
+    def __copy__(self) -> Self:
+        """Return a specification in the same state that goes its own way, as ``copy.deepcopy`` does."""
+        return copy.deepcopy(self)
+
+    def __getstate__(self) -> dict[str, Any]:
+        modules = {name: module.__name__ for name, module in self.modules.items()}
+        return {**self.__dict__, "modules": modules}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        modules = {name: importlib.import_module(module) for name, module in state["modules"].items()}
+        self.__dict__.update(state, modules=modules)
 
     # ---- declaring -------------------------------------------------------------------------------
 

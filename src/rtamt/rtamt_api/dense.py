@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from rtamt.engine import dense_evaluate, signals
@@ -100,21 +101,25 @@ class StlDenseTimeOfflineSpecification(ExplainedSpecification, DenseTimeSpecific
             if name not in given and head_of(name) not in given:
                 raise signals.missing_variable(name, tuple(given))
         columns, scale = self._columns(given, self._inputs), self._scale
-
-        def recording_for(part: Formula) -> DenseRecording:
-            read = tuple(dict.fromkeys((*names, *variables(part))))
-            held = {name: columns[name] for name in read if name in columns}
-            return dense_evaluate.trace(held, read, NANOSECOND, scale=scale)
-
-        def value_of(part: Formula) -> list[list[float]]:
-            read = tuple(dict.fromkeys((*names, *variables(part))))
-            whole = all(all_integers(columns[name][0]) for name in read if name in columns)
-            return _points(dense_signal(self._worth(part), recording_for(part)), whole)
-
-        robustness = value_of(formula)
-        self._value_of = value_of
-        self._remember(formula, recording_for(formula))
+        recording, robustness = self._evaluation(formula, columns, scale)
+        self._value_of = partial(self._points_over, columns, scale)
+        self._remember(formula, recording)
         return robustness
+
+    def _points_over(
+        self, columns: dict[str, Samples], scale: TimeScale, part: Formula
+    ) -> list[list[float]]:
+        return self._evaluation(part, columns, scale)[1]
+
+    def _evaluation(
+        self, part: Formula, columns: dict[str, Samples], scale: TimeScale
+    ) -> tuple[DenseRecording, list[list[float]]]:
+        """Return what a part of the specification is evaluated over, and its points."""
+        read = tuple(dict.fromkeys((*variables(self._result), *variables(part))))
+        held = {name: columns[name] for name in read if name in columns}
+        recording = dense_evaluate.trace(held, read, NANOSECOND, scale=scale)
+        whole = all(all_integers(times) for times, _ in held.values())
+        return recording, _points(dense_signal(self._worth(part), recording), whole)
 
 
 class StlDenseTimeOnlineSpecification(OnlineSpecification, DenseTimeSpecification):
@@ -197,7 +202,8 @@ class StlDenseTimeOnlineSpecification(OnlineSpecification, DenseTimeSpecificatio
                 if other is not formula and reads.issuperset(variables(other)) and not has_future(other)
             ]
             self._watched = (formula, *others)
-            self._monitor = DenseMonitor(
+            made = partial(
+                DenseMonitor,
                 self._judged(formula),
                 text=text,
                 backend=backend,
@@ -205,6 +211,7 @@ class StlDenseTimeOnlineSpecification(OnlineSpecification, DenseTimeSpecificatio
                 scale=self._scale,
                 parts=True,
             )
+            self._monitor = made(again=made)
         return self._monitor
 
 

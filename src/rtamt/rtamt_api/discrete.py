@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from fractions import Fraction
+from functools import partial
 from math import inf
 from typing import TYPE_CHECKING, Any
 
@@ -118,10 +119,14 @@ class StlDiscreteTimeOfflineSpecification(ExplainedSpecification, DiscreteTimeSp
         gaps = np.diff(stamps)
         period = self._period_in_units
         self._violations = int(np.count_nonzero(np.abs(gaps - period) > self._tolerance * period))
-        self._value_of = lambda part: signal(self._worth(part), trace).tolist()
+        self._value_of = partial(self._values_over, trace)
         self._remember(formula, trace)
         result: list[list[float]] = np.column_stack((stamps, values)).tolist()
         return result
+
+    def _values_over(self, trace: Recording, part: Formula) -> list[float]:
+        values: list[float] = signal(self._worth(part), trace).tolist()
+        return values
 
     def _trace(self, dataset: Any) -> tuple[signals.FloatArray, Recording]:
         """Return the stamps as given, and the trace in seconds, whatever the gaps between its samples."""

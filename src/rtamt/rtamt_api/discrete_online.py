@@ -86,6 +86,9 @@ class StlDiscreteTimeOnlineSpecification(OnlineSpecification, DiscreteTimeSpecif
 
     # ---- starting --------------------------------------------------------------------------------
 
+    def __getstate__(self) -> dict[str, Any]:
+        return {**super().__getstate__(), "_take": self._begin}  # the quick way leads to this one's stream
+
     def _start_over(self, formulas: dict[str, Formula]) -> None:
         super()._start_over(formulas)
         self._stream = None
