@@ -154,11 +154,11 @@ def shown(value: object) -> str:
     return reprlib.repr(value)
 
 
-def did_you_mean(name: str, known: Iterable[str]) -> str:
+def did_you_mean(name: object, known: Iterable[str]) -> str:
     """Return ``"; did you mean 'x'?"`` for the nearest known name, else an empty string.
 
     >>> did_you_mean("gmt", ["req", "gnt"])
     "; did you mean 'gnt'?"
     """
-    close = get_close_matches(name, list(known), n=1)
+    close = get_close_matches(name, list(known), n=1) if isinstance(name, str) else []
     return f"; did you mean '{close[0]}'?" if close else ""

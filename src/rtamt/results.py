@@ -7,7 +7,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from rtamt.engine.signals import Recording, Signal
-from rtamt.errors import UsageError, did_you_mean
+from rtamt.errors import EvaluationError, UsageError, did_you_mean
 from rtamt.language.formula import variables
 from rtamt.rewrite import interface
 from rtamt.rewrite.check import check_bounds, check_dense
@@ -46,7 +46,11 @@ class Result:
         [True, False]
         """
         lowered = interface.boolean(self.specification.formula)
-        return bool(self.specification.signal_of(lowered, self.trace).values[0] > 0)
+        try:
+            truth = self.specification.signal_of(lowered, self.trace)
+        except EvaluationError as error:
+            raise interface.no_verdict(error) from error
+        return bool(truth.values[0] > 0)
 
     def explain(self, at: Any = None) -> Explanation:
         """Tell why the formula is satisfied or violated: which instants of which signals are responsible.

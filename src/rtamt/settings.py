@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Mapping
 from enum import Enum
 from fractions import Fraction
 from math import isnan
@@ -11,13 +12,11 @@ from typing import TYPE_CHECKING, TypeAlias, TypedDict
 from rtamt.engine.signals import is_number
 from rtamt.errors import UsageError, did_you_mean, shown
 from rtamt.language.formula import variables
+from rtamt.language.operators import Language
 from rtamt.language.units import duration
 from rtamt.rewrite.interface import ROLES, Judge
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from rtamt.language.operators import Language
     from rtamt.language.specfile import Document
 
 BACKENDS = ("cpp", "python")
@@ -52,35 +51,49 @@ class Reading(TypedDict, total=False):
     semantics: Semantics | None
 
 
+def check_language(language: Language) -> None:
+    """Raise :class:`UsageError` unless this is a language."""
+    if not isinstance(language, Language):
+        raise UsageError(f"language is {shown(language)}, expected a Language: STL or STL.extend(...)")
+
+
 def check_backend(backend: str) -> None:
     """Raise :class:`UsageError` unless there is such a back end."""
     if backend not in BACKENDS:
         raise UsageError(
-            f"unknown backend '{backend}'{did_you_mean(backend, BACKENDS)}; choose from {', '.join(BACKENDS)}"
+            f"unknown backend {shown(backend)}{did_you_mean(backend, BACKENDS)}; choose from {', '.join(BACKENDS)}"
         )
 
 
 def check_constants(constants: Mapping[str, float]) -> None:
     """Raise :class:`UsageError` unless every constant is a number."""
+    _check_mapping("constants", constants, "{'limit': 3}")
     for name, value in constants.items():
         if not is_number(value) or isnan(value):
             raise UsageError(f"the constant '{name}' is {shown(value)}; give a number")
+
+
+def _check_mapping(what: str, given: object, example: str) -> None:
+    if not isinstance(given, Mapping):
+        raise UsageError(
+            f"{what} is {shown(given)}, expected a mapping from name to value, such as {example}"
+        )
 
 
 def time_domain(time: str) -> str:
     """Return a time domain's name; raise :class:`UsageError` for any other text."""
     if time not in TIMES:
         raise UsageError(
-            f"unknown time domain '{time}'; choose from {', '.join(TIMES)}{did_you_mean(time, TIMES)}"
+            f"unknown time domain {shown(time)}; choose from {', '.join(TIMES)}{did_you_mean(time, TIMES)}"
         )
     return time
 
 
-def positive_period(period: Duration) -> Fraction:
-    """Return a sampling period in seconds, exact."""
+def positive_period(period: Duration, what: str = "sampling period") -> Fraction:
+    """Return a sampling period, or ``what`` else it is, in seconds, exact."""
     exact = duration(period)
     if exact <= 0:
-        raise UsageError(f"the sampling period is {period!r}; it must be positive")
+        raise UsageError(f"the {what} is {period!r}; it must be positive")
     return exact
 
 
@@ -89,6 +102,7 @@ def roles_of(document: Document, given: Mapping[str, str]) -> Mapping[str, str]:
 
     Raises :class:`UsageError` for a name that the document does not know, and for what is no role.
     """
+    _check_mapping("roles", given, "{'req': 'input'}")
     declared = {d.name: d.role for d in document.declarations if d.role is not None}
     read = {name for assertion in document.assertions for name in variables(assertion.formula)}
     known = read | {name.split(".")[0] for name in read} | {d.name for d in document.declarations}
@@ -101,3 +115,12 @@ def roles_of(document: Document, given: Mapping[str, str]) -> Mapping[str, str]:
         if role not in ROLES:
             raise UsageError(f"the role of '{name}' is {shown(role)}; choose 'input' or 'output'")
     return MappingProxyType({**declared, **given})
+
+
+def names_of(watch: str | Iterable[str]) -> tuple[str, ...]:
+    """Return what a monitor is to watch, each once; raise :class:`UsageError` for what is no list of texts."""
+    names = [watch] if isinstance(watch, str) else watch
+    try:
+        return tuple(dict.fromkeys(names))
+    except TypeError:
+        raise UsageError(f"watch is {shown(watch)}, expected names or formulas, such as ['x >= 3']") from None

@@ -14,7 +14,7 @@ from rtamt.engine.monitor import Monitor
 from rtamt.engine.online import Watched
 from rtamt.engine.signals import Recording
 from rtamt.engine.ticks import NANOSECOND
-from rtamt.errors import UsageError
+from rtamt.errors import UsageError, shown
 from rtamt.language.formula import Formula, variables
 from rtamt.language.operators import STL, Language
 from rtamt.language.parser import parse_formula
@@ -26,7 +26,15 @@ from rtamt.rewrite import interface
 from rtamt.rewrite.check import check_bounds, check_dense
 from rtamt.rewrite.horizon import horizon
 from rtamt.rewrite.pastify import pastify
-from rtamt.settings import check_backend, check_constants, positive_period, roles_of, time_domain
+from rtamt.settings import (
+    check_backend,
+    check_constants,
+    check_language,
+    names_of,
+    positive_period,
+    roles_of,
+    time_domain,
+)
 
 if TYPE_CHECKING:
     import os
@@ -205,7 +213,7 @@ class Specification:
         None 2.0 -3.0
         """
         formula = self.judged(self.formula, self._semantics(semantics))
-        names = (watch,) if isinstance(watch, str) else tuple(dict.fromkeys(watch))
+        names = names_of(watch)
         watched = [self._watched(name, semantics) for name in names]
         again = partial(
             self.monitor,
@@ -293,7 +301,7 @@ class Specification:
         req >= 3 | once(req >= 3)
         """
         for assertion in self.document.assertions:
-            if assertion.name == name:
+            if assertion.name is not None and assertion.name == name:
                 return assertion.formula
         return parse_formula(
             name,
@@ -342,7 +350,7 @@ class Specification:
         return self.time if time is None else time_domain(time)
 
     def _resolution(self, resolution: Duration | None) -> Fraction:
-        return self.resolution if resolution is None else positive_period(resolution)
+        return self.resolution if resolution is None else positive_period(resolution, "resolution")
 
     def _semantics(self, semantics: Semantics | None) -> str | Judge:
         return self.semantics if semantics is None else interface.semantics_of(semantics)
@@ -395,11 +403,12 @@ def parse(
     >>> [spec.evaluate(never_asked, semantics=s).robustness for s in ("standard", "output_robustness")]
     [1.0, inf]
     """
+    check_language(language)
     check_backend(backend)
-    check_constants(constants or {})
+    check_constants({} if constants is None else constants)
     document = parse_document(text, language=language, unit=unit, constants=constants)
     exact = None if period is None else positive_period(period)
-    tick = positive_period(resolution)
+    tick = positive_period(resolution, "resolution")
     spec = Specification(
         document,
         exact,
@@ -409,7 +418,7 @@ def parse(
         time_domain(time),
         tick,
         interface.semantics_of(semantics),
-        roles_of(document, roles or {}),
+        roles_of(document, {} if roles is None else roles),
     )
     if spec.time == "dense":
         for assertion in document.assertions:
@@ -438,6 +447,8 @@ def load(path: str | os.PathLike[str], **settings: Unpack[Settings]) -> Specific
     """
     try:
         text = Path(path).read_text(encoding="utf-8-sig")
+    except TypeError:
+        raise UsageError(f"the path of a specification is {shown(path)}, expected text or a Path") from None
     except OSError as error:
         raise UsageError(f"cannot read the specification '{path}': {error.strerror}") from error
     except UnicodeDecodeError as error:

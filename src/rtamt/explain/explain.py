@@ -6,6 +6,7 @@ from math import inf
 from typing import TYPE_CHECKING, Any
 
 from rtamt.engine.signals import Recording
+from rtamt.errors import EvaluationError
 from rtamt.explain.cells import NEVER, Steps, two_valued
 from rtamt.explain.critical import Walk
 from rtamt.explain.demands import Demands
@@ -66,13 +67,19 @@ class _Explainer:
         self._structure = Structure.of(formula, self._line.period if self._dense else None)
         leaves = self._structure.leaves
         predicates = [leaf.formula for leaf in leaves.values()]
-        lowered = [*map(semantics, predicates), *map(interface.boolean, predicates)]
-        steps = self._line.measured(lowered) if lowered else []
-        self._values: dict[str, Steps] = dict(zip(leaves, steps[: len(leaves)], strict=True))
-        self._truth: dict[str, Steps] = dict(zip(leaves, steps[len(leaves) :], strict=True))
+        self._values = self._measured([semantics(predicate) for predicate in predicates])
+        try:
+            self._truth = self._measured([interface.boolean(predicate) for predicate in predicates])
+        except EvaluationError as error:
+            raise interface.no_verdict(error) from error
         self._signals = Signals(self._structure, self._line, self._values)
         self._holds = truths(self._structure.order, self._line, self._truth)
         self._walk = Walk(self._signals, self._line.period, self._line.end)
+
+    def _measured(self, formulas: list[Formula]) -> dict[str, Steps]:
+        """Return what each of as many formulas as there are leaves is worth, by the leaf's name."""
+        steps = self._line.measured(formulas) if formulas else []
+        return dict(zip(self._structure.leaves, steps, strict=True))
 
     def at(self, at: Any) -> Explanation:
         cell = 0 if at is None else self._line.cell(at)

@@ -10,7 +10,7 @@ from enum import Enum
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
-from rtamt.errors import UsageError
+from rtamt.errors import UsageError, shown
 from rtamt.language.formula import Apply, Formula, Interval
 
 if TYPE_CHECKING:
@@ -247,6 +247,8 @@ class Language:
         names: dict[str, Operator] = {}
         spellings: dict[tuple[str, bool], Operator] = {}
         for op in table:
+            if not isinstance(op, Operator):
+                raise UsageError(f"{shown(op)} is no operator; give an Operator")
             op.check()
             if op.name in names:
                 raise UsageError(f"two operators are named '{op.name}': give each a name of its own")

@@ -19,7 +19,7 @@ from enum import Enum
 from types import MappingProxyType
 from typing import TypeAlias
 
-from rtamt.errors import UsageError, did_you_mean, shown
+from rtamt.errors import EvaluationError, StlError, UsageError, did_you_mean, shown
 from rtamt.language.formula import Apply, Const, Formula, fold, variables
 from rtamt.language.operators import STL, Sort, holds
 from rtamt.rewrite.desugar import rebuilt, spelled_out
@@ -160,6 +160,11 @@ def boolean(formula: Formula) -> Formula:
     return lower(formula, "boolean", {})
 
 
+def no_verdict(error: EvaluationError) -> EvaluationError:
+    """Return the error for a formula that has robustness but no truth: an operator may make NaN of infinities."""
+    return EvaluationError(f"there is no verdict, for which true counts as +inf and false as -inf: {error}")
+
+
 def is_number(formula: Formula) -> bool:
     """Tell whether a formula is a number by itself: a variable, a constant or arithmetic."""
     return not isinstance(formula, Apply) or formula.op.result is Sort.NUMBER
@@ -202,7 +207,15 @@ def _predicates(formula: Formula) -> set[int]:
 
 def _judged(predicate: Formula, judge: Judge, roles: Roles) -> Formula:
     """Return what a semantics puts in the place of a predicate, which still reads what the predicate reads."""
-    judged = judge(predicate, roles)
+    try:
+        judged = judge(predicate, roles)
+    except StlError:
+        raise
+    except Exception as error:
+        raise EvaluationError(
+            f"the semantics {_name(judge)} failed for the predicate '{predicate}': {type(error).__name__}: "
+            f"{error}; it is called with a predicate and the roles, and returns a formula"
+        ) from error
     if not isinstance(judged, Formula):
         raise UsageError(
             f"the semantics {_name(judge)} returned {shown(judged)} for the predicate '{predicate}'; "

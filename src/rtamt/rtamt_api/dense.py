@@ -106,9 +106,7 @@ class StlDenseTimeOfflineSpecification(ExplainedSpecification, DenseTimeSpecific
         self._remember(formula, recording)
         return robustness
 
-    def _points_over(
-        self, columns: dict[str, Samples], scale: TimeScale, part: Formula
-    ) -> list[list[float]]:
+    def _points_over(self, columns: dict[str, Samples], scale: TimeScale, part: Formula) -> list[list[float]]:
         return self._evaluation(part, columns, scale)[1]
 
     def _evaluation(

@@ -1,0 +1,73 @@
+"""A setting of the wrong kind is answered by a sentence, never by a TypeError or AttributeError from inside."""
+
+import numpy as np
+import pytest
+
+import rtamt
+from rtamt.extend import STL, Bounds, Fixity, Operator, Sort, Tense
+
+SAID = {
+    "time": (lambda: rtamt.parse("x", time=None), "unknown time domain None; choose from discrete, dense"),
+    "backend": (lambda: rtamt.parse("x", backend=3), "unknown backend 3; choose from cpp, python"),
+    "language": (
+        lambda: rtamt.parse("x", language="stl"),
+        "language is 'stl', expected a Language: STL or STL.extend(...)",
+    ),
+    "constants": (
+        lambda: rtamt.parse("x", constants=["k"]),
+        "constants is ['k'], expected a mapping from name to value, such as {'limit': 3}",
+    ),
+    "roles": (
+        lambda: rtamt.parse("x", roles="x"),
+        "roles is 'x', expected a mapping from name to value, such as {'req': 'input'}",
+    ),
+    "resolution": (lambda: rtamt.parse("x", resolution=0), "the resolution is 0; it must be positive"),
+    "watch": (
+        lambda: rtamt.parse("x").monitor(watch=3),
+        "watch is 3, expected names or formulas, such as ['x >= 3']",
+    ),
+    "watched": (
+        lambda: rtamt.parse("x").monitor(watch=["x"])[3],
+        "'3' is not watched; the monitor watches 'x'",
+    ),
+    "sub-formula": (lambda: rtamt.parse("x").evaluate({"x": [1]})[None], "a formula is text, got NoneType"),
+    "path": (lambda: rtamt.load(None), "the path of a specification is None, expected text or a Path"),
+    "operator": (lambda: STL.extend(3), "3 is no operator; give an Operator"),
+}
+
+
+@pytest.mark.parametrize("call", SAID)
+def test_a_setting_of_another_kind(call):
+    wrong, message = SAID[call]
+    with pytest.raises(rtamt.UsageError) as info:
+        wrong()
+    assert str(info.value) == message
+
+
+def test_a_semantics_that_raises_is_named_with_the_predicate():
+    def mine(_predicate, roles):
+        return roles["w"]
+
+    with pytest.raises(rtamt.EvaluationError) as info:
+        rtamt.parse("once(x >= 3)", semantics=mine).monitor()
+    assert str(info.value) == (
+        "the semantics 'mine' failed for the predicate 'x >= 3': KeyError: 'w'; it is called with a predicate "
+        "and the roles, and returns a formula"
+    )
+    assert isinstance(info.value.__cause__, KeyError)
+
+
+@pytest.mark.parametrize("ask", [lambda result: result.satisfied, lambda result: result.explain()])
+def test_an_operator_that_makes_nan_of_infinities_has_robustness_and_no_verdict(ask):
+    mean = Operator(
+        "mean", ("mean",), Fixity.PREFIX, 75, (Sort.FORMULA,), Sort.FORMULA, "The mean so far.", "mean[0:1] x",
+        definition=lambda x, _a, _b: np.array([x[: i + 1].mean() for i in range(len(x))]),
+        tense=Tense.PAST, bounds=Bounds.REQUIRED,
+    )  # fmt: skip
+    result = rtamt.parse("always(mean[0:1] x > 1)", language=STL.extend(mean)).evaluate({"x": [0, 3, 6]})
+    assert result.robustness == -1.0
+    with pytest.raises(rtamt.EvaluationError) as info:
+        ask(rtamt.parse("always(mean[0:1](x > 1))", language=STL.extend(mean)).evaluate({"x": [0, 3, 6]}))
+    assert str(info.value).startswith(
+        "there is no verdict, for which true counts as +inf and false as -inf: the operator 'mean' gave NaN: "
+    )
