@@ -15,7 +15,7 @@ CXX_FILES := find core tests/cpp tests/fuzz benchmarks -name
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help run test test-python test-cpp test-install lint format bench peers conformance soak fuzz clean
+.PHONY: help run test test-python test-cpp test-install lint format docs bench peers conformance soak fuzz clean
 
 help: ## list the tasks
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-13s %s\n", $$1, $$2 }' Makefile
@@ -53,6 +53,9 @@ format: $(VENV)/.group-lint ## format Python and C++
 	$(RUN) -m ruff check --select I --fix
 	$(RUN) -m ruff format
 	$(CXX_FILES) '*.[ch]pp' | xargs $(VENV)/bin/clang-format -i
+
+docs: $(VENV)/.core $(VENV)/.group-docs ## build the site into build/site: pages, reference and pictures, links checked
+	$(VENV)/bin/mkdocs build --quiet
 
 bench: $(VENV)/.core $(VENV)/.extras ## what a sample costs, beside the figures to reach
 	$(RUN) benchmarks/run.py

@@ -1,21 +1,13 @@
 """docs/reference/program.md says what is true of the bytes and of the dump."""
 
 import re
-import shlex
 import struct
 from pathlib import Path
 
 import rtamt
-from rtamt.cli import main
 from rtamt.engine.program import OPCODES
 
 PAGE = (Path(__file__).parents[2] / "docs" / "reference" / "program.md").read_text(encoding="utf-8")
-
-
-def test_the_dump_is_what_the_command_prints(capsys):
-    ((command, listing),) = re.findall(r"```\n\$ (.*?)\n(.*?)```", PAGE, flags=re.DOTALL)
-    assert main(shlex.split(command)[1:]) == 0
-    assert capsys.readouterr().out == listing
 
 
 def test_the_opcodes_are_listed_by_number():

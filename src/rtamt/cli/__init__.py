@@ -67,21 +67,22 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 def _dispatch(argv: list[str]) -> int:
     if not argv:
-        print(_overview().format_help().rstrip())
+        print(overview().format_help().rstrip())
         return ERROR
     name, *rest = argv
     if name.startswith("-"):
-        _overview().parse_args(argv)  # --help and --version do not return
+        overview().parse_args(argv)  # --help and --version do not return
     command = COMMANDS.get(name)
     if command is None:
         hint = did_you_mean(name, COMMANDS)
         raise UsageError(f"there is no command '{name}', only {', '.join(COMMANDS)}{hint}")
-    parser = _parser(command)
+    parser = parser_of(command)
     # Options may stand anywhere, between traces too; but intermixed parsing does not know "--".
     return command.run(parser.parse_args(rest) if "--" in rest else parser.parse_intermixed_args(rest))
 
 
-def _parser(command: Command) -> Parser:
+def parser_of(command: Command) -> Parser:
+    """Return the argument parser of a command."""
     parser = Parser(
         prog=f"rtamt {command.name}",
         formatter_class=Help,
@@ -91,7 +92,8 @@ def _parser(command: Command) -> Parser:
     return parser
 
 
-def _overview() -> Parser:
+def overview() -> Parser:
+    """Return the parser of the command line as a whole, whose help lists the commands."""
     width = max(map(len, COMMANDS))
     listing = "\n".join(f"  {c.name:<{width}}  {c.summary}" for c in COMMANDS.values())
     parser = Parser(
@@ -110,4 +112,4 @@ def _overview() -> Parser:
     return parser
 
 
-__all__ = ["COMMANDS", "OK", "main"]
+__all__ = ["COMMANDS", "OK", "main", "overview", "parser_of"]

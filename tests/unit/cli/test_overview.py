@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 import rtamt
-from rtamt.cli import COMMANDS, _overview, _parser, main
+from rtamt.cli import COMMANDS, main, overview, parser_of
 from rtamt.language.operators import STL
 
 ROOT = Path(__file__).parents[3]
@@ -50,7 +50,7 @@ ELSEWHERE = (".csv", ".ulg", "limits.stl")
 def examples():
     for command in ("", *COMMANDS):
         parser = COMMANDS[command] if command else None
-        text = _overview().format_help() if parser is None else _parser(parser).format_help()
+        text = overview().format_help() if parser is None else parser_of(parser).format_help()
         for line in text.partition("examples:\n")[2].partition("\n\n")[0].splitlines():
             if "examples/" in line or not any(f"{suffix} " in f"{line} " for suffix in ELSEWHERE):
                 yield line.strip()

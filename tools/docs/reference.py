@@ -1,0 +1,224 @@
+"""The reference: pages made from the table of operators, docstrings, argparse and the messages in the source."""
+
+from __future__ import annotations
+
+import os
+import re
+from importlib import import_module
+from pathlib import Path
+from textwrap import dedent
+from typing import TYPE_CHECKING
+
+import messages
+import picture
+
+import rtamt
+from rtamt.cli import COMMANDS, overview, parser_of
+from rtamt.language import parser, specfile
+from rtamt.language.operators import STL, Bounds, Fixity, Tense
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+    from rtamt.language.operators import Operator
+
+ROOT = Path(__file__).parents[2]
+
+_GROUPS: tuple[tuple[str, Callable[[Operator], bool]], ...] = (
+    ("Constants", lambda op: op.fixity is Fixity.ATOM),
+    ("Numbers", lambda op: op.result.value == "number"),
+    ("Predicates", lambda op: "number" in {operand.value for operand in op.operands}),
+    ("Boolean operators", lambda op: op.tense is Tense.NONE),
+    ("The past", lambda op: op.tense is Tense.PAST),
+    ("The future", lambda op: op.tense is Tense.FUTURE),
+)
+
+
+def spelled() -> list[Operator]:
+    """Return the operators that texts can use, in the order of the table."""
+    return list(STL)
+
+
+def pictures() -> dict[str, str]:
+    """Return the picture of each operator as SVG, by its place in the site."""
+    return {f"reference/operators/{op.name}.svg": picture.of(op.example) for op in spelled()}
+
+
+# ---- the language -----------------------------------------------------------------------------------
+
+
+def language() -> str:
+    """Return the page of the operators: meaning, example and picture of each."""
+    lines = [
+        "# The language\n",
+        "Every operator, from the table that the parser and the engine read. The pictures show the example on the "
+        "same two signals, a sample a second: above the signals, below the robustness, green where it is positive "
+        "and red where it is negative. [The grammar](grammar.md) says how formulas are put together, "
+        "[the semantics](../explanation/semantics.md) what they mean exactly.\n",
+        "| operator | written | binds | meaning |",
+        "|---|---|---:|---|",
+    ]
+    lines += [
+        f"| [{op.name}](#{op.name.replace('_', '-')}) | {_written(op)} | {op.power} | {_cell(op.doc)} |"
+        for op in sorted(spelled(), key=lambda op: -op.power)
+    ]
+    lines.append(
+        "\nWhat binds tighter has the higher number. Infix operators associate to the left, "
+        f"{', '.join(f'`{op.spellings[0]}`' for op in STL if op.fixity is Fixity.RIGHT)} to the right.\n"
+    )
+    left = spelled()
+    for title, belongs in _GROUPS:
+        lines.append(f"## {title}\n")
+        lines += [_operator(op) for op in left if belongs(op)]
+        left = [op for op in left if not belongs(op)]
+    assert not left
+    return "\n".join(lines)
+
+
+def _operator(op: Operator) -> str:
+    spec = rtamt.parse(op.example)
+    facts = [f"written {_written(op)}"]
+    facts += [f"interval {op.bounds.value}"] if op.bounds is not Bounds.NONE else []
+    facts += ["discrete time only"] if op.discrete_only else []
+    facts += [f"dual `{op.dual}`"] if op.dual else []
+    facts += [f"past counterpart `{op.twin}`"] if op.twin else []
+    expansion = op.expansion is not None and op.kernel is None
+    facts += ["derived: the engine runs what it expands to"] if expansion else []
+    return (
+        f"### {op.name} {{#{op.name.replace('_', '-')}}}\n\n{op.doc}\n\n"
+        f"{' · '.join(facts)}\n\n```text\n{op.example}\n```\n\n"
+        f"In LaTeX: `{spec.formula.latex()}`\n\n"
+        f"![{op.name}: signals and robustness](operators/{op.name}.svg)\n"
+    )
+
+
+def _written(op: Operator) -> str:
+    return ", ".join(f"`{_cell(spelling)}`" for spelling in op.spellings)
+
+
+def _cell(text: str) -> str:
+    return text.replace("|", r"\|")
+
+
+# ---- the grammar ------------------------------------------------------------------------------------
+
+
+def grammar() -> str:
+    """Return the page of the grammar: the productions out of the parser's docstrings, the words out of the table."""
+    kinds = {
+        "prefix operator": (Fixity.PREFIX,),
+        "infix operator": (Fixity.LEFT, Fixity.RIGHT),
+        "function": (Fixity.FUNCTION,),
+        "atom": (Fixity.ATOM,),
+    }
+    words = [
+        f"{kind:<15} = "
+        + " | ".join(f'"{s}"' for op in spelled() if op.fixity in fixities for s in op.spellings)
+        for kind, fixities in kinds.items()
+    ]
+    listing = "\n".join(words)
+    return (
+        "# The grammar\n\nIn EBNF: `[ ]` may be left out, `{ }` may be repeated. An infix operator that binds more "
+        "weakly than what is around it ends an operand: [the powers](language.md).\n\n"
+        f"## A formula\n\n{_productions(parser)}\n\n```ebnf\n{listing}\n```\n\n"
+        f"## A specification file\n\n{_productions(specfile)}\n"
+    )
+
+
+def _productions(module: object) -> str:
+    """Return the grammar in a module's docstring, and the prose after it."""
+    doc = module.__doc__ or ""
+    _, _, rest = doc.partition("::\n")
+    block = re.match(r"(?:[ ]{4}.*\n|\n)+", rest)
+    assert block, "the module's docstring has its grammar after '::'"
+    prose = rest[block.end() :].strip().replace("``", "`")
+    return f"```ebnf\n{dedent(block[0]).strip()}\n```\n\n{prose}"
+
+
+# ---- the command line -------------------------------------------------------------------------------
+
+
+def command_line() -> str:
+    """Return the page of the command line: the help of every command."""
+    before = os.environ.get("COLUMNS")
+    os.environ["COLUMNS"] = "100"  # what argparse wraps to
+    try:
+        parts = [f"# The command line\n\n```text\n{overview().format_help()}```\n"]
+        parts += [
+            f"## rtamt {command.name}\n\n```text\n{parser_of(command).format_help()}```\n"
+            for command in COMMANDS.values()
+        ]
+    finally:
+        del os.environ["COLUMNS"]
+        if before is not None:
+            os.environ["COLUMNS"] = before
+    return "\n".join(parts)
+
+
+# ---- the API ----------------------------------------------------------------------------------------
+
+
+def api() -> str:
+    """Return the page of the API: what `rtamt` exports, then the modules that pages of docs/ import."""
+    groups: dict[str, dict[str, None]] = {"The library": {}, "Errors": {}, "The classes of RTAMT": {}}
+    for name in rtamt.__all__:
+        thing = getattr(rtamt, name)
+        module = getattr(thing, "__module__", "")
+        title = (
+            "Errors" if module == "rtamt.errors"
+            else "The classes of RTAMT" if module.startswith("rtamt.rtamt_api")
+            else "The library"
+        )  # fmt: skip
+        if hasattr(thing, "__name__"):  # a class that has a second name, as RTAMT's have, is shown once
+            groups[title][f"{module}.{thing.__name__}"] = None
+    lines = ["# The API\n"]
+    for title, names in groups.items():
+        lines.append(f"## {title}\n")
+        lines += [f"::: {name}\n" for name in names]
+    for module in public_modules():
+        lines.append(f"## {module}\n\n::: {module}\n    options:\n      show_root_heading: false\n")
+    return "\n".join(lines)
+
+
+def public_modules() -> list[str]:
+    """Return the modules beside `rtamt` itself that the pages tell users to import."""
+    pages = "\n".join(p.read_text(encoding="utf-8") for p in sorted((ROOT / "docs").rglob("*.md")))
+    named = set(re.findall(r"^(?:from|import) (rtamt\.\w+)", pages, re.MULTILINE))
+    for names in re.findall(r"^from rtamt import ([\w, ]+)", pages, re.MULTILINE):
+        named |= {f"rtamt.{name.strip()}" for name in names.split(",")}
+    return sorted(name for name in named if _is_module(name))
+
+
+def _is_module(name: str) -> bool:
+    try:
+        import_module(name)
+    except ModuleNotFoundError:
+        return False
+    return True
+
+
+# ---- the messages -----------------------------------------------------------------------------------
+
+
+def _messages() -> Iterator[str]:
+    yield "# Messages\n"
+    yield (
+        "What rtamt says when something is wrong, out of its source: search this page for the words of a message. "
+        "What differs from case to case is in ⟨brackets⟩. Errors about text also show the line and a caret under the "
+        "place. On the command line every message is one line on stderr, with exit code 2.\n"
+    )
+    for kind, found in messages.by_kind(ROOT / "src/rtamt").items():
+        error = getattr(rtamt, kind, None)
+        doc = (error.__doc__ or "").strip().partition("\n")[0] if error else ""
+        yield f"## {kind}\n\n{doc}\n"
+        yield "\n".join(f"- {text}" for text in found) + "\n"
+
+
+#: Page and what makes it.
+PAGES: dict[str, Callable[[], str]] = {
+    "reference/language.md": language,
+    "reference/grammar.md": grammar,
+    "reference/command-line.md": command_line,
+    "reference/api.md": api,
+    "reference/messages.md": lambda: "\n".join(_messages()),
+}
