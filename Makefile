@@ -55,7 +55,7 @@ format: $(VENV)/.group-lint ## format Python and C++
 	$(CXX_FILES) '*.[ch]pp' | xargs $(VENV)/bin/clang-format -i
 
 docs: $(VENV)/.core $(VENV)/.group-docs ## build the site into build/site: pages, reference and pictures, links checked
-	$(VENV)/bin/mkdocs build --quiet
+	NO_MKDOCS_2_WARNING=1 $(VENV)/bin/mkdocs build --quiet
 
 bench: $(VENV)/.core $(VENV)/.extras ## what a sample costs, beside the figures to reach
 	$(RUN) benchmarks/run.py

@@ -6,7 +6,7 @@ block                           what is done
 ```LANGUAGE title="FILE"        the file is written; so is a block whose first line is ``# FILE`` or ``// FILE``.
                                 A Python file that is there already goes on.
 ```python                       runs, in one namespace a page. What it prints stands in comments
-                                behind its prints, or in the ```text block that follows.
+                                behind its prints, then in the ```text block that follows.
 ```console                      every line is run by the shell, with or without ``$`` before it, and may not
                                 fail; ``rtamt`` may say 1, violated. What is printed stands in the ```text
                                 block that follows, if one does.
@@ -25,6 +25,7 @@ import shlex
 import subprocess
 import sys
 from dataclasses import dataclass
+from itertools import zip_longest
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -76,7 +77,7 @@ class Page:
 
     def run(self) -> None:
         """Run every block; raise AssertionError where one does not do what the page says."""
-        for block, after in zip(self.blocks, [*self.blocks[1:], None], strict=True):
+        for block, after in zip_longest(self.blocks, self.blocks[1:]):
             where = f"{self.name}, line {block.line}"
             if block.file is not None:
                 self._write(block, Path(block.file))
@@ -102,7 +103,7 @@ class Page:
         with contextlib.redirect_stdout(out):
             exec(code, self.namespace)  # noqa: S102 - our own text
         comments = _PRINTED.findall(block.text)
-        expected = "".join(f"{line}\n" for line in comments) if comments else said or ""
+        expected = "".join(f"{line}\n" for line in comments) + (said or "")
         assert out.getvalue() == expected, f"{where} prints\n{out.getvalue()}"
 
     def _console(self, block: Block, said: str | None, where: str) -> None:
