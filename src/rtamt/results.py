@@ -13,6 +13,8 @@ from rtamt.rewrite import interface
 from rtamt.rewrite.check import check_bounds, check_dense
 
 if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
     from rtamt.engine.dense_evaluate import DenseRecording
     from rtamt.explain.report import Explanation
     from rtamt.rewrite.interface import Judge
@@ -82,6 +84,48 @@ class Result:
             text=spec.text,
             semantics=lambda predicate: spec.judged(predicate, self.semantics),
         )
+
+    def plot(self, at: Any = None, *, rows: int = 6, figure: Figure | None = None) -> Figure:
+        """Draw signals, robustness over time and the explanation; needs ``pip install 'rtamt[plot]'``.
+
+        Signals that a predicate compares share a panel. Below them the robustness of the formula and of at
+        most ``rows - 1`` of its sub-formulas: named ones, those that the explanation speaks of, and those
+        next to the top. Shaded is where each does not hold (Boolean semantics), yellow the implicant, a
+        diamond the critical point; infinities are drawn at the edge. ``at``: what is explained, as in
+        :meth:`explain`. ``figure``: one of matplotlib to draw into, by default a new one of pyplot.
+
+        >>> import rtamt
+        >>> from matplotlib.figure import Figure
+        >>> result = rtamt.parse("always(x >= 3)").evaluate({"x": [5, 4, 2, 6]})
+        >>> figure = result.plot(figure=Figure())
+        >>> [axis.get_title(loc="left") for axis in figure.axes]
+        ['', 'always(x >= 3)', 'x >= 3']
+        """
+        from rtamt.plot.figure import draw, matplotlib
+        from rtamt.plot.scene import scene
+
+        canvas = matplotlib("pyplot").figure() if figure is None else figure
+        draw(scene(self, at), rows, canvas)
+        return canvas
+
+    def plot_tree(self, at: Any = None, *, figure: Figure | None = None) -> Figure:
+        """Draw the formula as a tree, each sub-formula with its robustness and verdict at an instant.
+
+        ``at`` and ``figure`` as for :meth:`plot`. The predicate of the critical point has a thick frame.
+
+        >>> import rtamt
+        >>> from matplotlib.figure import Figure
+        >>> result = rtamt.parse("x >= 3 and y >= 0").evaluate({"x": [5], "y": [-1]})
+        >>> [text.get_text() for text in result.plot_tree(figure=Figure()).axes[0].texts][2:4]
+        ['φ and ψ', '✗ −1']
+        """
+        from rtamt.plot.figure import matplotlib
+        from rtamt.plot.scene import scene
+        from rtamt.plot.tree import draw_tree
+
+        canvas = matplotlib("pyplot").figure() if figure is None else figure
+        draw_tree(scene(self, at), canvas)
+        return canvas
 
     def __getitem__(self, name: str) -> Signal:
         """Return the signal of a named sub-specification, or of any formula over the same variables.

@@ -8,7 +8,17 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 import rtamt
-from rtamt.cli import check, compile, explain, falsify, fmu, info, monitor, operators  # noqa: A004 - named as the command is
+from rtamt.cli import (
+    check,
+    compile,  # noqa: A004 - named as the command is
+    explain,
+    falsify,
+    fmu,
+    info,
+    monitor,
+    operators,
+    plot,
+)
 from rtamt.cli.command import BROKEN_PIPE, ERROR, INTERRUPTED, OK, Command, Help, Parser, complain
 from rtamt.errors import StlError, UsageError, did_you_mean
 
@@ -21,6 +31,7 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
         for c in (
             check.COMMAND,
             explain.COMMAND,
+            plot.COMMAND,
             monitor.COMMAND,
             falsify.COMMAND,
             info.COMMAND,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -25,7 +25,9 @@ from rtamt.errors import StlError
 if TYPE_CHECKING:
     import argparse
 
+    from rtamt.engine.trace import Trace
     from rtamt.explain.report import Explanation
+    from rtamt.specification import Specification
 
 _DESCRIPTION = """\
 Tell why a recording satisfies or violates a requirement: the critical point (the predicate
@@ -55,9 +57,14 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add_specification_options(parser)
     parser.add_argument("trace", metavar="TRACE", help="a CSV file")
     add_time_option(parser)
-    parser.add_argument("--at", metavar="T", type=float, help="seconds: the instant (default: the first)")
+    add_instant_option(parser)
     add_stamp_options(parser, "column")
     parser.add_argument("--json", action="store_true", help="print JSON")
+
+
+def add_instant_option(parser: argparse.ArgumentParser) -> None:
+    """Add the instant whose verdict is explained; see :func:`instant`."""
+    parser.add_argument("--at", metavar="T", type=float, help="seconds: the instant (default: the first)")
 
 
 def run(args: argparse.Namespace) -> int:
@@ -66,15 +73,20 @@ def run(args: argparse.Namespace) -> int:
     with Progress() as progress:
         progress.show(args.trace)
         data = read_trace(spec, args.trace, args.time_column, args.time_unit)
-        at = args.at
-        if at is not None and spec.time == "dense" and isinstance(data.start, np.integer):
-            (at,) = TimeScale(NANOSECOND, "seconds").ticks([at], "--at")
         try:
-            explanation = spec.evaluate(data).explain(at)
+            explanation = spec.evaluate(data).explain(instant(args.at, spec, data))
         except StlError as error:
             raise CommandError(f"{args.trace}: {error}") from error
     print(_as_json(args.trace, explanation) if args.json else explanation)
     return OK if explanation.satisfied else VIOLATED
+
+
+def instant(at: float | None, spec: Specification, data: Trace) -> Any:
+    """Return what ``--at`` says, in seconds, as the recording tells time."""
+    if at is not None and spec.time == "dense" and isinstance(data.start, np.integer):
+        (tick,) = TimeScale(NANOSECOND, "seconds").ticks([at], "--at")
+        return tick
+    return at
 
 
 def _as_json(trace: str, explanation: Explanation) -> str:

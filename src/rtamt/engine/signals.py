@@ -35,6 +35,11 @@ class Clocked(ABC):
 
     __slots__ = ()
 
+    @property
+    @abstractmethod
+    def start(self) -> Any:
+        """The earliest time of any signal; None without time stamps."""
+
     @abstractmethod
     def on_one_clock(self, names: Collection[str]) -> Mapping[str, Any]:
         """Return n values for each name, and ``"time"`` in seconds where there are stamps."""
@@ -88,6 +93,8 @@ class Recording:
     period: Fraction
     #: Whether the period was taken from the time stamps.
     inferred: bool = False
+    #: Whether the time stamps were dates; ``times`` are seconds since 1970 then.
+    dated: bool = False
 
     def __len__(self) -> int:
         return len(self.times)
@@ -122,7 +129,15 @@ def trace(
         check_regular(times, period, tolerance)
     for name, column in columns.items():
         check_numbers(name, column, times)
-    return Recording(times, columns, period, inferred)
+    return Recording(times, columns, period, inferred, _dated(data))
+
+
+def _dated(data: Any) -> bool:
+    """Tell whether the time stamps of a recording are dates."""
+    if isinstance(data, Clocked):
+        return isinstance(data.start, np.datetime64)
+    first = next(iter(data[TIME]), None) if TIME in _keys(data) else None
+    return isinstance(first, datetime | np.datetime64)
 
 
 def columns_of(

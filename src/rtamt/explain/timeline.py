@@ -125,7 +125,10 @@ class DiscreteTimeline(Timeline):
 
     def show(self, cell: int) -> str:
         """See :class:`Timeline`."""
-        return f"{self._recording.times[cell]:.15g} s"
+        seconds = float(self._recording.times[cell])
+        if self._recording.dated:
+            return str(np.datetime64(round(seconds * 1e3), "ms"))
+        return f"{seconds:.15g} s"
 
     @property
     def last(self) -> int:

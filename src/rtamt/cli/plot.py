@@ -1,0 +1,107 @@
+"""``rtamt plot``: a picture of a recording, the robustness over time and what decides the verdict."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from rtamt.cli.command import (
+    OK,
+    Command,
+    CommandError,
+    add_specification_options,
+    add_stamp_options,
+    add_time_option,
+    read_specification,
+    read_trace,
+)
+from rtamt.cli.explain import add_instant_option, instant
+from rtamt.cli.terminal import Progress
+from rtamt.errors import StlError
+from rtamt.plot.figure import draw, matplotlib
+from rtamt.plot.scene import scene
+from rtamt.plot.tree import draw_tree
+
+if TYPE_CHECKING:
+    import argparse
+    from typing import Any
+
+_DESCRIPTION = """\
+Draw the signals of a recording, the robustness of a requirement and of its sub-formulas over time, and
+what decides the verdict: the critical point and the implicant, as 'rtamt explain' tells them. Needs
+matplotlib: pip install 'rtamt[plot]'."""
+
+_EPILOG = """\
+Shaded: where a formula does not hold. Yellow: the implicant, the predicates on these intervals alone
+force the verdict. Diamond: the critical point. Without -o the picture is shown in a window.
+
+examples:
+  rtamt plot examples/request_grant/spec.stl examples/request_grant/c_violated.csv -o build/c.png
+  rtamt plot "always((req >= 3) -> eventually[0:5](gnt >= 3))" log.csv --time dense -o picture.svg
+  rtamt plot requirement.stl log.csv --tree -o formula.pdf"""
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of the command."""
+    parser.description = _DESCRIPTION
+    parser.epilog = _EPILOG
+    add_specification_options(parser)
+    parser.add_argument("trace", metavar="TRACE", help="a recording, as for 'rtamt check'")
+    add_time_option(parser)
+    add_instant_option(parser)
+    add_stamp_options(parser, "column")
+    parser.add_argument("-o", "--output", metavar="FILE", help="write the picture: .png, .svg, .pdf, ...")
+    parser.add_argument("--rows", type=int, default=6, metavar="N", help="formulas at most (default: 6)")
+    parser.add_argument("--tree", action="store_true", help="draw the formula as a tree with its values")
+
+
+def run(args: argparse.Namespace) -> int:
+    """Evaluate the trace and draw what comes of it."""
+    if args.rows < 1:
+        raise CommandError(f"--rows is {args.rows}; give a number of formulas, 1 or more")
+    figure = _window() if args.output is None else _sheet(args.output)
+    spec = read_specification(args, args.time)
+    with Progress() as progress:
+        progress.show(args.trace)
+        data = read_trace(spec, args.trace, args.time_column, args.time_unit)
+        try:
+            result = spec.evaluate(data)
+            seen = scene(result, instant(args.at, spec, data))
+        except StlError as error:
+            raise CommandError(f"{args.trace}: {error}") from error
+    if args.tree:
+        draw_tree(seen, figure)
+    else:
+        draw(seen, args.rows, figure)
+    if args.output is None:
+        matplotlib("pyplot").show()
+        return OK
+    try:
+        figure.savefig(args.output, dpi=150)
+    except OSError as error:
+        raise CommandError(f"cannot write '{args.output}': {error.strerror}") from None
+    print(f"{args.output}: {seen.verdict}")
+    return OK
+
+
+def _window() -> Any:
+    """Return a figure that can be shown in a window."""
+    pyplot = matplotlib("pyplot")
+    if pyplot.get_backend().lower() == "agg":
+        raise CommandError("there is no display to show the picture on: name a file, such as -o picture.png")
+    return pyplot.figure()
+
+
+def _sheet(path: str) -> Any:
+    """Return a figure that can be written to a file of this name."""
+    figure = matplotlib().Figure()
+    kinds = sorted(figure.canvas.get_supported_filetypes())
+    suffix = Path(path).suffix.lower().removeprefix(".")
+    if suffix not in kinds:
+        raise CommandError(
+            f"'{path}' is no kind of picture that can be written: choose from .{', .'.join(kinds)}"
+        )
+    return figure
+
+
+COMMAND = Command("plot", "draw signals, robustness and what decides the verdict", configure, run)

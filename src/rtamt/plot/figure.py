@@ -1,0 +1,350 @@
+"""A scene as a figure of matplotlib: signals above, robustness of the formula and its parts below."""
+
+from __future__ import annotations
+
+import textwrap
+from math import isfinite
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rtamt.extras import library
+from rtamt.language.formula import variables
+from rtamt.plot import style
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from rtamt.engine.signals import FloatArray
+    from rtamt.plot.lines import Line
+    from rtamt.plot.scene import Node, Panel, Scene
+
+#: Inches.
+_WIDTH, _PANEL, _ROW, _HEAD, _FOOT = 10.0, 1.2, 0.9, 0.55, 0.8
+_LEFT, _RIGHT, _GAP = 0.75, 1.55, 0.34
+
+#: Points across that are drawn, and up to which each sample has a dot.
+_COLUMNS, _DOTS = 3000, 50
+
+#: Characters of a line of the formula, and panels that are drawn larger than rows.
+_TEXT, _FEW = 100, 4
+
+
+def matplotlib(module: str = "figure") -> Any:
+    """Return a module of matplotlib."""
+    return library(f"matplotlib.{module}", "a picture", "plot")
+
+
+def draw(scene: Scene, rows: int, figure: Any) -> None:
+    """Draw a scene into a figure, which is made as large as it needs to be; ``rows``: sub-formulas at most."""
+    _Drawing(scene, rows, figure).draw()
+
+
+class _Drawing:
+    """One scene in one figure."""
+
+    def __init__(self, scene: Scene, rows: int, figure: Any) -> None:
+        self._scene = scene
+        self._figure = figure
+        self._chosen = scene.chosen(rows)
+        self._title = _wrapped(scene.explanation.formula)
+        self._marks: dict[str, Any] = {}
+        clock = scene.clock
+        self._dots = len(scene.nodes[0].line.positions) <= _DOTS
+        margin = 0.015 * (clock.end - clock.start) or 1.0
+        self._limits = (clock.start - margin, clock.end + margin)
+
+    def draw(self) -> None:
+        many = len(self._scene.panels) > _FEW
+        heights = [_ROW if many else _PANEL] * len(self._scene.panels) + [_ROW] * len(self._chosen)
+        head = _HEAD + 0.19 * len(self._title) + 0.2
+        total = head + sum(heights) + _GAP * (len(heights) - 1) + _FOOT
+        self._figure.set_size_inches(_WIDTH, total)
+        self._figure.set_facecolor("white")
+        top = total - head
+        axes: list[Any] = []
+        for height in heights:
+            box = (_LEFT / _WIDTH, (top - height) / total, 1 - (_LEFT + _RIGHT) / _WIDTH, height / total)
+            axes.append(self._figure.add_axes(box, sharex=axes[0] if axes else None))
+            top -= height + _GAP
+        split = len(self._scene.panels)
+        for axis in axes:
+            self._frame(axis)
+        for panel, axis in zip(self._scene.panels, axes[:split], strict=True):
+            self._panel(panel, axis)
+        for number, axis in zip(self._chosen, axes[split:], strict=True):
+            self._row(number, axis)
+        for axis in axes[:-1]:
+            axis.tick_params(labelbottom=False)
+        self._time_axis(axes[-1])
+        self._header(total)
+        self._legend()
+
+    # ---- around ------------------------------------------------------------------------------------
+
+    def _frame(self, axis: Any) -> None:
+        axis.set_xlim(*(self._place(limit) for limit in self._limits))
+        for side in ("top", "right"):
+            axis.spines[side].set_visible(False)
+        for side in ("left", "bottom"):
+            axis.spines[side].set_color(style.FAINT)
+        axis.tick_params(labelsize=8, color=style.FAINT, labelcolor=style.QUIET, length=3)
+        axis.grid(axis="x", color=style.FAINT, linewidth=0.4)
+        axis.set_axisbelow(True)
+
+    def _header(self, total: float) -> None:
+        told = self._scene.explanation
+        kind = style.HOLDS if told.satisfied else style.FAILS
+        left, y = _LEFT / _WIDTH, total - 0.3
+        name = f"{self._scene.title}: " if self._scene.title else ""
+        self._figure.text(
+            left,
+            y / total,
+            f"{style.SIGNS[told.satisfied]} {name}{self._scene.verdict}",
+            color=kind,
+            fontsize=13,
+            fontweight="bold",
+            va="center",
+        )
+        text = "\n".join(self._title)
+        self._figure.text(
+            left, (y - 0.2) / total, text, fontsize=9, family="monospace", va="top", color=style.INK
+        )
+
+    def _legend(self) -> None:
+        if self._marks:
+            self._figure.legend(
+                self._marks.values(),
+                self._marks.keys(),
+                loc="lower left",
+                ncols=len(self._marks),
+                bbox_to_anchor=(_LEFT / _WIDTH - 0.01, 0.0),
+                frameon=False,
+                fontsize=8,
+                labelcolor=style.QUIET,
+            )
+
+    def _time_axis(self, axis: Any) -> None:
+        axis.set_xlabel(self._scene.clock.label, fontsize=8, color=style.QUIET)
+        if isinstance(self._scene.clock.origin, np.datetime64):
+            dates = matplotlib("dates")
+            locator = dates.AutoDateLocator(minticks=3, maxticks=9)
+            axis.xaxis.set_major_locator(locator)
+            axis.xaxis.set_major_formatter(dates.ConciseDateFormatter(locator))
+
+    # ---- signals -----------------------------------------------------------------------------------
+
+    def _panel(self, panel: Panel, axis: Any) -> None:
+        finite = [line.values[np.isfinite(line.values)] for line in panel.lines]
+        edges = _Edges(axis, np.concatenate([*finite, panel.thresholds]), panel.lines)
+        self._because(axis, panel.because)
+        for limit in panel.thresholds:
+            if isfinite(limit):
+                axis.axhline(limit, color=style.QUIET, linewidth=0.9, linestyle=(0, (5, 3)))
+        labels = []
+        for i, line in enumerate(panel.lines):
+            color = style.SIGNALS[i % len(style.SIGNALS)]
+            values = self._trace(axis, line, edges, color)
+            labels.append((float(values[-1]), line.name, color))
+        self._names(axis, labels)
+        self._instants(axis)
+        self._on_signal(panel, axis, edges)
+
+    def _names(self, axis: Any, labels: Sequence[tuple[float, str, str]]) -> None:
+        """Write each signal's name at its end, the names apart from each other."""
+        low, high = axis.get_ylim()
+        room = 0.16 * (high - low)
+        y = low - room
+        places = []
+        for value, name, color in sorted(labels):
+            y = max(value, y + room)
+            places.append((y, name, color))
+        shift = max(places[-1][0] - high, 0.0)
+        for y, name, color in places:
+            axis.annotate(
+                _shortened(name, 22),
+                (1.012, (y - shift - low) / (high - low)),
+                xycoords="axes fraction",
+                color=color,
+                fontsize=9,
+                fontweight="bold",
+                va="center",
+                annotation_clip=False,
+            )
+
+    def _on_signal(self, panel: Panel, axis: Any, edges: _Edges) -> None:
+        if self._scene.critical is None:
+            return
+        number, position = self._scene.critical
+        critical = self._scene.nodes[number].formula
+        for line in panel.lines:
+            if line.name in variables(critical):
+                self._diamond(axis, position, float(edges.shown(np.array([line.at(position)]))[0]))
+
+    # ---- robustness --------------------------------------------------------------------------------
+
+    def _row(self, number: int, axis: Any) -> None:
+        node = self._scene.nodes[number]
+        finite = node.line.values[np.isfinite(node.line.values)]
+        edges = _Edges(axis, np.append(finite, 0.0), [node.line])
+        self._fails(axis, node)
+        self._because(axis, node.because)
+        axis.axhline(0.0, color=style.QUIET, linewidth=0.9)
+        line = node.line.decimated(_COLUMNS)
+        values = edges.shown(line.values)
+        step = "post" if self._scene.dense else None
+        for end, color in ((1, style.HOLDS), (0, style.FAILS)):
+            area = axis.fill_between(
+                self._places(line.positions), values, 0, step=step, color=color, alpha=0.22, linewidth=0
+            )
+            half = matplotlib("patches").Rectangle(
+                (0, 0), 1, axis.get_ylim()[end], transform=axis.get_yaxis_transform()
+            )
+            area.set_clip_path(half)
+        self._trace(axis, node.line, edges, style.INK)
+        title = f"{node.name} = {node.text}" if node.name else node.text
+        axis.set_title(
+            _shortened(title, 92),
+            loc="left",
+            fontsize=8.5,
+            family="monospace",
+            pad=4,
+            color=style.INK,
+            fontweight="normal" if number else "bold",
+        )
+        axis.set_ylabel("ρ", rotation=0, fontsize=9, color=style.QUIET, va="center")
+        axis.yaxis.set_label_coords(-0.068, 0.5)
+        self._instants(axis)
+        value = node.line.at(self._scene.at)
+        fails = node.fails_at(self._scene.at)
+        axis.annotate(
+            f"{style.SIGNS[not fails]} {style.number(value)}",
+            (1.012, 0.5),
+            xycoords="axes fraction",
+            fontsize=9,
+            fontweight="bold",
+            va="bottom",
+            color=style.FAILS if fails else style.HOLDS,
+        )
+        axis.annotate(
+            f"at {self._scene.clock.told(self._scene.at)}",
+            (1.012, 0.44),
+            xycoords="axes fraction",
+            fontsize=7.5,
+            va="top",
+            color=style.QUIET,
+        )
+        if self._scene.critical is not None and self._scene.critical[0] == number:
+            position = self._scene.critical[1]
+            self._diamond(axis, position, float(edges.shown(np.array([node.line.at(position)]))[0]))
+
+    def _fails(self, axis: Any, node: Node) -> None:
+        for start, end in self._visible(node.fails):
+            patch = axis.axvspan(
+                self._place(start), self._place(end), facecolor=style.FAILS, alpha=0.13, linewidth=0
+            )
+            self._marks.setdefault("does not hold", patch)
+
+    # ---- marks -------------------------------------------------------------------------------------
+
+    def _because(self, axis: Any, stretches: Sequence[tuple[float, float]]) -> None:
+        for start, end in self._visible(stretches):
+            patch = axis.axvspan(
+                self._place(start),
+                self._place(end),
+                facecolor=style.BECAUSE,
+                alpha=0.45,
+                edgecolor="#b8a800",
+                linewidth=0.8,
+            )
+            self._marks.setdefault("the implicant: this alone forces the verdict", patch)
+
+    def _instants(self, axis: Any) -> None:
+        if self._scene.critical is not None:
+            axis.axvline(self._place(self._scene.critical[1]), color=style.INK, linewidth=0.8, linestyle=":")
+
+    def _diamond(self, axis: Any, position: float, value: float) -> None:
+        (mark,) = axis.plot(
+            [self._place(position)],
+            [value],
+            marker="D",
+            markersize=7,
+            color="white",
+            markeredgecolor=style.INK,
+            markeredgewidth=1.5,
+            linestyle="none",
+            zorder=5,
+            clip_on=False,
+        )
+        self._marks.setdefault("the critical point: its value decides the robustness", mark)
+
+    def _visible(self, stretches: Sequence[tuple[float, float]]) -> list[tuple[float, float]]:
+        """Return stretches joined where nobody could see what is between them, and wide enough to be seen."""
+        pixel = (self._limits[1] - self._limits[0]) / 1000
+        found: list[tuple[float, float]] = []
+        for start, end in sorted(stretches):
+            if found and start - found[-1][1] < pixel:
+                found[-1] = (found[-1][0], max(end, found[-1][1]))
+            else:
+                found.append((start, max(end, start + pixel)))
+        return found
+
+    # ---- lines -------------------------------------------------------------------------------------
+
+    def _trace(self, axis: Any, line: Line, edges: _Edges, color: str) -> FloatArray:
+        """Draw values; those in dense time hold, samples in discrete time have dots if there is room."""
+        small = line.decimated(_COLUMNS)
+        width = 0.7 if small is not line else 1.4
+        values = edges.shown(small.values)
+        style_of = {"drawstyle": "steps-post"} if self._scene.dense else {}
+        if self._dots or len(small.positions) == 1:
+            style_of |= {"marker": "o", "markersize": "3.2"}
+        axis.plot(
+            self._places(small.positions), values, color=color, linewidth=width, clip_on=False, **style_of
+        )
+        return values
+
+    def _places(self, positions: FloatArray) -> Any:
+        """Return positions as matplotlib takes them: dates where the recording has dates."""
+        origin = self._scene.clock.origin
+        if isinstance(origin, np.datetime64):
+            return origin + np.rint(np.asarray(positions) * 1e9).astype("timedelta64[ns]")
+        return positions
+
+    def _place(self, position: float) -> Any:
+        return self._places(np.array([position]))[0]
+
+
+class _Edges:
+    """The vertical axis: finite values in the middle, infinities at the edges, where there are any."""
+
+    def __init__(self, axis: Any, finite: FloatArray, lines: Sequence[Line]) -> None:
+        low, high = (float(finite.min()), float(finite.max())) if len(finite) else (0.0, 0.0)
+        if low == high:
+            low, high = low - 1.0, high + 1.0
+        pad = 0.09 * (high - low)
+        self._ends = (low - 3 * pad, high + 3 * pad)
+        infinite = [any((line.values == sign * np.inf).any() for line in lines) for sign in (-1, 1)]
+        limits = [low - (4 if infinite[0] else 1) * pad, high + (4 if infinite[1] else 1) * pad]
+        ticks = [t for t in matplotlib("ticker").MaxNLocator(3).tick_values(low, high) if low <= t <= high]
+        labels = [style.number(t) for t in ticks]
+        for is_above, there in enumerate(infinite):
+            if there:
+                ticks.append(self._ends[is_above])
+                labels.append(style.INFINITE[bool(is_above)])
+                axis.axhline(self._ends[is_above], color=style.QUIET, linewidth=0.6, linestyle=":")
+        axis.set_ylim(*limits)
+        axis.set_yticks(ticks, labels)
+
+    def shown(self, values: FloatArray) -> FloatArray:
+        """Return values as they are drawn."""
+        return np.clip(values, *self._ends)
+
+
+def _wrapped(text: str) -> list[str]:
+    lines = textwrap.wrap(text, _TEXT)
+    return lines if len(lines) <= 4 else [*lines[:3], _shortened(lines[3], _TEXT - 2) + " …"]
+
+
+def _shortened(text: str, most: int) -> str:
+    return text if len(text) <= most else text[: most - 1] + "…"

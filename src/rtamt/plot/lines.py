@@ -1,0 +1,72 @@
+"""Lines to draw: values over positions, and the stretches on which something fails."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from rtamt.engine.signals import FloatArray
+
+#: A half-open stretch of positions.
+Range = tuple[float, float]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Line:
+    """Values at positions, which increase; in dense time each holds until the next."""
+
+    name: str
+    positions: FloatArray
+    values: FloatArray
+
+    def at(self, position: float) -> float:
+        """Return the value at a position, or before it."""
+        i = int(np.searchsorted(self.positions, position, side="right")) - 1
+        return float(self.values[max(i, 0)])
+
+    def decimated(self, columns: int) -> Line:
+        """Return what can be seen of the line where there is room for some columns of points.
+
+        Of the points in each column the first, the lowest, the highest and the last are kept, so that no
+        peak is lost.
+
+        >>> line = Line("x", np.arange(1000.0), np.where(np.arange(1000) == 501, 9.0, 0.0))
+        >>> small = line.decimated(10)
+        >>> len(small.positions) <= 40, float(small.values.max())
+        (True, 9.0)
+        """
+        n = len(self.positions)
+        if n <= 4 * columns:
+            return self
+        first, last = self.positions[0], self.positions[-1]
+        column = np.minimum(
+            ((self.positions - first) / (last - first) * columns).astype(np.int64), columns - 1
+        )
+        starts = np.flatnonzero(np.r_[True, column[1:] != column[:-1]])
+        stops = np.r_[starts[1:], n]
+        order = np.lexsort((self.values, column))  # by column, then by value: lowest first, highest last
+        kept = np.unique(np.concatenate([starts, stops - 1, order[starts], order[stops - 1]]))
+        return Line(self.name, self.positions[kept], self.values[kept])
+
+
+def ranges(line: Line, wanted: NDArray[np.bool_], *, dense: bool, end: float) -> tuple[Range, ...]:
+    """Return the stretches in which ``wanted`` is true of a line's points.
+
+    In dense time a point's value holds until the next one; in discrete time a sample is drawn as wide as
+    the way to its neighbours, half of it on each side.
+    """
+    padded = np.r_[False, wanted, False].astype(np.int8)
+    firsts = np.flatnonzero(np.diff(padded) == 1)
+    lasts = np.flatnonzero(np.diff(padded) == -1) - 1
+    if dense:
+        stops = np.r_[line.positions[1:], max(end, line.positions[-1])]
+        return tuple((float(line.positions[i]), float(stops[j])) for i, j in zip(firsts, lasts, strict=True))
+    between = (line.positions[1:] + line.positions[:-1]) / 2
+    half = (line.positions[-1] - line.positions[0]) / (2 * (len(line.positions) - 1)) if len(between) else 0.5
+    edges = np.r_[line.positions[0] - half, between, line.positions[-1] + half]
+    return tuple((float(edges[i]), float(edges[j + 1])) for i, j in zip(firsts, lasts, strict=True))

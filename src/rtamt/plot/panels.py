@@ -1,0 +1,55 @@
+"""Which signals are drawn together: those that a predicate compares, since they have one unit."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from rtamt.language.formula import Apply, Const, Var, variables
+from rtamt.language.grammar import is_predicate as is_comparison
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from rtamt.language.formula import Formula
+
+
+@dataclass(frozen=True, slots=True)
+class Group:
+    """Names of signals in one panel, and the numbers that predicates compare them with."""
+
+    names: tuple[str, ...]
+    thresholds: tuple[float, ...]
+
+
+def groups(names: Iterable[str], predicates: Iterable[Formula]) -> tuple[Group, ...]:
+    """Return the panels, in the order of the names.
+
+    >>> from rtamt.language.parser import parse_formula
+    >>> groups(["a", "b", "c"], [parse_formula("a <= c"), parse_formula("b >= 3")])
+    (Group(names=('a', 'c'), thresholds=()), Group(names=('b',), thresholds=(3.0,)))
+    """
+    group_of = {name: {name} for name in names}
+    limits: dict[str, list[float]] = {name: [] for name in group_of}
+    for predicate in predicates:
+        read = [name for name in variables(predicate) if name in group_of]
+        for name in read[1:]:
+            merged = group_of[read[0]] | group_of[name]
+            group_of.update(dict.fromkeys(merged, merged))
+        limit = _threshold(predicate)
+        if limit is not None:
+            limits[read[0]].append(limit)
+    found = dict.fromkeys(tuple(sorted(group, key=list(group_of).index)) for group in group_of.values())
+    return tuple(
+        Group(members, tuple(dict.fromkeys(limit for name in members for limit in limits[name])))
+        for members in found
+    )
+
+
+def _threshold(predicate: Formula) -> float | None:
+    """Return the number with which a predicate compares a signal as it is."""
+    if not (isinstance(predicate, Apply) and is_comparison(predicate.op)):
+        return None
+    kinds = {type(argument): argument for argument in predicate.args}
+    constant = kinds.get(Const)
+    return constant.value if isinstance(constant, Const) and Var in kinds else None

@@ -1,0 +1,251 @@
+"""What there is to see of a result, as data: signals, sub-formulas with their values, the explanation."""
+
+from __future__ import annotations
+
+from collections import deque
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rtamt.engine.signals import Recording
+from rtamt.explain.sentences import predicate_text
+from rtamt.language.formula import Apply, Var, variables
+from rtamt.language.records import Bounds, Fixity
+from rtamt.plot.clock import Clock
+from rtamt.plot.lines import Line, Range, ranges
+from rtamt.plot.panels import groups
+from rtamt.rewrite.interface import boolean, is_predicate
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from rtamt.engine.signals import Signal
+    from rtamt.explain.report import Explanation, Stretch
+    from rtamt.language.formula import Formula
+    from rtamt.results import Result
+
+#: Sub-formulas that are shown at most; of a larger formula those next to its top.
+_MOST = 200
+
+_PLACES = "φψχ"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Panel:
+    """Signals that are drawn together, and the numbers that predicates compare them with."""
+
+    lines: tuple[Line, ...]
+    thresholds: tuple[float, ...]
+    #: Stretches of the implicant whose predicates read one of the signals.
+    because: tuple[Range, ...]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Node:
+    """A sub-formula down to predicates: its robustness over time, and where it fails.
+
+    ``label`` is its own operator, with φ, ψ and χ for the operands; ``children`` are numbers of nodes, and
+    ``hidden`` tells that there are operands too far down to be shown.
+    """
+
+    formula: Formula
+    text: str
+    label: str
+    name: str | None
+    line: Line
+    fails: tuple[Range, ...]
+    children: tuple[int, ...]
+    hidden: bool
+    because: tuple[Range, ...]
+
+    def fails_at(self, position: float) -> bool:
+        """Tell whether the sub-formula does not hold at a position."""
+        return any(start <= position < end for start, end in self.fails)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Scene:
+    """Everything that a picture or a report of one result shows; positions are those of ``clock``.
+
+    ``nodes``: the formula first, then its sub-formulas, those next to the top first; equal ones are one.
+    ``critical``: the node and the position of the critical point, if a predicate decides.
+    """
+
+    title: str
+    explanation: Explanation
+    clock: Clock
+    dense: bool
+    panels: tuple[Panel, ...]
+    nodes: tuple[Node, ...]
+    at: float
+    critical: tuple[int, float] | None
+
+    @property
+    def verdict(self) -> str:
+        """The verdict, by how much and when."""
+        told = self.explanation
+        margin = f"by {abs(told.robustness):.6g}" if told.robustness else "with robustness 0"
+        verdict = "satisfied" if told.satisfied else "violated"
+        return f"{verdict} {margin} at {self.clock.told(self.at)}".replace("inf", "∞")
+
+    def chosen(self, count: int) -> tuple[int, ...]:
+        """Return the numbers of the ``count`` nodes most worth seeing, in the order of the formula."""
+        wanted = [0]
+        wanted += [i for i, node in enumerate(self.nodes) if node.name]
+        wanted += [] if self.critical is None else [self.critical[0]]
+        wanted += [i for i, node in enumerate(self.nodes) if node.because]
+        wanted += range(len(self.nodes))
+        best = set(list(dict.fromkeys(wanted))[:count])
+        return tuple(i for i in self.preorder() if i in best)
+
+    def preorder(self) -> tuple[int, ...]:
+        """Return the numbers of the nodes as they stand in the formula, each once."""
+        found: dict[int, None] = {}
+        stack = [0]
+        while stack:
+            number = stack.pop()
+            if number not in found:
+                found[number] = None
+                stack.extend(reversed(self.nodes[number].children))
+        return tuple(found)
+
+
+def scene(result: Result, at: Any = None) -> Scene:
+    """Return what there is to see of a result, explained at an instant (by default the first)."""
+    return _Painter(result, at).scene()
+
+
+class _Painter:
+    """Collects the scene of one result."""
+
+    def __init__(self, result: Result, at: Any) -> None:
+        self._result = result
+        self._spec = result.specification
+        self._explanation = result.explain(at)
+        self._clock = Clock.of(result.trace)
+        self._dense = not isinstance(result.trace, Recording)
+
+    def scene(self) -> Scene:
+        formulas = _sub_formulas(self._spec.formula)
+        places = {formula: i for i, formula in enumerate(formulas)}
+        point = self._explanation.critical
+        critical = None
+        if point.formula in places:
+            critical = (places[point.formula], self._clock.position(point.time))
+        return Scene(
+            self._spec.name or "",
+            self._explanation,
+            self._clock,
+            self._dense,
+            self._panels(formulas),
+            tuple(self._node(formula, places) for formula in formulas),
+            self._clock.position(self._explanation.time),
+            critical,
+        )
+
+    def _node(self, formula: Formula, places: dict[Formula, int]) -> Node:
+        spec, trace = self._spec, self._result.trace
+        text = predicate_text(formula, spec.text)
+        names = [a.name for a in spec.document.assertions if a.name and a.formula == formula]
+        line = self._line(text, spec.signal_of(spec.judged(formula, self._result.semantics), trace))
+        truth = self._line(text, spec.signal_of(boolean(formula), trace))
+        operands = _operands(formula)
+        numbers = tuple(places[operand] for operand in operands if operand in places)
+        return Node(
+            formula,
+            text,
+            text if is_predicate(formula) else _label(formula),
+            names[0] if names else None,
+            line,
+            ranges(truth, ~(truth.values > 0), dense=self._dense, end=self._clock.end),
+            numbers,
+            len(numbers) < len(operands),
+            self._because([s for s in self._explanation.implicant if s.formula == formula]),
+        )
+
+    def _panels(self, formulas: Sequence[Formula]) -> tuple[Panel, ...]:
+        trace = self._result.trace
+        lines = {name: self._recorded(name) for name in trace.columns}
+        found = []
+        for group in groups(lines, filter(is_predicate, formulas)):
+            members = set(group.names)
+            stretches = [s for s in self._explanation.implicant if members & set(variables(s.formula))]
+            drawn = tuple(lines[name] for name in group.names)
+            found.append(Panel(drawn, group.thresholds, self._because(stretches)))
+        return tuple(found)
+
+    def _recorded(self, name: str) -> Line:
+        trace, clock = self._result.trace, self._clock
+        if isinstance(trace, Recording):
+            return Line(name, clock.positions(trace.times), trace.columns[name])
+        ticks, values = trace.columns[name]
+        positions = clock.ticked(ticks)
+        if positions[-1] < clock.end:  # the last value holds
+            positions, values = np.append(positions, clock.end), np.append(values, values[-1])
+        return Line(name, positions, np.asarray(values))
+
+    def _line(self, name: str, signal: Signal) -> Line:
+        return Line(name, self._clock.positions(signal.times), signal.values)
+
+    def _because(self, stretches: Sequence[Stretch]) -> tuple[Range, ...]:
+        """Return the stretches as they are drawn, within the recording."""
+        half = 0.0
+        if isinstance(self._result.trace, Recording):
+            half = float(self._result.trace.period) / 2
+        clock = self._clock
+        found = dict.fromkeys(
+            (
+                clock.position(s.start) - half,
+                clock.end if s.end is None else min(clock.position(s.end), clock.end) + half,
+            )
+            for s in stretches
+        )
+        return tuple((start, end) for start, end in found if start <= clock.end)
+
+
+def _sub_formulas(formula: Formula) -> tuple[Formula, ...]:
+    """Return the formula and its sub-formulas down to predicates, breadth first, equal ones once."""
+    found: dict[Formula, None] = {formula: None}
+    queue = deque([formula])
+    while queue and len(found) < _MOST:
+        node = queue.popleft()
+        for child in _operands(node):
+            if child not in found and len(found) < _MOST:
+                found[child] = None
+                queue.append(child)
+    return tuple(found)
+
+
+def _operands(formula: Formula) -> tuple[Formula, ...]:
+    """Return the formulas that a formula is made of; a chain such as ``a and b and c`` is made of three.
+
+    >>> from rtamt.language.parser import parse_formula
+    >>> [str(part) for part in _operands(parse_formula("(x >= 3) and (y >= 3) and once(z >= 3)"))]
+    ['x >= 3', 'y >= 3', 'once(z >= 3)']
+    """
+    if is_predicate(formula) or not isinstance(formula, Apply):
+        return ()
+    op, rest, found = formula.op, formula, []
+    if op.fixity is Fixity.LEFT and op.bounds is Bounds.NONE:
+        while isinstance(rest.args[0], Apply) and rest.args[0].op is op:
+            found.append(rest.args[1])
+            rest = rest.args[0]
+    return (*rest.args, *reversed(found))
+
+
+def _label(formula: Formula) -> str:
+    """Return a formula's operator, with letters for its operands.
+
+    >>> from rtamt.language.parser import parse_formula
+    >>> _label(parse_formula("(x >= 3) until[0:5] (y >= 3)"))
+    'φ until[0:5] ψ'
+    >>> _label(parse_formula("(x >= 3) or (x >= 4) or (y >= 3)"))
+    'φ or ψ or …'
+    """
+    if not isinstance(formula, Apply) or len(formula.args) > len(_PLACES):
+        return str(formula)
+    places = tuple(Var(letter) for letter in _PLACES[: len(formula.args)])
+    text = str(Apply(formula.op, places, formula.interval))
+    more = len(_operands(formula)) > len(formula.args)
+    return f"{text} {formula.op.spellings[0]} …" if more else text

@@ -1,0 +1,26 @@
+"""Colours and signs that can be told apart by everybody, in print too."""
+
+from __future__ import annotations
+
+#: For signals, by Okabe and Ito: distinct for every kind of colour vision. Without the two of verdicts.
+SIGNALS = ("#0072B2", "#E69F00", "#009E73", "#CC79A7", "#56B4E9", "#5D4A9C")
+
+HOLDS, FAILS = "#0072B2", "#D55E00"
+#: Behind what an implicant rests on.
+BECAUSE = "#F0E442"
+INK, QUIET, FAINT = "#1f2328", "#6e7781", "#d1d9e0"
+
+#: What a verdict is drawn with, beside its colour.
+SIGNS = {True: "✓", False: "✗"}
+INFINITE = {True: "+∞", False: "−∞"}
+
+
+def number(value: float) -> str:
+    """Return a number as it is written in a picture.
+
+    >>> number(-2.5), number(float("inf"))
+    ('−2.5', '+∞')
+    """
+    if abs(value) == float("inf"):
+        return INFINITE[value > 0]
+    return f"{value + 0.0:.4g}".replace("-", "−")

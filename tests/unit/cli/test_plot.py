@@ -1,0 +1,46 @@
+"""``rtamt plot``, as a user calls it."""
+
+import pytest
+
+from rtamt.cli import main
+
+FORMULA = "always((req >= 3) -> eventually[0:5](gnt >= 3))"
+TRACE = "examples/request_grant/c_violated.csv"
+
+
+@pytest.mark.parametrize(
+    ("suffix", "first"), [("png", b"\x89PNG"), ("svg", b"<?xml"), ("pdf", b"%PDF")], ids=["png", "svg", "pdf"]
+)
+def test_a_picture_is_written(tmp_path, suffix, first, capsys):
+    path = tmp_path / f"picture.{suffix}"
+    assert main(["plot", FORMULA, TRACE, "-o", str(path)]) == 0
+    assert capsys.readouterr().out == f"{path}: violated by 2 at 0 s\n"
+    assert path.read_bytes().startswith(first)
+
+
+def test_a_tree_in_dense_time_at_an_instant(tmp_path):
+    path = tmp_path / "tree.png"
+    arguments = ["plot", FORMULA, TRACE, "--time", "dense", "--tree", "--at", "2", "-o", str(path)]
+    assert main(arguments) == 0
+    assert path.read_bytes().startswith(b"\x89PNG")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (
+            ["-o", "picture.doc"],
+            "rtamt: 'picture.doc' is no kind of picture that can be written: choose from .",
+        ),
+        (["-o", "no/such/x.png"], "rtamt: cannot write 'no/such/x.png': No such file or directory\n"),
+        (["-o", "x.png", "--rows", "0"], "rtamt: --rows is 0; give a number of formulas, 1 or more\n"),
+        (["-o", "x.png", "--at", "0.5"], f"rtamt: {TRACE}: "),
+        ([], "rtamt: there is no display to show the picture on: name a file, such as -o picture.png\n"),
+    ],
+)
+def test_what_is_wrong_is_one_sentence(arguments, message, capsys, monkeypatch):
+    monkeypatch.setenv("MPLBACKEND", "agg")
+    assert main(["plot", FORMULA, TRACE, *arguments]) == 2
+    told = capsys.readouterr().err
+    assert told.startswith(message)
+    assert told.count("\n") == 1

@@ -1,0 +1,102 @@
+"""What a scene holds: the same numbers as the result, where each formula fails, and the explanation's places."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import rtamt
+from rtamt.plot.lines import Line
+from rtamt.plot.scene import scene
+
+ANSWER = "asked = req >= 3; always(asked -> eventually[0:2](gnt >= 3))"
+
+
+@pytest.fixture
+def violated():
+    data = {"req": [0, 6, 0, 0, 0], "gnt": [0, 0, 0, 1, 7]}
+    return rtamt.parse(ANSWER).evaluate(data)
+
+
+def test_every_sub_formula_has_its_values(violated):
+    seen = scene(violated)
+    assert [node.text for node in seen.nodes] == [
+        "always(asked -> eventually[0:2](gnt >= 3))",
+        "asked -> eventually[0:2](gnt >= 3)",
+        "req >= 3",
+        "eventually[0:2](gnt >= 3)",
+        "gnt >= 3",
+    ]
+    assert [node.name for node in seen.nodes] == [None, None, "asked", None, None]
+    for node in seen.nodes:
+        assert node.line.values.tolist() == violated[str(node.formula)].values.tolist()
+
+
+def test_the_explanation_is_in_its_places(violated):
+    seen = scene(violated)
+    assert seen.verdict == "violated by 2 at 0 s"
+    assert seen.critical == (4, 3.0)
+    assert {node.text: node.because for node in seen.nodes if node.because} == {
+        "req >= 3": ((0.5, 1.5),),
+        "gnt >= 3": ((0.5, 3.5),),
+    }
+    assert [[line.name for line in panel.lines] for panel in seen.panels] == [["req"], ["gnt"]]
+    assert [panel.because for panel in seen.panels] == [((0.5, 1.5),), ((0.5, 3.5),)]
+
+
+def test_a_formula_with_robustness_0_is_shaded_by_its_truth():
+    result = rtamt.parse("x > 3").evaluate({"x": [4, 3, 5]})
+    assert scene(result).nodes[0].fails == ((0.5, 1.5),)
+    result = rtamt.parse("x >= 3").evaluate({"x": [4, 3, 5]})
+    assert scene(result).nodes[0].fails == ()
+
+
+def test_dense_stretches_are_exact_and_the_last_value_holds():
+    spec = rtamt.parse("once[0:1](x >= 3)", time="dense")
+    seen = scene(spec.evaluate({"x": ([0.0, 2.0, 2.5, 6.0], [0, 5, 0, 0])}))
+    assert seen.nodes[0].fails == ((0.0, 2.0), (3.5, 6.0))
+
+
+@pytest.mark.parametrize(
+    ("stamps", "origin", "told"),
+    [
+        (np.array([0, 2, 5], "datetime64[s]"), np.datetime64(0, "ns"), "1970-01-01 00:00:02"),
+        (np.array([10**18, 10**18 + 2 * 10**9, 10**18 + 5 * 10**9]), 1e9, "1000000002 s"),
+        ([0.0, 2.0, 5.0], 0.0, "2 s"),
+        (np.array([0, 2, 5], "timedelta64[s]"), 0.0, "2 s"),
+    ],
+)
+def test_times_of_every_kind_have_positions(stamps, origin, told):
+    result = rtamt.parse("always(x >= 3)").evaluate({"time": stamps, "x": [5, 1, 4]}, time="dense")
+    seen = scene(result)
+    assert seen.clock.origin == origin
+    assert seen.clock.told(seen.critical[1]) == told
+    assert seen.nodes[1].fails == ((2.0, 5.0),)
+
+
+def test_dates_in_discrete_time_are_dates():
+    stamps = np.datetime64("2026-03-01T12:00") + np.arange(3) * np.timedelta64(1, "s")
+    result = rtamt.parse("always(x >= 3)").evaluate({"time": stamps, "x": [5, 1, 4]})
+    seen = scene(result)
+    assert seen.verdict == "violated by 2 at 2026-03-01 12:00:00"
+    assert seen.explanation.sentences[1].startswith("'x >= 3' is -2 at 2026-03-01T12:00:01")
+
+
+def test_a_long_chain_is_one_node_and_a_huge_formula_is_cut():
+    chain = " and ".join(f"always(x >= {i})" for i in range(300))
+    seen = scene(rtamt.parse(chain).evaluate({"x": [1.0]}))
+    assert len(seen.nodes) == 200
+    assert seen.nodes[0].hidden
+    assert seen.nodes[0].label == "φ and ψ and …"
+    assert len(seen.chosen(6)) == 6
+
+
+@given(st.lists(st.floats(-1e6, 1e6), min_size=1, max_size=400), st.integers(1, 20))
+@settings(max_examples=50)
+def test_decimation_keeps_every_peak_and_both_ends(values, columns):
+    line = Line("x", np.arange(len(values), dtype=float), np.array(values))
+    small = line.decimated(columns)
+    assert len(small.positions) <= max(4 * columns, 1)
+    assert (small.values.min(), small.values.max()) == (line.values.min(), line.values.max())
+    assert small.positions[[0, -1]].tolist() == line.positions[[0, -1]].tolist()
+    assert small.values.tolist() == line.values[small.positions.astype(int)].tolist()
