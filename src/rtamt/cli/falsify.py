@@ -40,7 +40,7 @@ With --record every simulation is kept; the same command goes on where it was in
 
 examples:
   rtamt falsify examples/cruise/problem.toml
-  rtamt falsify examples/cruise/problem.toml --optimizer optuna --seed 3 --json"""
+  rtamt falsify examples/cruise/problem.toml --optimizer sobol --budget 20 --json"""
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
