@@ -109,6 +109,8 @@ PACKAGES := postgresql
 # ROS 1: master, rospy, bags, and what builds the workspace in ros/.
 PACKAGES += ros-core catkin rosbash python3-rosbag python3-rospkg python3-genpy ros-message-generation
 PACKAGES += ros-std-msgs python3-std-msgs python3-nav-msgs python3-diagnostic-msgs
+# Octave, in which the block for Simulink runs, and what builds its gateway.
+PACKAGES += octave octave-dev
 $(VENV)/.apt: Makefile tools/apt-packages $(VENV)/.made
 	@tools/apt-packages $(PACKAGES) && touch $@ || { echo "The tests that need it are skipped."; [ "$$CI" != true ]; }
 

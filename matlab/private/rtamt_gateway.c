@@ -1,0 +1,243 @@
+/* The C API (rtamt.h) for MATLAB and Octave: one MEX function whose first argument says what to do.
+ *
+ *     id = rtamt_gateway('create', bytes)            uint8, of a program in discrete time
+ *     about = rtamt_gateway('describe', id)          a structure: inputs, seconds of a step, lag
+ *     known = rtamt_gateway('peek', id, values)      what 'step' would give; nothing is taken
+ *     known = rtamt_gateway('step', id, values)      takes a sample; NaN: nothing is known yet
+ *     [first, values] = rtamt_gateway('finish', id)  the rest, and where it begins
+ *     rtamt_gateway('reset', id)                     forgets the trace
+ *     rtamt_gateway('destroy', id)
+ *
+ * A failure is an error 'rtamt:...' with the sentence of the C API. Whoever calls holds numbers,
+ * not pointers, so that one that is out of date is refused; `clear mex` frees what is left.
+ */
+#include "mex.h"
+#include "rtamt.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* A peek costs what a step costs: a second monitor goes ahead by one sample, and is copied anew
+ * only where the sample that is taken in the end is another one. */
+typedef struct session {
+    double id;
+    rtamt_monitor* taken; /* has every sample that was taken */
+    rtamt_monitor* ahead; /* NULL, or level with `taken`, or one sample ahead */
+    double* row;          /* that sample */
+    double* known;        /* and what it made known, of each output */
+    struct session* next;
+} session;
+
+/* A MEX function has no other place for what lives longer than a call. */
+static session* sessions = NULL;
+static double last_id = 0.0;
+
+static void release(session* old) {
+    rtamt_destroy(old->ahead);
+    rtamt_destroy(old->taken);
+    free(old->known);
+    free(old->row);
+    free(old);
+}
+
+static void release_all(void) {
+    while (sessions != NULL) {
+        session* next = sessions->next;
+        release(sessions);
+        sessions = next;
+    }
+}
+
+/* Throws, by `error`: mexErrMsgIdAndTxt of Octave would put the name of this file first. */
+static void refuse(const char* identifier, const char* sentence) {
+    mxArray* told[3];
+    told[0] = mxCreateString(identifier);
+    told[1] = mxCreateString("%s");
+    told[2] = mxCreateString(sentence);
+    (void)mexCallMATLAB(0, NULL, 3, told, "error");
+}
+
+static void check(rtamt_status status, const rtamt_monitor* monitor) {
+    if (status != RTAMT_OK) refuse("rtamt:sample", rtamt_message(monitor));
+}
+
+/* ---- arguments ------------------------------------------------------------------------------- */
+
+/* The place that holds the session, so that it can be taken out of the list. */
+static session** find(int count, const mxArray* arguments[]) {
+    session** place = &sessions;
+    double id = 0.0;
+    if (count < 2 || !mxIsDouble(arguments[1]) || mxGetNumberOfElements(arguments[1]) != 1) {
+        refuse("rtamt:usage", "The second argument is the number that 'create' gave.");
+    }
+    id = mxGetScalar(arguments[1]);
+    while (*place != NULL && (*place)->id != id)
+        place = &(*place)->next;
+    if (*place == NULL) {
+        refuse("rtamt:usage", "There is no monitor of this number: it was destroyed.");
+    }
+    return place;
+}
+
+static const double* values_of(int count, const mxArray* arguments[], size_t* size) {
+    if (count < 3 || !mxIsDouble(arguments[2]) || mxIsComplex(arguments[2])) {
+        refuse("rtamt:usage", "The third argument is a sample: a vector of real doubles.");
+    }
+    *size = mxGetNumberOfElements(arguments[2]);
+    return mxGetPr(arguments[2]);
+}
+
+/* ---- what can be done ------------------------------------------------------------------------ */
+
+typedef void command(int results, mxArray* result[], int count, const mxArray* arguments[]);
+
+static void create(int results, mxArray* result[], int count, const mxArray* arguments[]) {
+    char message[400] = "";
+    rtamt_monitor* monitor = NULL;
+    session* fresh = NULL;
+    (void)results;
+    if (count < 2 || !mxIsUint8(arguments[1])) {
+        refuse("rtamt:usage", "The second argument holds the bytes of a program, as uint8.");
+    }
+    if (rtamt_create(mxGetData(arguments[1]), mxGetNumberOfElements(arguments[1]), &monitor,
+                     message, sizeof message) != RTAMT_OK) {
+        refuse("rtamt:program", message);
+    }
+    if (rtamt_time(monitor) != RTAMT_DISCRETE) {
+        rtamt_destroy(monitor);
+        refuse("rtamt:program", "The program is for dense time, but samples come once a period: "
+                                "compile it without '--time dense'.");
+    }
+    fresh = calloc(1, sizeof *fresh);
+    if (fresh != NULL) {
+        fresh->taken = monitor;
+        fresh->row = calloc(rtamt_inputs(monitor) + 1U, sizeof(double));
+        fresh->known = calloc(rtamt_outputs(monitor) + 1U, sizeof(double));
+        if (fresh->row == NULL || fresh->known == NULL) {
+            release(fresh);
+            fresh = NULL;
+        }
+    } else {
+        rtamt_destroy(monitor);
+    }
+    if (fresh == NULL) refuse("rtamt:memory", "There is not enough memory.");
+    last_id += 1.0;
+    fresh->id = last_id;
+    fresh->next = sessions;
+    sessions = fresh;
+    result[0] = mxCreateDoubleScalar(fresh->id);
+}
+
+static void describe(int results, mxArray* result[], int count, const mxArray* arguments[]) {
+    const char* fields[] = {"inputs", "seconds", "lag"};
+    const rtamt_monitor* monitor = (*find(count, arguments))->taken;
+    const uint32_t inputs = rtamt_inputs(monitor);
+    mxArray* names = mxCreateCellMatrix(1, inputs);
+    int64_t numerator = 0;
+    int64_t denominator = 1;
+    (void)results;
+    for (uint32_t i = 0; i < inputs; ++i)
+        mxSetCell(names, i, mxCreateString(rtamt_input(monitor, i)));
+    rtamt_period(monitor, &numerator, &denominator);
+    result[0] = mxCreateStructMatrix(1, 1, 3, fields);
+    mxSetField(result[0], 0, "inputs", names);
+    mxSetField(result[0], 0, "seconds",
+               mxCreateDoubleScalar((double)numerator / (double)denominator));
+    mxSetField(result[0], 0, "lag", mxCreateDoubleScalar((double)rtamt_lag(monitor, 0)));
+}
+
+static int is_ahead(const session* self) {
+    return self->ahead != NULL && rtamt_sample_count(self->ahead) > rtamt_sample_count(self->taken);
+}
+
+static int is_row(const session* self, const double* values, size_t size) {
+    return size == rtamt_inputs(self->taken) &&
+           memcmp(self->row, values, size * sizeof(double)) == 0;
+}
+
+static void forget_ahead(session* self) {
+    rtamt_destroy(self->ahead);
+    self->ahead = NULL;
+}
+
+static mxArray* row_of(const double* values, size_t count) {
+    mxArray* array = mxCreateDoubleMatrix(1, (mwSize)count, mxREAL);
+    memcpy(mxGetPr(array), values, count * sizeof(double));
+    return array;
+}
+
+static void peek(int results, mxArray* result[], int count, const mxArray* arguments[]) {
+    session* self = *find(count, arguments);
+    size_t size = 0;
+    const double* values = values_of(count, arguments, &size);
+    const size_t outputs = rtamt_outputs(self->taken);
+    (void)results;
+    if (is_ahead(self) && !is_row(self, values, size)) forget_ahead(self);
+    if (self->ahead == NULL) check(rtamt_clone(self->taken, &self->ahead), self->taken);
+    if (!is_ahead(self)) {
+        check(rtamt_step(self->ahead, values, size, self->known, outputs), self->ahead);
+        memcpy(self->row, values, size * sizeof(double));
+    }
+    result[0] = row_of(self->known, outputs);
+}
+
+static void step(int results, mxArray* result[], int count, const mxArray* arguments[]) {
+    session* self = *find(count, arguments);
+    size_t size = 0;
+    const double* values = values_of(count, arguments, &size);
+    const size_t outputs = rtamt_outputs(self->taken);
+    const int was_ahead = is_ahead(self);
+    (void)results;
+    result[0] = mxCreateDoubleMatrix(1, (mwSize)outputs, mxREAL);
+    check(rtamt_step(self->taken, values, size, mxGetPr(result[0]), outputs), self->taken);
+    if (!was_ahead || !is_row(self, values, size)) forget_ahead(self);
+}
+
+static void finish(int results, mxArray* result[], int count, const mxArray* arguments[]) {
+    session* self = *find(count, arguments);
+    const int64_t* steps = NULL;
+    const double* values = NULL;
+    size_t told = 0;
+    check(rtamt_finish(self->taken), self->taken);
+    forget_ahead(self);
+    told = rtamt_told(self->taken, 0, &steps, &values);
+    result[0] = mxCreateDoubleScalar(told == 0 ? 0.0 : (double)steps[0]);
+    if (results > 1) result[1] = row_of(values, told);
+}
+
+static void reset(int results, mxArray* result[], int count, const mxArray* arguments[]) {
+    session* self = *find(count, arguments);
+    (void)results;
+    (void)result;
+    rtamt_reset(self->taken);
+    forget_ahead(self);
+}
+
+static void destroy(int results, mxArray* result[], int count, const mxArray* arguments[]) {
+    session** place = find(count, arguments);
+    session* old = *place;
+    (void)results;
+    (void)result;
+    *place = old->next;
+    release(old);
+}
+
+void mexFunction(int results, mxArray* result[], int count, const mxArray* arguments[]) {
+    static const struct {
+        const char* name;
+        command* run;
+    } commands[] = {{"peek", peek},         {"step", step},     {"create", create},
+                    {"describe", describe}, {"finish", finish}, {"reset", reset},
+                    {"destroy", destroy}};
+    char name[16] = "";
+    mexAtExit(release_all);
+    if (count > 0 && mxIsChar(arguments[0]) && mxGetString(arguments[0], name, sizeof name) == 0) {
+        for (size_t i = 0; i < sizeof commands / sizeof *commands; ++i) {
+            if (strcmp(commands[i].name, name) == 0) {
+                commands[i].run(results, result, count, arguments);
+                return;
+            }
+        }
+    }
+    refuse("rtamt:usage", "The first argument says what to do, such as 'step'.");
+}
