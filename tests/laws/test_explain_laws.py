@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
+from itertools import pairwise
 from math import inf
 from typing import Any
 
@@ -256,6 +257,32 @@ def test_the_critical_value_is_the_robustness_which_follows_it_as_far_as_told(
     assume(point.decided_by == "predicate")
     followed = case.robustness(case.columns(change))
     assert followed == min(max(moved_to, point.lowest), point.highest)
+
+
+@both_domains
+@few
+@given(data=st.data())
+def test_a_place_was_critical_that_changes_nothing_alone_beside_one_that_overturns_the_verdict(
+    domain: str, data: Any
+) -> None:
+    case = data.draw(cases(domain=domain, max_depth=3))
+    robustness, point = case.explanation.robustness, case.explanation.critical
+    assume(robustness != 0)
+    falls = point.lowest < 0 if robustness > 0 else point.highest > 0
+    assume(not falls)
+    for k, predicate in enumerate(case.predicates):
+        column = case.world.column(predicate)
+        edges = np.arange(1, len(column)) if domain == "discrete" else np.flatnonzero(np.diff(column)) + 1
+        for begin, end in pairwise([0, *edges, len(column)]):
+            for sign in (1, -1):
+                if variables(predicate) and sign * column[begin] == robustness:
+
+                    def against(which: int, place: int, column: np.ndarray) -> np.ndarray:
+                        if (which, place) == (k, sign):  # noqa: B023 - called at once
+                            column[begin:end] = -sign * robustness  # noqa: B023
+                        return column
+
+                    assert case.robustness(case.columns(against)) * robustness >= 0
 
 
 @both_domains

@@ -3,7 +3,8 @@
 From the root down: through minimum and maximum to the operand that attains the value, through a window
 to an instant at which the operand attains it, through until and since to the t' that attains the
 supremum, and there to ψ or to an instant of φ. Signals are step functions and windows closed, so that
-every supremum is attained. Of equal ones the earliest is taken (of since: the latest t').
+every supremum is attained. Of equal ones the earliest is taken (of since: the latest t'); ``explain.py`` prefers
+one that overturns the verdict alone.
 """
 
 from __future__ import annotations

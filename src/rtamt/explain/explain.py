@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from itertools import islice
 from math import inf
 from typing import TYPE_CHECKING, Any
 
 from rtamt.engine.signals import Recording
 from rtamt.errors import EvaluationError
 from rtamt.explain.cells import NEVER, Steps, two_valued
-from rtamt.explain.critical import Walk
+from rtamt.explain.critical import Point, Walk
 from rtamt.explain.demands import Demands
 from rtamt.explain.minimise import Forcing, intervals_of, minimal
 from rtamt.explain.needs import Needs
@@ -21,13 +22,15 @@ from rtamt.language.formula import postorder
 from rtamt.rewrite import interface
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterator
 
     from rtamt.engine.dense_evaluate import DenseRecording
-    from rtamt.explain.critical import Point
     from rtamt.explain.minimise import Interval
     from rtamt.explain.structure import Leaf
     from rtamt.language.formula import Formula
+
+#: How many places are tried for one that overturns the verdict alone.
+_TRIED = 16
 
 
 def explain(
@@ -86,8 +89,9 @@ class _Explainer:
         core = self._structure.core
         satisfied = cell in self._holds[core]
         robustness = self._signals.at(core, cell)
-        critical, moment = self._critical(cell)
-        stretches = tuple(self._stretch(interval, satisfied) for interval in self._implicant(cell, satisfied))
+        implicant = self._implicant(cell, satisfied)
+        critical, moment = self._critical(cell, implicant)
+        stretches = tuple(self._stretch(interval, satisfied) for interval in implicant)
         told = formula_text(self._formula)
         return Explanation(
             told,
@@ -101,9 +105,28 @@ class _Explainer:
 
     # ---- the critical point ------------------------------------------------------------------------
 
-    def _critical(self, cell: int) -> tuple[CriticalPoint, str]:
-        """Return the critical point, and its instant for a sentence."""
-        point = self._walk.down(self._structure.core, cell)
+    def _critical(self, cell: int, implicant: list[Interval]) -> tuple[CriticalPoint, str]:
+        """Return the critical point, and its instant for a sentence.
+
+        Where several places have the value of the robustness it is, if there is one, a place that overturns
+        the verdict alone; such a place is in every implicant.
+        """
+        first = self._told(self._walk.down(self._structure.core, cell), cell)
+        if overturns(first[0]):
+            return first
+        others = self._places(implicant, self._signals.at(self._structure.core, cell))
+        told = (self._told(point, cell) for point in islice(others, _TRIED))
+        return next((other for other in told if overturns(other[0])), first)
+
+    def _places(self, implicant: list[Interval], robustness: float) -> Iterator[Point]:
+        """Yield the places of an implicant that have the value of the robustness."""
+        for interval in implicant:
+            changes, values = self._values[interval.name].between(interval.start, interval.end)
+            for start in changes[interval.sign * values == robustness].tolist():
+                yield Point(start, interval.sign, interval.name)
+
+    def _told(self, point: Point, cell: int) -> tuple[CriticalPoint, str]:
+        """Return a place that has the value of the robustness as a critical point, and its instant for a sentence."""
         start, end = point.cell, point.cell + 1
         value = point.sign * self._signals.at(self._structure.core, cell)
         lowest = highest = self._signals.at(self._structure.core, cell)
@@ -215,6 +238,12 @@ class _Explainer:
             if interval.start <= self._line.last
             else f"{when} (after the last sample, whose values hold)"
         )
+
+
+def overturns(point: CriticalPoint) -> bool:
+    """Tell whether the verdict falls where the critical value alone moves far enough."""
+    robustness = point.polarity * point.value
+    return point.lowest < 0 if robustness > 0 else point.highest > 0 if robustness < 0 else True
 
 
 def _infinite(steps: Steps) -> Steps:

@@ -71,7 +71,7 @@ def _decision(point: CriticalPoint, when: str) -> str:
     if point.decided_by == "constant":
         return f"{told}: a constant"
     if point.lowest == point.highest:
-        return f"{told}: so is another, and moving one of them alone changes nothing"
+        return f"{told}: something else gives the same robustness, and moving this one alone changes nothing"
     if isinf(point.lowest) and isinf(point.highest):
         return f"{told}: the robustness follows it"
     if point.lowest == -inf:

@@ -62,8 +62,9 @@ def test_in_dense_time_segments_end_where_they_end():
         (
             "eventually(x and x >= 0)",
             [1, 1],
-            "'x' is 1 at 0 s: so is another, and moving one of them alone changes nothing",
+            "'x' is 1 at 0 s: something else gives the same robustness, and moving this one alone changes nothing",
         ),
+        ("always(x < 1 or eventually x >= 1)", [0, 2], "'x >= 1' is 1 at 1 s: the robustness follows it down to -1"),
         ("x or 3 > 1", [1], "'3 > 1' is 2 at 0 s: a constant"),
         ("x and false", [1], "no predicate decides it: a constant of the formula does (at 0 s)"),
         (
