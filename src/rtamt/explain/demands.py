@@ -87,9 +87,16 @@ class Demands:
         return self._satisfied == (sign > 0)
 
     def _add(self, node: Formula, sign: int, asked: Asked) -> None:
-        asked = Asked(asked.cells.within(0, self._end), asked.surely.within(0, self._end))
+        asked = Asked(self._within(asked.cells), self._within(asked.surely))
         place = node, sign
         self._asked[place] = self._asked[place] | asked if place in self._asked else asked
+
+    def _within(self, cells: Cells) -> Cells:
+        """Return the part that there is. Long after a recording all has settled: what lasts so long lasts for ever."""
+        cells = cells.within(0, self._end)
+        if self._dense and len(cells) and cells.ends[-1] > NEVER // 2:
+            cells = cells | Cells.of([(int(cells.ends[-1]), self._end)])
+        return cells
 
     def _having(self, node: Formula, sign: int) -> Cells:
         """Return where a sub-formula has the truth that is asked of places of a sign."""
@@ -101,7 +108,9 @@ class Demands:
         return having
 
     def _support(self, node: Formula, sign: int) -> Cells:
-        return self._holds[node] if self.truth(sign) else self._all - self._holds[node]
+        # What holds is known up to the end: nothing is said of later, so that nothing fails there either.
+        holds = self._holds[node]
+        return holds if self.truth(sign) else (self._all - holds).within(0, self._end)
 
     def _pass_on(self, node: Apply, sign: int, asked: Asked) -> None:
         """Ask the operands for what makes ``node`` have its truth."""

@@ -287,3 +287,28 @@ def test_stamps_that_count_from_1970_are_told_to_the_millisecond():
     explanation = explained("always(x >= 3)", {"time": times, "x": [5, 1, 4]}, period="1ms")
     assert explanation.sentences[0] == "violated by 2 at 1700000000.123 s: always(x >= 3)"
     assert explanation.sentences[3] == "  'x >= 3' failed at 1700000000.124 s (-2)"
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "always[0:2](always x > 0)",
+        "always[1:inf](x > 0) unless[1:2] x > 9",
+        "not eventually[0:2] not always x > 0",
+    ],
+)
+def test_a_violation_seen_through_two_windows_was_told_to_rest_on_no_predicate(text):
+    result = rtamt.parse(text, time="dense").evaluate({"x": ([0.0, 6.0, 7.0], [1, -1, 1])})
+    assert result.explain().sentences[2:] == (
+        "whatever the signals do elsewhere, it is violated because",
+        "  'x > 0' failed from 6 s until 7 s (-1)",
+    )
+
+
+@pytest.mark.parametrize(
+    "text", ["not eventually(y > 0 since[1:3] x > 9)", "always not(y > 0 since[1:3] x > 9)"]
+)
+def test_what_lasts_for_ever_was_told_to_end_a_tick_before_the_end_of_time(text):
+    result = rtamt.parse(text, time="dense").evaluate({"y": ([0.0, 6.0], [1, -1]), "x": ([0.0], [0])})
+    (stretch,) = result.explain().implicant
+    assert (stretch.predicate, stretch.holds, stretch.start, stretch.end) == ("x > 9", False, 0.0, None)
