@@ -75,6 +75,11 @@ class Kernel {
         out_ = out;
     }
 
+    // One of these alone; the others stay.
+    void read_a(const double* a) noexcept { a_ = a; }
+    void read_b(const double* b) noexcept { b_ = b; }
+    void write(double* out) noexcept { out_ = out; }
+
   protected:
     [[nodiscard]] const double* a() const noexcept { return a_; }
     [[nodiscard]] const double* b() const noexcept { return b_; }

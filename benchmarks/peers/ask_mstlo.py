@@ -54,6 +54,27 @@ def answer(formula, time, mode, signals, end):  # noqa: ARG001 - the whole trace
     return {"values": values, "until": values[-1][0] if values else 0}
 
 
+def prepare(formula, time, mode, signals):
+    """Take a value a variable and instant; samples one second apart stand for discrete time."""
+    if mode != "online":
+        raise UnsupportedError(mode)
+    monitor = mstlo.Monitor(mstlo.parse_formula(Dsl(TABLE).write(formula)), semantics="DelayedQuantitative")
+    if time == "discrete":
+        signals = {name: list(enumerate(column)) for name, column in signals.items()}
+    rows = [
+        [(name, float(v), float(t)) for name, (t, v) in zip(signals, row)]  # noqa: B905
+        for row in zip(*signals.values())  # noqa: B905
+    ]
+
+    def run(begin, end):
+        update = monitor.update
+        for row in rows[begin:end]:
+            for name, value, t in row:
+                update(name, value, t).verdicts()
+
+    return run
+
+
 serve(
     {
         "peer": f"mstlo {version('mstlo-python')}",
@@ -63,4 +84,5 @@ serve(
         "until by its documentation",
     },
     answer,
+    prepare,
 )

@@ -67,6 +67,21 @@ def answer(formula, time, mode, signals, end):
     return {"points": [[t, phi(data, time=t, quantitative=True)] for t in range(end)]}
 
 
+def prepare(formula, time, mode, signals):
+    """Ask for the whole signal of values."""
+    if mode != "offline":
+        raise UnsupportedError(mode)
+    language = Ltl()
+    phi = mtl.parse(language.write(formula))
+    if time == "discrete":
+        signals = {name: list(enumerate(column)) for name, column in signals.items()}
+    data = {
+        f"p{chr(97 + k)}": [(t, of(v, value)) for t, v in signals[name]]
+        for k, (name, value, of) in enumerate(language.predicates)
+    }
+    return lambda: phi(data, time=None, quantitative=True)
+
+
 serve(
     {
         "peer": f"py-metric-temporal-logic {version('metric-temporal-logic')}",
@@ -75,4 +90,5 @@ serve(
         "notes": "future operators; asked at every tick; until as found, its documentation does not say",
     },
     answer,
+    prepare,
 )

@@ -68,6 +68,30 @@ def answer(formula, time, mode, signals, end):  # noqa: ARG001 - the whole trace
     return {"values": told, "until": times[-1]}
 
 
+def prepare(formula, time, mode, signals):
+    """Take a dict a sample; in dense time one whose "time" is later."""
+    if mode != "online":
+        raise UnsupportedError(mode)
+    pattern = Rye(TABLE).write(formula)
+    names = list(signals)
+    if time == "discrete":
+        monitor = discrete_timed_monitor(pattern=pattern, semantics="robustness", condense=False)
+        rows = [dict(zip(names, row)) for row in zip(*signals.values())]  # noqa: B905
+    else:
+        monitor = dense_timed_monitor(pattern=pattern, semantics="robustness")
+        rows = [
+            {"time": row[0][0], **{name: v for name, (_, v) in zip(names, row)}}  # noqa: B905
+            for row in zip(*signals.values())  # noqa: B905
+        ]
+
+    def run(begin, end):
+        update = monitor.update
+        for row in rows[begin:end]:
+            update(row)
+
+    return run
+
+
 serve(
     {
         "peer": f"Reelay {version('reelay')}",
@@ -76,4 +100,5 @@ serve(
         "notes": "past operators; predicates of a variable and a number; its pre is s_prev",
     },
     answer,
+    prepare,
 )

@@ -3,7 +3,7 @@
 from importlib.metadata import version
 
 import stlrom
-from protocol import UnsupportedError, Writer, serve
+from protocol import UnsupportedError, Writer, horizon, serve
 
 TABLE = {
     **{op: f"{{0}} {sign} {{1}}" for op, sign in (("ge", ">="), ("gt", ">"), ("le", "<="), ("lt", "<"))},
@@ -75,6 +75,38 @@ def answer(formula, time, mode, signals, end):
     return {"points": [[t, monitor.eval_rob(float(t))] for t in range(end)]}
 
 
+def prepare(formula, time, mode, signals):
+    """Offline ask at every sample; online add a sample, then ask one horizon back."""
+    if Stl.is_number(formula):
+        raise UnsupportedError("a number as a formula")
+    if time == "discrete":
+        signals = {name: list(enumerate(column)) for name, column in signals.items()}
+    driver = stlrom.STLDriver()
+    language = Stl()
+    name = language.write(formula)
+    if not driver.parse_string("\n".join([f"signal {', '.join(signals)}", *language.lines, ""])):
+        raise ValueError("its parser refuses the formula")
+    driver.set_interpol("PREVIOUS")
+    rows = [[float(row[0][0]), *(v for _, v in row)] for row in zip(*signals.values())]  # noqa: B905
+    if mode == "offline":
+
+        def evaluate():
+            for row in rows:
+                driver.add_sample(row)
+            monitor = driver.get_monitor(name)
+            return [monitor.eval_rob(row[0]) for row in rows]
+
+        return evaluate
+    ahead = horizon(formula)
+
+    def run(begin, end):
+        for row in rows[begin:end]:
+            driver.add_sample(row)
+            driver.get_monitor(name).eval_rob(max(row[0] - ahead, 0.0))
+
+    return run
+
+
 serve(
     {
         "peer": f"STLRom {version('stlrom')}",
@@ -83,4 +115,5 @@ serve(
         "notes": "bounded future; asked at every tick; until as found, its documentation does not say",
     },
     answer,
+    prepare,
 )

@@ -171,7 +171,7 @@ def ask(talk: Talk, question: Question) -> Asked:
     time, mode = question.mode
     said = talk.ask(
         {
-            "formula": fold(question.formula, _tree),
+            "formula": tree(question.formula),
             "time": time,
             "mode": mode,
             "signals": question.signals,
@@ -234,6 +234,12 @@ def _in_steps(node: Formula, args: tuple[Formula, ...], step: Fraction) -> Formu
     if bounds is not None:
         bounds = Interval(bounds.begin / step, None if bounds.end is None else bounds.end / step)
     return Apply(node.op, args, bounds)
+
+
+def tree(formula: Formula) -> dict[str, Any]:
+    """Return a formula whose bounds are whole steps as adapters read it."""
+    whole: dict[str, Any] = fold(formula, _tree)
+    return whole
 
 
 def _tree(node: Formula, args: tuple[Any, ...]) -> dict[str, Any]:

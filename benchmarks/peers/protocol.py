@@ -12,6 +12,8 @@ import json
 import os
 import sys
 
+import timing
+
 
 class UnsupportedError(Exception):
     """The peer does not claim to know this."""
@@ -72,10 +74,11 @@ def horizon(node):
     return below + bounds[1]
 
 
-def serve(declaration, answer):
+def serve(declaration, answer, prepare=None):
     """Answer questions until there are no more; ``declaration`` comes first.
 
-    What a peer prints itself goes to standard error.
+    ``prepare(formula, time, mode, signals)`` returns a function that does the work that is to be timed
+    (see ``timing.py``). What a peer prints itself goes to standard error.
     """
     lines = os.fdopen(os.dup(1), "w", encoding="utf-8")
     os.dup2(2, 1)
@@ -88,7 +91,12 @@ def serve(declaration, answer):
     for line in sys.stdin:
         question = json.loads(line)
         try:
-            said = answer(**question)
+            if "workload" in question:
+                if prepare is None:
+                    raise UnsupportedError("timing")
+                said = timing.measure(prepare, **question)
+            else:
+                said = answer(**question)
         except UnsupportedError as reason:
             said = {"unsupported": str(reason)}
         except Exception as error:  # noqa: BLE001 - whatever a peer raises is its answer

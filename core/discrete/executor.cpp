@@ -181,6 +181,7 @@ void Executor::load(std::span<const double* const> columns, std::size_t offset,
                     const Block& block) noexcept {
     if (columns.empty()) return; // after the last sample
     for (const Input& input : inputs_) {
+        if (direct_.skips(input.instruction)) continue;
         copy_cells(columns[input.column] + offset, block.count, input.values);
     }
 }
@@ -213,9 +214,21 @@ void Executor::run_free(const Block& block) noexcept {
         unit.kernel->run(block);
 }
 
+// Has kernels read from the caller's columns and write to the caller's outputs where they can.
+void Executor::aim(std::span<const double* const> columns, std::size_t offset, const Block& block,
+                   std::int64_t start, std::span<double* const> outputs) noexcept {
+    direct_.aim(
+        columns, offset, block,
+        [&](std::size_t output, std::int64_t lag) {
+            return outputs[output] + (block.slot - lag - known_before(start, lag));
+        },
+        [&](std::size_t output) { return register_of(program_.outputs[output]); });
+}
+
 void Executor::deliver(const Block& block, std::int64_t start,
                        std::span<double* const> outputs) noexcept {
     for (std::size_t output = 0; output < outputs.size(); ++output) {
+        if (direct_.written(output)) continue;
         const std::uint32_t instruction = program_.outputs[output];
         const std::int64_t lag = program_.instructions[instruction].lag;
         const Range present = block.present(lag);
@@ -234,6 +247,7 @@ bool Executor::advance(std::span<const double* const> columns, std::size_t count
     for (std::size_t offset = 0; offset < count;) {
         const Block block{slot_, std::min(count - offset, capacity_), samples_};
         load(columns, offset, block);
+        aim(columns, offset, block, start, outputs);
         if (!run_guarded(block) && !checked) return false;
         run_free(block);
         deliver(block, start, outputs);
@@ -337,6 +351,7 @@ std::optional<Failure> Executor::evaluate(Program program, std::span<const doubl
     Executor executor(std::move(program));
     const auto rest = static_cast<std::size_t>(executor.program_.latest());
     executor.reserve(std::max(count, rest));
+    executor.direct_ = Direct(executor.program_, executor.kernels_);
     if (!executor.advance(columns, count, outputs, false)) return executor.failure_;
     executor.samples_ = executor.slot_;
     std::vector<double*> tails;

@@ -16,6 +16,7 @@
 #include "../kernel.hpp"
 #include "../program.hpp"
 #include "call.hpp"
+#include "direct.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -117,6 +118,7 @@ class Executor {
     std::vector<Kernel*> reversible_;                    // the guarded kernels with state
     std::vector<Input> inputs_;
     std::vector<Fragile> fragile_;
+    Direct direct_; // of use to evaluate() alone, after which nobody looks at registers
     std::vector<double> registers_;
     std::size_t capacity_ = 1; // slots in a register
     std::size_t stride_ = 1;   // doubles from one register to the next
@@ -140,6 +142,8 @@ class Executor {
               const Block& block) noexcept;
     void deliver(const Block& block, std::int64_t start, std::span<double* const> outputs) noexcept;
     [[nodiscard]] bool run_guarded(const Block& block) noexcept;
+    void aim(std::span<const double* const> columns, std::size_t offset, const Block& block,
+             std::int64_t start, std::span<double* const> outputs) noexcept;
     void run_free(const Block& block) noexcept;
     [[nodiscard]] bool advance(std::span<const double* const> columns, std::size_t count,
                                std::span<double* const> outputs, bool checked) noexcept;

@@ -6,6 +6,7 @@
 
 #include "../algebra.hpp"
 #include "../kernel.hpp"
+#include "../vectors.hpp"
 
 #include <bit>
 #include <cmath>
@@ -86,7 +87,8 @@ struct HoldsEqual {
 // what lies between these and the top bit shows that in the top bit. Unlike a comparison with
 // itself, that fills vectors on every machine.
 template <bool partial, class Function>
-[[nodiscard]] std::size_t fill(double* __restrict out, Range range, Function&& function) noexcept {
+[[nodiscard]] RTAMT_INLINE std::size_t fill(double* __restrict out, Range range,
+                                            Function&& function) noexcept {
     constexpr std::uint64_t magnitude = ~std::uint64_t{0} >> 1U;
     constexpr std::uint64_t above = magnitude - std::bit_cast<std::uint64_t>(infinity);
     std::uint64_t seen = 0;
@@ -110,8 +112,13 @@ class Unary final : public Kernel {
     using Kernel::Kernel;
 
     std::size_t run(const Block& block) noexcept override {
-        const double* __restrict a = this->a();
-        return fill<Function::partial>(out(), block.present(lag()),
+        const Range range = block.present(lag());
+        return vectorised<Unary>(range.end - range.begin, out(), a(), range);
+    }
+
+    [[nodiscard]] RTAMT_INLINE static std::size_t
+    over(double* __restrict out, const double* __restrict a, Range range) noexcept {
+        return fill<Function::partial>(out, range,
                                        [=](std::size_t i) { return Function::of(a[i]); });
     }
 
@@ -124,9 +131,16 @@ class Binary final : public Kernel {
     using Kernel::Kernel;
 
     std::size_t run(const Block& block) noexcept override {
-        const double* __restrict a = this->a(); // a and b may be the same: they are only read
-        const double* __restrict b = this->b();
-        return fill<Function::partial>(out(), block.present(lag()),
+        const Range range = block.present(lag());
+        return vectorised<Binary>(range.end - range.begin, out(), a(), b(), range);
+    }
+
+    // a and b may be the same: they are only read.
+    [[nodiscard]] RTAMT_INLINE static std::size_t over(double* __restrict out,
+                                                       const double* __restrict a,
+                                                       const double* __restrict b,
+                                                       Range range) noexcept {
+        return fill<Function::partial>(out, range,
                                        [=](std::size_t i) { return Function::of(a[i], b[i]); });
     }
 

@@ -90,9 +90,9 @@ class Slide final : public Kernel {
         for (; i >= 4; i -= 4) {
             double* cell = ring_ + (i - 4);
             const double last = Algebra::join(cell[2], cell[3]);
-            const double first = Algebra::join(cell[0], cell[1]);
             const double three = Algebra::join(cell[1], last);
-            const double four = Algebra::join(first, last);
+            // Not of cell[0] with cell[1] first: the same comparisons twice become branches.
+            const double four = Algebra::join(cell[0], three);
             cell[3] = Algebra::join(cell[3], tail);
             cell[2] = Algebra::join(last, tail);
             cell[1] = Algebra::join(three, tail);

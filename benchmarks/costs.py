@@ -1,0 +1,259 @@
+"""``make costs``: what a sample costs, offline and online: medians of repeated runs, ratios to targets.
+
+Figures are of this machine at this moment. Rows are measured in turn, round after round, so that a
+drift of the machine's speed touches all of them alike.
+"""
+
+from __future__ import annotations
+
+import statistics
+import subprocess
+import sys
+import time
+from dataclasses import dataclass, field
+from fractions import Fraction
+from functools import partial
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+import rtamt
+from rtamt.engine.compile import compile_program
+from rtamt.engine.core import core
+from rtamt.language.parser import parse_formula
+from rtamt.rewrite.desugar import desugar
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+ROUNDS = 7
+WINDOWS = (10, 1_000, 100_000, 1_000_000)
+
+
+@dataclass
+class Row:
+    """One figure: ``run`` returns it once, in ``unit``; ``target`` is the largest value aimed at."""
+
+    name: str
+    unit: str
+    target: float | None
+    run: Callable[[], float]
+    measured: list[float] = field(default_factory=list)
+
+    @property
+    def median(self) -> float:
+        """The figure to quote."""
+        return statistics.median(self.measured)
+
+
+def per(count: int, call: Callable[[], object]) -> float:
+    """Return nanoseconds a piece for a call that handles ``count`` pieces."""
+    start = time.perf_counter_ns()
+    call()
+    return (time.perf_counter_ns() - start) / count
+
+
+def offline(text: str) -> Callable[[], float]:
+    """Evaluate a formula over 10^6 samples through the core: ns a sample."""
+    n = 1_000_000
+    random = np.random.default_rng(1)
+    columns = {name: random.normal(size=n) for name in ("a", "b")}
+    program = compile_program((desugar(parse_formula(text)),), Fraction(1), clip=n)
+    code, inputs = program.to_bytes(), [columns[name] for name in program.inputs]
+    return lambda: per(n, lambda: core().evaluate(code, inputs, n))
+
+
+def offline_face(text: str) -> Callable[[], float]:
+    """The same through ``Specification.evaluate``, checks of the data included."""
+    n = 1_000_000
+    random = np.random.default_rng(1)
+    data = {name: random.normal(size=n) for name in ("a", "b")}
+    spec = rtamt.parse(text)
+    return lambda: per(n, lambda: spec.evaluate(data))
+
+
+def online_pairs(k: int) -> Callable[[], float]:
+    """``update(t, [('a', x), ('b', y)])`` of the paper's API: ns a call."""
+    spec = rtamt.StlDiscreteTimeOnlineSpecification()
+    spec.declare_var("a", "float")
+    spec.declare_var("b", "float")
+    spec.spec = f"always[0,{k}](a + b >= -2)"
+    spec.parse()
+    spec.pastify()
+    calls = 20_000
+    at = [0]
+
+    def run() -> None:
+        first = at[0]
+        update = spec.update
+        for i in range(first, first + calls):
+            update(i, [("a", 1.0), ("b", 2.0)])
+        at[0] = first + calls
+
+    return lambda: per(calls, run)
+
+
+def online_named(k: int) -> Callable[[], float]:
+    """``monitor.update(t, a=x, b=y)``: ns a call."""
+    monitor = rtamt.parse(f"always[0:{k}](a + b >= -2)").monitor()
+    calls = 20_000
+    at = [0]
+
+    def run() -> None:
+        first = at[0]
+        update = monitor.update
+        for i in range(first, first + calls):
+            update(i, a=1.0, b=2.0)
+        at[0] = first + calls
+
+    return lambda: per(calls, run)
+
+
+def online_watched() -> float:
+    """A step with two formulas watched, and their values asked for: ns for the three."""
+    monitor = rtamt.parse("always[0:1000](a + b >= -2)").monitor(watch=("a + b >= -2", "a"))
+    calls = 20_000
+
+    def run() -> None:
+        for _ in range(calls):
+            monitor.step(1.0, 2.0)
+            monitor["a + b >= -2"]
+            monitor["a"]
+
+    return per(calls, run)
+
+
+def online_positional(k: int) -> Callable[[], float]:
+    """``monitor.step(x, y)``: ns a call."""
+    monitor = rtamt.parse(f"always[0:{k}](a + b >= -2)").monitor()
+    calls = 20_000
+
+    def run() -> None:
+        step = monitor.step
+        for _ in range(calls):
+            step(1.0, 2.0)
+
+    return lambda: per(calls, run)
+
+
+def dense_offline(text: str) -> Callable[[], float]:
+    """Evaluate a formula over 10^6 events a variable, 100 ms apart on average, through the core: ns an event."""
+    n = 1_000_000
+    random = np.random.default_rng(1)
+    tick = Fraction(1, 10**9)
+    program = compile_program((desugar(parse_formula(text)),), tick, domain="dense")
+    code = program.to_bytes()
+    columns = [
+        (np.cumsum(random.integers(1, 2 * 10**8, size=n)), random.normal(size=n)) for _ in program.inputs
+    ]
+    return lambda: per(n * len(columns), lambda: core().dense_evaluate(code, columns))
+
+
+def dense_online(text: str) -> Callable[[], float]:
+    """``monitor.update(t, a=v)`` in dense time, one event an update: ns a call."""
+    monitor = rtamt.parse(text).monitor(time="dense")
+    for other in monitor.input_names:  # the others hold a value far ahead
+        if other != "a":
+            monitor.update(1e9, **{other: 1.0})
+    calls = 20_000
+    at = [0]
+
+    def run() -> float:
+        first = at[0]
+        at[0] = first + calls
+        # The caller's own numbers are made before the clock runs.
+        samples = [(i * 0.1, float(i % 17)) for i in range(first, first + calls)]
+
+        def updates() -> None:
+            update = monitor.update
+            for t, v in samples:
+                update(t, a=v)
+
+        return per(calls, updates)
+
+    return run
+
+
+def parsing() -> float:
+    """Parse a formula of 1 000 characters: ms."""
+    unit = "always[0:5]((req >= 3) -> eventually[0:5](gnt >= 3))"
+    text = " and ".join([unit] * 18)[:1000]
+    text = text[: text.rindex(" and ")].ljust(1000)
+    return per(1, lambda: parse_formula(text)) / 1e6
+
+
+def importing() -> float:
+    """``import rtamt`` beyond numpy's own import: seconds."""
+    code = "import time, numpy; start = time.perf_counter(); import rtamt; print(time.perf_counter() - start)"
+    done = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True)
+    return float(done.stdout)
+
+
+def memory(text: str) -> float:
+    """State of an online monitor: doubles a sample of its window of 10^5 samples."""
+    program = compile_program((desugar(parse_formula(text)),), Fraction(1))
+    return float(core().memory(program.to_bytes())) / 8 / 100_000
+
+
+def rows() -> list[Row]:
+    """Return everything that is measured."""
+    always = "always[0:{}](a + b >= -2)"
+    memories = (
+        "always[0:99999](x)",
+        "a until[0:99999] b",
+        "a until[1:99999] b",
+        "a since[1:99999] b",
+        "a unless[0:99999] b",
+        "a or (b until[0:99999] a)",
+    )
+    return [
+        *(Row(f"offline {always.format(k)}", "ns/sample", 15, offline(always.format(k))) for k in WINDOWS),
+        *(Row(f"offline a until[0:{k}] b", "ns/sample", 30, offline(f"a until[0:{k}] b")) for k in WINDOWS),
+        Row("the first, data checked and copied", "ns/sample", None, offline_face(always.format(10))),
+        *(
+            Row(f"online update(t, pairs), paper's API, k={k}", "ns/call", 250, online_pairs(k))
+            for k in WINDOWS
+        ),
+        *(Row(f"online update(t, a=x, b=y), k={k}", "ns/call", 250, online_named(k)) for k in WINDOWS),
+        *(Row(f"online step(x, y), k={k}", "ns/call", 150, online_positional(k)) for k in WINDOWS),
+        Row("online step(x, y), and two watched formulas read", "ns/call", None, online_watched),
+        *(
+            Row(f"dense offline {text}", "ns/event", target, dense_offline(text))
+            for text, target in (
+                ("a >= 0", 30),
+                ("always[0:5](a >= 0)", 80),
+                ("once[0:5](a >= 0)", 80),
+                ("a since[0:100] b", 150),
+                ("a until[0:100] b", 150),
+            )
+        ),
+        *(
+            Row(f"dense online update(t, a=x), {text}", "ns/call", 600, dense_online(text))
+            for text in ("always[0:5](a >= 0)", "always[0:1000](a >= 0)", "b until[0:100] a")
+        ),
+        *(Row(f"memory {text}", "doubles/sample", 2.5, partial(memory, text)) for text in memories),
+        Row("parse 1 000 characters", "ms", 1, parsing),
+        Row("import rtamt beyond numpy", "s", 0.15, importing),
+    ]
+
+
+def main() -> None:
+    """Measure every row in turn, several rounds, and print the table."""
+    table = rows()
+    for number in range(ROUNDS + 1):
+        print(f"round {number} of {ROUNDS}", end="\r", file=sys.stderr, flush=True)
+        for row in table:
+            value = row.run()
+            if number:  # the first round warms up
+                row.measured.append(value)
+    print(f"{'':46} {'median':>9} {'min':>9} {'max':>9}  {'unit':14} {'target':>7} {'of target':>9}")
+    for row in table:
+        ratio = "" if row.target is None else f"{row.median / row.target:9.2f}"
+        print(
+            f"{row.name:46} {row.median:9.3g} {min(row.measured):9.3g} {max(row.measured):9.3g}"
+            f"  {row.unit:14} {row.target or '':>7} {ratio}"
+        )
+
+
+if __name__ == "__main__":
+    main()

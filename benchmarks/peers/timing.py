@@ -1,0 +1,90 @@
+"""How every tool is timed, in its own process: the same signals, the same clock, the same rules.
+
+An adapter's ``prepare(formula, time, mode, signals)`` parses the formula and brings the samples into the
+form in which the tool takes them; none of that is timed. What it returns is: offline a function of
+nothing that evaluates all samples, online a function ``run(begin, end)`` that feeds these samples one by
+one.
+"""
+
+import random
+import statistics
+from functools import lru_cache
+from time import perf_counter
+
+import timescales
+
+BASE = 100_000  # so many random numbers, over and over
+
+
+@lru_cache(maxsize=1)
+def _signals(kind, names, n, time):
+    if kind in timescales.FAMILIES:
+        family, unit, wrong = names
+        return timescales.signals(family, unit, n, wrong=wrong)
+    source = random.Random(1)  # noqa: S311 - no secrets
+    size = min(n, BASE)
+    columns = {name: [source.gauss(0, 1) for _ in range(size)] * -(-n // size) for name in names}
+    columns = {name: column[:n] for name, column in columns.items()}
+    if time == "discrete":
+        return columns
+    # Eighths of a second: exact in every tool. All signals change at the same instants.
+    steps, now = [], 0.0
+    for _ in range(n):
+        steps.append(now)
+        now += source.randint(1, 15) / 8
+    return {name: [[t, v] for t, v in zip(steps, column)] for name, column in columns.items()}  # noqa: B905
+
+
+def signals(workload, time):
+    """Return the samples: a list of numbers a variable, in dense time of [seconds, number]."""
+    return _signals(workload["kind"], tuple(workload["names"]), workload["n"], time)
+
+
+def _parsing(prepare, formula, time, mode):
+    """Return seconds from a formula to what is ready to run."""
+    samples = {"a": [0.0, 0.0] if time == "discrete" else [[0.0, 0.0], [1.0, 0.0]]}
+    costs = []
+    for number in range(5):
+        # Another formula in between, for adapters that keep the last one.
+        prepare({"op": "ge", "args": [{"var": "a"}, {"const": float(number)}]}, time, mode, samples)
+        start = perf_counter()
+        prepare(formula, time, mode, samples)
+        costs.append(perf_counter() - start)
+    return {"seconds": statistics.median(costs)}
+
+
+def measure(prepare, formula, time, mode, workload):
+    """Return seconds a sample, the median of several runs offline, the mean of many samples online.
+
+    ``workload``: which signals, ``n`` samples of them; online the first ``warm`` are not timed, and it
+    ends after ``limit`` seconds, if not before.
+    """
+    if workload["kind"] == "parse":
+        return _parsing(prepare, formula, time, mode)
+    samples = signals(workload, time)
+    n = workload["n"]
+    run = prepare(formula, time, mode, samples)
+    if mode == "offline":
+        costs = []
+        while not costs or (sum(costs) < workload["limit"] and len(costs) < 30):
+            if costs:
+                run = prepare(formula, time, mode, samples)
+            start = perf_counter()
+            run()
+            costs.append(perf_counter() - start)
+        return {"seconds": statistics.median(costs) / n}
+    at = workload["warm"]
+    start = perf_counter()
+    for begin in range(0, at, 1000):
+        run(begin, min(begin + 1000, at))
+        if perf_counter() - start > workload["patience"]:
+            return {"unsupported": f"its window is not full after {workload['patience']:g} s"}
+    spent, done, size = 0.0, 0, 1
+    while at < n and spent < workload["limit"]:
+        end = min(at + size, n)
+        start = perf_counter()
+        run(at, end)
+        spent += perf_counter() - start
+        done += end - at
+        at, size = end, 2 * size
+    return {"seconds": spent / done}

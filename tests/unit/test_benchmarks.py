@@ -1,0 +1,62 @@
+"""What the figures rest on: signals whose verdicts are known, and a run of `make bench` in small."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import rtamt
+
+FOLDER = Path(__file__).parents[2] / "benchmarks"
+sys.path.insert(0, str(FOLDER / "peers"))
+
+import timescales  # noqa: E402 - found by the line above
+
+
+@pytest.mark.parametrize("unit", [1, 7])
+@pytest.mark.parametrize("family", timescales.FAMILIES)
+def test_every_verdict_of_a_timescales_trace_is_the_one_it_was_made_for(family, unit):
+    n = 700
+    for wrong in (False, True):
+        data = timescales.signals(family, unit, n, wrong=wrong)
+        past = rtamt.parse(timescales.formula(family, unit, "past"), backend="python")
+        values = past.evaluate({name: data[name] for name in past.input_names}).signal.values
+        first = timescales.violated_at(family, unit, n) if wrong else n
+        np.testing.assert_array_equal(values < 0, np.arange(n) >= first)
+        future = rtamt.parse(timescales.formula(family, unit, "future"))
+        assert future.evaluate({name: data[name] for name in future.input_names}).satisfied is not wrong
+
+
+def test_a_quick_run_measures_all_and_writes_report_and_plots(tmp_path):
+    command = [sys.executable, str(FOLDER / "run.py"), "--quick", "--alone", "--out", str(tmp_path)]
+    subprocess.run(command, check=True, capture_output=True, timeout=120)
+    report = (tmp_path / "RESULTS.md").read_text(encoding="utf-8")
+    for heading in (
+        "Paper: offline, dense time",
+        "Online, discrete time",
+        "Timescales: past form",
+        "Start-up",
+    ):
+        assert f"\n## {heading}" in report
+    for plot in tmp_path.joinpath("plots").iterdir():
+        assert plot.read_bytes().startswith(b"\x89PNG")
+        assert f"plots/{plot.name}" in report
+    assert len(list(tmp_path.joinpath("plots").iterdir())) == 7
+
+
+def test_a_tool_that_is_asked_how_long_it_takes_answers_in_seconds_a_sample():
+    question = {
+        "formula": {"op": "ge", "args": [{"var": "a"}, {"const": 0.0}]},
+        "time": "discrete",
+        "mode": "online",
+        "workload": {"kind": "normal", "names": ["a"], "n": 300, "warm": 10, "limit": 0.1, "patience": 5},
+    }
+    command = [sys.executable, str(FOLDER / "peers" / "ask_this.py")]
+    said = subprocess.run(
+        command, input=json.dumps(question) + "\n", check=True, capture_output=True, text=True, timeout=60
+    )
+    _, answer = map(json.loads, said.stdout.splitlines())
+    assert 0 < answer["seconds"] < 1
