@@ -17,15 +17,13 @@ import rosgraph
 import rospy
 
 from rtamt.errors import StlError
-from rtamt.ros import Robustness
 from rtamt.ros.binding import MessageType
-from rtamt.ros.fields import write
 from rtamt.ros.options import options, parser
+from rtamt.ros.outbox import DIAGNOSTICS, Outbox
 from rtamt.ros.report import Level
 from rtamt.specification import load
 
 PROGRAM = "ros_stl_monitor.py"
-VERDICT = MessageType("rtamt_msgs.msg", "Verdict")
 QUEUE = 100  # messages that wait for a slow subscriber
 DIAGNOSTICS_EVERY = 1.0  # seconds of wall time
 LOGS = {
@@ -43,19 +41,23 @@ class Node:
         self.monitor = monitor
         self.lock = threading.Lock()
         self.simulated = rospy.get_param("/use_sim_time", False)
-        classes = monitor.binding.check()
-        self.verdict_class = VERDICT.load()
+        self.outbox = Outbox(monitor.binding, MessageType.load, stamp)
         self.publishers = {
-            output: (
-                rospy.Publisher(output.topic, classes[output.type], queue_size=QUEUE),
-                rospy.Publisher(f"{output.topic}/verdict", self.verdict_class, queue_size=QUEUE),
-                classes[output.type],
-            )
-            for output in monitor.binding.outputs
+            topic: rospy.Publisher(topic, cls, queue_size=QUEUE) for topic, cls in self.outbox.topics.items()
         }
-        self.diagnostics = Diagnostics(monitor)
+        self.diagnostics = self.on_diagnostics()
+        self.due = 0.0
         for topic, kind in {known.topic: known.type for known in monitor.binding.inputs}.items():
-            rospy.Subscriber(topic, classes[kind], self.receive, topic, tcp_nodelay=True)
+            rospy.Subscriber(topic, self.outbox.classes[kind], self.receive, topic, tcp_nodelay=True)
+
+    def on_diagnostics(self):
+        """Return the publisher of conditions; None where there is no message type for them."""
+        try:
+            from diagnostic_msgs.msg import DiagnosticArray
+        except ImportError:
+            rospy.logwarn("diagnostic_msgs is not installed, so that nothing is published on /diagnostics")
+            return None
+        return rospy.Publisher(DIAGNOSTICS, DiagnosticArray, queue_size=QUEUE)
 
     def receive(self, message, topic):
         """Take a message; called by rospy, a thread for each connection."""
@@ -69,7 +71,7 @@ class Node:
                 now = rospy.Time.now().to_nsec()
                 if now:  # simulated time is 0 until somebody publishes it
                     self.publish(self.monitor.tick(now))
-                self.diagnostics.tell(now)
+                self.tell(now)
                 pause = self.monitor.pause(rospy.Time.now().to_nsec())
             self.sleep(pause)
 
@@ -83,69 +85,21 @@ class Node:
             changed.wait(0.1)
 
     def publish(self, records):
-        """Publish robustness and verdicts."""
+        """Publish robustness and verdicts to those who listen."""
         for record in records:
-            numbers, verdicts, number_class = self.publishers[record.output]
-            if isinstance(record, Robustness):
-                if numbers.get_num_connections():
-                    numbers.publish(self.number(number_class, record))
-            elif verdicts.get_num_connections():
-                verdicts.publish(self.verdict(record))
-
-    def number(self, cls, record):
-        """Return the message of a robustness."""
-        message = cls()
-        write(message, record.output.path, record.value)
-        if hasattr(message, "header"):
-            message.header.stamp = stamp(record.stamp)
-        return message
-
-    def verdict(self, record):
-        """Return the message of a verdict."""
-        cls = self.verdict_class
-        message = cls(name=record.output.name, horizon=record.horizon)
-        message.header.stamp = stamp(record.stamp)
-        message.verdict = {None: cls.UNKNOWN, True: cls.SATISFIED, False: cls.VIOLATED}[record.satisfied]
-        return message
-
-
-class Diagnostics:
-    """Publishes the condition of every output, once a second and when something happened; logs what did."""
-
-    def __init__(self, monitor):
-        self.monitor = monitor
-        self.next = 0.0
-        try:
-            from diagnostic_msgs import msg
-        except ImportError:
-            rospy.logwarn("diagnostic_msgs is not installed, so that nothing is published on /diagnostics")
-            self.messages = None
-            return
-        self.messages = msg
-        self.publisher = rospy.Publisher("/diagnostics", msg.DiagnosticArray, queue_size=QUEUE)
+            publisher = self.publishers[self.outbox.topic(record)]
+            if publisher.get_num_connections():
+                publisher.publish(self.outbox.message(record))
 
     def tell(self, now):
-        """Say what there is to say at ``now``."""
+        """Log what happened; publish the conditions, once a second and when something did."""
         notices = self.monitor.notices()
         for notice in notices:
             LOGS[notice.level](notice.message)
-        if self.messages is None or not (notices or time.monotonic() >= self.next):
-            return
-        self.next = time.monotonic() + DIAGNOSTICS_EVERY
-        array = self.messages.DiagnosticArray(status=[self.status(c) for c in self.monitor.conditions(now)])
-        array.header.stamp = stamp(now)
-        self.publisher.publish(array)
-
-    def status(self, condition):
-        """Return the message of one condition."""
-        values = [self.messages.KeyValue(key, value) for key, value in condition.values]
-        return self.messages.DiagnosticStatus(
-            level=int(condition.level),
-            name=condition.name,
-            message=condition.message,
-            hardware_id=rospy.get_name(),
-            values=values,
-        )
+        if self.diagnostics is not None and (notices or time.monotonic() >= self.due):
+            self.due = time.monotonic() + DIAGNOSTICS_EVERY
+            conditions = self.monitor.conditions(now)
+            self.diagnostics.publish(self.outbox.diagnostics(conditions, rospy.get_name(), now))
 
 
 class Registration(threading.Thread):

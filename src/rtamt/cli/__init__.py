@@ -18,6 +18,7 @@ from rtamt.cli import (
     monitor,
     operators,
     plot,
+    ros2,
 )
 from rtamt.cli.command import BROKEN_PIPE, ERROR, INTERRUPTED, OK, Command, Help, Parser, complain
 from rtamt.errors import StlError, UsageError, did_you_mean
@@ -33,6 +34,7 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             explain.COMMAND,
             plot.COMMAND,
             monitor.COMMAND,
+            ros2.COMMAND,
             falsify.COMMAND,
             info.COMMAND,
             compile.COMMAND,

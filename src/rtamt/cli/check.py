@@ -7,6 +7,7 @@ import sys
 from argparse import Namespace
 from typing import TYPE_CHECKING, Any
 
+from rtamt.cli.bag import write_bag
 from rtamt.cli.command import (
     ERROR,
     OK,
@@ -43,14 +44,19 @@ Exit code: 0 all satisfied, 1 some violated, 2 some could not be evaluated."""
 
 _EPILOG = """\
 SPEC is a file (.stl) or a formula in quotes; more .stl files may follow. A trace is a CSV, Parquet,
-Arrow, Excel, PX4 ULog or MDF file, or the rows of a query (--sql URL --query TEXT). Time stamps are in the
-column called time, t, timestamp, stamp or datetime; without one, samples are one period apart. They are
-dates (ISO 8601) or numbers: seconds, or the unit in the header ('t [ms]') or of --time-unit; integers
-too large for seconds are ms, us or ns since 1970. Columns that no formula reads may hold anything.
+Arrow, Excel, PX4 ULog or MDF file, a ROS bag (.bag, .db3, .mcap), or the rows of a query (--sql URL
+--query TEXT). Time stamps are in the column called time, t, timestamp, stamp or datetime; without one,
+samples are one period apart. They are dates (ISO 8601) or numbers: seconds, or the unit in the header
+('t [ms]') or of --time-unit; integers too large for seconds are ms, us or ns since 1970. Columns that no
+formula reads may hold anything.
 'rtamt info TRACE' tells what is in a file, and what is guessed of it.
 
 With --time dense a value holds until the next one, and time stamps may lie anywhere; a variable has
 no sample where its cell is empty. Then -o writes the robustness where it changes, and at the end.
+
+In a bag the annotations of SPEC say which topics are read ('@ topic(req, rtamt/req)'). In discrete time
+it is sampled as a node would: the latest message, every --period (default: 1 s). With -o out.mcap the bag
+is written again, with the topics of robustness and verdicts that SPEC names.
 
 Large files are read in chunks, in memory that does not grow with them, where the future of the formula
 is bounded (but for always and eventually at its top). Many files are read on all cores.
@@ -87,7 +93,12 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("traces", metavar="TRACE", nargs="*", help="a recording; before it more SPECs (.stl)")
     add_time_option(parser)
     add_reading_options(parser)
-    parser.add_argument("-o", "--output", metavar="FILE", help="write the robustness at every sample as CSV")
+    parser.add_argument(
+        "-o",
+        "--output",
+        metavar="FILE",
+        help="write the robustness at every sample as CSV, or (.mcap) a bag with topics of it",
+    )
     parser.add_argument("--json", action="store_true", help="print JSON, one object a line")
     for kind in REPORTS:
         parser.add_argument(f"--{kind}", metavar="FILE", help=f"write a report as {_REPORT_NAMES[kind]}")
@@ -129,7 +140,10 @@ def run(args: argparse.Namespace) -> int:
     if not args.json and not args.quiet and any(not outcome.error for outcome in found):
         print(_as_table(requirements, found, color))
     if found[0].result is not None and args.output is not None:
-        _write(found[0].result, args.output)
+        if args.output.lower().endswith(".mcap"):
+            write_bag(requirements[0], traces[0], reading, found[0].result, args.output)
+        else:
+            _write(found[0].result, args.output)
     for kind in REPORTS:
         if getattr(args, kind) is not None:
             write_report(kind, getattr(args, kind), requirements, found)

@@ -15,8 +15,10 @@ from rtamt.cli.command import NO_STAMPS
 from rtamt.engine.signals import TIME, Recording
 from rtamt.errors import BoundError, StlError, TraceError
 from rtamt.readers.assemble import chunks_of, trace_of
+from rtamt.readers.formats import BAG
 from rtamt.readers.reading import choice, opened
 from rtamt.readers.sql import is_url, shown
+from rtamt.ros.bags import columns_of
 from rtamt.streams import check_stream, check_streamable
 from rtamt.verdicts import first_violation
 
@@ -28,6 +30,7 @@ if TYPE_CHECKING:
     from rtamt.engine.trace import Trace
     from rtamt.readers.assemble import Choice
     from rtamt.results import Result
+    from rtamt.settings import Duration
     from rtamt.specification import Specification
 
 #: Bytes of a file from which on it is read in chunks, where format and formula allow it.
@@ -141,7 +144,7 @@ def _alone(requirement: Requirement, trace: str, reading: Reading) -> Outcome:
         with opened(trace, reading.sheet, reading.query) as source:
             chunked = all(table.chunks is not None for table in source.tables) and len(source.tables) == 1
             if chunked:
-                chunks = _Chunks(chunks_of(source, _choice([requirement], reading)))
+                chunks = _Chunks(chunks_of(source, _choice([requirement], trace, reading)))
                 found = check_stream(requirement.spec, chunks)
     except BoundError:
         chunked = False
@@ -174,8 +177,9 @@ def _check(requirement: Requirement, trace: str, data: Trace | None, reading: Re
     try:
         if spec.time == "dense" and data.start is None:
             raise TraceError(NO_STAMPS)
-        if reading.resample is not None:
-            data = data.resample(reading.resample, reading.how)
+        clock = _clock(spec, trace, reading)
+        if clock is not None:
+            data = data.resample(clock, reading.how)
         result = spec.evaluate(data)
         violated = first_violation(result)
     except StlError as error:
@@ -200,15 +204,35 @@ def _failed(requirement: Requirement, trace: str, error: str, begin: float) -> O
 
 def _read(trace: str, requirements: Sequence[Requirement], reading: Reading) -> Trace:
     with opened(trace, reading.sheet, reading.query) as source:
-        return trace_of(source, _choice(requirements, reading))
+        return trace_of(source, _choice(requirements, trace, reading))
 
 
-def _choice(requirements: Sequence[Requirement], reading: Reading) -> Choice:
+def is_bag(trace: str) -> bool:
+    """Tell whether a recording is a ROS bag: each topic has a clock of its own."""
+    return os.path.splitext(trace)[1].lower() in BAG.suffixes
+
+
+def _clock(spec: Specification, trace: str, reading: Reading) -> Duration | None:
+    """Return the period of the one clock that signals are put on; None where they stay as they are.
+
+    Discrete time samples a bag as a node samples topics: the latest message, every period.
+    """
+    if reading.resample is not None or spec.time == "dense" or not is_bag(trace):
+        return reading.resample
+    return spec.period or 1
+
+
+def _choice(requirements: Sequence[Requirement], trace: str, reading: Reading) -> Choice:
     columns = dict.fromkeys(name for requirement in requirements for name in requirement.spec.input_names)
     units = None if reading.unit is None else {TIME: reading.unit}
     # In discrete time a gap is an error, unless a clock of its own for each signal is what is resampled.
-    gaps = requirements[0].spec.time == "dense" or reading.resample is not None
-    return replace(choice(reading.time, columns or None, reading.names, units), gaps=gaps)
+    spec = requirements[0].spec
+    gaps = spec.time == "dense" or _clock(spec, trace, reading) is not None
+    names = dict(reading.names)
+    if is_bag(trace):
+        for requirement in requirements:
+            names = {**columns_of(requirement.spec), **names}
+    return replace(choice(reading.time, columns or None, names, units), gaps=gaps)
 
 
 def _samples(recording: Recording | DenseRecording) -> int:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import struct
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
@@ -41,6 +42,12 @@ class TickSignal(Signal):
 
     def __len__(self) -> int:
         return len(self._events) // 16
+
+    def points(self) -> list[tuple[int, float]]:
+        """Return ticks and values as they are, for loops in which a microsecond counts."""
+        count = len(self)
+        numbers = struct.unpack(f"={count}q{count}d", self._events)
+        return list(zip(numbers[:count], numbers[count:], strict=True))
 
     @property
     def times(self) -> NDArray[Any]:

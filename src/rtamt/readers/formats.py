@@ -39,6 +39,9 @@ class Format:
         return opener(path)
 
 
+#: A bag has a table for each topic; a specification's annotations say which topics it reads.
+BAG = Format("ROS bag", (".bag", ".db3", ".mcap"), "rosbag:open_bag")
+
 FORMATS = (
     Format("CSV", (".csv", ".tsv", ".txt"), "text:open_csv"),
     Format("Parquet", (".parquet", ".pq"), "arrow:open_parquet"),
@@ -46,6 +49,7 @@ FORMATS = (
     Format("Excel", (".xlsx", ".xlsm"), "excel:open_excel", sheets=True),
     Format("PX4 ULog", (".ulg",), "ulog:open_ulog"),
     Format("MDF", (".mf4", ".mdf"), "mdf:open_mdf"),
+    BAG,
 )
 
 SUFFIXES = {suffix: known for known in FORMATS for suffix in known.suffixes}

@@ -137,7 +137,7 @@ class RosMonitor:
             if self._all_speak(watch):
                 records += self._tell(watch, stamp, values)
             else:
-                watch.hold(topic, stamp, values)
+                watch.hold(stamp, values)
         return records
 
     def tick(self, now: int) -> list[Record]:

@@ -57,14 +57,26 @@ class _Parser(argparse.ArgumentParser):
 
 
 def parser(prog: str) -> argparse.ArgumentParser:
-    """Return a parser of the arguments that every node takes; a node may add its own."""
+    """Return a parser of the arguments that every node takes."""
     made = _Parser(
         prog=prog,
         description="Watch a specification over topics, and publish its robustness and verdict.",
         allow_abbrev=False,
     )
-    made.add_argument("spec", nargs="?", help="a specification file (.stl) with topics and types")
-    made.add_argument("--period", help="from sample to sample: a number, or with a unit: 100ms (default: 1)")
+    add_options(made)
+    return made
+
+
+def add_options(made: argparse.ArgumentParser) -> None:
+    """Add the arguments that every node takes."""
+    made.add_argument(
+        "spec", metavar="SPEC", nargs="?", help="a specification file (.stl) with topics and types"
+    )
+    made.add_argument(
+        "--period",
+        metavar="DURATION",
+        help="from sample to sample: a number, or with a unit: 100ms (default: 1)",
+    )
     made.add_argument(
         "--unit", help=f"of --period and --stale where they are numbers: {', '.join(UNITS)} (default: s)"
     )
@@ -78,7 +90,6 @@ def parser(prog: str) -> argparse.ArgumentParser:
         metavar="DURATION",
         help="how long a topic may be silent; 0: for ever (default: ten periods, in dense time 5 s)",
     )
-    return made
 
 
 def options(arguments: argparse.Namespace, parameters: Mapping[str, Any]) -> Options:

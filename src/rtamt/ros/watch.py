@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections import deque
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
+from rtamt.engine.dense_signals import TickSignal
+from rtamt.engine.ticks import NANOSECOND
 from rtamt.errors import SpecificationError
 from rtamt.language.formula import variables
 from rtamt.rewrite.horizon import horizon
@@ -42,6 +45,9 @@ class Verdict:
     horizon: float
     satisfied: bool | None
 
+
+#: Messages that are kept while another topic is silent.
+HELD = 1000
 
 Record: TypeAlias = Robustness | Verdict
 
@@ -117,26 +123,27 @@ class DenseWatch(Watch):
 
     def __init__(self, output: Output, topic_of: Mapping[str, str]) -> None:
         super().__init__(output, topic_of, None)
-        self._robustness = self.past.monitor(time="dense")
-        self._verdict = self.past.monitor(time="dense", semantics="boolean")
+        # A tick is a nanosecond, so that what comes out needs no conversion.
+        self._robustness = self.past.monitor(time="dense", resolution=NANOSECOND)
+        self._verdict = self.past.monitor(time="dense", resolution=NANOSECOND, semantics="boolean")
         self._lag = round(self.depth * 10**9)
         self._start: int | None = None
-        self._held: dict[str, tuple[int, dict[str, float]]] = {}
+        self._held: deque[tuple[int, dict[str, float]]] = deque(maxlen=HELD)
 
     @property
     def samples(self) -> int:
         """How many numbers were taken since the beginning or the last reset."""
         return self._robustness.samples
 
-    def hold(self, topic: str, stamp: int, values: Mapping[str, float]) -> None:
-        """Keep a message while another topic has nothing to say: the trace begins when all do."""
-        self._held[topic] = (stamp, self._mine(values))
+    def hold(self, stamp: int, values: Mapping[str, float]) -> None:
+        """Keep a message while another topic has nothing to say, of many the latest: the trace begins when all do."""
+        self._held.append((stamp, self._mine(values)))
 
     def take(self, stamp: int, values: Mapping[str, float]) -> list[Record]:
         """Take the numbers of one message; raise :class:`StlError` where they cannot be used."""
         records: list[Record] = []
         while self._held:
-            _, (before, held) = self._held.popitem()
+            before, held = self._held.popleft()
             records += self._update(before, held)
         return records + self._update(stamp, self._mine(values))
 
@@ -146,10 +153,11 @@ class DenseWatch(Watch):
     def _update(self, stamp: int, values: dict[str, float]) -> list[Record]:
         time = np.int64(stamp)  # an integer of numpy means nanoseconds
         known, truths = self._robustness.update(time, **values), self._verdict.update(time, **values)
-        records: list[Record] = [Robustness(self.output, t, value) for t, value in _points(known)]
-        if records:
-            self.latest = float(known.values[-1])
-            self._start = records[0].stamp if self._start is None else self._start
+        points = _points(known)
+        records: list[Record] = [Robustness(self.output, t, value) for t, value in points]
+        if points:
+            self.latest = points[-1][1]
+            self._start = points[0][0] if self._start is None else self._start
         return records + [self._judge(t, truth) for t, truth in _points(truths)]
 
     def _judge(self, stamp: int, truth: float) -> Verdict:
@@ -166,4 +174,6 @@ class DenseWatch(Watch):
 
 
 def _points(signal: Signal) -> list[tuple[int, float]]:
+    if isinstance(signal, TickSignal):
+        return signal.points()
     return list(zip(signal.times.tolist(), signal.values.tolist(), strict=True))

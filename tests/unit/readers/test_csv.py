@@ -269,5 +269,5 @@ def test_message_for_an_unknown_suffix():
         read("log.cvs", ["x"])
     assert str(error.value) == (
         "cannot tell how to read 'log.cvs': its name ends in none of .csv, .tsv, .txt, .parquet, .pq, .arrow, "
-        ".feather, .ipc, .xlsx, .xlsm, .ulg, .mf4, .mdf; did you mean '.csv'?"
+        ".feather, .ipc, .xlsx, .xlsm, .ulg, .mf4, .mdf, .bag, .db3, .mcap; did you mean '.csv'?"
     )

@@ -1,0 +1,20 @@
+"""ros2 launch rtamt4ros2 monitor.launch.py spec:=/path/to/spec.stl period:=100ms."""
+
+from launch import LaunchDescription
+from launch.actions import DeclareLaunchArgument
+from launch.substitutions import LaunchConfiguration
+from launch_ros.actions import Node
+from launch_ros.parameter_descriptions import ParameterValue
+
+#: Arguments and what holds where nothing is said.
+ARGUMENTS = {"period": "1", "unit": "s", "time": "discrete", "stale": "", "reliability": "reliable"}
+
+
+def generate_launch_description():
+    """Return the monitor's node."""
+    names = ["spec", *ARGUMENTS]
+    values = {name: ParameterValue(LaunchConfiguration(name), value_type=str) for name in names}
+    declared = [DeclareLaunchArgument("spec")]
+    declared += [DeclareLaunchArgument(name, default_value=value) for name, value in ARGUMENTS.items()]
+    node = Node(package="rtamt4ros2", executable="ros_stl_monitor", output="screen", parameters=[values])
+    return LaunchDescription([*declared, node])

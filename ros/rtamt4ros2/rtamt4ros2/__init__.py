@@ -1,0 +1,1 @@
+"""The STL monitor as a node of ROS 2."""

@@ -1,0 +1,119 @@
+"""The ROS 2 node on rclpy: watches a specification over topics, publishes robustness, verdicts, diagnostics.
+
+    ros2 run rtamt4ros2 ros_stl_monitor spec.stl --period 1 --unit s
+
+What it subscribes and publishes is in the specification. Arguments may be parameters as well: spec, period,
+unit, time, stale; and quality of service: reliability, durability, depth.
+"""
+
+import sys
+import time
+
+import rclpy
+import rclpy.executors
+from builtin_interfaces.msg import Time
+from rclpy.node import Node
+from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+from rclpy.utilities import remove_ros_args
+
+from rtamt.errors import StlError
+from rtamt.ros.binding import MessageType
+from rtamt.ros.monitor import PAUSE
+from rtamt.ros.options import DEFAULTS, options, parser
+from rtamt.ros.outbox import DIAGNOSTICS, Outbox, diagnostic
+from rtamt.specification import load
+
+PROGRAM = "ros_stl_monitor"
+DIAGNOSTICS_EVERY = 1.0  # seconds of wall time
+
+
+class Monitor(Node):
+    """Carries messages to a monitor, and what comes out to topics."""
+
+    def __init__(self, arguments):
+        name = (load(arguments.spec).name if arguments.spec else None) or "stl_monitor"
+        super().__init__(name)
+        chosen = {key: self.declare_parameter(key, value).value for key, value in DEFAULTS.items()}
+        self.monitor = options(arguments, chosen).monitor()
+        quality = self.quality()
+        self.outbox = Outbox(self.monitor.binding, MessageType.load, stamp, lambda level: bytes([level]))
+        self.senders = {
+            topic: self.create_publisher(cls, topic, quality) for topic, cls in self.outbox.topics.items()
+        }
+        array = diagnostic("DiagnosticArray").load()
+        self.diagnostics = self.create_publisher(array, DIAGNOSTICS, quality)
+        self.due = 0.0
+        for topic, kind in {known.topic: known.type for known in self.monitor.binding.inputs}.items():
+            self.create_subscription(
+                self.outbox.classes[kind],
+                topic,
+                lambda message, topic=topic: self.receive(topic, message),
+                quality,
+            )
+
+    def quality(self):
+        """Return the quality of service of all topics, from parameters."""
+        reliability = self.declare_parameter("reliability", "reliable").value
+        durability = self.declare_parameter("durability", "volatile").value
+        return QoSProfile(
+            depth=self.declare_parameter("depth", 100).value,
+            reliability=ReliabilityPolicy[reliability.upper()],
+            durability=DurabilityPolicy[durability.upper()],
+        )
+
+    def now(self):
+        """Return the time in nanoseconds, simulated where use_sim_time is set."""
+        return self.get_clock().now().nanoseconds
+
+    def receive(self, topic, message):
+        """Take a message."""
+        self.publish(self.monitor.message(topic, message, self.now()))
+
+    def publish(self, records):
+        """Publish robustness and verdicts."""
+        for record in records:
+            self.senders[self.outbox.topic(record)].publish(self.outbox.message(record))
+
+    def look(self):
+        """Look at the clock; say what there is to say."""
+        now = self.now()
+        if now:  # simulated time is 0 until somebody publishes it
+            self.publish(self.monitor.tick(now))
+        notices = self.monitor.notices()
+        for notice in notices:
+            self.get_logger().warning(notice.message)
+        if notices or time.monotonic() >= self.due:
+            self.due = time.monotonic() + DIAGNOSTICS_EVERY
+            array = self.outbox.diagnostics(self.monitor.conditions(now), self.get_name(), now)
+            self.diagnostics.publish(array)
+        return self.monitor.pause(self.now())
+
+    def run(self):
+        """Watch until the node is shut down."""
+        while rclpy.ok():
+            rclpy.spin_once(self, timeout_sec=min(PAUSE, self.look()))
+
+
+def stamp(nanoseconds):
+    """Return a time of ROS 2."""
+    return Time(sec=nanoseconds // 10**9, nanosec=nanoseconds % 10**9)
+
+
+def main():
+    """Run the node until it is shut down; return the exit code."""
+    rclpy.init(args=sys.argv)
+    try:
+        node = Monitor(parser(PROGRAM).parse_args(remove_ros_args(sys.argv)[1:]))
+        node.run()
+    except StlError as error:
+        print(f"{PROGRAM}: {error}", file=sys.stderr)
+        return 2
+    except (KeyboardInterrupt, rclpy.executors.ExternalShutdownException):
+        return 0
+    finally:
+        rclpy.try_shutdown()
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

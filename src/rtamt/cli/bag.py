@@ -1,0 +1,52 @@
+"""``rtamt check SPEC BAG -o out.mcap``: the bag again, with topics of robustness and verdicts."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from rtamt.cli.command import CommandError
+from rtamt.cli.matrix import evaluate, is_bag
+from rtamt.errors import UsageError
+from rtamt.rewrite import interface
+from rtamt.ros.bags import Finding, write_mcap
+from rtamt.ros.binding import bind
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from rtamt.cli.matrix import Reading, Requirement
+    from rtamt.results import Result
+
+#: The topic of a requirement that names none.
+TOPIC = "rtamt/robustness"
+
+
+def write_bag(requirement: Requirement, trace: str, reading: Reading, result: Result, path: str) -> None:
+    """Write a recording with what was found out about it; ``result``: of the requirement itself."""
+    if not is_bag(trace):
+        raise CommandError(
+            f"'{trace}' is no bag, so that there are no topics to write to '{path}'; write .csv"
+        )
+    write_mcap(trace, path, _findings(requirement, trace, reading, result))
+
+
+def _findings(requirement: Requirement, trace: str, reading: Reading, result: Result) -> Iterator[Finding]:
+    """Yield what came of every assertion that has a topic, else of the requirement."""
+    try:
+        outputs = bind(requirement.spec).outputs
+    except UsageError:  # it was not written for nodes: a formula over columns
+        yield _finding(requirement.label, TOPIC, result)
+        return
+    for output in outputs:
+        alone = replace(requirement, spec=output.specification)
+        (outcome,) = evaluate([alone], trace, reading)
+        if outcome.result is None:
+            raise CommandError(outcome.error)
+        yield _finding(output.name, output.topic, outcome.result)
+
+
+def _finding(name: str, topic: str, result: Result) -> Finding:
+    spec = result.specification
+    truth = spec.signal_of(interface.boolean(spec.formula), result.trace)
+    return Finding(name, topic, result.signal, truth)

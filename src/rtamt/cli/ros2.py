@@ -1,0 +1,78 @@
+"""``rtamt ros2``: a specification file in, live robustness topics of ROS 2 out; needs no ROS."""
+
+from __future__ import annotations
+
+import sys
+from typing import TYPE_CHECKING
+
+from rtamt.cli.command import OK, Command
+from rtamt.ros.options import add_options, options
+
+if TYPE_CHECKING:
+    import argparse
+
+_DESCRIPTION = """\
+Watch a specification over topics of ROS 2, and publish its robustness and verdicts: a node of its own, on
+Cyclone DDS, without an installation of ROS. 'ros2 node list' and 'ros2 topic list' show it."""
+
+_EPILOG = """\
+SPEC says which topics are read and written, and of which types (the paper's listing 8). Verdicts go to
+the topic of the robustness with '/verdict' after it, the condition of every output to /diagnostics.
+ROS_DOMAIN_ID chooses the domain, CYCLONEDDS_URI the network, ROS_DISTRO the distribution.
+
+examples:
+  rtamt ros2 spec.stl --period 1 --unit s
+  rtamt ros2 spec.stl --time dense --reliability best_effort --messages ~/workspace/src"""
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of the command."""
+    parser.description = _DESCRIPTION
+    parser.epilog = _EPILOG
+    add_options(parser)
+    parser.add_argument("--node", metavar="NAME", help="the node's name (default: the specification's)")
+    parser.add_argument(
+        "--reliability",
+        default="reliable",
+        metavar="{reliable,best_effort}",
+        help="of topics; best_effort also hears reliable publishers (default: reliable)",
+    )
+    parser.add_argument(
+        "--durability",
+        default="volatile",
+        metavar="{volatile,transient_local}",
+        help="transient_local also hears what was published before (default: volatile)",
+    )
+    parser.add_argument(
+        "--depth", type=int, default=100, metavar="N", help="messages kept for a slow reader (default: 100)"
+    )
+    parser.add_argument("--sim-time", action="store_true", help="the time is what is published on /clock")
+    parser.add_argument("--distro", metavar="NAME", help="of ROS 2, such as humble (default: jazzy)")
+    parser.add_argument(
+        "--messages",
+        action="append",
+        default=[],
+        metavar="FOLDER",
+        help="where packages with definitions of your own are; may be given again",
+    )
+
+
+def run(args: argparse.Namespace) -> int:
+    """Watch until the node is told to end."""
+    from rtamt.ros.dds.node import Node
+    from rtamt.ros.dds.participant import Participant, Quality
+    from rtamt.ros.dds.types import Types
+
+    quality = Quality(args.reliability, args.durability, args.depth)
+    monitor = options(args, {}).monitor()
+    types = Types(args.distro, args.messages)
+    monitor.binding.check(types.load)
+    participant = Participant(args.node or monitor.binding.name, types, quality)
+    node = Node(monitor, participant, types, simulated=args.sim_time)
+    for output in monitor.binding.outputs:
+        print(f"{output.name} on {output.topic}: {output.specification.formula}", file=sys.stderr, flush=True)
+    node.run()
+    return OK
+
+
+COMMAND = Command("ros2", "watch topics of ROS 2, publish robustness and verdicts", configure, run)

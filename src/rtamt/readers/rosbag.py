@@ -1,0 +1,143 @@
+"""ROS bags, with rosbags: ROS 1, ROS 2 (sqlite3 and MCAP), a table for each topic."""
+
+from __future__ import annotations
+
+from itertools import groupby
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rtamt.engine.signals import is_number
+from rtamt.errors import TraceError
+from rtamt.extras import library
+from rtamt.readers.source import Field, Source, Table, opening
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from rtamt.readers.source import Raw
+
+#: Elements of an array that become columns of their own; longer ones are images and clouds of points.
+_ELEMENTS = 1000
+
+#: The steps from a message to a number in it.
+Steps = tuple["str | int", ...]
+
+
+def open_bag(path: str) -> Source:
+    """Open a bag.
+
+    A column is called ``/topic.field.path``, elements of arrays ``/topic.ranges[0]``: what the first
+    message of the topic holds. The time of a message is the stamp in its header, in nanoseconds; where
+    there is none, or it was left at 0, the time at which it was recorded.
+    """
+    reader = open_reader(path)
+    ordered = sorted(reader.connections, key=lambda connection: connection.topic)
+    tables = [_table(reader, topic, list(group)) for topic, group in groupby(ordered, lambda c: c.topic)]
+    return Source(path, tuple(table for table in tables if table is not None), close=reader.close)
+
+
+def open_reader(path: str) -> Any:
+    """Return a reader of any bag; raise :class:`TraceError` where it is none."""
+    highlevel = library("rosbags.highlevel", "reading ROS bags", "ros")
+    typesys = library("rosbags.typesys", "reading ROS bags", "ros")
+    # ROS 2's sqlite3 files came without definitions of their messages until 2023.
+    known = typesys.get_typestore(typesys.Stores.ROS2_HUMBLE)
+    # What is no bag fails in ways of its own: a struct is cut, a text cannot be decoded.
+    broken = (highlevel.AnyReaderError, ValueError, KeyError, IndexError, TypeError, AssertionError)
+    with opening(path, "a ROS bag", *broken):
+        reader = highlevel.AnyReader([_existing(path)], default_typestore=known)
+        reader.open()
+    return reader
+
+
+def _existing(path: str) -> Path:
+    """Return a path; raise what ``open`` raises where there is no such file."""
+    with open(path, "rb"):
+        return Path(path)
+
+
+def _table(reader: Any, topic: str, connections: list[Any]) -> Table | None:
+    """Return the table of a topic; None where it has no message."""
+    kinds = {connection.msgtype for connection in connections}
+    first = next(reader.messages(connections=connections), None)
+    if first is None:
+        return None
+    if len(kinds) > 1:
+        raise TraceError(f"the topic {topic} carries several types of messages: {', '.join(sorted(kinds))}")
+    connection, _, raw = first
+    steps = {f"{topic}{_text(path)}": path for path in _numbers(reader.deserialize(raw, connection.msgtype))}
+    clock = Field(f"{topic} stamp", f"{topic} stamp", "ns", "number")
+
+    def load(wanted: Sequence[Field]) -> list[Raw]:
+        paths = [steps[field.column] for field in wanted if field != clock]
+        stamps: list[int] = []
+        rows: list[list[Any]] = []
+        for known, recorded, data in reader.messages(connections=connections):
+            message = reader.deserialize(data, known.msgtype)
+            stamp = _stamp(message) or recorded
+            if stamps and stamp <= stamps[-1]:
+                if stamp == stamps[-1]:
+                    continue  # a signal has one value at an instant: the first
+                raise TraceError(
+                    f"the stamps on {topic} go back by {(stamps[-1] - stamp) / 1e9:.9g} s at message {len(stamps)}: "
+                    f"was simulated time set back? Cut the bag there"
+                )
+            stamps.append(stamp)
+            rows.append([_at(message, path) for path in paths])
+        return _columns(wanted, clock, stamps, rows)
+
+    fields = [Field(column, column, "", "number") for column in steps]
+    return Table((clock, *fields), load, clock=clock)
+
+
+def _columns(wanted: Sequence[Field], clock: Field, stamps: list[int], rows: list[list[Any]]) -> list[Raw]:
+    values = iter(zip(*rows, strict=True))
+    found: list[Raw] = []
+    for field in wanted:
+        if field == clock:
+            found.append(np.array(stamps, dtype=np.int64))
+            continue
+        column = next(values)
+        missing = [value is None for value in column]
+        numbers = np.array([0.0 if value is None else float(value) for value in column])
+        found.append(np.ma.masked_array(numbers, missing) if any(missing) else numbers)
+    return found
+
+
+# ---- messages ------------------------------------------------------------------------------------
+
+
+def _numbers(message: Any, before: Steps = ()) -> Iterator[Steps]:
+    """Yield the way to every number in a message."""
+    if is_number(message):
+        yield before
+    elif hasattr(message, "__dataclass_fields__"):
+        for name in message.__dataclass_fields__:
+            yield from _numbers(getattr(message, name), (*before, name))
+    elif isinstance(message, (np.ndarray, list)) and len(message) <= _ELEMENTS:
+        for index, item in enumerate(message):
+            yield from _numbers(item, (*before, index))
+
+
+def _text(path: Steps) -> str:
+    return "".join(f"[{step}]" if isinstance(step, int) else f".{step}" for step in path)
+
+
+def _at(message: Any, path: Steps) -> Any:
+    """Return a number in a message; None where its array is shorter."""
+    for step in path:
+        if isinstance(step, int):
+            if step >= len(message):
+                return None
+            message = message[step]
+        else:
+            message = getattr(message, step)
+    return message
+
+
+def _stamp(message: Any) -> int:
+    """Return the time in a message's header in nanoseconds, 0 where there is none."""
+    stamp = getattr(getattr(message, "header", None), "stamp", None)
+    return 0 if stamp is None else int(stamp.sec) * 10**9 + int(stamp.nanosec)

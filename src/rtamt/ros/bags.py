@@ -1,0 +1,140 @@
+"""Bags: which column of a bag a variable is, and a bag written anew with what was found out about it."""
+
+from __future__ import annotations
+
+import shutil
+import tempfile
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rtamt.errors import TraceError, UsageError
+from rtamt.extras import library
+from rtamt.readers.rosbag import open_reader
+from rtamt.ros.messages import DEFINITIONS, FLOAT_STAMPED, SATISFIED, VERDICT, VIOLATED
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+    from rtamt.engine.signals import Signal
+    from rtamt.specification import Specification
+
+_HEADER = "std_msgs/msg/Header"
+
+
+def columns_of(spec: Specification) -> dict[str, str]:
+    """Return the column of a bag for every number that a specification reads of a message.
+
+    >>> import rtamt
+    >>> columns_of(rtamt.parse('''
+    ...     from nav_msgs.msg import Odometry
+    ...     input Odometry odom  @ topic(odom, base/odom)
+    ...     always(odom.pose.pose.position.x <= 3)'''))
+    {'odom.pose.pose.position.x': '/base/odom.pose.pose.position.x'}
+    """
+    document = spec.document
+    imported = {known.name for known in document.imports}
+    messages = {declaration.name for declaration in document.declarations if declaration.type in imported}
+    found = {}
+    for name in spec.input_names:
+        variable, dot, field = name.partition(".")
+        if dot and variable in messages:
+            topic = document.topics.get(variable, f"rtamt/{variable}").lstrip("/")
+            found[name] = f"/{topic}.{field}"
+    return found
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Finding:
+    """What was found out about a requirement: its robustness signal, and the signal of its truth."""
+
+    name: str
+    topic: str
+    robustness: Signal
+    truth: Signal
+
+
+def write_mcap(source: str, path: str, findings: Iterable[Finding]) -> None:
+    """Write a bag as one MCAP file for ROS 2, with a topic of robustness and one of verdicts for each finding.
+
+    ``source``: any bag; messages of ROS 1 are converted. A topic that is there already gets
+    ``/offline`` after its name. The file is complete or not there. Raises :class:`TraceError`,
+    :class:`UsageError`.
+    """
+    if Path(path).exists() and Path(path).samefile(source):
+        raise UsageError(f"'{path}' is the recording itself; write to another file")
+    rosbag2 = library("rosbags.rosbag2", "reading ROS bags", "ros")
+    reader = open_reader(source)
+    try:
+        with tempfile.TemporaryDirectory(dir=Path(path).resolve().parent) as folder:
+            bag = Path(folder) / "bag"
+            with rosbag2.Writer(bag, version=8, storage_plugin=rosbag2.StoragePlugin.MCAP) as writer:
+                store = _types(reader)
+                _copy(reader, writer, store)
+                taken = {connection.topic for connection in reader.connections}
+                for finding in findings:
+                    _add(finding, writer, store, taken)
+            shutil.move(next(bag.glob("*.mcap")), path)
+    except OSError as error:
+        raise TraceError(f"cannot write '{path}': {error.strerror or error}") from None
+    finally:
+        reader.close()
+
+
+def _types(reader: Any) -> Any:
+    """Return the types of a bag as ROS 2 has them, and those of ours."""
+    typesys = library("rosbags.typesys", "reading ROS bags", "ros")
+    ros2 = typesys.get_typestore(typesys.Stores.ROS2_HUMBLE)
+    store = typesys.get_typestore(typesys.Stores.EMPTY)
+    own = {name: known for name, known in reader.typestore.fielddefs.items() if name != _HEADER}
+    basic = {name: ros2.fielddefs[name] for name in (_HEADER, "builtin_interfaces/msg/Time")}
+    for name, text in DEFINITIONS.items():
+        own.update(typesys.get_types_from_msg(text, name))
+    store.register({**basic, **own})
+    return store
+
+
+def _copy(reader: Any, writer: Any, store: Any) -> None:
+    connections: dict[tuple[str, str], Any] = {}
+    for known in reader.connections:
+        key = known.topic, known.msgtype
+        if key not in connections:
+            connections[key] = writer.add_connection(known.topic, known.msgtype, typestore=store)
+    for known, recorded, raw in reader.messages():
+        data = raw if reader.is2 else store.ros1_to_cdr(raw, known.msgtype)
+        writer.write(connections[known.topic, known.msgtype], recorded, data)
+
+
+def _add(finding: Finding, writer: Any, store: Any, taken: set[str]) -> None:
+    number, verdict = store.types[FLOAT_STAMPED], store.types[VERDICT]
+    topic = _free(f"/{finding.topic.lstrip('/')}", taken)
+    numbers = writer.add_connection(topic, FLOAT_STAMPED, typestore=store)
+    for at, value in _points(finding.robustness):
+        message = number(header=_header(store, at), value=value)
+        writer.write(numbers, at, store.serialize_cdr(message, FLOAT_STAMPED))
+    verdicts = writer.add_connection(_free(f"{topic}/verdict", taken), VERDICT, typestore=store)
+    for at, truth in _points(finding.truth):
+        judged = SATISFIED if truth > 0 else VIOLATED
+        message = verdict(header=_header(store, at), name=finding.name, verdict=judged, horizon=0.0)
+        writer.write(verdicts, at, store.serialize_cdr(message, VERDICT))
+
+
+def _free(topic: str, taken: set[str]) -> str:
+    while topic in taken:
+        topic += "/offline"
+    taken.add(topic)
+    return topic
+
+
+def _points(signal: Signal) -> Sequence[tuple[int, float]]:
+    times = signal.times
+    exact = times if times.dtype.kind == "i" else np.rint(times.astype(np.float64) * 1e9)
+    return list(zip(exact.astype(np.int64).tolist(), signal.values.tolist(), strict=True))
+
+
+def _header(store: Any, at: int) -> Any:
+    seconds, nanoseconds = divmod(at, 10**9)
+    time = store.types["builtin_interfaces/msg/Time"](sec=seconds, nanosec=nanoseconds)
+    return store.types[_HEADER](stamp=time, frame_id="")

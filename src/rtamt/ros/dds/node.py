@@ -1,0 +1,92 @@
+"""The monitor as a node of ROS 2, on Cyclone DDS alone."""
+
+from __future__ import annotations
+
+import signal
+import sys
+import time
+from typing import TYPE_CHECKING, Any
+
+from rtamt.ros.outbox import DIAGNOSTICS, Outbox, diagnostic
+
+if TYPE_CHECKING:
+    from rtamt.ros.binding import MessageType
+    from rtamt.ros.dds.participant import Participant
+    from rtamt.ros.dds.types import Types
+    from rtamt.ros.monitor import RosMonitor
+
+#: Seconds from one message on /diagnostics to the next.
+_DIAGNOSTICS_EVERY = 1.0
+_CLOCK = "/clock"
+
+
+class Node:
+    """Carries messages to a monitor, and what comes out to topics, until it is stopped.
+
+    ``simulated``: the time is what is published on ``/clock``.
+    """
+
+    def __init__(
+        self, monitor: RosMonitor, participant: Participant, types: Types, *, simulated: bool = False
+    ) -> None:
+        self._monitor = monitor
+        self._participant = participant
+        self._now = 0 if simulated else None
+        time_class = types.named("builtin_interfaces/msg/Time")
+
+        def stamp(nanoseconds: int) -> Any:
+            return time_class(sec=nanoseconds // 10**9, nanosec=nanoseconds % 10**9)
+
+        self._outbox = Outbox(monitor.binding, types.load, stamp)
+        for topic, cls in self._outbox.topics.items():
+            participant.advertise(topic, cls)
+        participant.advertise(DIAGNOSTICS, types.load(diagnostic("DiagnosticArray")))
+        if simulated:
+            participant.subscribe(_CLOCK, types.named("rosgraph_msgs/msg/Clock"))
+        read: dict[str, MessageType] = {known.topic: known.type for known in monitor.binding.inputs}
+        for topic, kind in read.items():
+            participant.subscribe(topic, self._outbox.classes[kind])
+        self._due = 0.0
+        self._stopped = False
+
+    def stop(self, *_: object) -> None:
+        """End :meth:`run` soon."""
+        self._stopped = True
+
+    def run(self) -> None:
+        """Watch until :meth:`stop`, or a signal to end."""
+        for ending in (signal.SIGINT, signal.SIGTERM):
+            signal.signal(ending, self.stop)
+        while not self._stopped:
+            now = self._time()
+            if now:  # simulated time is 0 until somebody publishes it
+                self._publish(self._monitor.tick(now))
+            self._tell(now)
+            self._participant.wait(self._monitor.pause(self._time()))
+            for topic, message in self._participant.take():
+                self._receive(topic, message)
+        self._participant.close()
+
+    def _time(self) -> int:
+        return time.time_ns() if self._now is None else self._now
+
+    def _receive(self, topic: str, message: Any) -> None:
+        if topic == _CLOCK:
+            self._now = int(message.clock.sec) * 10**9 + int(message.clock.nanosec)
+            self._publish(self._monitor.tick(self._now))
+            return
+        self._publish(self._monitor.message(topic, message, self._time()))
+
+    def _publish(self, records: Any) -> None:
+        for record in records:
+            self._participant.publish(self._outbox.topic(record), self._outbox.message(record))
+
+    def _tell(self, now: int) -> None:
+        notices = self._monitor.notices()
+        for notice in notices:
+            print(f"[{notice.level.name}] {notice.message}", file=sys.stderr, flush=True)
+        if notices or time.monotonic() >= self._due:
+            self._due = time.monotonic() + _DIAGNOSTICS_EVERY
+            conditions = self._monitor.conditions(now)
+            array = self._outbox.diagnostics(conditions, self._participant.name, now)
+            self._participant.publish(DIAGNOSTICS, array)

@@ -1,0 +1,143 @@
+"""Message definitions to classes that Cyclone DDS can send: those of ROS 2, ours, and the user's own."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from rtamt.errors import UsageError, did_you_mean
+from rtamt.extras import library
+from rtamt.ros.messages import DEFINITIONS
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from rtamt.ros.binding import MessageType
+
+#: The distribution whose messages are spoken, unless ``ROS_DISTRO`` says which.
+DISTRO = "jazzy"
+#: Variables of the environment that list where packages are; in the former below ``share``.
+_PATHS = (("AMENT_PREFIX_PATH", "share"), ("ROS_PACKAGE_PATH", ""))
+
+
+class Types:
+    """The message types of one distribution of ROS 2.
+
+    ``distro``: such as ``"humble"``. ``folders``: where packages with definitions of the user's own are
+    (``<folder>/<package>/msg/<Name>.msg``), besides those that the environment names. Raises
+    :class:`UsageError` where there is no such distribution, or the packages are not installed.
+    """
+
+    def __init__(self, distro: str | None = None, folders: Sequence[str] = ()) -> None:
+        self._typesys = library("rosbags.typesys", "reading message definitions", "ros")
+        self._idl = library("cyclonedds.idl", "speaking to ROS 2", "ros")
+        name = distro or os.environ.get("ROS_DISTRO") or DISTRO
+        known = [s.name.removeprefix("ROS2_").lower() for s in self._typesys.Stores if "ROS2" in s.name]
+        if name not in known:
+            raise UsageError(
+                f"unknown distribution '{name}' of ROS 2, only {', '.join(known)}{did_you_mean(name, known)}"
+            )
+        self._store = self._typesys.get_typestore(self._typesys.Stores[f"ROS2_{name.upper()}"])
+        self._folders = [Path(folder) for folder in folders] + _folders()
+        self._classes: dict[str, Any] = {}
+        for own, text in DEFINITIONS.items():
+            if own not in self._store.fielddefs:
+                self._store.register(self._typesys.get_types_from_msg(text, own))
+
+    def load(self, kind: MessageType) -> Any:
+        """Return the class of a type as a specification imports it: ``from nav_msgs.msg import Odometry``."""
+        return self.named(f"{kind.module.replace('.', '/')}/{kind.name}")
+
+    def named(self, name: str) -> Any:
+        """Return the class of a type by its full name, ``nav_msgs/msg/Odometry``; call it for a message of zeros."""
+        if name not in self._classes:
+            self._find(name)
+            self._classes[name] = self._make(name)
+        return self._classes[name]
+
+    def _find(self, name: str) -> None:
+        """Make sure that a definition and those that it needs are known."""
+        if name not in self._store.fielddefs:
+            package, _, short = name.split("/")
+            paths = [folder / package / "msg" / f"{short}.msg" for folder in self._folders]
+            found = next((path for path in paths if path.is_file()), None)
+            if found is None:
+                raise UsageError(
+                    f"the definition of {package}/{short} is not known: name the folder in which the package "
+                    f"'{package}' is with --messages"
+                )
+            types = self._typesys.get_types_from_msg(found.read_text(encoding="utf-8"), name)
+            self._store.register(types)
+        for _, field in self._store.fielddefs[name][1]:
+            inner = self._named_in(field)
+            if inner is not None:
+                self._find(inner)
+
+    def _named_in(self, field: Any) -> str | None:
+        node, what = field
+        kinds = self._typesys.base.Nodetype
+        if node == kinds.NAME:
+            return str(what)
+        return None if node == kinds.BASE else self._named_in(what[0])
+
+    def _make(self, name: str) -> Any:
+        package, _, short = name.split("/")
+        fields = {field: self._type(desc) for field, desc in self._store.fielddefs[name][1]}
+        # A message without fields still has one byte on the wire.
+        shapes = {field: shape for field, (shape, _) in fields.items()} or {
+            "structure_needs_at_least_one_member": self._idl.types.uint8
+        }
+        made = self._idl.make_idl_struct(short, f"{package}::msg::dds_::{short}_", shapes)
+        zeros = {field: zero for field, (_, zero) in fields.items()} or dict.fromkeys(shapes, int)
+        return _with_zeros(made, zeros)
+
+    def _type(self, field: Any) -> tuple[Any, Callable[[], Any]]:
+        """Return the IDL type of a field, and what makes its zero."""
+        node, what = field
+        types, kinds = self._idl.types, self._typesys.base.Nodetype
+        if node == kinds.NAME:
+            inner = self.named(what)
+            return inner, inner
+        if node == kinds.BASE:
+            return self._base(*what)
+        shape, zero = self._type(what[0])
+        if node == kinds.ARRAY:
+            return types.array[shape, what[1]], lambda: [zero() for _ in range(what[1])]
+        return (types.sequence[shape, what[1]] if what[1] else types.sequence[shape]), list
+
+    def _base(self, base: str, most: int) -> tuple[Any, Callable[[], Any]]:
+        if base == "string":
+            return (self._idl.types.bounded_str[most] if most else str), str
+        if base == "bool":
+            return bool, bool
+        known = getattr(
+            self._idl.types, {"byte": "uint8", "octet": "uint8", "char": "uint8"}.get(base, base), None
+        )
+        if known is None:
+            raise UsageError(
+                f"a message with a field of type {base} cannot be sent over DDS alone; use rclpy"
+            )
+        return known, float if base.startswith("float") else int
+
+
+def _folders() -> list[Path]:
+    return [
+        Path(folder) / below
+        for variable, below in _PATHS
+        for folder in os.environ.get(variable, "").split(os.pathsep)
+        if folder
+    ]
+
+
+def _with_zeros(made: Any, zeros: dict[str, Callable[[], Any]]) -> Any:
+    """Let a class be called without all of its fields, as ROS's own classes can be."""
+    original = made.__init__
+
+    def start(self: Any, **given: Any) -> None:
+        if len(given) < len(zeros):
+            given = {name: given[name] if name in given else zero() for name, zero in zeros.items()}
+        original(self, **given)
+
+    made.__init__ = start
+    return made

@@ -1,0 +1,33 @@
+"""The definitions of ``rtamt_msgs``, for programs that read and write messages without ROS."""
+
+from __future__ import annotations
+
+from types import MappingProxyType
+
+FLOAT_STAMPED = "rtamt_msgs/msg/FloatStamped"
+VERDICT = "rtamt_msgs/msg/Verdict"
+
+#: What ``Verdict.verdict`` holds.
+UNKNOWN, SATISFIED, VIOLATED = 0, 1, 2
+
+#: From a type to its text, the same as that of the files in ``ros/rtamt_msgs/msg``.
+DEFINITIONS = MappingProxyType(
+    {
+        FLOAT_STAMPED: """\
+# A number with the time at which it held: inputs of specifications, and their robustness.
+std_msgs/Header header
+float64 value
+""",
+        VERDICT: """\
+# Whether a requirement held at the instant header.stamp - horizon.
+uint8 UNKNOWN=0    # that instant lies before the first sample
+uint8 SATISFIED=1
+uint8 VIOLATED=2
+
+std_msgs/Header header
+string name        # of the requirement in its specification, such as rob.value
+uint8 verdict
+float64 horizon    # seconds
+""",
+    }
+)

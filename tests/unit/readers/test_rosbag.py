@@ -1,0 +1,145 @@
+"""Bags of ROS 1 and ROS 2 become traces; ``rtamt check`` finds topics by annotation and writes a bag anew."""
+
+from __future__ import annotations
+
+import csv
+from pathlib import Path
+
+import pytest
+from rosbags.highlevel import AnyReader
+
+import rtamt
+from rtamt.cli import main
+from rtamt.errors import TraceError
+from rtamt.ros.messages import DEFINITIONS, SATISFIED, VIOLATED
+from tests.unit.readers.bags import SECOND, Bag
+
+ROOT = Path(__file__).parents[3]
+LISTING_8 = ROOT / "ros/rtamt4ros/specs/spec.stl"
+KINDS = ("ros1", "sqlite3", "mcap")
+START = 1_700_000_000
+
+
+@pytest.fixture(params=KINDS)
+def drive(request, tmp_path):
+    """A drive of 20 s in which the request at 6 s is granted and that at 9 s is not."""
+    with Bag(tmp_path, request.param) as bag:
+        for i in range(20):
+            bag.stamped("/rtamt/req", START + i, 5.0 if i in {2, 9} else 0.0)
+            bag.stamped("/rtamt/gnt", START + i + 0.5, 4.0 if i == 5 else 0.0)
+            bag.plain("/other", START + i, float(i))
+            bag.scan("/scan", START + i, [1.0, 2.0, 3.0 + i][: 3 if i else 2])
+    return bag.path
+
+
+def test_a_bag_has_a_signal_for_every_number_each_topic_on_the_clock_of_its_headers(drive):
+    trace = rtamt.read(
+        drive, columns=["/rtamt/req.value", "/rtamt/gnt.value", "/other.data", "/scan.ranges[1]"]
+    )
+    assert trace["/rtamt/req.value"].times[:2].tolist() == [START * SECOND, (START + 1) * SECOND]
+    assert trace["/rtamt/gnt.value"].times[0] == START * SECOND + SECOND // 2
+    assert trace["/other.data"].values.tolist() == list(range(20))
+    assert set(trace["/scan.ranges[1]"].values) == {2.0}
+
+
+def test_rtamt_check_reads_the_topics_that_the_specification_names(drive, capsys):
+    assert main(["check", str(LISTING_8), str(drive), "--period", "1s", "--json"]) == 1
+    assert '"robustness": -2.0' in capsys.readouterr().out
+    assert main(["check", str(LISTING_8), str(drive), "--time", "dense", "--json"]) == 1
+    assert '"robustness": -2.0' in capsys.readouterr().out
+
+
+def test_discrete_time_samples_a_bag_as_a_node_does_every_second_unless_told(drive, capsys, tmp_path):
+    assert main(["check", str(LISTING_8), str(drive), "--quiet", "-o", str(tmp_path / "rob.csv")]) == 1
+    with open(tmp_path / "rob.csv", encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    assert float(rows[0]["time"]) == START + 0.5  # when both topics have spoken
+    assert len(rows) == 20
+    capsys.readouterr()
+
+
+def test_the_bag_is_written_again_with_topics_of_robustness_and_verdicts(drive, tmp_path):
+    out = tmp_path / "out.mcap"
+    assert main(["check", str(LISTING_8), str(drive), "--period", "1s", "--quiet", "-o", str(out)]) == 1
+    expected = rtamt.read(drive, columns=["/rtamt/req.value", "/rtamt/gnt.value"]).rename(
+        {"req.value": "/rtamt/req.value", "gnt.value": "/rtamt/gnt.value"}
+    )
+    result = rtamt.load(LISTING_8, period=1).evaluate(expected.resample(1))
+    again = rtamt.read(out)
+    assert again["/rtamt/rob.value"].values.tolist() == result.signal.values.tolist()
+    assert again["/other.data"].values.tolist() == list(range(20))
+    judged = again["/rtamt/rob/verdict.verdict"].values.tolist()
+    assert judged == [SATISFIED if value > 0 else VIOLATED for value in result.signal.values]
+    with AnyReader([out]) as reader:
+        counts = {connection.topic: connection.msgcount for connection in reader.connections}
+        kinds = {connection.topic: connection.msgtype for connection in reader.connections}
+    assert counts == {
+        "/rtamt/req": 20, "/rtamt/gnt": 20, "/other": 20, "/scan": 20, "/rtamt/rob": 20, "/rtamt/rob/verdict": 20
+    }  # fmt: skip
+    assert kinds["/rtamt/rob/verdict"] == "rtamt_msgs/msg/Verdict"
+    assert list(tmp_path.glob("tmp*")) == []
+
+
+def test_a_recorded_robustness_topic_stays_and_the_offline_one_lies_beside_it(drive, tmp_path):
+    once, twice = tmp_path / "once.mcap", tmp_path / "twice.mcap"
+    main(["check", str(LISTING_8), str(drive), "--quiet", "-o", str(once)])
+    main(["check", str(LISTING_8), str(once), "--quiet", "-o", str(twice)])
+    topics = {name.split(".")[0] for name in rtamt.read(twice).names}
+    assert {"/rtamt/rob", "/rtamt/rob/offline", "/rtamt/rob/verdict"} <= topics
+
+
+def test_a_formula_over_columns_needs_no_annotations(drive, tmp_path, capsys):
+    out = tmp_path / "out.mcap"
+    assert main(["check", 'always("/other.data" <= 15)', str(drive), "-o", str(out)]) == 1
+    assert rtamt.read(out)["/rtamt/robustness.value"].values[-1] == -4
+    capsys.readouterr()
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_an_element_that_an_array_sometimes_lacks_is_no_sample_there(tmp_path, kind):
+    with Bag(tmp_path, kind) as bag:
+        for at, ranges in ((1, [1, 2, 3]), (2, [1]), (3, [1, 2, 4])):
+            bag.scan("/scan", at, ranges)
+    signal = rtamt.read(bag.path, columns=["/scan.ranges[2]"])["/scan.ranges[2]"]
+    assert (signal.times.tolist(), signal.values.tolist()) == ([1, 3], [3, 4])
+
+
+def test_stamps_that_go_back_are_refused_and_repeated_ones_are_one_sample(tmp_path):
+    with Bag(tmp_path, "mcap") as bag:
+        for at, value in ((5, 1.0), (5, 9.0), (6, 2.0)):
+            bag.stamped("/x", at, value)
+        for at in (5, 6, 2):
+            bag.stamped("/y", at, 0.0, late=10 - at)
+    assert rtamt.read(bag.path, columns=["/x.value"])["/x.value"].values.tolist() == [1, 2]
+    with pytest.raises(TraceError) as caught:
+        rtamt.read(bag.path)
+    assert str(caught.value) == (
+        "the stamps on /y go back by 4 s at message 2: was simulated time set back? Cut the bag there"
+    )
+
+
+@pytest.mark.parametrize("name", ["no.bag", "no.db3", "no.mcap"])
+def test_what_is_no_bag_is_refused_with_a_sentence(tmp_path, name):
+    path = tmp_path / name
+    with pytest.raises(TraceError) as caught:
+        rtamt.read(path)
+    assert str(caught.value) == f"there is no file '{path}'"
+    path.write_bytes(b"time,x\n0,1\n")
+    with pytest.raises(TraceError) as caught:
+        rtamt.read(path)
+    assert str(caught.value).startswith(f"'{path}' cannot be read as a ROS bag: ")
+
+
+def test_topics_are_written_to_bags_only(tmp_path, capsys):
+    trace = tmp_path / "log.csv"
+    trace.write_text("time,x\n0,1\n1,2\n")
+    assert main(["check", "always(x <= 3)", str(trace), "-o", str(tmp_path / "o.mcap")]) == 2
+    assert capsys.readouterr().err == (
+        f"rtamt: '{trace}' is no bag, so that there are no topics to write to '{tmp_path / 'o.mcap'}'; write .csv\n"
+    )
+
+
+def test_the_definitions_in_the_package_are_those_of_the_ros_package():
+    for name, text in DEFINITIONS.items():
+        package, _, short = name.split("/")
+        assert (ROOT / "ros" / package / "msg" / f"{short}.msg").read_text() == text
