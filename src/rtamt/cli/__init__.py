@@ -11,10 +11,12 @@ import rtamt
 from rtamt.cli import (
     check,
     compile,  # noqa: A004 - named as the command is
+    completion,
     explain,
     falsify,
     fmu,
     info,
+    lint,
     monitor,
     operators,
     plot,
@@ -37,9 +39,11 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             ros2.COMMAND,
             falsify.COMMAND,
             info.COMMAND,
+            lint.COMMAND,
             compile.COMMAND,
             fmu.COMMAND,
             operators.COMMAND,
+            completion.COMMAND,
         )
     }
 )

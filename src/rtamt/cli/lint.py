@@ -1,0 +1,91 @@
+"""``rtamt lint``: are these specification files all right? For editors, hooks and CI jobs, without a recording."""
+
+from __future__ import annotations
+
+import os
+from argparse import Namespace
+from typing import TYPE_CHECKING
+
+from rtamt.cli.command import (
+    ERROR,
+    OK,
+    Command,
+    CommandError,
+    add_specification_options,
+    add_time_option,
+    complain,
+    read_specification,
+)
+from rtamt.errors import StlError
+from rtamt.rewrite.check import check_bounds, check_online
+
+if TYPE_CHECKING:
+    import argparse
+
+    from rtamt.specification import Specification
+
+_DESCRIPTION = """\
+Read specification files and say what is wrong with each: what, where (line, column and a caret) and how
+to mend it. Nothing is evaluated.
+
+Exit code: 0 all are right, 2 some are not."""
+
+_EPILOG = """\
+With --period the bounds must be whole numbers of it; with --online no operator may need the whole
+future, so that a monitor can run the requirement.
+
+examples:
+  rtamt lint examples/request_grant/spec.stl
+  rtamt lint ros/rtamt4ros/specs/*.stl --online --period 100ms"""
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of the command."""
+    parser.description = _DESCRIPTION
+    parser.epilog = _EPILOG
+    add_specification_options(parser)
+    parser.add_argument("more", metavar="SPEC", nargs="*", help="more of them")
+    add_time_option(parser)
+    parser.add_argument("--online", action="store_true", help="refuse what a monitor cannot run")
+    parser.add_argument("--quiet", action="store_true", help="print errors only")
+
+
+def run(args: argparse.Namespace) -> int:
+    """Read every file; report each that is wrong."""
+    files = [args.spec, *args.more]
+    right = [_is_right(file, args) for file in files]
+    if not all(right):
+        return ERROR
+    if not args.quiet:
+        print(f"{len(files)} {'file is' if len(files) == 1 else 'files are'} right")
+    return OK
+
+
+def _is_right(file: str, args: argparse.Namespace) -> bool:
+    """Check a file; say what is wrong with it."""
+    try:
+        _check(file, args)
+    except StlError as error:
+        complain(error)
+        return False
+    return True
+
+
+def _check(file: str, args: argparse.Namespace) -> None:
+    if not os.path.isfile(file):
+        raise CommandError(f"there is no file '{file}'; 'rtamt info' looks at a formula in quotes")
+    spec = read_specification(Namespace(**{**vars(args), "spec": file}), args.time)
+    try:
+        _check_formula(spec, online=args.online)
+    except StlError as error:
+        raise CommandError(f"{file}: {error}") from error
+
+
+def _check_formula(spec: Specification, *, online: bool) -> None:
+    if spec.period is not None:
+        check_bounds(spec.formula, spec.period, spec.text)
+    if online:
+        check_online(spec.formula, spec.text)
+
+
+COMMAND = Command("lint", "say what is wrong with specification files", configure, run)

@@ -1,0 +1,62 @@
+"""Write editors/stl.tmLanguage.json, the colours of formulas for editors that read TextMate grammars.
+
+    python tools/textmate.py            # writes it anew, after a change in the table of operators
+
+It is committed, as editors take it from the repository; a test holds it to the table.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+from pathlib import Path
+
+from rtamt.highlight import DECLARING, functions, logical, symbols, temporal
+from rtamt.language.specfile import TYPES
+from rtamt.language.units import UNITS
+
+FILE = Path(__file__).parents[1] / "editors" / "stl.tmLanguage.json"
+
+
+def grammar() -> dict[str, object]:
+    """Return the grammar: regular expressions, tried in this order at each place."""
+    long = [word for word in temporal() if len(word) > 2]
+    short = [word for word in temporal() if len(word) <= 2]
+    number = r"(?:\d[\d_]*(?:\.[\d_]*)?|\.\d[\d_]*)(?:[eE][+-]?\d+)?"
+    patterns = [
+        {"name": "comment.line.double-slash.stl", "match": r"//.*$"},
+        {"name": "comment.block.stl", "begin": r"/\*", "end": r"\*/"},
+        {"name": "variable.other.quoted.stl", "match": r'"(?:[^"]|"")*"'},
+        {
+            "match": rf"({number})\s*({'|'.join(UNITS)})\b",
+            "captures": {"1": {"name": "constant.numeric.stl"}, "2": {"name": "keyword.other.unit.stl"}},
+        },
+        {"name": "constant.numeric.stl", "match": rf"{number}|\binf\b"},
+        {"name": "keyword.declaration.stl", "match": rf"@\s*topic\b|\b(?:{_any(DECLARING)})\b(?!\s*[<>=!.])"},
+        {"name": "storage.type.stl", "match": rf"\b(?:{_any(TYPES)})\b(?=\s+\w)"},
+        {"name": "keyword.control.temporal.stl", "match": rf"\b(?:{_any(long)})\b(?!\.)"},
+        {"name": "keyword.control.temporal.stl", "match": rf"\b(?:{_any(short)})(?=\s*[\[(])"},
+        {"name": "support.function.stl", "match": rf"\b(?:{_any(functions())})(?=\s*[\[(])"},
+        {"name": "keyword.operator.word.stl", "match": rf"\b(?:{_any(logical())})\b(?!\.)"},
+        {"name": "keyword.operator.stl", "match": _any(symbols())},
+        {"name": "variable.other.stl", "match": r"[^\W\d][\w$]*(?:\.[^\W\d][\w$]*)*"},
+    ]
+    return {
+        "name": "Signal Temporal Logic",
+        "scopeName": "source.stl",
+        "fileTypes": ["stl"],
+        "patterns": patterns,
+    }
+
+
+def text() -> str:
+    """Return the file."""
+    return json.dumps(grammar(), indent=2) + "\n"
+
+
+def _any(words: tuple[str, ...] | list[str]) -> str:
+    return "|".join(map(re.escape, words))
+
+
+if __name__ == "__main__":
+    FILE.write_text(text(), encoding="utf-8")
