@@ -15,7 +15,7 @@ CXX_FILES := find core tests/cpp tests/fuzz benchmarks -name
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help run test test-python test-cpp test-install lint format docs bench costs peers conformance soak fuzz clean
+.PHONY: help run test test-python test-cpp test-install lint format docs paper bench costs peers conformance soak fuzz clean
 
 help: ## list the tasks
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-13s %s\n", $$1, $$2 }' Makefile
@@ -56,6 +56,9 @@ format: $(VENV)/.group-lint ## format Python and C++
 
 docs: $(VENV)/.core $(VENV)/.group-docs ## build the site into build/site: pages, reference and pictures, links checked
 	NO_MKDOCS_2_WARNING=1 $(VENV)/bin/mkdocs build --quiet
+
+paper: $(VENV)/.core $(VENV)/.extras peers ## the paper's listings, tables and figures, run again beside its claims: build/paper
+	$(RUN) examples/paper/reproduce.py
 
 bench: $(VENV)/.core $(VENV)/.extras $(VENV)/.group-build peers ## every tool timed beside the others, some ten minutes: benchmarks/RESULTS.md and plots
 	$(WITH_VENV) cmake -S . -B build/bench -G Ninja -DCMAKE_BUILD_TYPE=Release -DRTAMT_BUILD_BENCH=ON -DRTAMT_BUILD_TESTS=OFF
