@@ -15,7 +15,7 @@ CXX_FILES := find core tests/cpp tests/fuzz benchmarks -name
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help run test test-python test-cpp test-install lint format docs paper bench costs peers conformance soak fuzz clean
+.PHONY: help run test test-python test-cpp test-install lint format docs pictures paper bench costs peers conformance soak fuzz clean
 
 help: ## list the tasks
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-13s %s\n", $$1, $$2 }' Makefile
@@ -56,6 +56,9 @@ format: $(VENV)/.group-lint ## format Python and C++
 
 docs: $(VENV)/.core $(VENV)/.group-docs ## build the site into build/site: pages, reference and pictures, links checked
 	NO_MKDOCS_2_WARNING=1 $(VENV)/bin/mkdocs build --quiet
+
+pictures: $(VENV)/.core $(VENV)/.extras ## draw docs/images anew
+	$(RUN) tools/pictures.py
 
 paper: $(VENV)/.core $(VENV)/.extras peers ## the paper's listings, tables and figures, run again beside its claims: build/paper
 	$(RUN) examples/paper/reproduce.py
@@ -113,7 +116,7 @@ $(VENV)/.extras: $(VENV)/.core
 
 # Debian's packages that some tests run against; where they cannot be had, those tests are skipped and say so.
 # CI skips none: there it is an error.
-PACKAGES := postgresql
+PACKAGES := postgresql chromium
 # ROS 1: master, rospy, bags, and what builds the workspace in ros/.
 PACKAGES += ros-core catkin rosbash python3-rosbag python3-rospkg python3-genpy ros-message-generation
 PACKAGES += ros-std-msgs python3-std-msgs python3-nav-msgs python3-diagnostic-msgs

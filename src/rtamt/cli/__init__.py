@@ -20,6 +20,7 @@ from rtamt.cli import (
     monitor,
     operators,
     plot,
+    report,
     ros2,
 )
 from rtamt.cli.command import BROKEN_PIPE, ERROR, INTERRUPTED, OK, Command, Help, Parser, complain
@@ -35,6 +36,7 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             check.COMMAND,
             explain.COMMAND,
             plot.COMMAND,
+            report.COMMAND,
             monitor.COMMAND,
             ros2.COMMAND,
             falsify.COMMAND,

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import sys
-from argparse import Namespace
 from typing import TYPE_CHECKING, Any
 
 from rtamt.cli.bag import write_bag
@@ -19,12 +18,11 @@ from rtamt.cli.command import (
     add_time_option,
     complain,
     json_number,
-    names_of,
-    read_specification,
     short,
     stamp_text,
 )
-from rtamt.cli.matrix import Outcome, Reading, Requirement, outcomes
+from rtamt.cli.given import reading_of, requirements_and_traces
+from rtamt.cli.matrix import Outcome, Requirement, outcomes
 from rtamt.cli.reports import REPORTS, write_report
 from rtamt.cli.terminal import Progress, printed, table, use_color
 from rtamt.language.units import format_duration
@@ -82,7 +80,8 @@ examples:
 
 _REPORT_NAMES = {"junit": "JUnit XML", "sarif": "SARIF 2.1.0", "html": "an HTML page"}
 _KINDS = {"satisfied": "good", "violated": "bad", "error": "error"}
-_CODES = {"satisfied": OK, "violated": VIOLATED, "error": ERROR}
+#: Of a verdict, the exit code.
+CODES = {"satisfied": OK, "violated": VIOLATED, "error": ERROR}
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -112,19 +111,18 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     """Evaluate every requirement over every trace, print what came of it."""
     color = use_color(args.color, sys.stdout)
-    given, traces = _split(args)
-    pairs = len(given) * len(traces)
+    requirements, traces = requirements_and_traces(args, "check")
+    pairs = len(requirements) * len(traces)
     if args.output is not None and pairs > 1:
         what = (
             f"{len(traces)} traces"
-            if len(given) == 1
-            else f"{len(given)} requirements and {len(traces)} traces"
+            if len(requirements) == 1
+            else f"{len(requirements)} requirements and {len(traces)} traces"
         )
         raise CommandError(f"--output takes the robustness of one trace, got {what}")
     if args.jobs is not None and args.jobs < 1:
         raise CommandError(f"--jobs is {args.jobs}; give a number of processes, 1 or more")
-    requirements = _requirements(args, given)
-    reading = _reading(args, requirements)
+    reading = reading_of(args, requirements, whole=args.output is not None)
     found: list[Outcome] = []
     with Progress() as progress:
         progress.show(f"0/{pairs}")
@@ -147,48 +145,7 @@ def run(args: argparse.Namespace) -> int:
     for kind in REPORTS:
         if getattr(args, kind) is not None:
             write_report(kind, getattr(args, kind), requirements, found)
-    return max(_CODES[outcome.verdict] for outcome in found)
-
-
-def _split(args: argparse.Namespace) -> tuple[list[str], list[str]]:
-    """Return the specifications and the traces."""
-    given, traces = [args.spec], list(args.traces)
-    while traces and traces[0].lower().endswith(".stl") and given[-1].lower().endswith(".stl"):
-        given.append(traces.pop(0))
-    if args.sql is not None:
-        if traces:
-            raise CommandError(f"--sql reads a database; leave out the trace '{traces[0]}', or --sql")
-        return given, [args.sql]
-    if not traces:
-        raise CommandError("there is no trace to check: name a file, or --sql URL; see 'rtamt check --help'")
-    return given, traces
-
-
-def _requirements(args: argparse.Namespace, given: Sequence[str]) -> list[Requirement]:
-    specs = [read_specification(Namespace(**{**vars(args), "spec": text}), args.time) for text in given]
-    names = [spec.name for spec in specs]
-    return [
-        Requirement(spec, text, spec.name if spec.name and names.count(spec.name) == 1 else text)
-        for spec, text in zip(specs, given, strict=True)
-    ]
-
-
-def _reading(args: argparse.Namespace, requirements: Sequence[Requirement]) -> Reading:
-    names = names_of(args.name)
-    read = {name for requirement in requirements for name in requirement.spec.input_names}
-    for name in names:
-        if name not in read:
-            raise CommandError(f"--name {name}={names[name]}: no formula reads '{name}'")
-    return Reading(
-        args.time_column,
-        names,
-        args.time_unit,
-        args.sheet,
-        args.query,
-        args.resample,
-        args.how,
-        whole=args.output is not None,
-    )
+    return max(CODES[outcome.verdict] for outcome in found)
 
 
 def _as_json(outcome: Outcome) -> str:
@@ -224,7 +181,7 @@ def _as_table(requirements: Sequence[Requirement], found: Sequence[Outcome], col
         text = f"{title}\n\n{table([row[1:] for row in rows], right=(1, 2, 3), kinds=kinds, color=color)}"
     if len(found) > 1:
         verdicts = [outcome.verdict for outcome in found]
-        counts = [f"{verdicts.count(verdict)} {verdict}" for verdict in _CODES if verdict in verdicts]
+        counts = [f"{verdicts.count(verdict)} {verdict}" for verdict in CODES if verdict in verdicts]
         text += f"\n\n{', '.join(counts)}"
     return text
 

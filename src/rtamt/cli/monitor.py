@@ -23,7 +23,9 @@ from rtamt.cli.command import (
     read_specification,
     stamp_text,
 )
+from rtamt.cli.live import Live
 from rtamt.cli.samples import STDIN, Samples
+from rtamt.cli.terminal import printed
 from rtamt.engine.signals import TOLERANCE
 from rtamt.errors import StlError, TraceError
 
@@ -57,10 +59,14 @@ A line that is no sample ends the monitor with exit code 2. With --keep-going it
 left out, and the exit code is 2 at the end. A sample that is left out leaves a gap in time, which
 --tolerance inf allows: the next sample then takes its place.
 
+--live draws on the terminal (stderr) instead: verdict, robustness so far, lowest value, latest samples; what
+is piped on stays as it is.
+
 examples:
   echo '{"time": 0, "x": 5}' | rtamt monitor "x >= 3"
   rtamt monitor "(req >= 3) -> eventually[0:5](gnt >= 3)" < examples/request_grant/c_violated.csv
-  tail -f log.jsonl | rtamt monitor "historically[0:1](speed <= 30)" --period 100ms --keep-going"""
+  tail -f log.jsonl | rtamt monitor "historically[0:1](speed <= 30)" --period 100ms --keep-going
+  tail -f log.jsonl | rtamt monitor "speed <= 30" --live > robustness.jsonl"""
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -77,6 +83,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
         metavar="FRACTION",
         help=f"by how much of the period a gap between samples may miss it (default: {TOLERANCE})",
     )
+    parser.add_argument(
+        "--live", action="store_true", help="draw verdict, robustness and values on the terminal"
+    )
     parser.add_argument("--keep-going", action="store_true", help="report a bad line and go on")
 
 
@@ -86,7 +95,8 @@ def run(args: argparse.Namespace) -> int:
         raise CommandError(f"the tolerance is {args.tolerance:g}; give a fraction of the period, such as 0.1")
     spec = read_specification(args, args.time)
     dense = spec.time == "dense"
-    told = Output(verdicts=spec.semantics == "boolean")
+    live = _live(printed(spec.formula)) if args.live else None
+    told = Output(verdicts=spec.semantics == "boolean", live=live)
     watched: Watched | DenseWatched = (
         DenseWatched(spec.monitor(time="dense"), told)
         if dense
@@ -103,7 +113,11 @@ def run(args: argparse.Namespace) -> int:
             problem = str(error)
         else:
             problem = watched.take(*sample, number) if sample is not None else ""
+            if live is not None and sample is not None and not problem:
+                live.sample(sample[1])
         if problem:
+            if live is not None:
+                live.clear()
             complain(problem)
             code = ERROR
             if not args.keep_going:
@@ -111,14 +125,26 @@ def run(args: argparse.Namespace) -> int:
     if not watched.monitor.samples:
         raise CommandError(f"{STDIN} has no samples: give one JSON object a line, or CSV with a header row")
     watched.finish()
+    if live is not None:
+        live.draw()
     return code
+
+
+def _live(title: str) -> Live:
+    if not sys.stderr.isatty():
+        raise CommandError("--live draws on a terminal, and stderr is none: leave it out")
+    return Live(title)
 
 
 @dataclass(frozen=True, slots=True)
 class Output:
-    """Prints what became known, a JSON object a line; with ``verdicts`` whether the formula holds, too."""
+    """Prints what became known, a JSON object a line; with ``verdicts`` whether the formula holds, too.
+
+    What is drawn live replaces it on a terminal, and goes beside it into a pipe or a file.
+    """
 
     verdicts: bool
+    live: Live | None = None
 
     def signal(self, signal: Signal) -> None:
         """Print every point of a signal."""
@@ -127,6 +153,10 @@ class Output:
 
     def point(self, time: Any, robustness: float) -> None:
         """Print the robustness at one instant."""
+        if self.live is not None:
+            self.live.point(time, robustness)
+            if sys.stdout.isatty():
+                return
         # The time by hand: it may have more digits than a double.
         stamp = f'"{stamp_text(time)}"' if isinstance(time, np.datetime64) else stamp_text(time)
         rest: dict[str, Any] = {"robustness": json_number(robustness)}
