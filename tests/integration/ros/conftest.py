@@ -49,6 +49,7 @@ def ros_env(tmp_path_factory):
         ROOT / "ros/rtamt_msgs",
         ROOT / "ros/rtamt4ros",
         Path(__file__).parent / "packages/arm_msgs",
+        ROOT / "examples/service_robot",
     ):
         (source / package.name).symlink_to(package)
     env = {name: value for name, value in os.environ.items() if not name.startswith("ROS_")}
