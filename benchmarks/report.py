@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from cases import Case
+
     from run import Tool
 
 TARGETS = {"online": 5.0, "offline": 20.0}

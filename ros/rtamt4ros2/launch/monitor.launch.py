@@ -1,10 +1,11 @@
 """ros2 launch rtamt4ros2 monitor.launch.py spec:=/path/to/spec.stl period:=100ms."""
 
-from launch import LaunchDescription
 from launch.actions import DeclareLaunchArgument
 from launch.substitutions import LaunchConfiguration
 from launch_ros.actions import Node
 from launch_ros.parameter_descriptions import ParameterValue
+
+from launch import LaunchDescription
 
 #: Arguments and what holds where nothing is said.
 ARGUMENTS = {"period": "1", "unit": "s", "time": "discrete", "stale": "", "reliability": "reliable"}
