@@ -1,4 +1,4 @@
-"""``make bench-ros``: monitors in one ROS 1 node on one core, a message each 10 ms: samples lost, latency.
+"""Monitors in one ROS 1 node on one core, a message each 10 ms: samples lost, latency.
 
     benchmarks/ros_bench.py [--monitors 200] [--rate 100] [--seconds 10]
 

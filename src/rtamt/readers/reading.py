@@ -31,7 +31,7 @@ def read(
 ) -> Trace:
     r"""Read a recording; ``Specification.evaluate`` and ``update_many`` take what comes out.
 
-    ``source``: a file, whose suffix tells its format (CSV, Parquet, Arrow, Excel, PX4 ULog, MDF); the
+    ``source``: a file, whose suffix tells its format (CSV, Parquet, Arrow, Excel, PX4 ULog, MDF, ROS bag); the
     address of a database (``sqlite:///log.db``, ``postgresql://user@host/name``), with a ``query`` whose
     rows are samples; a dict, a pandas, polars, xarray or arrow object, or a structured numpy array.
     ``columns``: the signals that are wanted (default: all that are numbers). ``names``: for signals that

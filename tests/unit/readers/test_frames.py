@@ -163,7 +163,7 @@ def test_the_data_of_the_caller_is_not_shared():
     ("call", "message"),
     [
         (lambda: rtamt.read(5),
-         "cannot read data of type int: give a file (CSV, Parquet, Arrow, Excel, PX4 ULog, MDF), the address "
+         "cannot read data of type int: give a file (CSV, Parquet, Arrow, Excel, PX4 ULog, MDF, ROS bag), the address "
          "of a database, or a dict, a structured numpy array, "
          "pandas.DataFrame, pandas.Series, polars.DataFrame, pyarrow.Table, xarray.Dataset, xarray.DataArray"),
         (lambda: rtamt.read(np.zeros((2, 2))),
