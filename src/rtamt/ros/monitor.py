@@ -33,7 +33,8 @@ class RosMonitor:
     sample of the latest messages, or ``"dense"``, where every message is a sample at the time in its
     header, each topic on its own clock. ``period``: seconds from tick to tick, or text such as
     ``"100ms"``. ``stale``: after how long without a message a topic is stale; 0 for never, by default
-    ten periods, in dense time 5 s. All times are integers of nanoseconds.
+    ten periods, in dense time 5 s. All times are integers of nanoseconds; 0 is a simulated clock that nobody
+    has set yet.
 
     Bounded future is pastified (the paper's Definition 4): robustness comes from the first sample on,
     and speaks of the instant one horizon ago; verdicts are unknown until the horizon has passed.
@@ -190,6 +191,8 @@ class RosMonitor:
     def _advance(self, now: int) -> None:
         if self._last is not None and now < self._last:
             self._begin_anew(f"the clock went back by {_seconds(self._last - now)}")
+        elif self._last == 0:  # the clock starts: what came before came just now, and is not stale
+            self._heard = dict.fromkeys(self._heard, now)
         self._last = now
 
     def _begin_anew(self, why: str) -> None:

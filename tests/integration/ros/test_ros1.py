@@ -96,7 +96,9 @@ def test_simulated_time_gives_the_offline_answer_one_horizon_later_and_again_aft
     node = ros.monitor(
         f"{LISTING_8.partition('rob.value')[0]} rob.value = {formula}", "--period", "1", "--unit", "s"
     )
-    connected(puppet, "/clock", "rtamt/req", "rtamt/gnt", "rtamt/rob", "rtamt/rob/verdict")
+    connected(puppet, "rtamt/req", "rtamt/gnt", "rtamt/rob", "rtamt/rob/verdict")
+    # The puppet listens to the clock itself, as every node does in simulated time.
+    wait_for(lambda: puppet.ask(do="peers", topic="/clock")["answer"] >= 2, "the monitor on /clock")
     told = []
 
     def play(start):

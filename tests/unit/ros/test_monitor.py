@@ -100,26 +100,33 @@ def test_each_assertion_is_published_and_other_names_are_sub_formulas():
 
 def test_a_silent_topic_is_stale_and_the_monitor_begins_anew_when_it_speaks():
     watched = monitor("rob.value = historically(req.value >= 0)", stale="2500ms")
-    watched.message("/req", message(-1), 0)
-    for i in range(3):
+    watched.message("/req", message(-1), SECOND)
+    for i in (1, 2, 3):
         assert numbers(watched.tick(i * SECOND)) == [(i, -1)]
-    assert watched.tick(3 * SECOND) == []
-    condition = watched.conditions(3 * SECOND)[0]
+    assert watched.tick(4 * SECOND) == []
+    condition = watched.conditions(4 * SECOND)[0]
     assert (condition.level, condition.message) == (Level.STALE, "no message on /req for 3 s")
     assert said(watched) == ["/req is stale: no message for 3 s"]
-    assert watched.tick(4 * SECOND) == []
+    assert watched.tick(5 * SECOND) == []
     assert said(watched) == []
-    watched.message("/req", message(4), 4 * SECOND)
-    assert numbers(watched.tick(5 * SECOND)) == [(5, 4)]  # what came before the silence is forgotten
+    watched.message("/req", message(4), 5 * SECOND)
+    assert numbers(watched.tick(6 * SECOND)) == [(6, 4)]  # what came before the silence is forgotten
     assert said(watched) == ["/req speaks again: the monitors that read it begin anew"]
 
 
 def test_stale_after_ten_periods_unless_said_and_never_with_0():
     for settings, silent in (({"period": "100ms"}, True), ({"period": "100ms", "stale": 0}, False)):
         watched = monitor("rob.value = req.value >= 0", **settings)
-        watched.message("/req", message(1), 0)
-        watched.tick(0)
-        assert (watched.tick(int(1.1 * SECOND)) == []) is silent
+        watched.message("/req", message(1), SECOND)
+        watched.tick(SECOND)
+        assert (watched.tick(int(2.1 * SECOND)) == []) is silent
+
+
+def test_messages_before_the_first_simulated_instant_are_not_stale_when_the_clock_starts_late():
+    watched = monitor("rob.value = req.value >= 0")
+    watched.message("/req", message(1), 0)
+    assert numbers(watched.tick(100 * SECOND)) == [(100, 1)]
+    assert said(watched) == []
 
 
 def test_simulated_time_that_goes_back_begins_anew():
