@@ -132,7 +132,7 @@ def draw_scaling(found: dict[str, dict[str, Any]]) -> None:
         axes.set_title(f"{domain} time")
         axes.set_xlabel("samples")
     figure.axes[0].set_ylabel("seconds")
-    figure.axes[0].legend(fontsize=7)
+    figure.legend(*figure.axes[0].get_legend_handles_labels(), loc="outside right upper", fontsize=7)
     figure.savefig(OUT / "scaling.png", dpi=150)
 
 

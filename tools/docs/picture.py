@@ -30,7 +30,7 @@ def of(example: str) -> str:
     for name, values in read.items():
         signals.plot(TIME, values, color=COLORS[name], drawstyle="steps-post", marker=".", label=name)
     if read:
-        signals.legend(loc="upper right", ncols=2, frameon=False, labelcolor=GREY)
+        signals.legend(loc="lower right", bbox_to_anchor=(1, 0.97), ncols=2, frameon=False, labelcolor=GREY)
     shown = np.clip(rho, *_limits(rho))
     robustness.axhline(0, color=GREY, linewidth=0.8)
     for holds, color in ((rho > 0, "#2ca02c"), (rho < 0, "#d62728"), (rho == 0, GREY)):
