@@ -55,13 +55,15 @@ def head(running: list[Tool], absent: list[tuple[str, str]], facts: dict[str, An
 Made by `make bench` on {dt.datetime.now(dt.timezone.utc):%Y-%m-%d} in {facts["seconds"]:.0f} s:
 {cpu()}, {os.cpu_count()} cores, {platform.system()}, Python {platform.python_version()}, numpy {np.__version__}.
 Load average before {before:.1f} and after {after:.1f}: where it is above 1 at the start, others used the
-machine too, and ratios tell more than times.
+machine too. What is measured is the processor's time of each tool's process, and the time on the clock only
+at start-up and for threads; a shared cache still shows, and ratios tell more than times.
 
 Every tool runs in a process of its own, in an environment of its own. Figures are medians of {facts["rounds"]}
-interleaved rounds; in brackets how many times as long as ours, the median of the rounds' ratios. Formulas
-are parsed and samples brought into the form that a tool takes (lists, dicts; for ours offline numpy arrays)
-before the clock runs. `this` online is `monitor.update(t, a=x)`, `this (step)` the positional `monitor.step(x)`,
-which hot loops call. Online, windows are full first. Every answer is the whole signal of robustness.
+interleaved round{"s" if facts["rounds"] > 1 else ""}; in brackets how many times as long as ours, the median
+of the rounds' ratios. Formulas are parsed and samples brought into the form that a tool takes (lists, dicts;
+for ours offline numpy arrays) before the clock runs. `this` online is `monitor.update(t, a=x)`, `this (step)`
+the positional `monitor.step(x)`, which hot loops call. Online, windows are full first. Every answer is the
+whole signal of robustness.
 
 {tools}
 

@@ -86,6 +86,14 @@ def _pattern(family, unit, wrong):
     return {"q": [0], "p": [1], "s": answer, "r": [up + 3]}, up + 6, up + 3
 
 
+def _column(ones, length):
+    """Return a pattern's samples of one signal."""
+    column = [-1.0] * length
+    for at in ones:
+        column[at] = 1.0
+    return column
+
+
 def violated_at(family, unit, n):
     """Return the first sample at which the past form is violated where the trace of n samples is wrong."""
     _, length, failure = _pattern(family, unit, wrong=True)
@@ -96,15 +104,14 @@ def signals(family, unit, n, *, wrong=False):
     """Return n samples of each variable; with one pattern broken, in the middle, if ``wrong``."""
     ones, length, _ = _pattern(family, unit, wrong=False)
     broken, _, _ = _pattern(family, unit, wrong=True)
-    middle = n // length // 2
+    cycles = n // length
     columns = {}
-    for name in "pqrs":
-        if name not in ones:
-            continue
-        columns[name] = column = [-1.0] * n
-        for cycle in range(n // length):  # what is left of the trace is silence
-            for at in (broken if wrong and cycle == middle else ones)[name]:
-                column[cycle * length + at] = 1.0
+    for name in ones:
+        right = _column(ones[name], length)
+        column = columns[name] = right * cycles + [-1.0] * (n - cycles * length)  # ends in silence
+        if wrong:
+            begin = cycles // 2 * length
+            column[begin : begin + length] = _column(broken[name], length)
     if family == "recurrence globally":
         for at in (*range(n // length * length, n, UPPER * unit), n - 1):
             columns["p"][at] = 1.0

@@ -1,15 +1,16 @@
 """How every tool is timed, in its own process: the same signals, the same clock, the same rules.
 
 An adapter's ``prepare(formula, time, mode, signals)`` parses the formula and brings the samples into the
-form in which the tool takes them; none of that is timed. What it returns is: offline a function of
-nothing that evaluates all samples, online a function ``run(begin, end)`` that feeds these samples one by
-one.
+form in which the tool takes them; none of that is timed. The clock is the processor's time of the process:
+every tool computes in one thread, and what else the machine does must not count. What ``prepare`` returns
+is: offline a function of nothing that evaluates all samples, online a function ``run(begin, end)`` that
+feeds these samples one by one.
 """
 
 import random
 import statistics
 from functools import lru_cache
-from time import perf_counter
+from time import perf_counter, process_time
 
 import timescales
 
@@ -47,9 +48,9 @@ def _parsing(prepare, formula, time, mode):
     for number in range(5):
         # Another formula in between, for adapters that keep the last one.
         prepare({"op": "ge", "args": [{"var": "a"}, {"const": float(number)}]}, time, mode, samples)
-        start = perf_counter()
+        start = process_time()
         prepare(formula, time, mode, samples)
-        costs.append(perf_counter() - start)
+        costs.append(process_time() - start)
     return {"seconds": statistics.median(costs)}
 
 
@@ -69,9 +70,9 @@ def measure(prepare, formula, time, mode, workload):
         while not costs or (sum(costs) < workload["limit"] and len(costs) < 30):
             if costs:
                 run = prepare(formula, time, mode, samples)
-            start = perf_counter()
+            start = process_time()
             run()
-            costs.append(perf_counter() - start)
+            costs.append(process_time() - start)
         return {"seconds": statistics.median(costs) / n}
     at = workload["warm"]
     start = perf_counter()
@@ -82,9 +83,9 @@ def measure(prepare, formula, time, mode, workload):
     spent, done, size = 0.0, 0, 1
     while at < n and spent < workload["limit"]:
         end = min(at + size, n)
-        start = perf_counter()
+        start = process_time()
         run(at, end)
-        spent += perf_counter() - start
+        spent += process_time() - start
         done += end - at
         at, size = end, 2 * size
     return {"seconds": spent / done}
