@@ -34,10 +34,8 @@ def test_a_settled_verdict_is_that_of_every_continuation(formula, columns, data)
         return
     result = spec.evaluate({"time": times, **{name: columns[name] for name in names}})
     assert result.satisfied == settled.satisfied
-    if settled.satisfied:
-        assert result.robustness >= settled.bound >= 0
-    else:
-        assert result.robustness <= settled.bound <= 0
+    assert settled.low <= result.robustness <= settled.high
+    assert settled.low >= 0 if settled.satisfied else settled.high <= 0
     assert 1 <= settled.samples <= known
     if settled.samples > 1:  # the fewest that do
         fewer = settled.samples - 1

@@ -17,11 +17,11 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class FmuPlant:
-    """Simulates an FMU: called with its inputs and parameters by name, yields all of its outputs at every step.
+    """Simulates an FMU: called with its inputs and parameters by name, yields samples at every step.
 
     ``duration`` is seconds; ``step`` too, by default that of the FMU's default experiment. Numbers
-    are set once, before the simulation; functions of time are set at every step. The FMU's real
-    outputs are told at every step, the first at its start.
+    are set once, before the simulation; functions of time are set at every step. A sample has the FMU's real
+    outputs at that time, and the inputs given as functions (a requirement may read both); the first is at 0.
     """
 
     path: Path
@@ -79,7 +79,8 @@ def _simulate(
     references = [variable.valueReference for variable in outputs]
     write = unit.setFloat64 if third else unit.setReal
     read = unit.getFloat64 if third else unit.getReal
-    moving = {variables[name].valueReference: given for name, given in inputs.items() if callable(given)}
+    moving = {name: given for name, given in inputs.items() if callable(given)}
+    places = [variables[name].valueReference for name in moving]
     fixed = {
         variables[name].valueReference: float(given) for name, given in inputs.items() if not callable(given)
     }
@@ -89,17 +90,18 @@ def _simulate(
         if not third:
             unit.setupExperiment(startTime=0.0)
         unit.enterInitializationMode()
+        now = {name: float(signal(0.0)) for name, signal in moving.items()}
         if moving:
-            write(list(moving), [float(signal(0.0)) for signal in moving.values()])
+            write(places, list(now.values()))
         unit.exitInitializationMode()
         for k in range(steps + 1):
             if k:
                 unit.doStep(currentCommunicationPoint=(k - 1) * step, communicationStepSize=step)
-            time = k * step
-            values = read(references)
-            yield time, dict(zip([v.name for v in outputs], map(float, values), strict=True))
+                now = {name: float(signal(k * step)) for name, signal in moving.items()}
+            values = map(float, read(references))
+            yield k * step, {**now, **dict(zip((v.name for v in outputs), values, strict=True))}
             if moving:
-                write(list(moving), [float(signal(time)) for signal in moving.values()])
-    finally:
+                write(places, list(now.values()))
         unit.terminate()
+    finally:  # may be done at any time, also where the simulation was stopped or has failed
         unit.freeInstance()

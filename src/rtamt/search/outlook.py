@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
-from math import inf
+from math import inf, isfinite
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -38,8 +38,18 @@ class Settled:
     satisfied: bool
     #: How many samples settled it.
     samples: int
-    #: The robustness if the rest goes as badly (satisfied) or as well (violated) as it can.
-    bound: float
+    #: The robustness if the rest goes as badly as it can, and as well: what it is in the end lies between.
+    low: float
+    high: float
+
+    @property
+    def robustness(self) -> float:
+        """The robustness as far as it was seen: ``high``, or ``low`` where only that says anything.
+
+        ``low`` alone would mislead an optimizer: a requirement that is just met is as low as one that was
+        settled early.
+        """
+        return self.high if isfinite(self.high) else self.low
 
 
 class Outlook:
@@ -76,7 +86,8 @@ class Outlook:
             else:
                 high = middle
         distance = self._over(times, columns, boolean=False)
-        return Settled(verdict, low, self._value(times, distance, n, best=not verdict))
+        worst, best = (self._value(times, distance, n, best=best) for best in (False, True))
+        return Settled(verdict, low, worst, best)
 
     def _verdict(self, times: FloatArray, truth: Columns, n: int) -> bool | None:
         if self._value(times, truth, n, best=True) < 0:

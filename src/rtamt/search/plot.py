@@ -52,8 +52,13 @@ def landscape(found: Sensitivity, axes: Any = None) -> Any:
         if found.axes:
             first, second = found.axes.values()
             made = axes.pcolormesh(first, second, values.T, shading="nearest", **colors)
+            axes.set_xticks(first, [f"{value:.3g}" for value in first])
+            axes.set_yticks(second, [f"{value:.3g}" for value in second])
             for (i, j), value in np.ndenumerate(values):
-                axes.text(first[i], second[j], f"{value:.3g}", ha="center", va="center", fontsize=8)
+                ink = "white" if abs(value) > 0.75 * reach else "black"
+                axes.text(
+                    first[i], second[j], f"{value:.3g}", ha="center", va="center", fontsize=8, color=ink
+                )
         else:
             made = axes.scatter(*points.values(), c=values, **colors)
         axes.figure.colorbar(made, ax=axes, label="robustness")

@@ -94,8 +94,11 @@ class Problem:
                 arguments[name] = given.signal(own, self.duration or 0.0)
         return arguments
 
-    def run(self, point: Mapping[str, float], number: int = 0) -> Evaluation:
+    def run(self, point: Mapping[str, float], number: int = 0, *, whole: bool = False) -> Evaluation:
         """Simulate at a point and evaluate the requirement.
+
+        ``whole``: to the end, also where the verdict is settled before; only then is the robustness of a
+        plant that yields always the exact one. ``number`` is told in the evaluation and in messages.
 
         Raises :class:`UsageError` where the plant fails, and what ``evaluate`` raises where its
         signals are wrong, with the point in the sentence.
@@ -106,7 +109,7 @@ class Problem:
                 made = self.plant(**arguments)
                 if isinstance(made, Mapping) or hasattr(made, "columns") or not isinstance(made, Iterable):
                     return self._whole(made, point, number)
-                return self._stepwise(made, point, number)
+                return self._stepwise(made, point, number, whole)
             except StlError as error:
                 raise type(error)(f"{_where(number, point)}: {error}") from error
         except StlError:
@@ -117,12 +120,18 @@ class Problem:
             ) from error
 
     def _whole(self, data: Any, point: Mapping[str, float], number: int) -> Evaluation:
+        told = data if isinstance(data, Mapping) else getattr(data, "columns", ())
+        if all(name in told for name in self.spec.input_names):  # a plant may tell more than is asked
+            data = {name: data[name] for name in (TIME, *self.spec.input_names) if name in told}
         result = self.spec.evaluate(data)
         return Evaluation(number, dict(point), result.robustness, result.satisfied)
 
-    def _stepwise(self, samples: Iterable[Any], point: Mapping[str, float], number: int) -> Evaluation:
+    def _stepwise(
+        self, samples: Iterable[Any], point: Mapping[str, float], number: int, whole: bool
+    ) -> Evaluation:
         total = self._total()
         outlook = Outlook(self.spec, self.spec.period, total)
+        watched = not whole and outlook.able and (total is not None or self.spec.time == "dense")
         # In dense time nobody knows how many samples will come: look again after a hundredth more.
         look = max(1, (total or LOOKS) // LOOKS)
         names = self.spec.input_names
@@ -139,12 +148,12 @@ class Problem:
                 columns[name].append(values[name])
             if len(times) == total:
                 break
-            if len(times) % look == 0 and outlook.able and (total or self.spec.time == "dense"):
+            if watched and len(times) % look == 0:
                 arrays = {name: np.asarray(column, float) for name, column in columns.items()}
                 settled = outlook.after(np.asarray(times, float), arrays)
                 if settled is not None:
                     stopped = float(times[settled.samples - 1])
-                    return Evaluation(number, dict(point), settled.bound, settled.satisfied, stopped)
+                    return Evaluation(number, dict(point), settled.robustness, settled.satisfied, stopped)
         close = getattr(samples, "close", None)
         if close is not None:
             close()

@@ -29,7 +29,7 @@ class Evaluation:
     robustness: float
     satisfied: bool
     #: Seconds of simulated time at which the verdict was settled and the simulation stopped; None: it ran to its end.
-    #: The robustness is then a bound: it can only move away from 0.
+    #: The robustness is then that of what was seen, if the rest goes as well as it can.
     stopped: float | None = None
 
     def to_json(self) -> str:

@@ -23,7 +23,10 @@ class Enough(Exception):  # noqa: N818 - no error: what ends an optimizer that w
 
 
 class Runs(AbstractContextManager["Runs"]):
-    """Runs a problem at one point after another; ``made`` holds the evaluations in order."""
+    """Runs a problem at one point after another; ``made`` holds the evaluations in order.
+
+    ``stop``: enough is known at the first violation. ``whole``: no simulation is cut short.
+    """
 
     def __init__(
         self,
@@ -33,6 +36,7 @@ class Runs(AbstractContextManager["Runs"]):
         *,
         workers: int = 1,
         stop: bool = False,
+        whole: bool = False,
         progress: Callable[[Evaluation], None] | None = None,
     ) -> None:
         count("the budget", budget)
@@ -42,6 +46,7 @@ class Runs(AbstractContextManager["Runs"]):
         self._record = record
         self._budget = budget
         self._stop = stop
+        self._whole = whole
         self._progress = progress
         self._pickled = _pickled(problem) if workers > 1 else b""
         self._pool: Executor | None = ProcessPoolExecutor(workers) if workers > 1 else None
@@ -72,14 +77,14 @@ class Runs(AbstractContextManager["Runs"]):
 
     def _simulated(self, jobs: Sequence[tuple[int, Mapping[str, float]]]) -> Iterable[Evaluation]:
         if self._pool is None or len(jobs) < 2:
-            return (self._problem.run(point, number) for number, point in jobs)
-        futures = [self._pool.submit(_simulate, self._pickled, *job) for job in jobs]
+            return (self._problem.run(point, number, whole=self._whole) for number, point in jobs)
+        futures = [self._pool.submit(_simulate, self._pickled, *job, self._whole) for job in jobs]
         return (future.result() for future in futures)
 
 
-def _simulate(problem: bytes, number: int, point: Mapping[str, float]) -> Evaluation:
+def _simulate(problem: bytes, number: int, point: Mapping[str, float], whole: bool) -> Evaluation:
     """Run one simulation in a worker."""
-    evaluation: Evaluation = pickle.loads(problem).run(point, number)  # noqa: S301 - our own bytes, from our own process
+    evaluation: Evaluation = pickle.loads(problem).run(point, number, whole=whole)  # noqa: S301 - our own bytes, from our own process
     return evaluation
 
 

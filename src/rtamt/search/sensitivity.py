@@ -60,7 +60,7 @@ def sensitivity(
     record: str | os.PathLike[str] | None = None,
     progress: Callable[[Evaluation], None] | None = None,
 ) -> Sensitivity:
-    """Evaluate the requirement at many points.
+    """Evaluate the requirement at many points, each simulation run to its end.
 
     Either ``grid``: for every parameter how many values, spread evenly over its range with both ends, or
     the values themselves; or ``samples``: how many points of a Sobol sequence (drawn with ``seed``).
@@ -90,7 +90,9 @@ def sensitivity(
         "first": points[0],
         "last": points[-1],
     }
-    with Runs(problem, Record(record, about), len(points), workers=workers, progress=progress) as runs:
+    with Runs(
+        problem, Record(record, about), len(points), workers=workers, whole=True, progress=progress
+    ) as runs:
         try:
             while True:
                 runs.batch(points[len(runs.made) : len(runs.made) + workers])
@@ -102,19 +104,19 @@ def _axes(problem: Problem, grid: Mapping[str, int | Sequence[float]]) -> dict[s
     for name in grid:
         if name not in problem.space:
             raise UsageError(f"there is no parameter '{name}'{did_you_mean(name, tuple(problem.space))}")
-    axes = {}
-    for name, part in problem.space.items():
+    for name in problem.space:
         if name not in grid:
             raise UsageError(
                 f"the grid says nothing of the parameter '{name}': how many values shall it take?"
             )
-        given = grid[name]
+    axes = {}
+    for name, given in grid.items():  # in the order in which they were given: so the picture is laid out
         if isinstance(given, int):
             if given < 2:
                 raise UsageError(
                     f"the grid has {given} values of '{name}'; give 2 or more, or the values themselves"
                 )
-            axes[name] = np.linspace(part.low, part.high, given)
+            axes[name] = np.linspace(problem.space[name].low, problem.space[name].high, given)
         else:
             axes[name] = np.asarray(given, float)
     assert prod(map(len, axes.values()))

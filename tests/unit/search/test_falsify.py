@@ -51,6 +51,36 @@ def test_a_simulation_stops_when_its_verdict_is_settled():
     assert len(asked) == 9
     # It is told how far the requirement is violated at least.
     assert whole.robustness < evaluation.robustness < 0
+    assert problem.run({"speed": 12.0}, whole=True).robustness == whole.robustness
+
+
+def test_a_verdict_settled_early_does_not_look_like_a_narrow_escape():
+    # Satisfied at the first sample, and then by far: what may still come at its worst would tell 0.1.
+    def plant(offset):
+        for k in range(101):
+            yield k / 10, {"x": 0.1 + offset if k < 50 else 9.0}
+
+    spec = rtamt.parse("always[0:2](x >= 0) and eventually[0:10](x >= 0)", period="100ms")
+    problem = Problem(spec, plant, {"offset": Range(1, 2)}, 10)
+    early = problem.run({"offset": 1.0})
+    assert early.stopped == 2.0
+    assert early.robustness == problem.run({"offset": 1.0}, whole=True).robustness == 1.1
+
+
+def test_a_plant_may_return_more_than_the_requirement_reads():
+    def plant(x):
+        return {"time": [0.0, 1.0], "z": [x, x], "w": [1, 2]}
+
+    assert Problem(VALLEY.spec, plant, {"x": Range(0, 1)}).run({"x": 0.25}).robustness == 0.25
+
+
+def test_samples_that_are_no_multiple_of_the_period_apart():
+    def plant(speed):
+        for k in range(10):
+            yield 0.13 * k, {"height": speed}
+
+    with pytest.raises(TraceError, match=r"^simulation 0 \(speed=2\): .*0\.13.*0\.1"):
+        Problem(BALL.spec, plant, BALL.inputs).run({"speed": 2.0})
 
 
 def test_a_simulation_whose_verdict_stays_open_runs_to_its_end():
@@ -59,6 +89,21 @@ def test_a_simulation_whose_verdict_stays_open_runs_to_its_end():
     assert evaluation.stopped is None
     expected = BALL.spec.evaluate({"height": [values["height"] for _, values in thrown(3.0)]})
     assert evaluation.robustness == expected.robustness
+
+
+def test_a_grid_is_laid_out_as_it_is_given():
+    found = sensitivity(VALLEY, grid={"y": 2, "x": [0.3, 0.5, 1.0]})
+    assert list(found.axes) == ["y", "x"]
+    assert found.robustness.shape == (2, 3)
+    assert found.robustness[1, 2] == pytest.approx(0.49 + 0.09 - 0.05)
+
+
+def test_a_sensitivity_is_exact_where_a_search_would_stop():
+    found = sensitivity(BALL, grid={"speed": [3.0, 12.0]})
+    whole = [
+        BALL.spec.evaluate({"height": [v["height"] for _, v in thrown(s)]}).robustness for s in (3.0, 12.0)
+    ]
+    assert found.robustness.tolist() == whole
 
 
 def test_several_workers_find_what_one_finds_in_the_same_order():
