@@ -11,9 +11,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import cars
-import transmission
-
 import rtamt
+import transmission
 from rtamt.search import PiecewiseConstant, Problem
 
 if TYPE_CHECKING:

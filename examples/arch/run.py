@@ -13,7 +13,6 @@ from functools import partial
 from statistics import mean
 
 from benchmarks import BENCHMARKS, Benchmark
-
 from rtamt.search import falsify
 
 HEAD = """\

@@ -13,10 +13,10 @@ from tempfile import TemporaryDirectory, mkdtemp
 from typing import TYPE_CHECKING, Any
 
 import fmpy
-from elevator import STEP, Elevators
 from fmpy.fmi2 import FMU2Slave
 
 import rtamt
+from elevator import STEP, Elevators
 from rtamt import fmi
 from rtamt.search import Pulse
 

@@ -10,9 +10,8 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
-from elevator import Elevators
-
 import rtamt
+from elevator import Elevators
 from rtamt.search import Falsification, Problem, Pulse, Range, Sensitivity, falsify, sensitivity
 
 HERE = Path(__file__).parent
