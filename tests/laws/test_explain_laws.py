@@ -267,9 +267,9 @@ def test_a_place_was_critical_that_changes_nothing_alone_beside_one_that_overtur
 ) -> None:
     case = data.draw(cases(domain=domain, max_depth=3))
     robustness, point = case.explanation.robustness, case.explanation.critical
-    assume(robustness != 0)
     falls = point.lowest < 0 if robustness > 0 else point.highest > 0
-    assume(not falls)
+    if robustness == 0 or falls:
+        return
     for k, predicate in enumerate(case.predicates):
         column = case.world.column(predicate)
         edges = np.arange(1, len(column)) if domain == "discrete" else np.flatnonzero(np.diff(column)) + 1

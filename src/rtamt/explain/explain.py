@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from rtamt.language.formula import Formula
 
 #: How many places are tried for one that overturns the verdict alone.
-_TRIED = 16
+_TRIED = 64
 
 
 def explain(
@@ -122,8 +122,12 @@ class _Explainer:
         """Yield the places of an implicant that have the value of the robustness."""
         for interval in implicant:
             changes, values = self._values[interval.name].between(interval.start, interval.end)
-            for start in changes[interval.sign * values == robustness].tolist():
-                yield Point(start, interval.sign, interval.name)
+            stops = (*changes[1:].tolist(), interval.end)
+            for start, stop, value in zip(changes.tolist(), stops, values.tolist(), strict=True):
+                if interval.sign * value == robustness:
+                    # In dense time a value moves on its whole segment, in discrete time each sample by itself.
+                    cells = (start,) if self._dense else range(start, stop)
+                    yield from (Point(there, interval.sign, interval.name) for there in cells)
 
     def _told(self, point: Point, cell: int) -> tuple[CriticalPoint, str]:
         """Return a place that has the value of the robustness as a critical point, and its instant for a sentence."""
