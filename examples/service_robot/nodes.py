@@ -55,9 +55,7 @@ class Component:
         }
 
     def tell(self, at: float, signals: Mapping[str, float]) -> None:
-        """Publish the signals that the monitors read; the first when they listen, so that none is lost."""
-        while not rospy.is_shutdown() and not all(p.get_num_connections() for p in self._signals.values()):
-            time.sleep(0.02)
+        """Publish the signals that the monitors read."""
         for signal, value in signals.items():
             message = FloatStamped(value=value)
             message.header.stamp = stamp(at)
@@ -86,6 +84,7 @@ class PlantNode(Component):
         """Step until the drive is over."""
         pause = PERIOD / float(rospy.get_param("speed", 1.0))
         end = float(rospy.get_param("duration", 60.0))
+        self.wait_for_monitors()
         while not rospy.is_shutdown() and self.world.time < end:
             due = time.monotonic() + pause
             at = self.world.time
@@ -100,6 +99,11 @@ class PlantNode(Component):
                 self.world.step(np.array([twist.linear.x, twist.linear.y, twist.angular.z]))
             time.sleep(max(0.0, due - time.monotonic()))
         time.sleep(1.0)  # the monitors' last words
+
+    def wait_for_monitors(self) -> None:
+        """Wait until somebody listens to the first signals, so that no sample is lost to them."""
+        while not rospy.is_shutdown() and not all(p.get_num_connections() for p in self._signals.values()):
+            time.sleep(0.05)
 
 
 class PerceptionNode(Component):
