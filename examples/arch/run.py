@@ -27,10 +27,10 @@ value held for 5 s. A cell tells how many of the runs falsified, and after how m
 
 TAIL = """
 Reported elsewhere: how many of 10 runs of FalCAuN falsified, and after how many simulations on average, from the
-summary in its repository for the competition of 2024 (MasWag/FalCAuN-ARCH-COMP); it ran the Simulink models, up to
-several thousand simulations each. A budget of 300 is that of FalStar's published configuration. The plants here
-are other programs than the models of the competition (see README.md), so that rows can be compared in kind, not
-to the digit.
+summary in its repository for the competition of 2024 (MasWag/FalCAuN-ARCH-COMP); it ran the Simulink models, and more
+than 300 simulations where it needed them. A budget of 300 is that of FalStar's published configuration. The plants
+here are other programs than the models of the competition (see README.md), so that rows can be compared in kind,
+not to the digit.
 
 ## The formulas
 

@@ -1,7 +1,7 @@
 """Sensitivity and falsification of the elevators (the paper's Fig. 12): ``python examples/elevator/run.py``.
 
 Writes ``sensitivity.png`` (16 simulations without a fault) and ``falsification.png`` (the first
-hydraulic circuit fails after 2 s) into the folder given as argument, by default the current one, and prints
+hydraulic circuit fails after 2 s) into the folder given as argument, by default ``build/elevator``, and prints
 what they show.
 """
 
@@ -15,6 +15,7 @@ from elevator import Elevators
 from rtamt.search import Falsification, Problem, Pulse, Range, Sensitivity, falsify, sensitivity
 
 HERE = Path(__file__).parent
+OUT = HERE.parents[1] / "build" / "elevator"
 DURATION = 10
 STEPS = Pulse(frequency=Range(0.2, 1), amplitude=Range(1, 1.75), delay=0.5)
 
@@ -37,6 +38,7 @@ def search(side: str = "left", *, seed: int = 1, **faults: float) -> Falsificati
 
 def main(folder: Path) -> None:
     """Draw both pictures, and print the table of the first."""
+    folder.mkdir(parents=True, exist_ok=True)
     for side in ("left", "right"):
         landscape = study(side)
         print(f"{side}: robustness over frequency (down) and amplitude (across), no fault")
@@ -52,4 +54,4 @@ def main(folder: Path) -> None:
 
 
 if __name__ == "__main__":
-    main(Path(sys.argv[1]) if len(sys.argv) > 1 else Path())
+    main(Path(sys.argv[1]) if len(sys.argv) > 1 else OUT)
