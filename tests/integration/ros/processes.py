@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import os
 import queue
@@ -12,6 +13,8 @@ import sys
 import threading
 import time
 from pathlib import Path
+
+import psutil
 
 #: Seconds that a slow machine may take; a test that has its answer goes on at once.
 PATIENCE = 60.0
@@ -82,6 +85,7 @@ class Process:
     def stop(self, how=signal.SIGINT):
         """End the program; return its exit code."""
         self.popen.stdin.close()
+        started = self._descendants()
         if self.popen.poll() is None:
             os.killpg(self.popen.pid, how)
             try:
@@ -89,9 +93,23 @@ class Process:
             except subprocess.TimeoutExpired:
                 os.killpg(self.popen.pid, signal.SIGKILL)
                 self.popen.wait(PATIENCE)
+        # What it started may hold its output open: rosbag still closes its file, and the nodes of roslaunch, each
+        # in a session of its own, outlive it when it is killed.
+        if how != signal.SIGKILL:
+            self._reader.join(PATIENCE)
+        for process in started:
+            with contextlib.suppress(psutil.NoSuchProcess):
+                process.kill()
         self._reader.join(PATIENCE)
+        assert not self._reader.is_alive(), f"somebody still holds the output of {self.popen.args}"
         self.popen.stdout.close()
         return self.popen.returncode
+
+    def _descendants(self):
+        try:
+            return psutil.Process(self.popen.pid).children(recursive=True)
+        except psutil.NoSuchProcess:
+            return []
 
 
 class Puppet(Process):
