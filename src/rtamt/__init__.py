@@ -1,10 +1,11 @@
 """Runtime monitors for Signal Temporal Logic: requirement and signal in, robustness out."""
 
-from rtamt.batch import evaluate_all, evaluate_batch
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
 from rtamt.engine.dense_monitor import DenseMonitor
 from rtamt.engine.monitor import Monitor
 from rtamt.engine.signals import Signal
-from rtamt.engine.trace import Channel, Trace
 from rtamt.errors import (
     BoundError,
     EvaluationError,
@@ -18,45 +19,49 @@ from rtamt.errors import (
     UsageError,
 )
 from rtamt.language.operators import STL
-from rtamt.readers.reading import read, scan
 from rtamt.results import Result
-from rtamt.rtamt_api import (
-    IAStlInputRobustnessDenseTimeOfflineSpecification,
-    IAStlInputRobustnessDenseTimeOnlineSpecification,
-    IAStlInputRobustnessDiscreteTimeOfflineSpecification,
-    IAStlInputRobustnessDiscreteTimeOnlineSpecification,
-    IAStlInputVacuityDenseTimeOfflineSpecification,
-    IAStlInputVacuityDenseTimeOnlineSpecification,
-    IAStlInputVacuityDiscreteTimeOfflineSpecification,
-    IAStlInputVacuityDiscreteTimeOnlineSpecification,
-    IAStlOutputRobustnessDenseTimeOfflineSpecification,
-    IAStlOutputRobustnessDenseTimeOnlineSpecification,
-    IAStlOutputRobustnessDiscreteTimeOfflineSpecification,
-    IAStlOutputRobustnessDiscreteTimeOnlineSpecification,
-    IAStlOutputVacuityDenseTimeOfflineSpecification,
-    IAStlOutputVacuityDenseTimeOnlineSpecification,
-    IAStlOutputVacuityDiscreteTimeOfflineSpecification,
-    IAStlOutputVacuityDiscreteTimeOnlineSpecification,
-    Language,
-    Semantics,
-    STLCTSpecification,
-    StlDenseTimeOfflineSpecification,
-    StlDenseTimeOnlineSpecification,
-    STLDenseTimeSpecification,
-    StlDenseTimeSpecification,
-    StlDiscreteTimeOfflineSpecification,
-    StlDiscreteTimeOnlineSpecification,
-    StlDiscreteTimeOnlineSpecificationCpp,
-    STLDiscreteTimeSpecification,
-    StlDiscreteTimeSpecification,
-    StlDiscreteTimeSpecificationCpp,
-    StlIOType,
-    STLSpecification,
-    TimeInterpretation,
-)
 from rtamt.specification import Specification, load, parse, robustness
-from rtamt.streams import StreamResult, check_stream
-from rtamt.verdicts import first_violation
+
+if TYPE_CHECKING:
+    from rtamt.batch import evaluate_all, evaluate_batch
+    from rtamt.engine.trace import Channel, Trace
+    from rtamt.readers.reading import read, scan
+    from rtamt.rtamt_api import (
+        IAStlInputRobustnessDenseTimeOfflineSpecification,
+        IAStlInputRobustnessDenseTimeOnlineSpecification,
+        IAStlInputRobustnessDiscreteTimeOfflineSpecification,
+        IAStlInputRobustnessDiscreteTimeOnlineSpecification,
+        IAStlInputVacuityDenseTimeOfflineSpecification,
+        IAStlInputVacuityDenseTimeOnlineSpecification,
+        IAStlInputVacuityDiscreteTimeOfflineSpecification,
+        IAStlInputVacuityDiscreteTimeOnlineSpecification,
+        IAStlOutputRobustnessDenseTimeOfflineSpecification,
+        IAStlOutputRobustnessDenseTimeOnlineSpecification,
+        IAStlOutputRobustnessDiscreteTimeOfflineSpecification,
+        IAStlOutputRobustnessDiscreteTimeOnlineSpecification,
+        IAStlOutputVacuityDenseTimeOfflineSpecification,
+        IAStlOutputVacuityDenseTimeOnlineSpecification,
+        IAStlOutputVacuityDiscreteTimeOfflineSpecification,
+        IAStlOutputVacuityDiscreteTimeOnlineSpecification,
+        Language,
+        Semantics,
+        STLCTSpecification,
+        StlDenseTimeOfflineSpecification,
+        StlDenseTimeOnlineSpecification,
+        STLDenseTimeSpecification,
+        StlDenseTimeSpecification,
+        StlDiscreteTimeOfflineSpecification,
+        StlDiscreteTimeOnlineSpecification,
+        StlDiscreteTimeOnlineSpecificationCpp,
+        STLDiscreteTimeSpecification,
+        StlDiscreteTimeSpecification,
+        StlDiscreteTimeSpecificationCpp,
+        StlIOType,
+        STLSpecification,
+        TimeInterpretation,
+    )
+    from rtamt.streams import StreamResult, check_stream
+    from rtamt.verdicts import first_violation
 
 __version__ = "1.0.0.dev0"
 
@@ -122,3 +127,28 @@ __all__ = [
     "robustness",
     "scan",
 ]
+
+#: What a program that only parses and monitors does not need, and where it is; the rest is the paper's API.
+_LATER = {
+    "Channel": "rtamt.engine.trace",
+    "StreamResult": "rtamt.streams",
+    "Trace": "rtamt.engine.trace",
+    "check_stream": "rtamt.streams",
+    "evaluate_all": "rtamt.batch",
+    "evaluate_batch": "rtamt.batch",
+    "first_violation": "rtamt.verdicts",
+    "read": "rtamt.readers.reading",
+    "scan": "rtamt.readers.reading",
+}
+
+
+def __getattr__(name: str) -> Any:
+    if name not in __all__:
+        raise AttributeError(f"module 'rtamt' has no attribute '{name}'")
+    found = getattr(import_module(_LATER.get(name, "rtamt.rtamt_api")), name)
+    globals()[name] = found
+    return found
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

@@ -107,6 +107,8 @@ class Apply(Formula):
     interval: Interval | None = None
     span: Span | None = field(default=None, repr=False)
     _hash: int = field(init=False, repr=False, default=0)
+    #: The nodes below, in postorder, once they were asked for: a formula is walked many times.
+    _below: tuple[Formula, ...] | None = field(init=False, repr=False, default=None)
 
     def __post_init__(self) -> None:
         # Children carry their own hash, so that this is O(1) a node and needs no recursion.
@@ -144,16 +146,30 @@ def children(formula: Formula) -> tuple[Formula, ...]:
 
 def postorder(formula: Formula) -> Iterator[Formula]:
     """Yield every distinct node object below and including ``formula``, operands first."""
+    if isinstance(formula, Apply):
+        if formula._below is None:
+            object.__setattr__(formula, "_below", _below(formula))
+        yield from formula._below or ()
+    yield formula
+
+
+def _below(formula: Apply) -> tuple[Formula, ...]:
+    """Return every distinct node object below a formula, operands first."""
     seen: set[int] = set()
-    stack: list[tuple[Formula, bool]] = [(formula, False)]
+    found: list[Formula] = []
+    stack: list[tuple[Formula, bool]] = [(operand, False) for operand in reversed(formula.args)]
     while stack:
         node, ready = stack.pop()
         if ready:
-            yield node
+            found.append(node)
         elif id(node) not in seen:
             seen.add(id(node))
-            stack.append((node, True))
-            stack.extend((child, False) for child in reversed(children(node)))
+            if isinstance(node, Apply):
+                stack.append((node, True))
+                stack.extend([(operand, False) for operand in reversed(node.args)])
+            else:
+                found.append(node)
+    return tuple(found)
 
 
 def fold(formula: Formula, step: Callable[[Formula, tuple[T, ...]], T]) -> T:
@@ -165,7 +181,8 @@ def fold(formula: Formula, step: Callable[[Formula, tuple[T, ...]], T]) -> T:
     """
     values: dict[int, T] = {}
     for node in postorder(formula):
-        values[id(node)] = step(node, tuple(values[id(child)] for child in children(node)))
+        below = tuple([values[id(operand)] for operand in node.args]) if isinstance(node, Apply) else ()
+        values[id(node)] = step(node, below)
     return values[id(formula)]
 
 

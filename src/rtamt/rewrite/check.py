@@ -35,7 +35,12 @@ def check_bounds(
         if not isinstance(node, Apply) or node.interval is None:
             continue
         for bound in (node.interval.begin, node.interval.end):
-            if bound is not None and (bound / period).denominator != 1:
+            if bound is None:
+                continue
+            count, rest = divmod(  # of integers: a division of fractions costs ten times as much
+                bound.numerator * period.denominator, bound.denominator * period.numerator
+            )
+            if rest != 0:
                 raise BoundError(
                     f"The operator bound must be a multiple of the {what}: "
                     f"{format_duration(bound)} is not a whole number of {steps} of {format_duration(period)}; "
@@ -43,9 +48,9 @@ def check_bounds(
                     text,
                     node.interval.span or node.span,
                 )
-            if bound is not None and bound / period > most:
+            if count > most:
                 raise BoundError(
-                    f"{format_duration(bound)} is {float(bound / period):.3g} {steps} of {format_duration(period)}, "
+                    f"{format_duration(bound)} is {float(count):.3g} {steps} of {format_duration(period)}, "
                     f"more than can be counted; shorten the bound, leave it open with inf, or choose {longer}",
                     text,
                     node.interval.span or node.span,
@@ -57,11 +62,15 @@ def check_bounds(
 def _check_sums(formula: Formula, tick: Fraction, text: str | None) -> None:
     """Raise :class:`BoundError` at an operator whose bounds, with those of its operands, reach too far."""
     reach: dict[int, Fraction] = {}
+    none, farthest = Fraction(0), _FARTHEST_TICKS * tick
     for node in postorder(formula):
-        far = max((reach[id(operand)] for operand in children(node)), default=Fraction(0))
+        far = none
+        for operand in children(node):
+            if reach[id(operand)] is not far:  # fractions are slow to compare
+                far = max(far, reach[id(operand)])
         if isinstance(node, Apply) and node.interval is not None:
             far += node.interval.begin if node.interval.end is None else node.interval.end
-            if far / tick > _FARTHEST_TICKS:
+            if far > farthest:
                 raise BoundError(
                     f"the bounds from here inwards add up to {format_duration(far)}, {float(far / tick):.3g} ticks "
                     f"of {format_duration(tick)}, more than can be counted; shorten them, or choose a coarser "

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rtamt.language.formula import Apply, Formula, Span, children, fold, postorder
@@ -72,7 +71,7 @@ def stamped(formula: Formula, operands: tuple[Formula, ...], span: Span | None) 
     stop = {id(arg) for arg in operands}
 
     def stamp(node: Formula, args: tuple[Formula, ...]) -> Formula:
-        return replace(node, args=args, span=span) if isinstance(node, Apply) else node
+        return Apply(node.op, args, node.interval, span) if isinstance(node, Apply) else node
 
     return _rebuild_above(formula, stop, stamp)
 
@@ -81,7 +80,7 @@ def rebuilt(node: Apply, args: tuple[Formula, ...]) -> Apply:
     """Return the node over new operands; the same object if they are the same objects."""
     if all(new is old for new, old in zip(args, node.args, strict=True)):
         return node
-    return replace(node, args=args)
+    return Apply(node.op, args, node.interval, node.span)
 
 
 def _rebuild_above(

@@ -8,6 +8,8 @@ from rtamt.language.formula import Apply, Formula, fold
 from rtamt.language.operators import Bounds, Tense
 from rtamt.rewrite.desugar import spelled_out
 
+_NONE = Fraction(0)
+
 
 def horizon(formula: Formula, period: Fraction = Fraction(1)) -> Fraction | None:
     """Return the temporal depth H(φ) in seconds, exact; None if it is unbounded.
@@ -21,11 +23,12 @@ def horizon(formula: Formula, period: Fraction = Fraction(1)) -> Fraction | None
     """
 
     def step(node: Formula, below: tuple[Fraction | None, ...]) -> Fraction | None:
-        deepest = Fraction(0)
+        deepest = _NONE
         for depth in below:
             if depth is None:
                 return None
-            deepest = max(deepest, depth)
+            if depth is not deepest:  # fractions are slow to compare
+                deepest = max(deepest, depth)
         if not isinstance(node, Apply) or node.op.tense is not Tense.FUTURE:
             return deepest
         if node.op.bounds is Bounds.NONE:
