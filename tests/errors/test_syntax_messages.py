@@ -70,13 +70,13 @@ FORMULAS = [
         "'prev' binds more weakly than the '-' before it; put parentheses around it: - (prev ...)",
     ),
     (
-        "-always x",
+        "-always x >= 1",
         " ^^^^^^",
         ParseError,
         "'always' binds more weakly than the '-' before it; put parentheses around it: - (always ...)",
     ),
     (
-        "x >= not y",
+        "x >= not y > 1",
         "     ^^^",
         ParseError,
         "'not' binds more weakly than the '>=' before it; put parentheses around it: >= (not ...)",

@@ -189,3 +189,26 @@ def test_a_dense_sub_formula_does_not_see_what_lies_before_the_recording_begins(
     for signal in (result.signal, result["once(x >= 1)"]):
         assert (signal.times.tolist(), signal.values.tolist()) == ([2, 5, 8], [0, 1, 1])
     assert result["eventually(x >= 1)"].times.tolist() == [2, 8]
+
+
+def test_a_window_after_a_comparison_was_refused_though_it_can_be_read_in_one_way_only() -> None:
+    spec = rtamt.StlDiscreteTimeSpecification()
+    spec.declare_const("d", "float", "2")
+    spec.declare_const("c", "float", "5.5")
+    spec.spec = "a + b >= once[0, d s] c"
+    spec.parse()
+    assert spec.update(0, [("a", 1), ("b", 2)]) == -2.5
+
+
+@pytest.mark.parametrize("name", ["StlDenseTimeSpecification", "StlDenseTimeOfflineSpecification"])
+def test_a_sampling_period_set_for_dense_time_was_an_attribute_error(name: str) -> None:
+    spec = getattr(rtamt, name)()
+    spec.set_sampling_period(1, "s", 0.1)
+    spec.spec = "always((dist <= 0.5) implies (vel == 0.0))"
+    spec.parse()
+    assert spec.evaluate(["dist", [[0, 0], [1, 0.25]]], ["vel", [[0, 0], [1, 0.25]]]) == [
+        [0, -0.25],
+        [1, -0.25],
+    ]
+    with pytest.raises(rtamt.RTAMTException, match="fraction of the period"):
+        spec.set_sampling_period(1, "s", 1.5)

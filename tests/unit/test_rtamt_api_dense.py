@@ -176,14 +176,17 @@ def test_values_of_subformulas_online_are_what_the_update_made_known(monkeypatch
     assert spec.get_value("x") == 0.0
     spec.update(["x", [[0, 1], [2, 4]]])
     assert spec.get_value("low") == []
+    assert spec.get_value("x") == [[0, 1.0], [2, 4.0]]
     spec.update(["y", [[0, 5], [1, 1], [4, 5]]])
-    assert spec.get_value("x") == [[0.0, 1.0], [2.0, 4.0]]
+    assert spec.get_value("x") == []
+    assert spec.get_value("y") == [[0, 5.0], [1, 1.0], [4, 5.0]]
     assert spec.get_value("low") == spec.get_value("(x)<=(3.0)") == [[0.0, 2.0], [2.0, -1.0]]
     assert spec.get_value("high") == [[0.0, 3.0], [2.0, 3.0]]
     assert spec.get_value("far") == [[0.0, -4.0], [1.0, -8.0], [2.0, -8.0]]
     assert spec.get_value("9.0") == [[0.0, 9.0], [2.0, 9.0]]
     assert spec.get_value("out") == [[0.0, 2.0], [2.0, 2.0]]
-    spec.update(["x", [[7, 5]]])
+    spec.update(["x", [[7.5, 5]]])
+    assert spec.get_value("x") == [[7.5, 5.0]]
     assert spec.get_value("high") == [[3.0, -1.0], [4.0, 3.0]]
     assert spec.get_value("low") == [[4.0, -1.0]]
     spec.update()

@@ -183,13 +183,6 @@ class FormulaParser:
     def prefix(self, op: Operator, power: int, under: Operator | None) -> Formula:
         """``prefix = prefix operator , [ interval ] , expression``; a minus before a number is its sign."""
         token = self.next()
-        if op.power < power and not (under is not None and passes_on(under)):
-            by = "" if under is None else under.spellings[0]
-            raise self.error(
-                f"'{token.text}' binds more weakly than the '{by}' before it; "
-                f"put parentheses around it: {by} ({token.text} ...)",
-                token.span,
-            )
         if op is self._sign:
             value = self._signed(op)
             if value is not None:
@@ -197,7 +190,24 @@ class FormulaParser:
         interval = parse_interval(self, op, token)
         # Under `not`, whose power is higher, `always` takes in no more than `not` itself would.
         operand = self.expression(max(power, op.power), op)
+        if op.power < power and not (under is not None and passes_on(under)):
+            self._one_reading(op, token, under)
         return Apply(op, (operand,), interval, Span(token.start, self.tokens[self.index - 1].end))
+
+    def _one_reading(self, op: Operator, token: Token, under: Operator | None) -> None:
+        """Refuse what a weaker prefix operator would take in if no stronger one stood before it.
+
+        ``x >= once y`` is read in one way; ``x - prev x >= 1`` could be ``(x - prev x) >= 1`` or, as RTAMT
+        reads it, ``x - prev(x >= 1)``.
+        """
+        follows = self.language.infix(self.tokens[self.index].text)
+        if follows is not None and follows.power >= op.power:
+            by = "" if under is None else under.spellings[0]
+            raise self.error(
+                f"'{token.text}' binds more weakly than the '{by}' before it; "
+                f"put parentheses around it: {by} ({token.text} ...)",
+                token.span,
+            )
 
     def name(self) -> Formula:
         """``name = word , { "." , word } | topic | '"' , characters , '"'``."""

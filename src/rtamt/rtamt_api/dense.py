@@ -20,7 +20,7 @@ from rtamt.rtamt_api.explained import ExplainedSpecification
 from rtamt.rtamt_api.failures import raises_rtamt
 from rtamt.rtamt_api.formulas import Formulas
 from rtamt.rtamt_api.online import OnlineSpecification, require_past
-from rtamt.rtamt_api.options import Language, Semantics
+from rtamt.rtamt_api.options import Language, Semantics, sampling
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -34,6 +34,16 @@ if TYPE_CHECKING:
 
 class DenseTimeSpecification(Formulas):
     """What the classes for dense time share: how signals come in and go out. Not made by users."""
+
+    @raises_rtamt
+    def set_sampling_period(
+        self, sampling_period: float = 1, unit: str = "s", tolerance: float = signals.TOLERANCE
+    ) -> None:
+        """Change nothing: dense time has no sampling period. Programs for RTAMT set one all the same.
+
+        Arguments and errors as in discrete time.
+        """
+        sampling(sampling_period, unit, tolerance)
 
     def _check(self, formula: Formula, text: str) -> None:
         check_dense(formula, text)
@@ -141,6 +151,7 @@ class StlDenseTimeOnlineSpecification(OnlineSpecification, DenseTimeSpecificatio
         super().__init__()
         self._monitor: DenseMonitor | None = None  # made by the first update
         self._watched: tuple[Formula, ...] = ()  # by it
+        self._given: dict[str, Samples] = {}  # by the latest update
         self._whole = True  # whether all times so far were integers
 
     @raises_rtamt
@@ -163,6 +174,7 @@ class StlDenseTimeOnlineSpecification(OnlineSpecification, DenseTimeSpecificatio
         self._objects.update({name: values[-1] for name, (_, values) in given.items() if values})
         if len(signal):
             self._publish(float(signal.values[-1]))
+        self._given = columns
         self._value_of = self._told
         return _points(signal, self._whole)
 
@@ -174,7 +186,11 @@ class StlDenseTimeOnlineSpecification(OnlineSpecification, DenseTimeSpecificatio
             self._monitor.reset()
 
     def _told(self, part: Formula) -> list[list[float]]:
-        """Return what the latest update made known of a part of the specification."""
+        """Return what the latest update made known of a part, or gave of a variable (as RTAMT does)."""
+        if isinstance(part, Var):
+            times, values = self._given.get(part.name, ((), ()))
+            told = int if self._whole else float
+            return [[told(time), float(value)] for time, value in zip(times, values, strict=True)]
         if not any(part == node for formula in self._watched for node in postorder(formula)):
             raise UsageError(
                 f"'{canonical(part)}' is no part of what is watched: the result, and past assertions that read "

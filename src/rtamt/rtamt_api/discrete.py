@@ -12,13 +12,14 @@ import numpy as np
 
 from rtamt.engine import signals
 from rtamt.engine.signals import TIME, Recording
-from rtamt.errors import StlError, UsageError
-from rtamt.language.units import UNITS, duration
+from rtamt.errors import StlError
+from rtamt.language.units import UNITS
 from rtamt.rewrite.check import check_bounds
 from rtamt.rtamt_api.backends import signal
 from rtamt.rtamt_api.explained import ExplainedSpecification
 from rtamt.rtamt_api.failures import raises_rtamt
 from rtamt.rtamt_api.formulas import Formulas
+from rtamt.rtamt_api.options import sampling
 
 if TYPE_CHECKING:
     from rtamt.language.formula import Formula
@@ -48,15 +49,8 @@ class DiscreteTimeSpecification(Formulas):
         ``sampling_period`` in ``unit`` (s, ms, us, ns); ``tolerance``, from 0 to 1, is the fraction of
         the period by which a gap may miss it before :attr:`sampling_violation_counter` counts it.
         """
-        period = duration(sampling_period, unit)
-        if period == 0:
-            raise UsageError(f"the sampling period is {sampling_period} {unit}; it must be positive")
-        if not (signals.is_number(tolerance) and 0 <= tolerance <= 1):
-            raise UsageError(
-                f"the sampling tolerance is {tolerance!r}; it is a fraction of the period, from 0 to 1"
-            )
         before = self._period, self._tolerance
-        self._period, self._tolerance = period, float(tolerance)
+        self._period, self._tolerance = sampling(sampling_period, unit, tolerance)
         try:
             self._settings_changed()
         except StlError:

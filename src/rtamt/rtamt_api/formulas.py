@@ -101,8 +101,8 @@ class Formulas(Declarations):
         ``var_name``: the name of a variable or assertion, or the text of a formula, such as its
         canonical text ``'(a)>=(2.0)'``. After ``evaluate`` the value is a list: one number a sample,
         in dense time ``[[time, value], ...]``. After ``update`` it is the latest number, in dense time
-        again a list: what the update made known. Before both it is what was declared. A variable of a
-        message class gives its object.
+        again a list: what the update made known, and of a variable the samples that it gave. Before
+        both it is what was declared. A variable of a message class gives its object.
         """
         if var_name in self._objects and (self._value_of is None or self._holds(var_name)):
             return self._objects[var_name]

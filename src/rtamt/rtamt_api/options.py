@@ -1,8 +1,16 @@
-"""The words that the paper's API uses for choices; values and ``str()`` are RTAMT's."""
+"""The words that the paper's API uses for choices, whose values and ``str()`` are RTAMT's; how time is sampled."""
 
 from __future__ import annotations
 
 from enum import Enum
+from typing import TYPE_CHECKING
+
+from rtamt.engine import signals
+from rtamt.errors import UsageError
+from rtamt.language.units import duration
+
+if TYPE_CHECKING:
+    from fractions import Fraction
 
 
 class Semantics(Enum):
@@ -44,3 +52,15 @@ class StlIOType(Enum):
     IN = 0
     OUT = 1
     UNDEFINED = 2
+
+
+def sampling(period: float, unit: str, tolerance: float) -> tuple[Fraction, float]:
+    """Return a sampling period in seconds, and the fraction of it by which a gap may miss it."""
+    seconds = duration(period, unit)
+    if seconds == 0:
+        raise UsageError(f"the sampling period is {period} {unit}; it must be positive")
+    if not (signals.is_number(tolerance) and 0 <= tolerance <= 1):
+        raise UsageError(
+            f"the sampling tolerance is {tolerance!r}; it is a fraction of the period, from 0 to 1"
+        )
+    return seconds, float(tolerance)
