@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import os
 import shutil
-import signal
 import subprocess
 import sys
 import sysconfig
 import venv
+import xmlrpc.client
 from pathlib import Path
 
 import pytest
 
-from tests.integration.ros.processes import PATIENCE, Process, Puppet, free_port, wait_for
+from tests.integration.ros.processes import PATIENCE, Process, Puppet, free_port, stop_all, wait_for
 
 collect_ignore_glob = ["puppet_*.py"]  # programs, run by a Python that has ROS
 
@@ -107,8 +107,16 @@ class Ros:
     def start_master(self):
         """Start a master; the port is always the same."""
         master = self.start("rosmaster", "--core", "-p", str(self.port))
-        wait_for(lambda: self.run("rosparam", "list").returncode == 0, "the master")
+        wait_for(self.master_answers, "the master")
         return master
+
+    def master_answers(self):
+        """Tell whether the master takes calls."""
+        try:
+            with xmlrpc.client.ServerProxy(self.env["ROS_MASTER_URI"]) as master:
+                return master.getPid("/test")[0] == 1
+        except OSError:
+            return False
 
     def run(self, *command):
         """Run a program to its end."""
@@ -126,7 +134,6 @@ class Ros:
         """Start a node that does what it is told."""
         puppet = Puppet("puppet_ros1.py", self.env)
         self.processes.append(puppet)
-        puppet._answers.get(timeout=PATIENCE)
         return puppet
 
     def monitor(self, text, *arguments):
@@ -134,15 +141,10 @@ class Ros:
         (self.folder / "spec.stl").write_text(text)
         return self.start("rosrun", "rtamt4ros", "ros_stl_monitor.py", "spec.stl", *arguments)
 
-    def stop(self):
-        """End everything, the master last."""
-        for process in reversed(self.processes):
-            process.stop(signal.SIGKILL)
-
 
 @pytest.fixture
 def ros(ros_env, tmp_path):
     """Start a master for one test."""
     world = Ros(ros_env, tmp_path)
     yield world
-    world.stop()
+    stop_all(world.processes)

@@ -6,6 +6,7 @@ import contextlib
 import json
 import os
 import queue
+import random
 import signal
 import socket
 import subprocess
@@ -17,16 +18,21 @@ from pathlib import Path
 import psutil
 
 #: Seconds that a slow machine may take; a test that has its answer goes on at once.
-PATIENCE = 60.0
+PATIENCE = 90.0
 
 HERE = Path(__file__).parent
 
 
-def free_port():
-    """Return a port of the loopback interface that nobody uses."""
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return probe.getsockname()[1]
+def free_port(kind=socket.SOCK_STREAM, among=range(10_000, 32_000)):
+    """Return a port of the loopback interface that nobody uses, below those that the kernel gives to connections.
+
+    A master that is started again finds its port free: no connection was given it meanwhile.
+    """
+    for port in random.sample(among, len(among)):
+        with socket.socket(type=kind) as probe, contextlib.suppress(OSError):
+            probe.bind(("127.0.0.1", port))
+            return port
+    raise AssertionError("no port is free")
 
 
 def wait_for(condition, what):
@@ -38,6 +44,13 @@ def wait_for(condition, what):
             return found
         time.sleep(0.02)
     raise AssertionError(f"waited {PATIENCE:.0f} s for {what}")
+
+
+def stop_all(processes):
+    """End programs, the latest first, whatever happens while one of them ends."""
+    with contextlib.ExitStack() as stack:
+        for process in processes:
+            stack.callback(process.kill)
 
 
 class Process:
@@ -55,6 +68,7 @@ class Process:
             bufsize=1,
             start_new_session=True,
         )
+        self.command = " ".join(command)
         self.lines = []
         self._reader = threading.Thread(target=self._read, daemon=True)
         self._reader.start()
@@ -101,9 +115,14 @@ class Process:
             with contextlib.suppress(psutil.NoSuchProcess):
                 process.kill()
         self._reader.join(PATIENCE)
-        assert not self._reader.is_alive(), f"somebody still holds the output of {self.popen.args}"
+        assert not self._reader.is_alive(), f"somebody still holds the output of {self.command}"
         self.popen.stdout.close()
         return self.popen.returncode
+
+    def kill(self):
+        """End the program at once, and show what it printed: pytest tells it of a test that failed."""
+        self.stop(signal.SIGKILL)
+        print(f"---- {self.command}\n{self.output[-20_000:]}")
 
     def _descendants(self):
         try:
@@ -119,6 +138,7 @@ class Puppet(Process):
         self.events = []
         self._answers = queue.Queue()
         super().__init__([env.get("RTAMT_TEST_PYTHON", sys.executable), str(HERE / script), *args], env)
+        self._answer("its start")
 
     def heard(self, line):
         """Take an answer or a message."""
@@ -133,10 +153,14 @@ class Puppet(Process):
     def ask(self, **command):
         """Tell the puppet what to do; return its answer when it is done."""
         self.popen.stdin.write(json.dumps(command) + "\n")
+        return self._answer(command)
+
+    def _answer(self, to):
         try:
             return self._answers.get(timeout=PATIENCE)
         except queue.Empty:
-            raise AssertionError(f"no answer to {command}:\n{self.output}") from None
+            self.kill()
+            raise AssertionError(f"no answer to {to}") from None
 
     def messages(self, topic):
         """Return what came on a topic so far."""

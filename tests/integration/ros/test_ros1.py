@@ -15,6 +15,7 @@ LISTING_8 = (Path(__file__).parents[3] / "ros/rtamt4ros/specs/spec.stl").read_te
 FLOAT = "rtamt_msgs/FloatStamped"
 VERDICT = "rtamt_msgs/Verdict"
 DIAGNOSTICS = "diagnostic_msgs/DiagnosticArray"
+LEVELS = ("OK", "WARN", "ERROR", "STALE")
 UNKNOWN, SATISFIED, VIOLATED = 0, 1, 2
 SECOND = 10**9
 
@@ -32,6 +33,11 @@ def said(puppet, text):
         return any(text in status["message"] for array in arrays for status in array["status"])
 
     puppet.wait_for("/diagnostics", found, text)
+
+
+def statuses(array):
+    """Return the levels of a message on /diagnostics."""
+    return [LEVELS[status["level"]] for status in array["status"]]
 
 
 def knows(puppet, **values):
@@ -70,12 +76,12 @@ def test_the_command_of_the_paper_on_its_listing_8(ros, puppet):
     said(puppet, "waiting for the first message on rtamt/gnt")
     assert puppet.messages("rtamt/rob") == []
     publish(puppet, "rtamt/gnt", 1.0)
-    heard = puppet.wait_for("rtamt/rob", lambda messages: len(messages) >= 3)[:3]
+    heard = puppet.wait_for("rtamt/rob", lambda messages: len(messages) >= 2)[:2]
     stamps = [message["header"]["stamp"] for message in heard]
-    assert [later - earlier for earlier, later in pairwise(stamps)] == [SECOND, SECOND]
+    assert [later - earlier for earlier, later in pairwise(stamps)] == [SECOND]
     assert abs(stamps[0] - puppet.ask(do="now")["answer"]) < 60 * SECOND
     # Pastified, the request of the first sample is due 5 samples later; till then nothing was asked.
-    assert [message["value"] for message in heard] == [float("inf")] * 3
+    assert [message["value"] for message in heard] == [float("inf")] * 2
     assert node.stop(signal.SIGINT) == 0
     assert "spec_x" not in ros.run("rosnode", "list").stdout
 
@@ -101,8 +107,8 @@ def test_simulated_time_gives_the_offline_answer_one_horizon_later_and_again_aft
     wait_for(lambda: puppet.ask(do="peers", topic="/clock")["answer"] >= 2, "the monitor on /clock")
     told = []
 
-    def play(start):
-        for tick, (req, gnt) in enumerate(PHASES):
+    def play(start, phases=PHASES):
+        for tick, (req, gnt) in enumerate(phases):
             if tick == 0 or PHASES[tick - 1] != (req, gnt):
                 publish(puppet, "rtamt/req", req)
                 publish(puppet, "rtamt/gnt", gnt)
@@ -115,11 +121,11 @@ def test_simulated_time_gives_the_offline_answer_one_horizon_later_and_again_aft
     play(100)
     puppet.ask(do="publish", topic="/clock", fields={"clock": 49 * SECOND})
     node.wait_for_output("the clock went back by 69 s: all monitors begin anew")
-    play(50)
+    play(50, PHASES[:7])
     heard = puppet.wait_for("rtamt/rob", lambda messages: len(messages) == len(told))
     assert [message["header"]["stamp"] for message in heard] == told
     once = [message["value"] for message in heard[: len(PHASES)]]
-    assert [message["value"] for message in heard[len(PHASES) :]] == once
+    assert [message["value"] for message in heard[len(PHASES) :]] == once[:7]
     offline = rtamt.parse(FORMULA).evaluate(dict(zip(("req", "gnt"), zip(*PHASES, strict=True), strict=True)))
     horizon = 5
     assert once[horizon:] == offline.signal.values[:-horizon].tolist()
@@ -150,6 +156,8 @@ def test_dense_time_takes_the_stamps_of_messages_of_any_type_for_several_asserti
         """,
         "--time",
         "dense",
+        "--stale",
+        "0",
     )
     connected(puppet, "/arm", "/odom", "/elbow", "/speed")
     finger = {"angle": 0.0, "torque": [0.0, 0.0, 0.0]}
@@ -191,21 +199,31 @@ def test_dense_time_takes_the_stamps_of_messages_of_any_type_for_several_asserti
 def test_a_topic_that_goes_silent_is_stale_on_diagnostics_and_nothing_is_published_meanwhile(ros, puppet):
     ros.monitor(LISTING_8, "--period", "100", "--unit", "ms", "--stale", "500ms")
     connected(puppet, "rtamt/req", "rtamt/gnt", "rtamt/rob")
-    publish(puppet, "rtamt/req", 0.0)
-    publish(puppet, "rtamt/gnt", 0.0)
-    puppet.wait_for("rtamt/rob")
-    said(puppet, "no message on rtamt/gnt")
-    so_far = len(puppet.messages("rtamt/rob"))
-    seen = len(puppet.messages("/diagnostics"))
-    puppet.wait_for("/diagnostics", lambda arrays: len(arrays) > seen)  # a second of silence
-    assert len(puppet.messages("rtamt/rob")) == so_far
-    publish(puppet, "rtamt/req", 0.0)
-    publish(puppet, "rtamt/gnt", 0.0)
-    puppet.wait_for("rtamt/rob", lambda messages: len(messages) > so_far)
+
+    def speak():
+        """Publish until robustness comes: on a busy machine one message may be stale before the other is there."""
+        so_far = len(puppet.messages("rtamt/rob"))
+
+        def spoken():
+            publish(puppet, "rtamt/req", 0.0)
+            publish(puppet, "rtamt/gnt", 0.0)
+            return len(puppet.messages("rtamt/rob")) > so_far
+
+        wait_for(spoken, "robustness")
+
+    speak()
+    silent = puppet.wait_for("/diagnostics", lambda arrays: arrays and statuses(arrays[-1]) == ["STALE"])[-1]
+    assert "no message on rtamt/" in silent["status"][0]["message"]
+    since = silent["header"]["stamp"]
+    puppet.wait_for(
+        "/diagnostics", lambda arrays: arrays[-1]["header"]["stamp"] > since
+    )  # a second of silence
+    assert all(message["header"]["stamp"] <= since for message in puppet.messages("rtamt/rob"))
+    speak()
 
 
 def test_a_master_that_restarts_gets_the_node_back(ros, puppet):
-    node = ros.monitor(LISTING_8, "--period", "100ms")
+    node = ros.monitor(LISTING_8, "--period", "100ms", "--stale", "0")
     connected(puppet, "rtamt/req", "rtamt/gnt", "rtamt/rob")
     ros.master.stop(signal.SIGKILL)
     ros.start_master()
@@ -223,7 +241,8 @@ def test_a_master_that_restarts_gets_the_node_back(ros, puppet):
 def test_the_launch_file_takes_parameters(ros, puppet):
     spec = ros.folder / "mine.stl"
     spec.write_text(LISTING_8)
-    node = ros.start("roslaunch", "rtamt4ros", "monitor.launch", f"spec:={spec}", "period:=200", "unit:=ms")
+    arguments = [f"spec:={spec}", "period:=200", "unit:=ms", "stale:=0"]
+    node = ros.start("roslaunch", "rtamt4ros", "monitor.launch", *arguments)
     connected(puppet, "rtamt/req", "rtamt/gnt", "rtamt/rob")
     publish(puppet, "rtamt/req", 0.0)
     publish(puppet, "rtamt/gnt", 0.0)
