@@ -164,6 +164,11 @@ class DenseMonitor(OnlineMonitor):
         """
         return self._signal(self._backend.told(self._output(name)))
 
+    def points(self, name: str) -> list[tuple[int, float]]:
+        """Return what ``monitor[name]`` tells as pairs of tick and value, for loops in which a microsecond counts."""
+        ticks, values = self._backend.told(self._output(name))
+        return list(zip(ticks.tolist(), values.tolist(), strict=True))
+
     def part(self, formula: Formula) -> Signal:
         """Return what the last update made known of any part of the formulas; they have no future operators.
 

@@ -9,14 +9,14 @@ from rtamt.errors import StlError, UsageError
 from rtamt.language.units import duration
 from rtamt.ros.fields import reader, stamp_of
 from rtamt.ros.report import Condition, Level, Notice
-from rtamt.ros.watch import DenseWatch, DiscreteWatch, Robustness, Verdict
+from rtamt.ros.watch import DenseWatch, DiscreteWatch, Robustness, Verdict, together
 from rtamt.settings import positive_period, time_domain
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
-    from rtamt.ros.binding import Binding, Output
-    from rtamt.ros.watch import Record, Watch
+    from rtamt.ros.binding import Binding
+    from rtamt.ros.watch import Record, Standing, Watch
     from rtamt.settings import Duration
 
 #: After how many silent periods a topic is stale, unless a time is set; in dense time, seconds.
@@ -81,9 +81,11 @@ class RosMonitor:
         self._dense: list[DenseWatch] = []
         self._discrete: list[DiscreteWatch] = []
         if self.time == "dense":
-            self._dense = [DenseWatch(output, topic_of) for output in binding.outputs]
+            self._dense = [DenseWatch(outputs, topic_of) for outputs in together(binding.outputs)]
         else:
-            self._discrete = [DiscreteWatch(output, topic_of, self.period) for output in binding.outputs]
+            self._discrete = [
+                DiscreteWatch(outputs, topic_of, self.period) for outputs in together(binding.outputs)
+            ]
         self._values: dict[str, float] = {}
         self._heard: dict[str, int] = {}  # when a topic last spoke
         self._stamps: dict[str, int] = {}  # of its last message
@@ -96,7 +98,7 @@ class RosMonitor:
 
     @property
     def watches(self) -> Sequence[DiscreteWatch | DenseWatch]:
-        """The outputs, one watch each."""
+        """The outputs, those in one watch that read the same numbers."""
         return self._dense or self._discrete
 
     def _stale_after(self, stale: Duration | None) -> int:
@@ -178,9 +180,7 @@ class RosMonitor:
         except StlError as error:
             watch.reset()
             if watch.fault is None:
-                self._say(
-                    Level.ERROR, f"'{watch.output.name}' begins anew, its samples cannot be used: {error}"
-                )
+                self._say(Level.ERROR, f"{_begins_anew(watch)} samples cannot be used: {error}")
             watch.fault = str(error)
             return []
         watch.fault = None
@@ -257,17 +257,22 @@ class RosMonitor:
 
     def conditions(self, now: int) -> list[Condition]:
         """Return how every output is, for ``/diagnostics``."""
-        return [self._condition(watch, now) for watch in self.watches]
+        told = {
+            standing.output.name: self._condition(watch, standing, now)
+            for watch in self.watches
+            for standing in watch.standings
+        }
+        return [told[output.name] for output in self.binding.outputs]
 
-    def _condition(self, watch: DiscreteWatch | DenseWatch, now: int) -> Condition:
-        output: Output = watch.output
+    def _condition(self, watch: Watch, standing: Standing, now: int) -> Condition:
+        output = standing.output
         inputs = ((name, self._values[name]) for name in watch.names if name in self._values)
         values = (
             *((name, f"{value:.6g}") for name, value in inputs),
             ("topic", output.topic),
             ("samples", str(watch.samples)),
-            ("robustness", "none" if watch.latest is None else f"{watch.latest:.6g}"),
-            ("horizon", f"{watch.horizon:.6g} s"),
+            ("robustness", "none" if standing.latest is None else f"{standing.latest:.6g}"),
+            ("horizon", f"{standing.horizon:.6g} s"),
         )
         missing = sorted(topic for topic in watch.topics if topic not in self._heard)
         faulty = [self._faults[topic] for topic in missing if topic in self._faults]
@@ -279,11 +284,18 @@ class RosMonitor:
             level, text = Level.STALE, f"no message on {', '.join(ages)}"
         elif missing:
             level, text = Level.WARN, f"waiting for the first message on {', '.join(missing)}"
-        elif watch.satisfied is False:
+        elif standing.satisfied is False:
             level, text = Level.ERROR, "violated"
         else:
-            level, text = Level.OK, "satisfied" if watch.satisfied else "no verdict yet"
+            level, text = Level.OK, "satisfied" if standing.satisfied else "no verdict yet"
         return Condition(f"{self.binding.name}: {output.name}", level, text, values)
+
+
+def _begins_anew(watch: Watch) -> str:
+    first, *others = (f"'{standing.output.name}'" for standing in watch.standings)
+    if not others:
+        return f"{first} begins anew, its"
+    return f"{first} and {others[0] if len(others) == 1 else f'{len(others)} others'} begin anew, their"
 
 
 def _seconds(nanoseconds: int) -> str:

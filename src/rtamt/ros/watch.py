@@ -1,26 +1,29 @@
-"""One output: its pastified formula under robustness and Boolean semantics, over either kind of time."""
+"""Outputs that are watched together: their pastified formulas, robustness and truth, over either kind of time."""
 
 from __future__ import annotations
 
 from collections import deque
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from fractions import Fraction
 from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
-from rtamt.engine.dense_signals import TickSignal
+from rtamt.engine.dense_monitor import DenseMonitor
+from rtamt.engine.monitor import Monitor
+from rtamt.engine.online import Watched
 from rtamt.engine.ticks import NANOSECOND
 from rtamt.errors import SpecificationError
-from rtamt.language.formula import variables
+from rtamt.language.formula import Apply, Const, postorder, variables
+from rtamt.language.operators import STL
+from rtamt.language.records import Pointwise
 from rtamt.rewrite.horizon import horizon
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
-    from rtamt.engine.signals import Signal
+    from rtamt.language.formula import Formula
     from rtamt.ros.binding import Output
-    from rtamt.specification import Specification
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,88 +55,139 @@ HELD = 1000
 Record: TypeAlias = Robustness | Verdict
 
 
-class Watch:
-    """What both kinds of time share. ``topic_of``: from the name of a number to its topic."""
+class Standing:
+    """One output, and how it stands: ``latest`` robustness, and whether it is ``satisfied``.
 
-    def __init__(self, output: Output, topic_of: Mapping[str, str], period: Fraction | None) -> None:
-        self.output = output
-        formula = output.specification.formula
-        self.names = variables(formula)
-        self.topics = frozenset(topic_of[name] for name in self.names)
-        self.past = _past(output, period)
-        depth = horizon(formula, period or Fraction(1))
+    ``horizon``: seconds. ``lag``: the same in samples, in dense time in nanoseconds.
+    """
+
+    __slots__ = ("horizon", "lag", "latest", "output", "satisfied")
+
+    def __init__(self, output: Output, period: Fraction | None) -> None:
+        depth = horizon(output.specification.formula, period or Fraction(1))
         assert depth is not None, "unbounded future was refused"
-        self.depth = depth
+        self.output = output
         self.horizon = float(depth)
+        self.lag = int(depth / (period or NANOSECOND))
+        self.forget()
+
+    def forget(self) -> None:
+        """Be as before the first sample."""
         self.latest: float | None = None
         self.satisfied: bool | None = None
+
+
+class Watch:
+    """Outputs that read the same numbers, of either kind of time: one program, and each sub-formula once in it.
+
+    ``outputs``: as :func:`together` puts them. ``topic_of``: from the name of a number to its topic.
+    """
+
+    _monitor: Monitor | DenseMonitor
+
+    def __init__(
+        self, outputs: Sequence[Output], topic_of: Mapping[str, str], period: Fraction | None
+    ) -> None:
+        self.names = variables(outputs[0].specification.formula)
+        self.topics = frozenset(topic_of[name] for name in self.names)
+        self.formulas = tuple(_watched(output, period) for output in outputs)
+        self.standings = tuple(Standing(output, period) for output in outputs)
         #: Why the last sample could not be used.
         self.fault: str | None = None
 
+    @property
+    def samples(self) -> int:
+        """How many samples, in dense time numbers, were taken since the beginning or the last reset."""
+        return self._monitor.samples
 
-def _past(output: Output, period: Fraction | None) -> Specification:
-    """Return the specification of past operators alone, equal one horizon later."""
+    def reset(self) -> None:
+        """Forget all samples."""
+        self._monitor.reset()
+        for standing in self.standings:
+            standing.forget()
+
+
+def together(outputs: Sequence[Output]) -> list[list[Output]]:
+    """Return the outputs in groups that one program may watch.
+
+    Those of a group read the same numbers, so that they begin and end together. An output with a sample
+    that may have no value, such as the logarithm of -1, is alone: the others are to go on.
+    """
+    groups: dict[object, list[Output]] = {}
+    for output in outputs:
+        formula = output.specification.formula
+        key = frozenset(variables(formula)) if _always_has_a_value(formula) else output.name
+        groups.setdefault(key, []).append(output)
+    return list(groups.values())
+
+
+def _always_has_a_value(formula: Formula) -> bool:
+    for node in postorder(formula):
+        if not isinstance(node, Apply):
+            continue
+        partial = isinstance(node.op.kernel, Pointwise) and node.op.kernel.partial
+        if partial or STL.get(node.op.name) is not node.op:
+            return False
+        # A predicate is a difference, and inf - inf is no number.
+        if node.op.truth is not None and not any(isinstance(arg, Const) for arg in node.args):
+            return False
+    return True
+
+
+def _watched(output: Output, period: Fraction | None) -> tuple[Watched, Watched]:
+    """Return robustness and truth by formulas of past operators alone, equal one horizon later."""
     spec = output.specification
     try:
-        formula = spec.pastified(period)
+        past = spec.pastified(period)
     except SpecificationError as error:
         raise type(error)(f"'{output.name}': {error.message}", error.text, error.span) from None
-    *before, last = spec.document.assertions
-    return replace(
-        spec, document=replace(spec.document, assertions=(*before, replace(last, formula=formula)))
+    return (
+        Watched(output.name, spec.judged(past), spec.text),
+        Watched(f"truth of {output.name}", spec.judged(past, "boolean"), spec.text),
     )
 
 
 class DiscreteWatch(Watch):
     """Samples one period apart."""
 
-    def __init__(self, output: Output, topic_of: Mapping[str, str], period: Fraction) -> None:
-        super().__init__(output, topic_of, period)
-        self._robustness = self.past.monitor(time="discrete", period=period)
-        self._verdict = self.past.monitor(time="discrete", period=period, semantics="boolean")
-        self._lag = int(self.depth / period)
-
-    @property
-    def samples(self) -> int:
-        """How many samples were taken since the beginning or the last reset."""
-        return self._robustness.samples
+    def __init__(self, outputs: Sequence[Output], topic_of: Mapping[str, str], period: Fraction) -> None:
+        super().__init__(outputs, topic_of, period)
+        first, *_ = every = [watched for pair in self.formulas for watched in pair]
+        backend = outputs[0].specification.backend
+        self._monitor: Monitor = Monitor(
+            first.formula, text=first.text, period=period, backend=backend, watch=every
+        )
 
     def take(self, stamp: int, values: Mapping[str, float]) -> list[Record]:
         """Take one sample; raise :class:`StlError` where it cannot be used."""
-        row = [values[name] for name in self.names]
-        value, truth = self._robustness.step(*row), self._verdict.step(*row)
-        assert value is not None, "a formula of the past is known at once"
-        assert truth is not None
-        self.latest = value
-        self.satisfied = truth > 0 if self.samples > self._lag else None
-        return [
-            Robustness(self.output, stamp, value),
-            Verdict(self.output, stamp, self.horizon, self.satisfied),
-        ]
-
-    def reset(self) -> None:
-        """Forget all samples."""
-        self._robustness.reset()
-        self._verdict.reset()
-        self.latest = self.satisfied = None
+        monitor = self._monitor
+        monitor.step(*[values[name] for name in monitor.input_names])
+        samples = monitor.samples
+        records: list[Record] = []
+        for standing, (robustness, truth) in zip(self.standings, self.formulas, strict=True):
+            value, held = monitor[robustness.name], monitor[truth.name]
+            assert isinstance(value, float), "a formula of the past is known at once"
+            assert isinstance(held, float)
+            standing.latest = value
+            standing.satisfied = held > 0 if samples > standing.lag else None
+            records.append(Robustness(standing.output, stamp, value))
+            records.append(Verdict(standing.output, stamp, standing.horizon, standing.satisfied))
+        return records
 
 
 class DenseWatch(Watch):
     """Samples at the times in the messages' headers, each topic on its own clock."""
 
-    def __init__(self, output: Output, topic_of: Mapping[str, str]) -> None:
-        super().__init__(output, topic_of, None)
+    def __init__(self, outputs: Sequence[Output], topic_of: Mapping[str, str]) -> None:
+        super().__init__(outputs, topic_of, None)
+        first, *_ = every = [watched for pair in self.formulas for watched in pair]
+        backend = outputs[0].specification.backend
         # A tick is a nanosecond, so that what comes out needs no conversion.
-        self._robustness = self.past.monitor(time="dense", resolution=NANOSECOND)
-        self._verdict = self.past.monitor(time="dense", resolution=NANOSECOND, semantics="boolean")
-        self._lag = round(self.depth * 10**9)
+        self._monitor: DenseMonitor = DenseMonitor(
+            first.formula, text=first.text, resolution=NANOSECOND, backend=backend, watch=every
+        )
         self._start: int | None = None
         self._held: deque[tuple[int, dict[str, float]]] = deque(maxlen=HELD)
-
-    @property
-    def samples(self) -> int:
-        """How many numbers were taken since the beginning or the last reset."""
-        return self._robustness.samples
 
     def hold(self, stamp: int, values: Mapping[str, float]) -> None:
         """Keep a message while another topic has nothing to say, of many the latest: the trace begins when all do."""
@@ -151,29 +205,30 @@ class DenseWatch(Watch):
         return {name: values[name] for name in self.names if name in values}
 
     def _update(self, stamp: int, values: dict[str, float]) -> list[Record]:
-        time = np.int64(stamp)  # an integer of numpy means nanoseconds
-        known, truths = self._robustness.update(time, **values), self._verdict.update(time, **values)
-        points = _points(known)
-        records: list[Record] = [Robustness(self.output, t, value) for t, value in points]
-        if points:
-            self.latest = points[-1][1]
-            self._start = points[0][0] if self._start is None else self._start
-        return records + [self._judge(t, truth) for t, truth in _points(truths)]
+        # An integer of numpy means nanoseconds. All outputs are known up to the same instant.
+        if not len(self._monitor.update(np.int64(stamp), **values)):
+            return []
+        records: list[Record] = []
+        for standing, (robustness, truth) in zip(self.standings, self.formulas, strict=True):
+            records += self._told(standing, self._monitor.points(robustness.name))
+            records += self._judged(standing, self._monitor.points(truth.name))
+        return records
 
-    def _judge(self, stamp: int, truth: float) -> Verdict:
+    def _told(self, standing: Standing, points: list[tuple[int, float]]) -> list[Record]:
+        if self._start is None:
+            self._start = points[0][0]
+        standing.latest = points[-1][1]
+        return [Robustness(standing.output, at, value) for at, value in points]
+
+    def _judged(self, standing: Standing, points: list[tuple[int, float]]) -> list[Record]:
         assert self._start is not None
-        self.satisfied = truth > 0 if stamp >= self._start + self._lag else None
-        return Verdict(self.output, stamp, self.horizon, self.satisfied)
+        known = self._start + standing.lag
+        told = [(at, truth > 0 if at >= known else None) for at, truth in points]
+        standing.satisfied = told[-1][1]
+        return [Verdict(standing.output, at, standing.horizon, held) for at, held in told]
 
     def reset(self) -> None:
         """Forget all samples."""
-        self._robustness.reset()
-        self._verdict.reset()
+        super().reset()
         self._held.clear()
-        self._start = self.latest = self.satisfied = None
-
-
-def _points(signal: Signal) -> list[tuple[int, float]]:
-    if isinstance(signal, TickSignal):
-        return signal.points()
-    return list(zip(signal.times.tolist(), signal.values.tolist(), strict=True))
+        self._start = None

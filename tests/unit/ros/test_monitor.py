@@ -154,6 +154,30 @@ def test_a_number_that_is_none_leaves_a_hole_and_is_said_once():
     assert watched.conditions(0)[0].level == Level.OK
 
 
+@pytest.mark.parametrize("time", ["discrete", "dense"])
+def test_an_output_whose_sample_has_no_value_begins_anew_alone(time):
+    watched = monitor(
+        "rob.value = ln(req.value) >= 0; all.value = historically(req.value >= 0); gnt.value = once(req.value >= 9)",
+        time=time,
+    )
+    told = []
+    for i, value in enumerate((1, -1, 1), 1):
+        told += watched.message("/req", message(value, at=i), i * SECOND) + watched.tick(i * SECOND)
+    by_name = {
+        output.name: numbers(r for r in told if r.output is output) for output in watched.binding.outputs
+    }
+    assert by_name["rob.value"] == [(1, 0), (3, 0)]
+    assert by_name["all.value"] == [(1, 1), (2, -1), (3, -1)]
+    assert by_name["gnt.value"] == [(1, -8), (2, -8), (3, -8)]
+    (notice,) = said(watched)
+    assert notice.startswith("'rob.value' begins anew, its samples cannot be used: ")
+    assert len(watched.watches) == 2
+    watched.message("/req", message(nan, at=4), 4 * SECOND)
+    watched.tick(4 * SECOND)
+    assert "'all.value' and 'gnt.value' begin anew, their samples cannot be used: " in "".join(said(watched))
+    assert [c.name.split()[-1] for c in watched.conditions(0)] == ["rob.value", "all.value", "gnt.value"]
+
+
 def test_a_message_without_the_number_is_refused_and_the_old_one_is_no_value_of_now():
     text = HEAD + 'rob.value = "req.values[1]" >= 0'
     watched = RosMonitor(bind(rtamt.parse(text)))
@@ -215,6 +239,28 @@ def test_dense_silence_is_stale_and_what_others_say_meanwhile_is_not_piled_up():
     assert watched.conditions(500 * SECOND)[0].message == "no message on /gnt for 499 s"
     assert numbers(watched.message("/gnt", message(9, at=499.5), 500 * SECOND)) == []
     assert numbers(watched.message("/req", message(10, at=500), 500 * SECOND)) == [(499.5, 490)]
+
+
+@pytest.mark.parametrize("time", ["discrete", "dense"])
+@given(st.lists(st.integers(-5, 5), min_size=1, max_size=20))
+def test_outputs_in_one_program_tell_what_each_would_tell_alone(time, values):
+    formulas = {
+        "rob": "eventually[0,2](req.value >= 0)",
+        "all": "historically(req.value > 1)",
+        "gnt": "(req.value == 2) until[0,3] (req.value < 0)",
+    }
+    watched = [monitor("; ".join(f"{name}.value = {text}" for name, text in formulas.items()), time=time)]
+    assert len(watched[0].watches) == 1
+    watched += [monitor(f"{name}.value = {text}", time=time) for name, text in formulas.items()]
+    together, *alone = ([] for _ in watched)
+    for i, value in enumerate(values, 1):
+        for node, told in zip(watched, (together, *alone), strict=True):
+            came = node.message("/req", message(value, at=i), i * SECOND) + node.tick(i * SECOND)
+            told += [
+                (type(r), r.output.name, r.stamp, getattr(r, "value", None), getattr(r, "satisfied", None))
+                for r in came
+            ]
+    assert sorted(together, key=repr) == sorted((r for told in alone for r in told), key=repr)
 
 
 @given(st.lists(st.integers(-5, 5), min_size=1, max_size=30))
