@@ -6,7 +6,8 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rtamt.cli.command import CommandError
-from rtamt.cli.matrix import evaluate, is_bag
+from rtamt.cli.matrix import evaluate
+from rtamt.cli.recordings import is_bag
 from rtamt.errors import UsageError
 from rtamt.rewrite import interface
 from rtamt.ros.bags import Finding, write_mcap
@@ -15,7 +16,8 @@ from rtamt.ros.binding import bind
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from rtamt.cli.matrix import Reading, Requirement
+    from rtamt.cli.matrix import Requirement
+    from rtamt.cli.recordings import Reading
     from rtamt.results import Result
 
 #: The topic of a requirement that names none.

@@ -13,7 +13,6 @@ from rtamt.cli.command import (
     VIOLATED,
     Command,
     CommandError,
-    add_reading_options,
     add_specification_options,
     add_time_option,
     complain,
@@ -21,8 +20,9 @@ from rtamt.cli.command import (
     short,
     stamp_text,
 )
-from rtamt.cli.given import reading_of, requirements_and_traces
+from rtamt.cli.given import requirements_and_traces, variables_of
 from rtamt.cli.matrix import Outcome, Requirement, outcomes
+from rtamt.cli.recordings import add_reading_options, reading_of
 from rtamt.cli.reports import REPORTS, write_report
 from rtamt.cli.terminal import Progress, printed, table, use_color
 from rtamt.language.units import format_duration
@@ -50,7 +50,8 @@ formula reads may hold anything.
 'rtamt info TRACE' tells what is in a file, and what is guessed of it.
 
 With --time dense a value holds until the next one, and time stamps may lie anywhere; a variable has
-no sample where its cell is empty. Then -o writes the robustness where it changes, and at the end.
+no sample where its cell is empty. A NaN is an error, unless --skip-nan says that it is no sample,
+either. With --time dense -o writes the robustness where it changes, and at the end.
 
 In a bag the annotations of SPEC say which topics are read ('@ topic(req, rtamt/req)'). In discrete time
 it is sampled as a node would: the latest message, every --period (default: 1 s). With -o out.mcap the bag
@@ -122,7 +123,7 @@ def run(args: argparse.Namespace) -> int:
         raise CommandError(f"--output takes the robustness of one trace, got {what}")
     if args.jobs is not None and args.jobs < 1:
         raise CommandError(f"--jobs is {args.jobs}; give a number of processes, 1 or more")
-    reading = reading_of(args, requirements, whole=args.output is not None)
+    reading = reading_of(args, variables_of(requirements), whole=args.output is not None)
     found: list[Outcome] = []
     with Progress() as progress:
         progress.show(f"0/{pairs}")

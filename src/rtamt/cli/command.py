@@ -7,7 +7,7 @@ import os
 import re
 import sys
 import textwrap
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from fractions import Fraction
 from math import isfinite
 from typing import TYPE_CHECKING, Any, NoReturn
@@ -16,19 +16,15 @@ import numpy as np
 
 from rtamt.cli.language import add_language_option, read_language
 from rtamt.engine.core import core
-from rtamt.engine.signals import TIME
 from rtamt.errors import SpecificationError, StlError, UsageError
 from rtamt.language.units import UNITS, decimal
-from rtamt.readers.assemble import trace_of
 from rtamt.readers.formats import SUFFIXES
-from rtamt.readers.reading import choice, opened
 from rtamt.rewrite.interface import SEMANTICS
 from rtamt.specification import Specification, load, parse
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable
 
-    from rtamt.engine.trace import Trace
     from rtamt.settings import Settings
 
 OK, VIOLATED, ERROR = 0, 1, 2
@@ -70,9 +66,11 @@ class CommandError(StlError):
     """A command cannot go on; the sentence is complete, file name and all."""
 
 
-def add_specification_options(parser: argparse.ArgumentParser) -> None:
-    """Add SPEC and what tells how to read it."""
-    parser.add_argument("spec", metavar="SPEC", help="a specification file (.stl), or a formula in quotes")
+def add_specification_options(parser: argparse.ArgumentParser, nargs: str | None = None) -> None:
+    """Add SPEC and what tells how to read it; ``nargs``: "?" where it may be left out."""
+    parser.add_argument(
+        "spec", metavar="SPEC", nargs=nargs, help="a specification file (.stl), or a formula in quotes"
+    )
     parser.add_argument(
         "--period", metavar="DURATION", help="the sampling period: seconds, or with a unit, such as 100ms"
     )
@@ -115,44 +113,13 @@ def add_stamp_options(parser: argparse.ArgumentParser, what: str) -> None:
     )
 
 
-def add_reading_options(parser: argparse.ArgumentParser) -> None:
-    """Add how recordings are read; see :func:`rtamt.read`."""
-    add_stamp_options(parser, "column")
-    parser.add_argument(
-        "--name",
-        metavar="NAME=COLUMN",
-        action="append",
-        default=[],
-        help="the column of a variable that is called otherwise; may be given again",
-    )
-    parser.add_argument("--sheet", metavar="NAME", help="of an Excel workbook with several")
-    parser.add_argument("--sql", metavar="URL", help="read a database, such as sqlite:///log.db")
-    parser.add_argument("--query", metavar="TEXT", help="what to read of it: its rows are samples")
-    parser.add_argument(
-        "--resample", metavar="DURATION", help="put all signals on one clock, a sample every so often"
-    )
-    parser.add_argument(
-        "--how",
-        default="hold",
-        metavar="{hold,linear}",
-        help="between two samples the last one holds, or a line (default: hold)",
-    )
-
-
-def names_of(texts: Sequence[str]) -> dict[str, str]:
-    """Return variables and their columns from texts such as ``v=battery_status[1].voltage_v``."""
-    names = {}
-    for text in texts:
-        name, equals, column = text.partition("=")
-        if not (name.strip() and equals and column.strip()):
-            raise CommandError(f"--name is '{text}'; give a variable and its column, such as v=voltage")
-        names[name.strip()] = column.strip()
-    return names
-
-
-def is_trace(path: str) -> bool:
+def is_trace(path: str | None) -> bool:
     """Tell whether a text is a file of recordings; a ``.txt`` may be a specification as well."""
-    return os.path.isfile(path) and os.path.splitext(path)[1].lower() in set(SUFFIXES) - {".txt"}
+    return path is not None and os.path.isfile(path) and _is_called_like_a_trace(path)
+
+
+def _is_called_like_a_trace(path: str) -> bool:
+    return os.path.splitext(path)[1].lower() in set(SUFFIXES) - {".txt"}
 
 
 def read_specification(args: argparse.Namespace, time: str = "discrete") -> Specification:
@@ -182,28 +149,12 @@ def read_specification(args: argparse.Namespace, time: str = "discrete") -> Spec
             raise CommandError(f"{spec}: {error}") from error
     if os.path.isdir(spec):
         raise CommandError(f"'{spec}' is a directory, expected a specification file or a formula")
-    if spec.lower().endswith(_SPECIFICATION_SUFFIXES) or _LIKE_A_PATH.fullmatch(spec):
+    called = spec.lower().endswith(_SPECIFICATION_SUFFIXES) or _is_called_like_a_trace(spec)
+    if called or _LIKE_A_PATH.fullmatch(spec):
         raise CommandError(f"there is no file '{spec}' (if a formula is meant, put it in parentheses)")
     if not spec.strip():
         raise CommandError("the specification is empty; give a file or a formula, such as 'always(x >= 3)'")
     return parse(spec, **options)
-
-
-def read_trace(
-    spec: Specification,
-    trace: str,
-    time_column: str | None = None,
-    time_unit: str | None = None,
-) -> Trace:
-    """Read what a specification reads from a trace; a value may be missing in dense time."""
-    dense = spec.time == "dense"
-    units = None if time_unit is None else {TIME: time_unit}
-    wanted = choice(time_column, spec.input_names or None, None, units)
-    with opened(trace) as source:
-        data = trace_of(source, replace(wanted, gaps=dense))
-    if dense and data.start is None:
-        raise CommandError(f"{trace}: {NO_STAMPS}")
-    return data
 
 
 def complain(sentence: object) -> None:

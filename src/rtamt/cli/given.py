@@ -5,11 +5,17 @@ from __future__ import annotations
 from argparse import Namespace
 from typing import TYPE_CHECKING
 
-from rtamt.cli.command import CommandError, names_of, read_specification
-from rtamt.cli.matrix import Reading, Requirement
+from rtamt.cli.command import CommandError, read_specification
+from rtamt.cli.matrix import Requirement, evaluate
+from rtamt.cli.recordings import reading_of
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from rtamt.results import Result
+
+
+def variables_of(requirements: list[Requirement]) -> set[str]:
+    """Return what any of the requirements reads."""
+    return {name for requirement in requirements for name in requirement.spec.input_names}
 
 
 def requirements_and_traces(args: Namespace, command: str) -> tuple[list[Requirement], list[str]]:
@@ -34,18 +40,20 @@ def _split(args: Namespace, command: str) -> tuple[list[str], list[str]]:
         return given, [args.sql]
     if not traces:
         raise CommandError(
-            f"there is no trace to check: name a file, or --sql URL; see 'rtamt {command} --help'"
+            f"there is no trace to {command}: name a file, or --sql URL; see 'rtamt {command} --help'"
         )
     return given, traces
 
 
-def reading_of(args: Namespace, requirements: Sequence[Requirement], *, whole: bool) -> Reading:
-    """Return how the traces are read; ``whole``: their results are wanted, so never in chunks."""
-    names = names_of(args.name)
-    read = {name for requirement in requirements for name in requirement.spec.input_names}
-    for name in names:
-        if name not in read:
-            raise CommandError(f"--name {name}={names[name]}: no formula reads '{name}'")
-    return Reading(
-        args.time_column, names, args.time_unit, args.sheet, args.query, args.resample, args.how, whole=whole
-    )
+def result_of_one(args: Namespace, command: str) -> tuple[str, Result]:
+    """Evaluate one requirement over one recording; return what the recording is called, and the result."""
+    requirements, traces = requirements_and_traces(args, command)
+    if len(requirements) > 1 or len(traces) > 1:
+        more = traces[1] if len(traces) > 1 else requirements[1].given
+        raise CommandError(f"'rtamt {command}' takes one specification and one trace; leave out '{more}'")
+    (requirement,), (trace,) = requirements, traces
+    reading = reading_of(args, requirement.spec.input_names, whole=True)
+    (outcome,) = evaluate([requirement], trace, reading)
+    if outcome.result is None:
+        raise CommandError(outcome.error)
+    return outcome.trace, outcome.result

@@ -10,19 +10,20 @@ from typing import TYPE_CHECKING, Any
 from rtamt.cli.command import (
     OK,
     Command,
+    CommandError,
     add_specification_options,
     add_time_option,
     is_trace,
     read_specification,
 )
 from rtamt.cli.compiled import compiled, listing
+from rtamt.cli.recordings import add_reading_options, recording
 from rtamt.cli.terminal import is_printable, printed
 from rtamt.engine.compile import compile_program
 from rtamt.engine.core import core
 from rtamt.engine.drivers import calls_of
 from rtamt.errors import BoundError, UsageError
 from rtamt.language.units import format_duration
-from rtamt.readers.reading import read
 from rtamt.rewrite.check import check_bounds, check_online
 from rtamt.rewrite.desugar import desugar
 from rtamt.rewrite.horizon import horizon
@@ -39,7 +40,7 @@ if TYPE_CHECKING:
 _DESCRIPTION = """\
 Tell what a requirement reads, how far ahead it looks (its horizon), the same requirement with past
 operators only (its pastified form), and what an online monitor of it runs and keeps in memory. Of a
-recording (CSV, Parquet, Excel, ...): which signals are in it, and what was guessed. Of a program that
+recording (CSV, Parquet, Excel, ..., or --sql): which signals are in it, and what was guessed. Of a program that
 'rtamt compile' wrote: what it holds."""
 
 _EPILOG = """\
@@ -77,17 +78,23 @@ def configure(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     parser.description = _DESCRIPTION
     parser.epilog = _EPILOG
-    add_specification_options(parser)
+    add_specification_options(parser, nargs="?")
     add_time_option(parser)
+    add_reading_options(parser)
     parser.add_argument("--latex", action="store_true", help="print the formula as LaTeX, and nothing else")
     parser.add_argument("--json", action="store_true", help="print JSON: one object")
 
 
 def run(args: argparse.Namespace) -> int:
     """Print what there is to tell."""
-    if is_trace(args.spec):
-        print(read(args.spec))
+    if args.sql is not None or is_trace(args.spec):
+        if args.sql is not None and args.spec is not None:
+            raise CommandError(f"--sql reads a database; leave out '{args.spec}', or --sql")
+        print(recording(args, args.sql or args.spec))
         return OK
+    if args.spec is None:
+        raise CommandError("name a requirement, a program or a recording; see 'rtamt info --help'")
+    _refuse_reading_options(args)
     program = compiled(args.spec)
     if program is not None:
         if args.latex or args.json:
@@ -101,6 +108,15 @@ def run(args: argparse.Namespace) -> int:
     facts = gather(spec)
     print(_as_json(facts) if args.json else "\n".join(_lines(facts)))
     return OK
+
+
+def _refuse_reading_options(args: argparse.Namespace) -> None:
+    """Raise :class:`CommandError` at an option that says how a recording is read: there is none."""
+    for option in ("time_column", "time_unit", "name", "sheet", "query", "skip_nan", "resample"):
+        if getattr(args, option) not in (None, []):
+            raise CommandError(
+                f"--{option.replace('_', '-')} is for recordings, and '{args.spec}' is a requirement or program"
+            )
 
 
 def gather(spec: Specification) -> Facts:

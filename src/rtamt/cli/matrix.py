@@ -4,34 +4,35 @@ from __future__ import annotations
 
 import os
 import time
+from collections import Counter
 from concurrent.futures import ProcessPoolExecutor
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from multiprocessing import get_context
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from rtamt.cli.command import NO_STAMPS
-from rtamt.engine.signals import TIME, Recording
+from rtamt.cli.recordings import choice_for, clock_for, how_to_mend, read_for
+from rtamt.engine.signals import Recording
+from rtamt.engine.ticks import date_of
 from rtamt.errors import BoundError, StlError, TraceError
-from rtamt.readers.assemble import chunks_of, trace_of
-from rtamt.readers.formats import BAG
-from rtamt.readers.reading import choice, opened
+from rtamt.readers.assemble import chunks_of
+from rtamt.readers.reading import opened
 from rtamt.readers.sql import is_url, shown
-from rtamt.ros.bags import columns_of
 from rtamt.streams import check_stream, check_streamable
 from rtamt.verdicts import first_violation
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
+    from collections.abc import Iterator, Sequence
     from fractions import Fraction
 
+    from rtamt.cli.recordings import Reading
     from rtamt.engine.dense_evaluate import DenseRecording
     from rtamt.engine.trace import Trace
-    from rtamt.readers.assemble import Choice
     from rtamt.results import Result
-    from rtamt.settings import Duration
     from rtamt.specification import Specification
+    from rtamt.streams import StreamResult
 
 #: Bytes of a file from which on it is read in chunks, where format and formula allow it.
 LARGE = 256 * 2**20
@@ -46,21 +47,6 @@ class Requirement:
     spec: Specification
     given: str
     label: str
-
-
-@dataclass(frozen=True, slots=True)
-class Reading:
-    """How recordings are read: the options of ``rtamt.read``, and a clock chosen for all signals."""
-
-    time: str | None = None
-    names: Mapping[str, str] = field(default_factory=dict)
-    unit: str | None = None
-    sheet: str | None = None
-    query: str | None = None
-    resample: str | None = None
-    how: str = "hold"
-    #: Never in chunks: somebody wants the whole signal.
-    whole: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -124,7 +110,7 @@ def evaluate(requirements: Sequence[Requirement], trace: str, reading: Reading) 
     if _is_large(trace, reading):
         return [_alone(requirement, trace, reading) for requirement in requirements]
     try:
-        whole = _read(trace, requirements, reading)
+        whole = read_for([requirement.spec for requirement in requirements], trace, reading)
     except StlError:  # each reads what it needs, and says what is wrong with that
         return [_check(requirement, trace, None, reading) for requirement in requirements]
     return [_check(requirement, trace, whole, reading) for requirement in requirements]
@@ -139,20 +125,22 @@ def _is_large(trace: str, reading: Reading) -> bool:
 def _alone(requirement: Requirement, trace: str, reading: Reading) -> Outcome:
     """Check in chunks if format and formula allow it, else read the recording whole."""
     begin = time.perf_counter()
+    chunks: _Chunks | None = None
+    found: StreamResult | None = None
     try:
         check_streamable(requirement.spec)
         with opened(trace, reading.sheet, reading.query) as source:
-            chunked = all(table.chunks is not None for table in source.tables) and len(source.tables) == 1
-            if chunked:
-                chunks = _Chunks(chunks_of(source, _choice([requirement], trace, reading)))
+            if all(table.chunks is not None for table in source.tables) and len(source.tables) == 1:
+                chunks = _Chunks(chunks_of(source, choice_for([requirement.spec], trace, reading)))
                 found = check_stream(requirement.spec, chunks)
     except BoundError:
-        chunked = False
+        pass  # the formula needs the whole recording at once
     except StlError as error:
         # Whatever reads says where; whatever computes does not know.
         place = "" if shown(trace) in str(error) else f"{shown(trace)}: "
-        return _failed(requirement, trace, f"{place}{error}", begin)
-    if not chunked:
+        mend = "" if chunks is None else how_to_mend(error, chunks.last, chunks.before(error))
+        return _failed(requirement, trace, f"{place}{error}{mend}", begin)
+    if chunks is None or found is None:
         return _check(requirement, trace, None, reading)
     return Outcome(
         requirement.label,
@@ -171,19 +159,19 @@ def _check(requirement: Requirement, trace: str, data: Trace | None, reading: Re
     begin = time.perf_counter()
     spec = requirement.spec
     try:
-        data = data or _read(trace, [requirement], reading)
+        data = data or read_for([spec], trace, reading)
     except StlError as error:
         return _failed(requirement, trace, str(error), begin)
     try:
         if spec.time == "dense" and data.start is None:
             raise TraceError(NO_STAMPS)
-        clock = _clock(spec, trace, reading)
+        clock = clock_for(spec, trace, reading)
         if clock is not None:
             data = data.resample(clock, reading.how)
         result = spec.evaluate(data)
         violated = first_violation(result)
     except StlError as error:
-        return _failed(requirement, trace, f"{shown(trace)}: {error}", begin)
+        return _failed(requirement, trace, f"{shown(trace)}: {error}{how_to_mend(error, data)}", begin)
     recording = result.trace
     return Outcome(
         requirement.label,
@@ -202,39 +190,6 @@ def _failed(requirement: Requirement, trace: str, error: str, begin: float) -> O
     return Outcome(requirement.label, shown(trace), "error", error=error, seconds=time.perf_counter() - begin)
 
 
-def _read(trace: str, requirements: Sequence[Requirement], reading: Reading) -> Trace:
-    with opened(trace, reading.sheet, reading.query) as source:
-        return trace_of(source, _choice(requirements, trace, reading))
-
-
-def is_bag(trace: str) -> bool:
-    """Tell whether a recording is a ROS bag: each topic has a clock of its own."""
-    return os.path.splitext(trace)[1].lower() in BAG.suffixes
-
-
-def _clock(spec: Specification, trace: str, reading: Reading) -> Duration | None:
-    """Return the period of the one clock that signals are put on; None where they stay as they are.
-
-    Discrete time samples a bag as a node samples topics: the latest message, every period.
-    """
-    if reading.resample is not None or spec.time == "dense" or not is_bag(trace):
-        return reading.resample
-    return spec.period or 1
-
-
-def _choice(requirements: Sequence[Requirement], trace: str, reading: Reading) -> Choice:
-    columns = dict.fromkeys(name for requirement in requirements for name in requirement.spec.input_names)
-    units = None if reading.unit is None else {TIME: reading.unit}
-    # In discrete time a gap is an error, unless a clock of its own for each signal is what is resampled.
-    spec = requirements[0].spec
-    gaps = spec.time == "dense" or _clock(spec, trace, reading) is not None
-    names = dict(reading.names)
-    if is_bag(trace):
-        for requirement in requirements:
-            names = {**columns_of(requirement.spec), **names}
-    return replace(choice(reading.time, columns or None, names, units), gaps=gaps)
-
-
 def _samples(recording: Recording | DenseRecording) -> int:
     """Return the number of samples; in dense time that of the instants at which any variable has one."""
     if isinstance(recording, Recording):
@@ -245,20 +200,29 @@ def _samples(recording: Recording | DenseRecording) -> int:
 def _told(moment: Any, dated: bool) -> float | str:
     """Return a time for reports: a date where the recording has dates (discrete time counts seconds), else seconds."""
     if dated and not isinstance(moment, np.datetime64):
-        moment = np.datetime64(round(moment * 1e9), "ns")
+        moment = date_of(moment)
     if isinstance(moment, np.datetime64):
         return str(moment)
     return moment / 1e9 if isinstance(moment, int) else float(moment)
 
 
 class _Chunks:
-    """Chunks, and whether their stamps are dates."""
+    """Chunks, and what has to be known of them: whether their stamps are dates, how many samples there were."""
 
     def __init__(self, chunks: Iterator[Trace]) -> None:
         self._chunks = chunks
+        self._counts: Counter[str] = Counter()
         self.dated = False
+        self.last: Trace | None = None
 
     def __iter__(self) -> Iterator[Trace]:
         for chunk in self._chunks:
+            if self.last is not None:
+                self._counts.update({name: len(self.last[name].values) for name in self.last})
+            self.last = chunk
             self.dated = isinstance(chunk.start, np.datetime64)
             yield chunk
+
+    def before(self, error: StlError) -> int:
+        """Return how many samples the variable that an error is about had before the last chunk."""
+        return self._counts[str(getattr(error, "variable", None))]

@@ -10,12 +10,10 @@ from rtamt.cli.command import (
     Command,
     CommandError,
     add_specification_options,
-    add_stamp_options,
     add_time_option,
-    read_specification,
-    read_trace,
 )
-from rtamt.cli.explain import add_instant_option, instant
+from rtamt.cli.given import result_of_one
+from rtamt.cli.recordings import add_instant_option, add_reading_options, instant
 from rtamt.cli.terminal import Progress
 from rtamt.errors import StlError
 from rtamt.plot.figure import draw, matplotlib
@@ -46,10 +44,10 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.description = _DESCRIPTION
     parser.epilog = _EPILOG
     add_specification_options(parser)
-    parser.add_argument("trace", metavar="TRACE", help="a recording, as for 'rtamt check'")
+    parser.add_argument("traces", metavar="TRACE", nargs="*", help="a recording, one, as for 'rtamt check'")
     add_time_option(parser)
     add_instant_option(parser)
-    add_stamp_options(parser, "column")
+    add_reading_options(parser)
     parser.add_argument("-o", "--output", metavar="FILE", help="write the picture: .png, .svg, .pdf, ...")
     parser.add_argument("--rows", type=int, default=6, metavar="N", help="formulas at most (default: 6)")
     parser.add_argument("--tree", action="store_true", help="draw the formula as a tree with its values")
@@ -60,15 +58,13 @@ def run(args: argparse.Namespace) -> int:
     if args.rows < 1:
         raise CommandError(f"--rows is {args.rows}; give a number of formulas, 1 or more")
     figure = _window() if args.output is None else _sheet(args.output)
-    spec = read_specification(args, args.time)
     with Progress() as progress:
-        progress.show(args.trace)
-        data = read_trace(spec, args.trace, args.time_column, args.time_unit)
+        progress.show("evaluating")
+        trace, result = result_of_one(args, "plot")
         try:
-            result = spec.evaluate(data)
-            seen = scene(result, instant(args.at, spec, data))
+            seen = scene(result, instant(args.at, result))
         except StlError as error:
-            raise CommandError(f"{args.trace}: {error}") from error
+            raise CommandError(f"{trace}: {error}") from error
     if args.tree:
         draw_tree(seen, figure)
     else:

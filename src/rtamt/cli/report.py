@@ -8,15 +8,16 @@ from rtamt.cli.check import CODES
 from rtamt.cli.command import (
     Command,
     CommandError,
-    add_reading_options,
     add_specification_options,
     add_time_option,
     complain,
 )
-from rtamt.cli.given import reading_of, requirements_and_traces
+from rtamt.cli.given import requirements_and_traces, variables_of
 from rtamt.cli.matrix import outcomes
+from rtamt.cli.recordings import add_instant_option, add_reading_options, instant, reading_of
 from rtamt.cli.reports.html import formulas, row
 from rtamt.cli.terminal import Progress
+from rtamt.errors import StlError
 from rtamt.plot.scene import scene
 from rtamt.report import Card, page
 
@@ -50,6 +51,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add_specification_options(parser)
     parser.add_argument("traces", metavar="TRACE", nargs="*", help="a recording; before it more SPECs (.stl)")
     add_time_option(parser)
+    add_instant_option(parser)
     add_reading_options(parser)
     parser.add_argument("-o", "--output", metavar="FILE", required=True, help="the page to write")
 
@@ -57,7 +59,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     """Evaluate every requirement over every trace, write the page."""
     requirements, traces = requirements_and_traces(args, "report")
-    reading = reading_of(args, requirements, whole=True)
+    reading = reading_of(args, variables_of(requirements), whole=True)
     rows: list[Row] = []
     cards: dict[Row, Card] = {}
     codes = []
@@ -70,7 +72,11 @@ def run(args: argparse.Namespace) -> int:
                 progress.clear()
                 complain(outcome.error)
             else:
-                cards[told] = Card.of(told, scene(outcome.result))
+                try:
+                    seen = scene(outcome.result, instant(args.at, outcome.result))
+                except StlError as error:
+                    raise CommandError(f"{outcome.trace}: {error}") from error
+                cards[told] = Card.of(told, seen)
             rows.append(told)
             codes.append(CODES[outcome.verdict])
     try:

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from rtamt.engine.moments import nanoseconds_of
 from rtamt.errors import TraceError, UsageError, did_you_mean, shown
 from rtamt.language.units import format_duration
 
@@ -194,19 +195,37 @@ def stamps(values: Any) -> FloatArray:
     """Return time stamps as seconds: numbers are seconds, datetimes count from 1970."""
     raw = np.asarray(values)
     if raw.dtype.kind == "O" and any(isinstance(value, datetime) for value in raw.flat):
-        for i, value in enumerate(raw.flat):
-            if not isinstance(value, datetime):
-                raise TraceError(
-                    f"'{TIME}' is {shown(value)} at sample {i}, expected a datetime like the others",
-                    variable=TIME,
-                    index=i,
-                )
-        raw = np.array([value.timestamp() for value in raw.flat])
+        raw = _since_1970(raw)
     if raw.dtype.kind in "mM":
         missing = np.isnat(raw)
         nanoseconds = raw.astype(f"{raw.dtype.kind}8[ns]").astype(np.int64)
         raw = np.where(missing, np.nan, nanoseconds / 1e9)
     return array(raw, TIME)
+
+
+def _since_1970(raw: NDArray[Any]) -> FloatArray:
+    """Return datetimes as seconds; those without a time zone as they stand, as in dense time."""
+    zones: dict[bool, int] = {}
+    seconds = np.full(raw.size, np.nan)
+    for i, value in enumerate(raw.flat):
+        if not isinstance(value, datetime):
+            raise TraceError(
+                f"'{TIME}' is {shown(value)} at sample {i}, expected a datetime like the others",
+                variable=TIME,
+                index=i,
+            )
+        moment = nanoseconds_of(value)
+        if moment is not None:
+            zones.setdefault(value.tzinfo is not None, i)
+            seconds[i] = moment / 1e9
+    if len(zones) > 1:
+        raise TraceError(
+            f"'{TIME}' has a time zone at sample {zones[True]} and none at sample {zones[False]}: "
+            f"use one way for all",
+            variable=TIME,
+            index=max(zones.values()),
+        )
+    return seconds
 
 
 def check_numbers(name: str, column: FloatArray, times: FloatArray, first: int = 0) -> None:

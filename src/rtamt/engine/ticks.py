@@ -15,7 +15,7 @@ a number in a unit that was agreed on before          ``"units"``         int wh
 from __future__ import annotations
 
 from dataclasses import dataclass
-from datetime import datetime, timedelta, timezone
+from datetime import datetime, timedelta
 from fractions import Fraction
 from numbers import Integral, Rational
 from types import MappingProxyType
@@ -24,6 +24,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rtamt.engine import signals
+from rtamt.engine.moments import nanoseconds_of
 from rtamt.errors import TraceError, shown
 from rtamt.language.units import UNITS, decimal, format_duration
 
@@ -56,9 +57,6 @@ KINDS = MappingProxyType(
 )
 
 _OF_DTYPE = {"i": "nanoseconds", "u": "nanoseconds", "M": "datetimes", "m": "timedeltas"}
-
-_EPOCH = datetime(1970, 1, 1)
-_ZONED_EPOCH = _EPOCH.replace(tzinfo=timezone.utc)
 
 
 @dataclass(frozen=True, slots=True)
@@ -135,7 +133,7 @@ class TimeScale:
     def _of_dates(self, times: Any, name: str, first: int) -> TickArray:
         dated = np.asarray(times)
         if dated.dtype.kind not in "mM":
-            moments = [_moment(time) for time in times]
+            moments = [nanoseconds_of(time) for time in times]
             missing = [i for i, moment in enumerate(moments) if moment is None]
             if missing:
                 raise not_finite(name, first + missing[0], times[missing[0]])
@@ -330,22 +328,13 @@ def _grids(rate: int) -> tuple[int, ...]:
     return (rate // 1000, rate // 100, rate // 10) if rate % 1000 == 0 else ()
 
 
-def _moment(time: Any) -> int | None:
-    """Return a datetime or timedelta as nanoseconds, from 1970 if it is a date; None for what is none."""
-    exact = getattr(time, "to_numpy", None)  # pandas counts in nanoseconds, datetime in microseconds
-    if exact is not None:
-        time = exact()
-    if isinstance(time, np.datetime64 | np.timedelta64):
-        if np.isnat(time):
-            return None
-        unit, _ = np.datetime_data(time.dtype)
-        size = "ns" if unit in ("ns", "ps", "fs", "as") else "us" if unit in ("us", "ms") else "s"
-        code = time.dtype.kind
-        return int(time.astype(f"{code}8[{size}]").astype(np.int64)) * int(UNITS[size] / NANOSECOND)
-    since: timedelta = time
-    if isinstance(time, datetime):
-        since = time - (_EPOCH if time.tzinfo is None else _ZONED_EPOCH)
-    return (since // timedelta(microseconds=1)) * 1000
+def date_of(seconds: float) -> np.datetime64:
+    """Return seconds since 1970 as a date, to the last digit with which the number prints.
+
+    >>> date_of(1767225600.1)
+    np.datetime64('2026-01-01T00:00:00.100000000')
+    """
+    return np.datetime64(tick_of(seconds, 10**9), "ns")
 
 
 def not_finite(name: str, index: int, time: Any) -> TraceError:

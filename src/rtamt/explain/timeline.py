@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
+from datetime import datetime
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from rtamt.engine import dense_evaluate, dense_reference, evaluate, reference
 from rtamt.engine.dense_evaluate import DenseRecording
-from rtamt.engine.signals import TOLERANCE, Recording, is_number
+from rtamt.engine.signals import TOLERANCE, Recording, is_number, stamps
 from rtamt.engine.ticks import kind_of
 from rtamt.errors import StlError, UsageError, shown
 from rtamt.explain.cells import NEVER, Steps
@@ -110,13 +111,17 @@ class DiscreteTimeline(Timeline):
     def cell(self, at: Any) -> int:
         """See :class:`Timeline`."""
         times = self._recording.times
-        if is_number(at):
-            nearest = int(np.abs(times - float(at)).argmin())
-            if abs(float(times[nearest]) - float(at)) <= TOLERANCE * float(self.period):
+        seconds = (
+            stamps([at])[0] if self._recording.dated and isinstance(at, datetime | np.datetime64) else at
+        )
+        if is_number(seconds):
+            nearest = int(np.abs(times - float(seconds)).argmin())
+            if abs(float(times[nearest]) - float(seconds)) <= TOLERANCE * float(self.period):
                 return nearest
+        told = at if isinstance(at, np.datetime64) else shown(at)
         raise UsageError(
-            f"there is no sample at {shown(at)}; the recording has {self.end}, "
-            f"from {times[0]:.15g} s to {times[-1]:.15g} s"
+            f"there is no sample at {told}; the recording has {self.end}, "
+            f"from {self.show(0)} to {self.show(self.last)}"
         )
 
     def time(self, cell: int) -> Any:
@@ -193,9 +198,9 @@ class DenseTimeline(Timeline):
         """See :class:`Timeline`."""
         scale = self._recording.scale
         try:
-            stamps = [at] if scale.kind != "nanoseconds" else np.array([at])
+            moments = [at] if scale.kind != "nanoseconds" else np.array([at])
             kind = "seconds" if scale.kind == "units" else scale.kind
-            found = int(scale.ticks(stamps, "at")[0]) - self._start if kind_of(stamps) == kind else -1
+            found = int(scale.ticks(moments, "at")[0]) - self._start if kind_of(moments) == kind else -1
         except (StlError, TypeError, ValueError):
             found = -1
         if 0 <= found <= self._last:

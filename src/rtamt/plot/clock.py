@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rtamt.engine.signals import Recording
+from rtamt.engine.ticks import date_of
 
 if TYPE_CHECKING:
     from rtamt.engine.dense_evaluate import DenseRecording
@@ -30,7 +31,7 @@ class Clock:
         if isinstance(recording, Recording):
             first = float(recording.times[0])
             if recording.dated:
-                return Clock(np.datetime64(round(first * 1e9), "ns"), recording)
+                return Clock(date_of(first), recording)
             return Clock(first if abs(first) > _FAR else 0.0, recording)
         start = recording.scale.times(np.array([recording.start], np.int64))[0]
         if isinstance(start, np.datetime64):

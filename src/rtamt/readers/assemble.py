@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rtamt.engine.signals import TIME, is_number
-from rtamt.engine.trace import Channel, Trace
+from rtamt.engine.ticks import NANOSECOND, TimeScale
+from rtamt.engine.trace import Channel, Trace, show_time
 from rtamt.errors import TraceError, did_you_mean, shown
 from rtamt.readers import clocks
 
@@ -29,6 +30,7 @@ class Choice:
     columns: tuple[str, ...] | None = None
     names: Mapping[str, str] = dataclasses.field(default_factory=dict)
     units: Mapping[str, str] = dataclasses.field(default_factory=dict)
+    skip_nan: tuple[str, ...] = ()
     #: Whether a value may be missing; discrete time needs one of every signal at every sample.
     gaps: bool = True
 
@@ -59,12 +61,13 @@ def trace_of(source: Source, choice: Choice) -> Trace:
         raws = selection.table.load(selection.fields)
         clock = _clock(source, selection, raws, choice)
         notes += [] if clock is None else [note for note in clock.notes if note not in notes]
-        made, left_out = _channels(source, selection, clock, raws, choice)
+        made, left_out, skipped = _channels(source, selection, clock, raws, choice)
         channels.update(made)
         if choice.columns is None:
             taken = {clock.field if clock else None, *(f for _, f in selection.signals)}
             left_out += [f.column for f in selection.table.fields if f.kind == "text" and f not in taken]
         notes += [] if not left_out else [f"left out, not numbers: {', '.join(left_out)}"]
+        notes += skipped
     if choice.columns is not None:  # in the caller's order, whatever the tables'
         channels = {name: channels[name] for name in choice.columns if name in channels}
     return Trace(_one_kind(channels, source.name), source=source.name, notes=notes, origin=source.origin)
@@ -78,10 +81,10 @@ def chunks_of(source: Source, choice: Choice) -> Iterator[Trace]:
     before = 0
     for raws in selection.table.chunks(selection.fields):
         clock = clock or _clock(source, selection, raws, choice)
-        made, _ = _channels(source, selection, clock, raws, choice, before)
+        made, _, skipped = _channels(source, selection, clock, raws, choice, before)
         before += len(raws[0]) if raws else 0
-        notes = () if clock is None else clock.notes
-        yield Trace(made, source=source.name, notes=(*source.notes, *notes), origin=source.origin)
+        notes = (*source.notes, *(() if clock is None else clock.notes), *skipped)
+        yield Trace(made, source=source.name, notes=notes, origin=source.origin)
 
 
 # ---- which columns -------------------------------------------------------------------------------
@@ -97,7 +100,11 @@ def select(source: Source, choice: Choice) -> list[Selection]:
     found = []
     for table in source.tables:
         clock, guessed = _time_field(source, table, choice)
-        mine = [(name, f) for name, t, f in wanted if t is table]
+        mine = [
+            (name, dataclasses.replace(f, skip_nan=name in choice.skip_nan))
+            for name, t, f in wanted
+            if t is table
+        ]
         if choice.columns is None:
             mine = [(name, f) for name, f in mine if f != clock or name in choice.names]
         if mine or len(source.tables) == 1:
@@ -117,13 +124,26 @@ def _wanted(source: Source, choice: Choice) -> list[tuple[str, Table, Field]]:
             if field.kind != "text" or field.column in new
         ]
         _check_unique(source, result)
+        _check_skipped(source, result, choice)
         return result
     found = []
     for name in dict.fromkeys(choice.columns):
         if name == TIME and name not in choice.names and _has_clock_called_otherwise(source, choice):
             continue
         found.append((name, *_find(source, choice.names.get(name, name), everything)))
+    _check_skipped(source, found, choice)
     return found
+
+
+def _check_skipped(source: Source, found: Sequence[tuple[str, Table, Field]], choice: Choice) -> None:
+    names = [name for name, _, _ in found]
+    for name in choice.skip_nan:
+        if name not in names:
+            raise TraceError(
+                f"NaN is to be skipped in '{name}', which is none of the signals that are read of {source.name}"
+                f"{did_you_mean(name, names)}",
+                variable=name,
+            )
 
 
 def _has_clock_called_otherwise(source: Source, choice: Choice) -> bool:
@@ -212,13 +232,13 @@ def _channels(
     raws: Sequence[Raw],
     choice: Choice,
     before: int = 0,
-) -> tuple[dict[str, Channel], list[str]]:
-    """Return the signals of a table, and the columns that were left out."""
+) -> tuple[dict[str, Channel], list[str], list[str]]:
+    """Return the signals of a table, the columns that were left out, and a note for each with NaN left out."""
     times = None
     if clock is not None:
         times = clocks.times_of(clock, _dated(raws[0], clock.field.column), source.name)
     values = raws if clock is None else raws[1:]
-    made, left_out = {}, []
+    made, left_out, notes = {}, [], []
     for (name, field), raw in zip(selection.signals, values, strict=True):
         try:
             numbers, missing = numbers_of(raw, field, source.name, before)
@@ -228,12 +248,17 @@ def _channels(
             left_out.append(field.column)
             continue
         mine = times
+        if field.skip_nan and np.isnan(numbers).any():
+            nan = np.isnan(numbers)
+            notes.append(_skipped(name, nan, times, before))
+            missing = nan if missing is None else missing | nan
         if missing is not None and missing.any():
             row = before + int(missing.argmax())
             if not choice.gaps:
                 raise TraceError(
                     f"'{name}' is missing at sample {row} of {source.name}, but discrete time needs a value at "
-                    f"every sample: fill the gap, or use dense time (--time dense)",
+                    f"every sample: fill the gap, use dense time (--time dense), or put all on one clock "
+                    f"(--resample PERIOD)",
                     variable=name,
                     index=row,
                 )
@@ -247,7 +272,13 @@ def _channels(
             numbers, mine = numbers[~missing], times[~missing]
         unit = choice.units.get(name, choice.units.get(field.column, field.unit))
         made[name] = Channel(mine, numbers, unit, field.column)
-    return made, left_out
+    return made, left_out, notes
+
+
+def _skipped(name: str, nan: Any, times: Any, before: int) -> str:
+    count, first = int(nan.sum()), int(nan.argmax())
+    where = f"sample {before + first}" if times is None else show_time(times[first])
+    return f"left out, NaN: {count:,} sample{'s' * (count != 1)} of {name}, the first at {where}"
 
 
 def numbers_of(raw: Raw, field: Field, source: str, before: int = 0) -> tuple[Any, Any]:
@@ -309,6 +340,6 @@ def _one_kind(channels: dict[str, Channel], source: str) -> dict[str, Channel]:
     return {
         name: c
         if c.times is None or c.times.dtype.kind != "f"
-        else Channel(np.rint(c.times * 1e9).astype(np.int64), c.values, c.unit, c.column)
+        else Channel(TimeScale(NANOSECOND, "seconds").ticks(c.times, name), c.values, c.unit, c.column)
         for name, c in channels.items()
     }

@@ -28,13 +28,41 @@ _YEARS = range(1678, 2262)
 LARGEST = 2.0**53
 
 
+def date_in(text: str) -> np.datetime64 | None:
+    """Return the date that a text is, in UTC where it names a time zone; None where it is none.
+
+    >>> date_in("2026-05-01T12:00:00.5+02:00"), date_in("12.5")
+    (np.datetime64('2026-05-01T10:00:00.500000000'), None)
+    """
+    match = DATE.fullmatch(text.strip())
+    if match is None or int(match["date"][:4]) not in _YEARS or _is_no_date(_stamp(match)):
+        return None
+    return np.datetime64(_stamp(match), "ns") - _offset(match["zone"])
+
+
+def _stamp(match: re.Match[str]) -> str:
+    return f"{match['date']}T{match['time'] or '00:00'}"
+
+
+def _offset(zone: str | None) -> np.timedelta64:
+    """Return by how much the clocks of a zone are ahead of UTC."""
+    if zone in (None, "Z"):
+        return np.timedelta64(0, "m")
+    assert zone is not None
+    minutes = int(zone[1:3]) * 60 + int(zone[-2:])
+    return np.timedelta64(-minutes if zone[0] == "-" else minutes, "m")
+
+
 class Cells:
     """One column of a file, which grows by blocks of rows.
 
     What its first cell is, a number or a date, all others must be.
     """
 
-    def __init__(self, header: Header, name: str, dated: bool | None = None) -> None:
+    def __init__(
+        self, header: Header, name: str, dated: bool | None = None, *, skip_nan: bool = False
+    ) -> None:
+        self._skip_nan = skip_nan
         self._header = header
         self._name = name
         self._dated = dated  # None: not known before the first cell that is not empty
@@ -78,10 +106,11 @@ class Cells:
         together = "".join(texts)
         try:
             values = np.array(texts, dtype=np.float64)
+            plain = self._skip_nan or not np.isnan(values).any()
         except ValueError:
-            values = np.array([np.nan])
-        if np.isnan(values).any() or "_" in together or not together.isascii():
-            values = np.array([number(text, self._name, self._header, line) for text, line in given])
+            plain = False
+        if not plain or "_" in together or not together.isascii():
+            values = np.array([self._number(text, line) for text, line in given])
         if self._whole and len(values):
             largest = float(np.abs(values).max())
             if largest >= LARGEST:
@@ -90,6 +119,17 @@ class Cells:
                 return values if exact is None else exact
             self._whole = bool((values == np.rint(values)).all())
         return values
+
+    def _number(self, text: str, line: int) -> float:
+        value = number(text, self._name, self._header, line, nan=True)
+        if np.isnan(value) and not self._skip_nan:
+            raise self._header.error(
+                line,
+                f"'{self._name}' is NaN: fill the gap, or leave such samples out with skip_nan=, "
+                f"on the command line --skip-nan",
+                self._name,
+            )
+        return value
 
     def _dates(self, given: Sequence[tuple[str, int]]) -> Raw:
         stamps, offsets = [], []
@@ -103,11 +143,8 @@ class Cells:
             if self._zoned != (zone is not None):
                 has = "a time zone, and those before have" if zone else "no time zone, and those before have"
                 raise self._error(line, text, f"with {has} {'none' if zone else 'one'}; use one way for all")
-            stamps.append(f"{match['date']}T{match['time'] or '00:00'}")
-            minutes = 0
-            if zone not in (None, "Z"):
-                minutes = (int(zone[1:3]) * 60 + int(zone[-2:])) * (-1 if zone[0] == "-" else 1)
-            offsets.append(minutes)
+            stamps.append(_stamp(match))
+            offsets.append(_offset(zone))
             if int(text[:4]) not in _YEARS:
                 raise self._error(line, text, "a year that nanoseconds since 1970 cannot reach")
         try:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from rtamt.engine.ticks import NANOSECOND, TimeScale
 from rtamt.errors import TraceError
 from rtamt.language.units import UNITS
 
@@ -122,11 +123,10 @@ def times_of(clock: Clock, raw: Raw, source: str) -> NDArray[Any]:
         return raw.astype("datetime64[ns]")
     raw = _nanoseconds(raw)
     size = UNITS[clock.unit]
-    if clock.kind == "ns" and raw.dtype.kind in "iu":
-        return raw.astype(np.int64) * int(size * 10**9)
+    if clock.kind == "ns":
+        return TimeScale(NANOSECOND, "units", size).ticks(raw, clock.field.column)
     # A division by a whole number rounds once; a product with 0.001 would round twice.
-    seconds = raw.astype(np.float64) / float(1 / size)
-    return np.rint(seconds * 1e9).astype(np.int64) if clock.kind == "ns" else seconds
+    return raw.astype(np.float64) / float(1 / size)
 
 
 def _nanoseconds(raw: Raw) -> Raw:

@@ -45,10 +45,11 @@ class Header:
 
 @dataclass(frozen=True, slots=True)
 class Column:
-    """A column that is wanted: its name in the result, its position in the file."""
+    """A column that is wanted: its name in the result, its position in the file, whether it may hold NaN."""
 
     name: str
     position: int
+    skip_nan: bool = False
 
 
 # ---- the header ----------------------------------------------------------------------------------
@@ -155,7 +156,7 @@ def plain(block: list[str], header: Header, columns: Sequence[Column]) -> FloatA
     with suppress(ValueError):
         positions = [column.position for column in columns]
         values = np.loadtxt(block, delimiter=header.delimiter, usecols=positions, comments=None, ndmin=2)
-        if not np.isnan(values).any():
+        if not np.isnan(values[:, [not column.skip_nan for column in columns]]).any():
             return np.ascontiguousarray(values.T)
     return None  # the slow way finds the cell that is no number
 
@@ -194,8 +195,8 @@ def numbers(row: list[str], header: Header, line: int, columns: Collection[Colum
     return [number(row[column.position], header.names[column.position], header, line) for column in columns]
 
 
-def number(text: str, name: str, header: Header, line: int) -> float:
-    """Return the number in one cell."""
+def number(text: str, name: str, header: Header, line: int, *, nan: bool = False) -> float:
+    """Return the number in one cell; ``nan``: whether NaN is one."""
     text = text.strip()
     if not text:
         raise header.error(line, f"'{name}' is empty, expected a number", name)
@@ -203,7 +204,7 @@ def number(text: str, name: str, header: Header, line: int) -> float:
         hint = " with a decimal point" if _is_number(text.replace(",", ".")) else ""
         raise header.error(line, f"'{name}' is '{text}', expected a number{hint}", name)
     value = float(text)
-    if isnan(value):
+    if isnan(value) and not nan:
         raise header.error(line, f"'{name}' is NaN: fill the gap or leave the sample out", name)
     return value
 

@@ -28,6 +28,7 @@ def read(
     units: Mapping[str, str] | None = None,
     sheet: str | None = None,
     query: str | None = None,
+    skip_nan: Iterable[str] = (),
 ) -> Trace:
     r"""Read a recording; ``Specification.evaluate`` and ``update_many`` take what comes out.
 
@@ -44,7 +45,9 @@ def read(
     has several.
 
     A value that is missing (an empty cell, null, pandas' NaN) is no sample: the signal then has a
-    clock of its own. What was guessed is in ``Trace.notes``, and printed with it.
+    clock of its own. Any other NaN stays, and an evaluation that reads it is an error; for the signals
+    in ``skip_nan`` it is a missing value, too. What was guessed or left out is in ``Trace.notes``, and
+    printed with it.
 
     Raises :class:`TraceError` where the data is wrong or columns cannot be told apart, and
     :class:`UsageError` where a library is missing: ``pip install 'rtamt[data]'``.
@@ -59,9 +62,14 @@ def read(
     Signal(times=array([0. , 0.1]), values=array([5., 4.]))
     >>> trace.channel("speed").unit, trace.notes
     ('m/s', ("time is 't [ms]', by its name", 'left out, not numbers: note'))
+    >>> import numpy as np
+    >>> rtamt.read({"time": [0, 1, 2], "v": np.array([5, np.nan, 4])}, skip_nan=["v"])
+    Trace of a dict: 1 signal, 0 s to 2 s
+      left out, NaN: 1 sample of v, the first at 1 s
+      v  2 samples, 0 s to 2 s
     """
     with opened(source, sheet, query) as found:
-        return trace_of(found, choice(time, columns, names, units))
+        return trace_of(found, choice(time, columns, names, units, skip_nan))
 
 
 def scan(
@@ -73,6 +81,7 @@ def scan(
     units: Mapping[str, str] | None = None,
     sheet: str | None = None,
     query: str | None = None,
+    skip_nan: Iterable[str] = (),
 ) -> Iterator[Trace]:
     r"""Read a recording in chunks, in memory that does not grow with its length; arguments as for :func:`read`.
 
@@ -93,7 +102,7 @@ def scan(
     with opened(source, sheet, query) as found:
         if any(table.chunks is None for table in found.tables) or len(found.tables) != 1:
             raise UsageError(f"{found.name} cannot be read in chunks; read it whole with rtamt.read")
-        yield from chunks_of(found, choice(time, columns, names, units))
+        yield from chunks_of(found, choice(time, columns, names, units, skip_nan))
 
 
 def choice(
@@ -101,11 +110,19 @@ def choice(
     columns: Iterable[str] | None,
     names: Mapping[str, str] | None,
     units: Mapping[str, str] | None,
+    skip_nan: Iterable[str] = (),
 ) -> Choice:
     """Return the arguments of :func:`read` as one record."""
-    if isinstance(columns, str):
-        raise UsageError(f"columns is the text '{columns}'; give a list of names, such as ['{columns}']")
-    return Choice(time, None if columns is None else tuple(columns), dict(names or {}), dict(units or {}))
+    for argument, given in (("columns", columns), ("skip_nan", skip_nan)):
+        if isinstance(given, str):
+            raise UsageError(f"{argument} is the text '{given}'; give a list of names, such as ['{given}']")
+    return Choice(
+        time,
+        None if columns is None else tuple(columns),
+        dict(names or {}),
+        dict(units or {}),
+        tuple(skip_nan),
+    )
 
 
 @contextmanager

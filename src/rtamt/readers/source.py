@@ -10,7 +10,7 @@
 from __future__ import annotations
 
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from rtamt import extras
@@ -31,12 +31,17 @@ CHUNK = 65_536
 
 @dataclass(frozen=True, slots=True)
 class Field:
-    """A column. ``kind``: "number", "time" (dates, stamps of a known unit), "text", or "" while unknown."""
+    """A column.
+
+    ``kind``: "number", "time" (dates, stamps of a known unit), "text", or "" while unknown. ``skip_nan``:
+    whether a NaN in it is a missing value, and no mistake.
+    """
 
     column: str
     name: str
     unit: str = ""
     kind: str = ""
+    skip_nan: bool = field(default=False, compare=False)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

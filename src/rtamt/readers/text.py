@@ -37,7 +37,7 @@ def open_csv(path: str) -> Source:
         try:
             with opening(path, "CSV"), open(path, encoding="utf-8-sig", newline="") as lines:
                 _, rest = read_header(lines, path)
-                yield from _blocks(rest, header, [field.column for field in wanted])
+                yield from _blocks(rest, header, wanted)
         except UnicodeDecodeError:
             raise TraceError(
                 f"'{path}' is not UTF-8 text; save it as CSV in UTF-8 (spreadsheets offer this under 'save as')"
@@ -50,9 +50,9 @@ def open_csv(path: str) -> Source:
     return Source(path, (Table(tuple(fields), load, chunks),))
 
 
-def _blocks(lines: Iterator[str], header: Header, names: Sequence[str]) -> Iterator[list[Raw]]:
+def _blocks(lines: Iterator[str], header: Header, wanted: Sequence[Field]) -> Iterator[list[Raw]]:
     """Yield columns block by block: by numpy as long as lines are plain numbers, cell by cell from there on."""
-    columns = [Column(name, header.names.index(name)) for name in names]
+    columns = [Column(f.column, header.names.index(f.column), f.skip_nan) for f in wanted]
     line = header.line
     while block := list(islice(lines, BLOCK)):
         values = plain(block, header, columns)
@@ -61,7 +61,8 @@ def _blocks(lines: Iterator[str], header: Header, names: Sequence[str]) -> Itera
         yield [_whole(column) for column in values]
         line += len(block)
     # What was a number so far stays one.
-    cells = [Cells(header, name, dated=False if line > header.line else None) for name in names]
+    dated = False if line > header.line else None
+    cells = [Cells(header, field.column, dated, skip_nan=field.skip_nan) for field in wanted]
     for several in blocks(chain(block, lines), replace(header, line=line)):
         numbers = [number for number, _ in several]
         for column, place in zip(cells, columns, strict=True):

@@ -47,7 +47,11 @@ def test_dates_keep_their_nanoseconds(read):
     [
         ("time,x\n0,5\n1,abc\n", "log.csv, line 3: 'x' is 'abc', expected a number"),
         ("time,x\n0,5\n1,1_000\n", "log.csv, line 3: 'x' is '1_000', expected a number"),
-        ("time,x\n0,5\n1,nan\n", "log.csv, line 3: 'x' is NaN: fill the gap or leave the sample out"),
+        (
+            "time,x\n0,5\n1,nan\n",
+            "log.csv, line 3: 'x' is NaN: fill the gap, or leave such samples out with skip_nan=, "
+            "on the command line --skip-nan",
+        ),
         ("time,x\n0,5\n1\n", "log.csv, line 3: 1 value, but 2 columns (time, x)"),
         (
             "time,x\n2026-01-01,5\n17,5\n",

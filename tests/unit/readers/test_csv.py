@@ -140,7 +140,8 @@ LONG = "time,x\n" + "0,1\n" * 10 + "1,{}\n" + "0,1\n" * 10
         (
             "time,req\n0,1\n1,NaN\n",
             ["req"],
-            "log.csv, line 3: 'req' is NaN: fill the gap or leave the sample out",
+            "log.csv, line 3: 'req' is NaN: fill the gap, or leave such samples out with skip_nan=, "
+            "on the command line --skip-nan",
         ),
         ("time,req\n0,1\n1,1_000\n", ["req"], "log.csv, line 3: 'req' is '1_000', expected a number"),
         ("time,req\n0,1\n1,١\n", ["req"], "log.csv, line 3: 'req' is '١', expected a number"),
@@ -170,7 +171,8 @@ LONG = "time,x\n" + "0,1\n" * 10 + "1,{}\n" + "0,1\n" * 10
         (
             LONG.format("nan"),
             ["x"],
-            "log.csv, line 12: 'x' is NaN: fill the gap or leave the sample out",
+            "log.csv, line 12: 'x' is NaN: fill the gap, or leave such samples out with skip_nan=, "
+            "on the command line --skip-nan",
         ),
         (LONG.format("1,2"), ["x"], "log.csv, line 12: 3 values, but 2 columns (time, x)"),
         (

@@ -1,0 +1,156 @@
+"""One set of reading options for every command that reads a recording; the instant of ``--at``."""
+
+import pytest
+import sqlalchemy
+
+MENDED = "always(x >= 3)"
+DATES = "time,x\n2026-01-01T00:00:00,5\n2026-01-01T00:00:00.1,1\n2026-01-01T00:00:00.2,4\n"
+
+
+@pytest.fixture
+def commands(run):
+    """Every command that reads one recording, called alike."""
+
+    def call(*args):
+        return {
+            "check": run("check", *args),
+            "explain": run("explain", *args),
+            "plot": run("plot", *args, "-o", "picture.svg"),
+            "report": run("report", *args, "-o", "report.html"),
+        }
+
+    return call
+
+
+def test_a_database(commands, run, tmp_path):
+    engine = sqlalchemy.create_engine(f"sqlite:///{tmp_path}/log.db")
+    with engine.begin() as connection:
+        connection.execute(sqlalchemy.text("create table log (time real, speed real)"))
+        connection.execute(sqlalchemy.text("insert into log values (0, 5), (1, 1)"))
+    engine.dispose()
+    database = ["--sql", "sqlite:///log.db", "--query", "select * from log", "--name", "x=speed"]
+    found = commands(MENDED, *database)
+    assert {name: (answer.code, answer.err) for name, answer in found.items()} == {
+        "check": (1, ""), "explain": (1, ""), "plot": (0, ""), "report": (1, ""),
+    }  # fmt: skip
+    told = run("info", *database)
+    assert (
+        told.out == "Trace of sqlite:///log.db: 1 signal, 0 s to 1 s\n  x  2 samples, 0 s to 1 s  (speed)\n"
+    )
+    assert (
+        run("info", "log.csv", *database).err
+        == "rtamt: --sql reads a database; leave out 'log.csv', or --sql\n"
+    )
+
+
+def test_nan_is_skipped_and_the_rest_put_on_one_clock(commands, write, run):
+    write("log.csv", "time,x,y\n0,5,1\n0.5,nan,1\n1,4,1\n1.5,2,1\n")
+    for answer in commands(MENDED, "log.csv").values():
+        assert (answer.code, answer.err) == (
+            2,
+            "rtamt: log.csv, line 3: 'x' is NaN: fill the gap, or leave such samples out with skip_nan=, "
+            "on the command line --skip-nan\n",
+        )
+    found = commands(MENDED, "log.csv", "--skip-nan", "x", "--resample", "500ms", "--how", "linear")
+    assert found["check"].out.splitlines()[-1].split() == ["log.csv", "4", "500", "ms", "-1", "violated"]
+    assert found["explain"].out.splitlines()[1].startswith("'x >= 3' is -1 at 1.5 s")
+    assert (
+        run("check", MENDED, "log.csv", "--skip-nan", "y").err
+        == "rtamt: --skip-nan y: no formula reads 'y'\n"
+    )
+
+
+def test_a_nan_that_no_line_of_text_tells_is_mended_by_an_option(run, tmp_path):
+    pyarrow = pytest.importorskip("pyarrow")
+    parquet = pytest.importorskip("pyarrow.parquet")
+    table = pyarrow.table({"time": [0.0, 0.5, 1.0], "x": [5.0, float("nan"), 4.0]})
+    parquet.write_table(table, tmp_path / "log.parquet")
+    assert run("check", MENDED, "log.parquet") == (
+        2,
+        "",
+        "rtamt: log.parquet: 'x' is NaN at sample 1, time 0.5 s: fill the gap or leave the sample out (--skip-nan x)\n",
+    )
+    assert run("check", MENDED, "log.parquet", "--skip-nan", "x", "--time", "dense").code == 0
+
+
+def test_a_nan_in_a_later_chunk_is_mended_by_the_same_option(run, tmp_path, monkeypatch):
+    pyarrow = pytest.importorskip("pyarrow")
+    parquet = pytest.importorskip("pyarrow.parquet")
+    monkeypatch.setattr("rtamt.cli.matrix.LARGE", 0)
+    monkeypatch.setattr("rtamt.readers.arrow.CHUNK", 2)
+    values = [5.0, 5.0, 5.0, float("nan"), 1.0]
+    parquet.write_table(pyarrow.table({"time": [0.0, 1, 2, 3, 4], "x": values}), tmp_path / "log.parquet")
+    assert run("check", MENDED, "log.parquet").err.endswith(
+        "log.parquet: 'x' is NaN at sample 3, time 3 s: fill the gap or leave the sample out (--skip-nan x)\n"
+    )
+    answer = run("check", MENDED, "log.parquet", "--skip-nan", "x", "--time", "dense", "--json")
+    assert (answer.code, '"first_violation": 4.0' in answer.out) == (1, True)
+
+
+@pytest.mark.parametrize("time", ["discrete", "dense"])
+@pytest.mark.parametrize(
+    ("content", "at"),
+    [
+        ("time,x\n0,5\n0.5,1\n1,4\n", "500ms"),
+        ("time,x\n0,5\n0.5,1\n1,4\n", "0.5"),
+        ("time,x\n-0.5,1\n0,5\n0.5,4\n", "-0.5"),
+        ("t,x\n1700000000000000000,5\n1700000000500000000,1\n", "1700000000.5"),
+        (DATES, "2026-01-01T00:00:00.1"),
+        (DATES, "2026-01-01T01:00:00.1+01:00"),
+    ],
+)
+def test_an_instant_is_told_in_seconds_with_a_unit_or_as_a_date(run, write, time, content, at):
+    write("log.csv", content)
+    answer = run("explain", "x >= 3", "log.csv", "--time", time, "--at", at)
+    assert (answer.code, answer.err) == (1, "")
+    assert answer.out.startswith("violated by 2 at ")
+    assert run("report", "x >= 3", "log.csv", "--time", time, "--at", at, "-o", "report.html").err == ""
+    with open("report.html", encoding="utf-8") as page:
+        assert "violated by 2 at " in page.read()
+
+
+@pytest.mark.parametrize(
+    ("content", "at", "message"),
+    [
+        (
+            DATES,
+            "0.1",
+            "--at is '0.1', but the recording tells time in dates: give one such as 2026-05-01T12:00:00.5",
+        ),
+        (
+            "time,x\n0,5\n",
+            "2026-01-01",
+            "--at is '2026-01-01', but the recording tells time in seconds: give a number of them",
+        ),
+        (
+            "time,x\n0,5\n",
+            "soon",
+            "--at is 'soon'; give seconds, a time with a unit such as 500ms, or a date such as 2026-05-01T12:00:00.5",
+        ),
+        (
+            DATES,
+            "2026-01-01T00:00:07",
+            "there is no sample at 2026-01-01T00:00:07.000000000; the recording has 3, from "
+            "2026-01-01T00:00:00.000 to 2026-01-01T00:00:00.200",
+        ),
+    ],
+)
+def test_an_instant_that_is_none(run, write, content, at, message):
+    write("log.csv", content)
+    for command in (["explain"], ["plot", "-o", "x.svg"], ["report", "-o", "x.html"]):
+        assert run(*command, "x >= 3", "log.csv", "--at", at) == (2, "", f"rtamt: log.csv: {message}\n")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["plot", "x >= 3", "a.csv", "b.csv", "-o", "x.svg"], "'rtamt plot' takes one specification and one trace; "
+         "leave out 'b.csv'"),
+        (["explain", "x >= 3"], "there is no trace to explain: name a file, or --sql URL; see 'rtamt explain --help'"),
+        (["info"], "name a requirement, a program or a recording; see 'rtamt info --help'"),
+        (["info", "x >= 3", "--sheet", "a"], "--sheet is for recordings, and 'x >= 3' is a requirement or program"),
+        (["info", "a.xlsx"], "there is no file 'a.xlsx' (if a formula is meant, put it in parentheses)"),
+    ],
+)  # fmt: skip
+def test_messages(run, arguments, message):
+    assert run(*arguments) == (2, "", f"rtamt: {message}\n")
