@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -34,6 +34,8 @@ class DenseRecording:
 
     columns: Mapping[str, Samples]
     scale: TimeScale
+    #: The units of the variables whose source tells them.
+    units: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def start(self) -> int:
@@ -77,7 +79,7 @@ def trace(
             raise TraceError(f"'{name}' has no samples: give at least one", variable=name)
     scale = scale or TimeScale(tick, kind_of(columns[names[0]][0]))
     samples = {name: dense_signals.samples_of(columns[name], name, scale) for name in names}
-    result = DenseRecording(samples, scale)
+    result = DenseRecording(samples, scale, signals.units_of(data))
     if result.start > result.end:
         raise TraceError("the signals have no instant in common")
     return result

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -40,6 +41,11 @@ class Clocked(ABC):
     @abstractmethod
     def start(self) -> Any:
         """The earliest time of any signal; None without time stamps."""
+
+    @property
+    @abstractmethod
+    def units(self) -> Mapping[str, str]:
+        """The units of the signals whose source tells them."""
 
     @abstractmethod
     def on_one_clock(self, names: Collection[str]) -> Mapping[str, Any]:
@@ -96,6 +102,8 @@ class Recording:
     inferred: bool = False
     #: Whether the time stamps were dates; ``times`` are seconds since 1970 then.
     dated: bool = False
+    #: The units of the variables whose source tells them.
+    units: Mapping[str, str] = dataclasses.field(default_factory=dict)
 
     def __len__(self) -> int:
         return len(self.times)
@@ -130,7 +138,12 @@ def trace(
         check_regular(times, period, tolerance)
     for name, column in columns.items():
         check_numbers(name, column, times)
-    return Recording(times, columns, period, inferred, _dated(data))
+    return Recording(times, columns, period, inferred, _dated(data), units_of(data))
+
+
+def units_of(data: Any) -> Mapping[str, str]:
+    """Return the units of the variables, where the data tells them."""
+    return data.units if isinstance(data, Clocked) else {}
 
 
 def _dated(data: Any) -> bool:

@@ -114,6 +114,16 @@ class Trace(Clocked):
         """The latest time of any signal; None without time stamps."""
         return max((c.times[-1] for c in self._timed()), default=None)
 
+    @property
+    def units(self) -> dict[str, str]:
+        """The units of the signals whose source tells them.
+
+        >>> import rtamt
+        >>> rtamt.read({"time": [0, 1], "speed [m/s]": [5, 4], "gear": [1, 1]}).units
+        {'speed': 'm/s'}
+        """
+        return {name: channel.unit for name, channel in self._channels.items() if channel.unit}
+
     def channel(self, name: str) -> Channel:
         """Return one signal with its unit; raise :class:`TraceError` where there is none of that name."""
         if name not in self._channels:

@@ -29,6 +29,9 @@ _COLUMNS, _DOTS = 3000, 50
 #: Characters of a line of the formula, and panels that are drawn larger than rows.
 _TEXT, _FEW = 100, 4
 
+#: Characters of a signal's name in one line, and in each of two smaller ones.
+_NAME, _SMALL = 16, 21
+
 
 def matplotlib(module: str = "figure") -> Any:
     """Return a module of matplotlib."""
@@ -145,7 +148,7 @@ class _Drawing:
         for i, line in enumerate(panel.lines):
             color = style.SIGNALS[i % len(style.SIGNALS)]
             values = self._trace(axis, line, edges, color)
-            labels.append((float(values[-1]), line.name, color))
+            labels.append((float(values[-1]), line.label, color))
         self._names(axis, labels)
         self._instants(axis)
         self._on_signal(panel, axis, edges)
@@ -153,20 +156,21 @@ class _Drawing:
     def _names(self, axis: Any, labels: Sequence[tuple[float, str, str]]) -> None:
         """Write each signal's name at its end, the names apart from each other."""
         low, high = axis.get_ylim()
-        room = 0.16 * (high - low)
+        told = [_in_lines(name) for _, name, _ in labels]
+        room = (0.28 if any("\n" in name for name in told) else 0.16) * (high - low)
         y = low - room
         places = []
-        for value, name, color in sorted(labels):
+        for (value, _, color), name in sorted(zip(labels, told, strict=True)):
             y = max(value, y + room)
             places.append((y, name, color))
         shift = max(places[-1][0] - high, 0.0)
         for y, name, color in places:
             axis.annotate(
-                _shortened(name, 22),
+                name,
                 (1.012, (y - shift - low) / (high - low)),
                 xycoords="axes fraction",
                 color=color,
-                fontsize=9,
+                fontsize=7 if "\n" in name else 9,
                 fontweight="bold",
                 va="center",
                 annotation_clip=False,
@@ -339,6 +343,21 @@ class _Edges:
     def shown(self, values: FloatArray) -> FloatArray:
         """Return values as they are drawn."""
         return np.clip(values, *self._ends)
+
+
+def _in_lines(name: str) -> str:
+    r"""Return a signal's name as there is room for it beside a panel: in one line, or smaller in two.
+
+    >>> _in_lines("speed [m/s]"), _in_lines("vehicle_attitude.rollspeed")
+    ('speed [m/s]', 'vehicle_attitude.\nrollspeed')
+    """
+    if len(name) <= _NAME:
+        return name
+    middle = len(name) // 2
+    breaks = [i + 1 for i, character in enumerate(name[:-1]) if character in "._/ "] or [middle]
+    dots = [i for i in breaks if name[i - 1] == "."]
+    at = min(dots or breaks, key=lambda i: abs(i - middle))
+    return f"{_shortened(name[:at], _SMALL)}\n{_shortened(name[at:], _SMALL)}"
 
 
 def _wrapped(text: str) -> list[str]:

@@ -23,6 +23,12 @@ class Line:
     name: str
     positions: FloatArray
     values: FloatArray
+    unit: str = ""
+
+    @property
+    def label(self) -> str:
+        """The name, with the unit if it is known."""
+        return f"{self.name} [{self.unit}]" if self.unit else self.name
 
     def at(self, position: float) -> float:
         """Return the value at a position, or before it."""
@@ -51,7 +57,7 @@ class Line:
         stops = np.r_[starts[1:], n]
         order = np.lexsort((self.values, column))  # by column, then by value: lowest first, highest last
         kept = np.unique(np.concatenate([starts, stops - 1, order[starts], order[stops - 1]]))
-        return Line(self.name, self.positions[kept], self.values[kept])
+        return Line(self.name, self.positions[kept], self.values[kept], self.unit)
 
 
 def ranges(line: Line, wanted: NDArray[np.bool_], *, dense: bool, end: float) -> tuple[Range, ...]:

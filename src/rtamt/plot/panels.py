@@ -1,15 +1,16 @@
-"""Which signals are drawn together: those that a predicate compares, since they have one unit."""
+"""Which signals are drawn together: those that a predicate compares, unless their units are known to differ."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from rtamt.language.formula import Apply, Const, Var, variables
 from rtamt.language.grammar import is_predicate as is_comparison
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Mapping
 
     from rtamt.language.formula import Formula
 
@@ -22,12 +23,17 @@ class Group:
     thresholds: tuple[float, ...]
 
 
-def groups(names: Iterable[str], predicates: Iterable[Formula]) -> tuple[Group, ...]:
-    """Return the panels, in the order of the names.
+def groups(
+    names: Iterable[str], predicates: Iterable[Formula], units: Mapping[str, str] = MappingProxyType({})
+) -> tuple[Group, ...]:
+    """Return the panels, in the order of the names. ``units``: those that are known.
 
     >>> from rtamt.language.parser import parse_formula
     >>> groups(["a", "b", "c"], [parse_formula("a <= c"), parse_formula("b >= 3")])
     (Group(names=('a', 'c'), thresholds=()), Group(names=('b',), thresholds=(3.0,)))
+    >>> close = parse_formula("gap <= 2 * speed")
+    >>> [group.names for group in groups(["gap", "speed"], [close], {"gap": "m", "speed": "m/s"})]
+    [('gap',), ('speed',)]
     """
     group_of = {name: {name} for name in names}
     limits: dict[str, list[float]] = {name: [] for name in group_of}
@@ -35,7 +41,8 @@ def groups(names: Iterable[str], predicates: Iterable[Formula]) -> tuple[Group, 
         read = [name for name in variables(predicate) if name in group_of]
         for name in read[1:]:
             merged = group_of[read[0]] | group_of[name]
-            group_of.update(dict.fromkeys(merged, merged))
+            if len({units[member] for member in merged if member in units}) <= 1:
+                group_of.update(dict.fromkeys(merged, merged))
         limit = _threshold(predicate)
         if limit is not None:
             limits[read[0]].append(limit)

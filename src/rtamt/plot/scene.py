@@ -168,7 +168,7 @@ class _Painter:
         trace = self._result.trace
         lines = {name: self._recorded(name) for name in trace.columns}
         found = []
-        for group in groups(lines, filter(is_predicate, formulas)):
+        for group in groups(lines, filter(is_predicate, formulas), trace.units):
             members = set(group.names)
             stretches = [s for s in self._explanation.implicant if members & set(variables(s.formula))]
             drawn = tuple(lines[name] for name in group.names)
@@ -178,12 +178,12 @@ class _Painter:
     def _recorded(self, name: str) -> Line:
         trace, clock = self._result.trace, self._clock
         if isinstance(trace, Recording):
-            return Line(name, clock.positions(trace.times), trace.columns[name])
+            return Line(name, clock.positions(trace.times), trace.columns[name], trace.units.get(name, ""))
         ticks, values = trace.columns[name]
         positions = clock.ticked(ticks)
         if positions[-1] < clock.end:  # the last value holds
             positions, values = np.append(positions, clock.end), np.append(values, values[-1])
-        return Line(name, positions, np.asarray(values))
+        return Line(name, positions, np.asarray(values), trace.units.get(name, ""))
 
     def _line(self, name: str, signal: Signal) -> Line:
         return Line(name, self._clock.positions(signal.times), signal.values)

@@ -55,7 +55,7 @@ def data_of(scene: Scene) -> dict[str, Any]:
 def _line(line: Line) -> dict[str, Any]:
     small = line.decimated(COLUMNS)
     return {
-        "name": line.name,
+        "name": line.label,
         "points": len(line.positions),
         "x": [float(f"{x:.12g}") for x in small.positions.tolist()],
         "y": [float(f"{y:.7g}") if isfinite(y) else str(y) for y in small.values.tolist()],

@@ -137,7 +137,7 @@ def _told(scene: Scene) -> str:
     rows.append(_explanation(scene))
     rows.append('<div class="tools" hidden></div>')
     for number, panel in enumerate(scene.panels):
-        names = ", ".join(line.name for line in panel.lines)
+        names = ", ".join(line.label for line in panel.lines)
         rows.append(f'<div class="chart" data-panel="{number}"><h3>{escape(names)}</h3></div>')
     rows.append(f'<h3 class="above">Robustness, and values at {escape(scene.clock.told(scene.at))}</h3>')
     rows.append(_tree(scene))

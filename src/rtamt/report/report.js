@@ -18,6 +18,12 @@
     return String(Number(value.toPrecision(5))).replace("-", "−");
   };
 
+  // Of a long name what there is room for beside a chart: its last field, as the heading has all of it.
+  const shortened = (name) => {
+    const tail = name.length > 12 ? name.split(".").pop() : name;
+    return tail.length > 12 ? `${tail.slice(0, 11)}…` : tail;
+  };
+
   // 1, 2 or 5 times a power of ten, so that about `count` of them fit.
   const niceStep = (span, count) => {
     const raw = span / count, power = 10 ** Math.floor(Math.log10(raw));
@@ -187,7 +193,7 @@
       }
       if (this.limits) {
         element("text", { class: "name", style: `fill:${color}`, x: this.width - RIGHT + 8, y: TOP + 12 + index * 15 }, svg,
-          line.name.length > 12 ? `${line.name.slice(0, 11)}…` : line.name);
+          shortened(line.name));
       }
     }
 

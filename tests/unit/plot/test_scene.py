@@ -100,3 +100,16 @@ def test_decimation_keeps_every_peak_and_both_ends(values, columns):
     assert (small.values.min(), small.values.max()) == (line.values.min(), line.values.max())
     assert small.positions[[0, -1]].tolist() == line.positions[[0, -1]].tolist()
     assert small.values.tolist() == line.values[small.positions.astype(int)].tolist()
+
+
+def test_signals_whose_units_are_known_to_differ_have_panels_of_their_own():
+    spec = rtamt.parse("always(gap >= 2 * speed and near <= gap)")
+    values = {"gap": [40, 30], "speed [m/s]": [10, 12], "near": [5, 6]}
+    panels = scene(spec.evaluate(rtamt.read(values))).panels
+    assert [[line.label for line in panel.lines] for panel in panels] == [["gap", "speed [m/s]", "near"]]
+    known = rtamt.read(values, units={"gap": "m"})
+    for time in ("discrete", "dense"):
+        stamped = rtamt.read({"time": [0, 1], **values}, units={"gap": "m"}) if time == "dense" else known
+        panels = scene(spec.evaluate(stamped, time=time)).panels
+        labels = [[line.label for line in panel.lines] for panel in panels]
+        assert labels == [["gap [m]", "near"], ["speed [m/s]"]]
