@@ -2,7 +2,8 @@
 //
 // Monitor.update, update_pairs and step, and DenseMonitor.update, are plain CPython functions of
 // the METH_FASTCALL kind and not nanobind's: they read a dict or a list of pairs in place, where
-// nanobind would first build a C++ container, and that would cost more than the sample does.
+// nanobind would first build a C++ container, and that would cost more than the sample does. Where
+// Python's own monitors have these methods, python/method.cpp calls them without a Python frame.
 
 #include "dense/executor.hpp"
 #include "dense/scan.hpp"
@@ -15,6 +16,7 @@
 #include "python/calls.hpp"
 #include "python/dense_monitor.hpp"
 #include "python/failures.hpp"
+#include "python/method.hpp"
 #include "python/monitor.hpp"
 
 #include <nanobind/nanobind.h>
@@ -47,6 +49,7 @@ using rtamt::python::Column;
 using rtamt::python::DenseMonitor;
 using rtamt::python::EventColumn;
 using rtamt::python::Exceptions;
+using rtamt::python::InDict;
 using rtamt::python::Monitor;
 using rtamt::python::Result;
 using rtamt::python::Results;
@@ -79,18 +82,21 @@ self_of(PyObject* self) noexcept { // NOLINT(misc-const-correctness): CPython ha
     return nullptr;
 }
 
-PyObject* wrong_count(const char* method, Py_ssize_t count) noexcept {
-    return PyErr_Format(PyExc_TypeError, "%s takes 2 arguments, got %zd.", method, count);
+PyObject* wrong_count(PyObject* self, const char* method, Py_ssize_t count) noexcept {
+    const std::string_view type = Py_TYPE(self)->tp_name;
+    return PyErr_Format(PyExc_TypeError, "%s.%s takes 2 arguments, got %zd.",
+                        type.data() + type.rfind('.') + 1, method, count);
 }
 
+template <class Monitor>
 PyObject* update(PyObject* self, PyObject* const* args, Py_ssize_t count) noexcept {
-    if (count != 2) return wrong_count("Monitor.update", count);
+    if (count != 2) return wrong_count(self, "update", count);
     auto* monitor = self_of<Monitor>(self);
-    return monitor != nullptr ? monitor->update(args[0], args[1]) : nullptr;
+    return monitor != nullptr ? monitor->update(args[0], InDict{args[1]}) : nullptr;
 }
 
 PyObject* update_pairs(PyObject* self, PyObject* const* args, Py_ssize_t count) noexcept {
-    if (count != 2) return wrong_count("Monitor.update_pairs", count);
+    if (count != 2) return wrong_count(self, "update_pairs", count);
     auto* monitor = self_of<Monitor>(self);
     return monitor != nullptr ? monitor->update_pairs(args[0], args[1]) : nullptr;
 }
@@ -100,12 +106,6 @@ PyObject* step(PyObject* self, PyObject* const* args, Py_ssize_t count) noexcept
     return monitor != nullptr ? monitor->step({args, static_cast<std::size_t>(count)}) : nullptr;
 }
 
-PyObject* dense_update(PyObject* self, PyObject* const* args, Py_ssize_t count) noexcept {
-    if (count != 2) return wrong_count("DenseMonitor.update", count);
-    auto* monitor = self_of<DenseMonitor>(self);
-    return monitor != nullptr ? monitor->update(args[0], args[1]) : nullptr;
-}
-
 // CPython stores every kind of method as a PyCFunction and calls it by its METH_ flags.
 template <class Function>
 PyCFunction erased(Function* function) noexcept {
@@ -113,7 +113,7 @@ PyCFunction erased(Function* function) noexcept {
 }
 
 PyMethodDef hot_methods[] = {
-    {"update", erased(update), METH_FASTCALL,
+    {"update", erased(update<Monitor>), METH_FASTCALL,
      "update($self, t, values, /)\n--\n\n"
      "Take the sample of time t, a dict of every input; return what became known, or None."},
     {"update_pairs", erased(update_pairs), METH_FASTCALL,
@@ -145,7 +145,7 @@ PyType_Slot monitor_slots[] = {
 };
 
 PyMethodDef dense_hot_methods[] = {
-    {"update", erased(dense_update), METH_FASTCALL,
+    {"update", erased(update<DenseMonitor>), METH_FASTCALL,
      "update($self, t, values, /)\n--\n\n"
      "Take a dict of any inputs at a time as tell() says; return what became known."},
     {nullptr, nullptr, 0, nullptr},
@@ -352,6 +352,8 @@ NB_MODULE(_core, m) {
         .def_prop_ro("last_possible", &DenseMonitor::last_possible,
                      "The latest tick that a sample may have.")
         .def_prop_ro("state_bytes", &DenseMonitor::state_bytes, "Bytes of state by now.");
+
+    rtamt::python::add_method_type(m);
 
     m.def("opcode_names", &opcode_names, "The names of the opcodes, in the order of their codes.");
     m.def(

@@ -131,7 +131,8 @@ void DenseMonitor::tell(const nb::type_object& signal, const nb::object& scale,
 
 // ---- one instant --------------------------------------------------------------------------------
 
-PyObject* DenseMonitor::update(PyObject* time, PyObject* values) noexcept {
+template <class Values>
+PyObject* DenseMonitor::update(PyObject* time, const Values& values) noexcept {
     if (!ready()) return nullptr;
     busy_ = true;
     const char* reason = told_ && read_time(time) ? read_values(values) : "time";
@@ -154,6 +155,9 @@ PyObject* DenseMonitor::update(PyObject* time, PyObject* values) noexcept {
     }
     return answer();
 }
+
+template PyObject* DenseMonitor::update(PyObject* time, const Named& values) noexcept;
+template PyObject* DenseMonitor::update(PyObject* time, const InDict& values) noexcept;
 
 // Puts a point at the last instant that is known of each output, unless it was told before.
 void DenseMonitor::close() {
@@ -202,25 +206,19 @@ bool DenseMonitor::read_time(PyObject* time) noexcept {
 }
 
 // Answers what is wrong, or null.
-const char* DenseMonitor::read_values(PyObject* values) noexcept {
-    if (!PyDict_Check(values)) return "names";
+template <class Values>
+const char* DenseMonitor::read_values(const Values& values) noexcept {
     std::ranges::fill(events_, Events{});
-    Py_ssize_t position = 0;
     std::size_t guess = 0;
-    PyObject* name = nullptr;
-    PyObject* value = nullptr;
-    while (PyDict_Next(values, &position, &name, &value) != 0) {
+    return values.each([&](PyObject* name, PyObject* value) -> const char* {
         const auto index = names_.place(name, guess);
-        if (!index) {
-            if (names_.ignored(name)) continue;
-            return "names";
-        }
+        if (!index) return names_.ignored(name) ? nullptr : "names";
         if (!numbers_.read(value, row_[*index])) return "value";
         if (time_ <= executor_.last_time(*index).value_or(-dense::never - 1)) return "time";
         events_[*index] = {&time_, &row_[*index], 1};
         guess = *index + 1;
-    }
-    return nullptr;
+        return nullptr;
+    });
 }
 
 PyObject* DenseMonitor::answer() const noexcept {

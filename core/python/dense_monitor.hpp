@@ -48,9 +48,10 @@ class DenseMonitor {
     // given one and whose `_events` are bytes: the times, then the values.
     void tell(const nb::type_object& signal, const nb::object& scale, std::optional<double> rate);
 
-    // Any variables at one instant. What became known of the first output; null, with a Python
-    // exception set, is a refusal.
-    [[nodiscard]] PyObject* update(PyObject* time, PyObject* values) noexcept;
+    // Any variables at one instant, by name: Named or InDict. What became known of the first output;
+    // null, with a Python exception set, is a refusal.
+    template <class Values>
+    [[nodiscard]] PyObject* update(PyObject* time, const Values& values) noexcept;
 
     // What became known of the first output, times and values.
     [[nodiscard]] nb::tuple push(const std::vector<EventColumn>& columns);
@@ -106,7 +107,8 @@ class DenseMonitor {
     [[nodiscard]] PyObject* fail(const dense::Failure& failure) const noexcept;
     [[nodiscard]] bool ready() const noexcept;
     [[nodiscard]] bool read_time(PyObject* time) noexcept;
-    [[nodiscard]] const char* read_values(PyObject* values) noexcept;
+    template <class Values>
+    [[nodiscard]] const char* read_values(const Values& values) noexcept;
     void close();
     [[nodiscard]] PyObject* answer() const noexcept;
     [[nodiscard]] nb::object signal_of(const dense::Events& events) const noexcept;

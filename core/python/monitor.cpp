@@ -58,24 +58,24 @@ Monitor::Monitor(Program program, const std::vector<nb::str>& names, double peri
 
 // ---- one sample ---------------------------------------------------------------------------------
 
-PyObject* Monitor::update(PyObject* time, PyObject* values) noexcept {
+template <class Values>
+PyObject* Monitor::update(PyObject* time, const Values& values) noexcept {
     double t = 0.0;
     if (!ready()) return nullptr;
     if (!numbers_.read(time, t) || !clock_.accepts(t)) return refuse("time");
-    if (!PyDict_Check(values) || static_cast<std::size_t>(PyDict_Size(values)) != names_.size()) {
-        return refuse("names");
-    }
-    Py_ssize_t position = 0;
+    if (values.count() != names_.size()) return refuse("names");
     std::size_t guess = 0;
-    PyObject* name = nullptr;
-    PyObject* value = nullptr;
-    while (PyDict_Next(values, &position, &name, &value) != 0) {
+    const char* wrong = values.each([&](PyObject* name, PyObject* value) -> const char* {
         const auto index = place(name, guess++);
-        if (!index) return refuse("names");
-        if (!numbers_.read(value, row_[*index])) return refuse("value");
-    }
+        if (!index) return "names";
+        return numbers_.read(value, row_[*index]) ? nullptr : "value";
+    });
+    if (wrong != nullptr) return refuse(wrong);
     return take([&] { clock_.advance(t); });
 }
+
+template PyObject* Monitor::update(PyObject* time, const Named& values) noexcept;
+template PyObject* Monitor::update(PyObject* time, const InDict& values) noexcept;
 
 PyObject* Monitor::update_pairs(PyObject* time, PyObject* pairs) noexcept {
     double t = 0.0;

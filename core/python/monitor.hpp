@@ -9,6 +9,7 @@
 #include "arrays.hpp"
 #include "calls.hpp"
 #include "failures.hpp"
+#include "names.hpp"
 #include "numbers.hpp"
 
 #include <nanobind/nanobind.h>
@@ -31,7 +32,9 @@ class Monitor {
 
     // One sample each. A float or None is what became known of the first output; null, with a
     // Python exception set, is a refusal.
-    [[nodiscard]] PyObject* update(PyObject* time, PyObject* values) noexcept;
+    // Of update: values by name, Named or InDict.
+    template <class Values>
+    [[nodiscard]] PyObject* update(PyObject* time, const Values& values) noexcept;
     [[nodiscard]] PyObject* update_pairs(PyObject* time, PyObject* pairs) noexcept;
     [[nodiscard]] PyObject* step(std::span<PyObject* const> values) noexcept;
 

@@ -4,6 +4,7 @@
 #include <nanobind/nanobind.h>
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -12,6 +13,48 @@
 namespace rtamt::python {
 
 namespace nb = nanobind;
+
+// Values by name, as a call passes them: a tuple of names (null: none), and as many values.
+struct Named {
+    PyObject* names;
+    PyObject* const* values;
+
+    [[nodiscard]] std::size_t count() const noexcept {
+        return names == nullptr ? 0 : static_cast<std::size_t>(PyTuple_GET_SIZE(names));
+    }
+
+    // Calls `take` with every name and value until it answers what is wrong; null if nothing is.
+    template <class Take>
+    const char* each(Take&& take) const noexcept {
+        for (std::size_t i = 0; i < count(); ++i) {
+            const char* wrong = take(PyTuple_GET_ITEM(names, i), values[i]);
+            if (wrong != nullptr) return wrong;
+        }
+        return nullptr;
+    }
+};
+
+// The same in a dict; anything else has more names than there are.
+struct InDict {
+    PyObject* dict;
+
+    [[nodiscard]] std::size_t count() const noexcept {
+        return PyDict_Check(dict) ? static_cast<std::size_t>(PyDict_GET_SIZE(dict)) : SIZE_MAX;
+    }
+
+    template <class Take>
+    const char* each(Take&& take) const noexcept {
+        if (!PyDict_Check(dict)) return "names";
+        Py_ssize_t position = 0;
+        PyObject* name = nullptr;
+        PyObject* value = nullptr;
+        while (PyDict_Next(dict, &position, &name, &value) != 0) {
+            const char* wrong = take(name, value);
+            if (wrong != nullptr) return wrong;
+        }
+        return nullptr;
+    }
+};
 
 class Names {
   public:

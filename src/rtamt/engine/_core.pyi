@@ -1,6 +1,6 @@
 """The compiled back end: runs serialised programs over samples, in discrete or dense time."""
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -172,3 +172,12 @@ def dense_evaluate(
 
 def dense_scan(kind: str, a: _Events, b: _Events | None = None) -> _Events:
     """Unbounded future over whole step functions: run_max, run_min, or until."""
+
+class Method:
+    """A function of a class that is called only where the compiled monitor in ``_backend`` refuses.
+
+    ``kind`` is one of ``update`` and ``step`` of a Monitor, and ``dense_update`` of a DenseMonitor.
+    """
+
+    def __init__(self, function: Callable[..., Any], kind: str, /) -> None: ...
+    def __call__(self, *args: Any, **kwargs: Any) -> Any: ...

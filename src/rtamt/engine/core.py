@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Any
+from functools import update_wrapper
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from rtamt.engine.drivers import calls_of
 from rtamt.errors import EvaluationError, UsageError
 from rtamt.language.formula import Apply
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterator
+    from collections.abc import Callable, Collection, Iterator
     from types import ModuleType
 
     from rtamt.engine.program import Program
@@ -27,6 +28,26 @@ def core() -> ModuleType:
             f"or use backend='python'"
         ) from None
     return _core
+
+
+Function = TypeVar("Function", bound="Callable[..., Any]")
+
+
+def compiled(kind: str) -> Callable[[Function], Function]:
+    """Return a decorator of a monitor's method that the compiled monitor in ``_backend`` takes over.
+
+    The function itself is called where that one refuses what it is given, and where it is not built.
+    ``kind``: which method of it, as the core calls it.
+    """
+
+    def decorate(function: Function) -> Function:
+        try:
+            from rtamt.engine import _core
+        except ImportError:
+            return function
+        return update_wrapper(_core.Method(function, kind), function)  # type: ignore[return-value]
+
+    return decorate
 
 
 def core_monitor(

@@ -9,7 +9,7 @@ import numpy as np
 
 from rtamt.engine import dense_signals, signals
 from rtamt.engine.compile import compile_program
-from rtamt.engine.core import check_call, core, making
+from rtamt.engine.core import check_call, compiled, core, making
 from rtamt.engine.dense_evaluate import undefined
 from rtamt.engine.dense_python_backend import PythonDenseMonitor
 from rtamt.engine.dense_signals import TickSignal
@@ -111,6 +111,7 @@ class DenseMonitor(OnlineMonitor):
         """How many samples of any variable the monitor has taken since the start or the last reset."""
         return sum(self._backend.counts)
 
+    @compiled("dense_update")
     def update(self, time: Any, /, **values: float) -> Signal:
         """Take the values of any variables at one instant (seconds, integer ns, or a datetime).
 

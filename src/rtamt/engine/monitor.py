@@ -10,7 +10,7 @@ import numpy as np
 
 from rtamt.engine import python_backend, signals
 from rtamt.engine.compile import compile_program
-from rtamt.engine.core import check_call, core, core_monitor
+from rtamt.engine.core import check_call, compiled, core, core_monitor
 from rtamt.engine.evaluate import undefined
 from rtamt.engine.online import OnlineMonitor, Watched, depth_of
 from rtamt.engine.signals import Signal
@@ -104,6 +104,7 @@ class Monitor(OnlineMonitor):
         """How many samples the monitor has taken since the start or the last reset."""
         return int(self._backend.samples)
 
+    @compiled("update")
     def update(self, time: float, /, **values: float) -> float | None:
         """Take one sample: ``time`` in seconds and a number for every variable.
 
@@ -127,6 +128,7 @@ class Monitor(OnlineMonitor):
         except self._undefined as error:
             raise self._no_value(error, (time,)) from None
 
+    @compiled("step")
     def step(self, *values: float) -> float | None:
         """Take one sample by position, in the order of ``input_names``, one period after the last.
 

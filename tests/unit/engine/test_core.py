@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gc
+import numbers
 import sys
 import threading
 from decimal import Decimal
@@ -256,6 +257,73 @@ def test_another_monitor_goes_on_from_a_state() -> None:
     assert m.state() == other.state()
     with pytest.raises(ValueError, match=r"^This is not the state of a monitor of this program\.$"):
         monitor().restore(m.state())
+
+
+class Watcher:
+    """As the monitors of Python are made: the method is taken over, and asked where that does not do."""
+
+    def __init__(self, backend: Any) -> None:
+        self._backend = backend
+        self.asked: list[Any] = []
+
+    def _ask(self, *args: Any, **values: Any) -> str:
+        self.asked.append((args, values))
+        return "asked"
+
+    update = _core.Method(_ask, "update")
+    step = _core.Method(_ask, "step")
+
+
+def test_a_method_is_taken_over_where_the_monitor_takes_the_sample() -> None:
+    watcher = Watcher(monitor())
+    reference = monitor()
+    assert watcher.update(0.5, b=2, a=np.float64(3)) == reference.update(0.5, {"a": 3.0, "b": 2.0})
+    assert Watcher.update(watcher, 1.5, a=1, b=2) == reference.update(1.5, {"a": 1.0, "b": 2.0})
+    step = watcher.step
+    assert step(4, 5.0) == reference.step(4.0, 5.0)
+    assert watcher.asked == []
+    assert state(watcher._backend) == state(reference)
+
+
+@pytest.mark.parametrize(
+    ("args", "values"),
+    [
+        ((0.0,), {"a": 1.0}),
+        ((0.0,), {"a": 1.0, "b": float("nan")}),
+        ((0.0,), {"a": 1.0, "c": 1.0}),
+        (("0",), {"a": 1.0, "b": 1.0}),
+        ((), {"a": 1.0, "b": 1.0}),
+        ((0.0, 1.0), {"a": 1.0, "b": 1.0}),
+    ],
+)
+def test_what_the_monitor_refuses_goes_to_the_function_as_it_came(args: Any, values: Any) -> None:
+    watcher = Watcher(monitor())
+    before = state(watcher._backend)
+    assert watcher.update(*args, **values) == "asked"
+    assert watcher.asked == [(args, values)]
+    assert state(watcher._backend) == before
+
+
+def test_without_a_compiled_monitor_the_function_is_called() -> None:
+    for backend in (None, _core.DenseMonitor, object()):
+        watcher = Watcher(backend)
+        assert (watcher.update(0.0, a=1.0, b=1.0), watcher.step(1.0)) == ("asked", "asked")
+    with pytest.raises(AttributeError, match="_backend"):
+        Watcher.update(object(), 0.0)
+    with pytest.raises(ValueError, match=r"^There is no method 'finish'\.$"):
+        _core.Method(len, "finish")
+
+
+def test_what_a_number_raises_by_itself_is_not_asked_about() -> None:
+    class Stop:
+        def __float__(self) -> float:
+            raise KeyboardInterrupt
+
+    numbers.Real.register(Stop)
+    watcher = Watcher(monitor())
+    with pytest.raises(KeyboardInterrupt):
+        watcher.update(0.0, a=Stop(), b=1.0)
+    assert watcher.asked == []
 
 
 def test_wrong_calls_say_what_is_wrong() -> None:
