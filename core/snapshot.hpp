@@ -66,8 +66,9 @@ class Snapshot {
     }
 
     void put(const void* memory, std::size_t size) {
-        const auto* bytes = static_cast<const std::uint8_t*>(memory);
-        written_.insert(written_.end(), bytes, bytes + size);
+        const std::size_t begin = written_.size();
+        written_.resize(begin + size);
+        std::memcpy(written_.data() + begin, memory, size);
     }
 
     void get(void* memory, std::size_t count, std::size_t size) {

@@ -33,9 +33,12 @@ class Text(Writer):
         return f"[{begin}:{'inf' if end is None else end}]"
 
 
+TEXT = Text({op.name: spelled(op) for op in STL})
+
+
 def answer(formula, time, mode, signals, end):  # noqa: ARG001 - the whole trace is told
     """Evaluate, or update sample by sample."""
-    spec = rtamt.parse(Text({op.name: spelled(op) for op in STL}).write(formula), time=time)
+    spec = rtamt.parse(TEXT.write(formula), time=time)
     if time == "discrete":
         if mode == "offline":
             return {"values": spec.evaluate({**signals}).signal.values.tolist()}
@@ -75,9 +78,19 @@ def stepping(spec, signals):
     return run
 
 
+def updating(monitor, names):
+    """Return the loop that a user writes who knows the names: ``update(t, a=a, b=b)``."""
+    values = ", ".join(f"v{k}" for k in range(len(names)))
+    given = ", ".join(f"{name}=v{k}" for k, name in enumerate(names))
+    code = f"def run(update, rows):\n    for t, {values} in rows:\n        update(t, {given})\n"
+    scope = {}
+    exec(code, scope)  # noqa: S102 - of names of the benchmark's own
+    return lambda rows: scope["run"](monitor.update, rows)
+
+
 def prepare(formula, time, mode, signals):
-    """Take arrays offline, and a dict of named values a sample online."""
-    spec = parsed(Text({op.name: spelled(op) for op in STL}).write(formula), time)
+    """Take arrays offline, and named values a sample online."""
+    spec = parsed(TEXT.write(formula), time)
     if "RTAMT_BENCH_STEP" in os.environ:
         return stepping(spec, signals)
     if mode == "offline":
@@ -86,25 +99,14 @@ def prepare(formula, time, mode, signals):
         else:
             data = {name: tuple(np.array(samples).T.copy()) for name, samples in signals.items()}
         return lambda: spec.evaluate(data).signal
-    monitor = spec.monitor()
     if time == "discrete":
-        rows = [
-            (float(i), dict(zip(signals, row, strict=True)))
-            for i, row in enumerate(zip(*signals.values(), strict=True))
-        ]
+        rows = [(float(i), *row) for i, row in enumerate(zip(*signals.values(), strict=True))]
     else:
-        names = list(signals)
         rows = [
-            (events[0][0], {name: v for name, (_, v) in zip(names, events, strict=True)})
-            for events in zip(*signals.values(), strict=True)
+            (events[0][0], *(value for _, value in events)) for events in zip(*signals.values(), strict=True)
         ]
-
-    def run(begin, end):
-        update = monitor.update
-        for t, values in rows[begin:end]:
-            update(t, **values)
-
-    return run
+    update = updating(spec.monitor(), list(signals))
+    return lambda begin, end: update(rows[begin:end])
 
 
 serve(

@@ -82,7 +82,7 @@ class Evaluators:
             n, start = len(recording), float(times[0])
             columns = [reference.evaluate(f, recording.columns, n, period, start) for f in formulas]
         else:
-            key = (formulas, period)
+            key = (formulas, period.as_integer_ratio())  # fractions are slow to hash
             evaluator = self._discrete.get(key)
             if evaluator is None:
                 evaluator = self._discrete[key] = Evaluator(tuple(map(desugar, formulas)), period)
@@ -94,7 +94,7 @@ class Evaluators:
         if self._backend == "python":
             steps = [dense_reference.evaluate(f, recording.columns, tick) for f in formulas]
             return [recording.signal(each.times, each.values) for each in steps]
-        key = (formulas, tick, inputs)
+        key = (formulas, tick.as_integer_ratio(), inputs)
         evaluator = self._dense.get(key)
         if evaluator is None:
             evaluator = dense_evaluate.Evaluator(tuple(map(desugar, formulas)), tick, inputs)

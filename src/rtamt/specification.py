@@ -151,6 +151,21 @@ class Specification:
         semantics: Semantics | None = None,
     ) -> Question:
         """Return what :meth:`evaluate` asks of a recording; arguments and errors are those of it."""
+        if time is None and period is None and resolution is None and semantics is None:
+            return self._own_question
+        return self._question(time, period, resolution, semantics)
+
+    @cached_property
+    def _own_question(self) -> Question:
+        return self._question(None, None, None, None)
+
+    def _question(
+        self,
+        time: str | None,
+        period: Duration | None,
+        resolution: Duration | None,
+        semantics: Semantics | None,
+    ) -> Question:
         chosen = self._semantics(semantics)
         formula = self.judged(self.formula, chosen)
         if self._time(time) == "discrete":
@@ -325,20 +340,20 @@ class Specification:
 
     def _check(self, question: Question, recording: Recording | DenseRecording) -> None:
         if isinstance(recording, Recording):  # many recordings have the same period
-            key = (question.formula, recording.period)
+            key = (question.formula, recording.period.as_integer_ratio())  # fractions are slow to hash
             if key not in self._checked:
                 question.check(recording)
                 self._checked.add(key)
 
     @cached_property
-    def _checked(self) -> set[tuple[Formula, Fraction]]:
+    def _checked(self) -> set[tuple[Formula, tuple[int, int]]]:
         return set()
 
     @cached_property
     def _evaluators(self) -> Evaluators:
         return Evaluators(self.backend)
 
-    @property
+    @cached_property
     def declared(self) -> tuple[str, ...]:
         """The names that the text declares: data may have them, also where the formula reads none of them."""
         return tuple(declaration.name for declaration in self.document.declarations)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from contextlib import contextmanager
+import sys
 from functools import update_wrapper
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -11,7 +11,7 @@ from rtamt.errors import EvaluationError, UsageError
 from rtamt.language.formula import Apply
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Iterator
+    from collections.abc import Callable, Collection
     from types import ModuleType
 
     from rtamt.engine.program import Program
@@ -20,6 +20,9 @@ if TYPE_CHECKING:
 
 def core() -> ModuleType:
     """Return the compiled core; raise :class:`UsageError` where it is not installed."""
+    loaded = sys.modules.get("rtamt.engine._core")
+    if loaded is not None:
+        return loaded
     try:
         from rtamt.engine import _core
     except ImportError as error:
@@ -61,10 +64,9 @@ def core_monitor(
     _core = core()
     code, calls = program.code(), calls_of(program)
     try:
-        with making(program):
-            return _core.Monitor(
-                code, list(program.inputs), period, tolerance, strict, frozenset(ignored), calls
-            )
+        return _core.Monitor(code, list(program.inputs), period, tolerance, strict, frozenset(ignored), calls)
+    except RuntimeError as error:
+        raise not_made(program, error) from None
     except MemoryError:
         gibibytes = _core.memory(code, calls) / 2**30
         raise UsageError(
@@ -73,14 +75,10 @@ def core_monitor(
         ) from None
 
 
-@contextmanager
-def making(program: Program) -> Iterator[None]:
-    """Turn what a compiled kernel says when it cannot be made into a sentence."""
-    try:
-        yield
-    except RuntimeError as error:
-        names = dict.fromkeys(site.op.name for site in program.calls)
-        raise UsageError(f"the kernel of '{' or '.join(names)}' cannot be made: {error}") from None
+def not_made(program: Program, error: RuntimeError) -> UsageError:
+    """Return the error for what a compiled kernel said when it could not be made."""
+    names = dict.fromkeys(site.op.name for site in program.calls)
+    return UsageError(f"the kernel of '{' or '.join(names)}' cannot be made: {error}")
 
 
 def check_call(error: Exception, formula: Formula | None) -> None:

@@ -9,7 +9,7 @@ import numpy as np
 
 from rtamt.engine import dense_signals, signals
 from rtamt.engine.compile import DEFINED, compile_plan
-from rtamt.engine.core import check_call, core, making
+from rtamt.engine.core import check_call, core, not_made
 from rtamt.engine.drivers import calls_of, defined_signal
 from rtamt.engine.evaluate import gave_nan, is_called
 from rtamt.engine.signals import Signal
@@ -49,10 +49,12 @@ class DenseRecording:
 
     def signal(self, ticks: TickArray, values: signals.FloatArray) -> Signal:
         """Return events as a signal up to the end: a point for every change, and one at the end."""
-        inside = ticks <= self.end
-        ticks, values = ticks[inside], values[inside]
-        if len(ticks) and ticks[-1] < self.end:
-            ticks, values = np.append(ticks, self.end), np.append(values, values[-1])
+        end = self.end
+        if len(ticks) and ticks[-1] > end:
+            inside = int(ticks.searchsorted(end, "right"))
+            ticks, values = ticks[:inside], values[:inside]
+        if len(ticks) and ticks[-1] < end:
+            ticks, values = np.concatenate((ticks, (end,))), np.concatenate((values, values[-1:]))
         return Signal(self.scale.times(ticks), values)
 
 
@@ -132,10 +134,11 @@ def run(
     """Run one program of a plan over whole signals, and ``extra`` ticks on."""
     _core = core()
     try:
-        with making(program):
-            values: list[Samples] = _core.dense_evaluate(
-                program.code(), [columns[name] for name in program.inputs], extra, calls_of(program)
-            )
+        values: list[Samples] = _core.dense_evaluate(
+            program.code(), [columns[name] for name in program.inputs], extra, calls_of(program)
+        )
+    except RuntimeError as error:
+        raise not_made(program, error) from None
     except _core.Undefined as error:
         instruction, tick, *_ = error.args
         formula = program.origins[instruction]

@@ -9,7 +9,7 @@ import numpy as np
 
 from rtamt.engine import dense_signals, signals
 from rtamt.engine.compile import compile_program
-from rtamt.engine.core import check_call, compiled, core, making
+from rtamt.engine.core import check_call, compiled, core, not_made
 from rtamt.engine.dense_evaluate import undefined
 from rtamt.engine.dense_python_backend import PythonDenseMonitor
 from rtamt.engine.dense_signals import TickSignal
@@ -88,10 +88,12 @@ class DenseMonitor(OnlineMonitor):
     def _open(self) -> Any:
         if self._program is None:
             return PythonDenseMonitor(self._formulas, self.input_names, self._tick)
-        with making(self._program):
+        try:
             return core().DenseMonitor(
                 self._program.code(), list(self.input_names), self._unread, calls=calls_of(self._program)
             )
+        except RuntimeError as error:
+            raise not_made(self._program, error) from None
 
     def _connect(self, backend: Any) -> None:
         self._backend = backend

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import struct
-from collections.abc import Mapping
+from math import isnan
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -90,9 +90,9 @@ def columns_of(data: Any, names: Sequence[str], known: Collection[str] = ()) -> 
     name. A variable with fields (``req.value``) may be
     given as ``req``, whose values are objects that have them.
     """
-    if isinstance(data, signals.Clocked):
+    if data.__class__ is not dict and isinstance(data, signals.Clocked):
         data = data.on_own_clocks(names)
-    if not isinstance(data, Mapping):
+    if not signals.is_mapping(data):
         if not hasattr(data, "columns"):
             raise TraceError(
                 "expected a mapping from variable to (times, values), such as {'x': ([0.0, 1.5], [3, 4])}, "
@@ -132,13 +132,12 @@ def samples_of(
         )
     before = ticks[:-1] if last is None else np.concatenate(([last], ticks[:-1]))
     after = ticks[1:] if last is None else ticks
-    late = after <= before
-    if late.any():
-        i = int(late.argmax())
+    rising = after > before
+    if not np.logical_and.reduce(rising):
+        i = int(rising.argmin())
         raise not_increasing(name, first + i + (last is None), int(after[i]), int(before[i]), scale)
-    bad = np.isnan(values)
-    if bad.any():
-        i = int(bad.argmax())
+    if len(values) and isnan(np.minimum.reduce(values)):  # the least of numbers and a NaN is NaN
+        i = int(np.isnan(values).argmax())
         raise TraceError(
             f"'{name}' is NaN at sample {first + i}, time {scale.show(int(ticks[i]))}: "
             f"fill the gap or leave the sample out",

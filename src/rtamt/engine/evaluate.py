@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rtamt.engine.compile import DEFINED, Plan, compile_plan
-from rtamt.engine.core import check_call, core, making
+from rtamt.engine.core import check_call, core, not_made
 from rtamt.engine.drivers import calls_of, defined_column
 from rtamt.errors import EvaluationError
 from rtamt.language.formula import Apply, postorder
@@ -72,8 +72,9 @@ def run(
     _core = core()
     inputs = [columns[name] for name in program.inputs]
     try:
-        with making(program):
-            values: list[FloatArray] = _core.evaluate(program.code(), inputs, len(trace), calls_of(program))
+        values: list[FloatArray] = _core.evaluate(program.code(), inputs, len(trace), calls_of(program))
+    except RuntimeError as error:
+        raise not_made(program, error) from None
     except _core.Undefined as error:
         instruction, sample, *_ = error.args
         formula = program.origins[instruction]

@@ -77,6 +77,10 @@ class TimeScale:
         ``times``: as :func:`sequence_of` returns them. Integers are exact. ``first`` is the index of
         ``times[0]`` in the recording of ``name``, for messages.
         """
+        if self.kind == "seconds" and times.__class__ is np.ndarray and times.dtype == np.float64:
+            plain = self._plain(times)
+            if plain is not None:
+                return plain
         self._require_kind(times, name, first)
         try:
             if self.kind in ("seconds", "units"):
@@ -86,6 +90,18 @@ class TimeScale:
             return self._of_dates(times, name, first)
         except OverflowError:
             raise self.too_far(name) from None
+
+    def _plain(self, numbers: FloatArray) -> TickArray | None:
+        """Return the ticks of doubles that do not decrease and are near 0; None where there are others."""
+        ratio = self.unit / self.tick
+        bound = float(NEAR / ratio)
+        # In order, all are as near as the first and the last; NaN is in no order.
+        if not len(numbers) or not -bound < numbers[0] <= numbers[-1] < bound:
+            return None
+        if not np.logical_and.reduce(numbers[1:] >= numbers[:-1]):
+            return None
+        scaled: FloatArray = np.rint(numbers * float(ratio.numerator) / float(ratio.denominator))
+        return scaled.astype(np.int64)
 
     def _require_kind(self, times: Any, name: str, first: int) -> None:
         kinds = kinds_of(times)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from datetime import datetime, timedelta, timezone
 from fractions import Fraction
 from itertools import pairwise
+from math import inf, nan
 from typing import Any
 
 import numpy as np
@@ -14,6 +15,7 @@ from hypothesis import strategies as st
 
 import rtamt
 from rtamt.engine.ticks import NANOSECOND, TimeScale, tick_of
+from rtamt.errors import TraceError
 
 NOON = datetime(2026, 1, 1, 12)
 ZONE = timezone(timedelta(hours=2))
@@ -254,3 +256,35 @@ def test_pandas_series_and_timestamps() -> None:
     np.testing.assert_array_equal(
         rtamt.parse("x").evaluate(frame, time="dense").signal.times, [0.0, 0.5]
     )  # fmt: skip
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize(
+    "times",
+    [
+        [0.0, 0.1, 0.3],
+        [-(2.0**21), -0.3, 2.0**21],
+        [0.5e-9, 1.5e-9, 2.5e-9],  # halves go to the even tick
+        [0.3, 0.1, 0.2],
+        [0.1, 0.1],
+        [1700000000.1, 1700000000.2],
+        [0.0, 1e6, 1e7],
+        [7.25],
+        [],
+    ],
+)
+def test_doubles_in_an_array_become_the_ticks_that_they_become_in_a_list(times: list[float]) -> None:
+    scale = TimeScale(NANOSECOND, "seconds")
+    assert scale.ticks(np.array(times), "x").tolist() == scale.ticks(times, "x").tolist()
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("times", [[0.0, nan, 1.0], [0.0, inf], [-inf, 0.0], [0.0, 1e308, 2.0]])
+def test_doubles_that_no_tick_holds_are_refused_alike(times: list[float]) -> None:
+    scale = TimeScale(NANOSECOND, "seconds")
+    said = []
+    for told in (times, np.array(times)):
+        with pytest.raises(TraceError) as caught:
+            scale.ticks(told, "x")
+        said.append(str(caught.value))
+    assert said[0] == said[1]
