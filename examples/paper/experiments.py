@@ -183,11 +183,8 @@ def scaling(sizes):
     return found
 
 
-def windows(bounds, samples, budget=15.0):
-    """Online: the median of seconds a sample of always[0,k](a + b >= -2), pastified, for each k.
-
-    ``budget``: seconds for each k; who needs longer is asked for fewer samples.
-    """
+def windows(bounds, samples):
+    """Online: the median of seconds a sample of always[0,k](a + b >= -2), pastified, for each k."""
     found = {}
     for k in bounds:
         spec = rtamt.StlDiscreteTimeOnlineSpecification()
@@ -196,28 +193,40 @@ def windows(bounds, samples, budget=15.0):
         spec.spec = f"always[0,{k}]((a + b) >= (0 - 2))"
         spec.parse()
         spec.pastify()
-        took = []
-        deadline = time.perf_counter() + budget
-        for i in range(samples):
-            if i >= 5 and time.perf_counter() > deadline:
-                break
-            begin = time.perf_counter()
-            spec.update(i, [("a", float(i % 7)), ("b", float(i % 5))])
-            took.append(time.perf_counter() - begin)
-        found[str(k)] = statistics.median(took)
+        found[str(k)] = seconds_a_sample(spec, samples)
     return found
 
 
+def seconds_a_sample(spec, samples, budget=15.0):
+    """Return the median of the processor's seconds that an update takes.
+
+    ``budget``: seconds in all; who needs longer is asked for fewer samples, at least 5.
+    """
+    deadline = time.process_time() + budget
+    took = []
+    done, batch = 0, 1
+    while done < samples and (done < 5 or time.process_time() < deadline):
+        begin = time.process_time()
+        for i in range(done, done + batch):
+            spec.update(i, [("a", float(i % 7)), ("b", float(i % 5))])
+        took.append((time.process_time() - begin) / batch)
+        done += batch
+        if done == 5 and took[-1] < 1e-3:
+            batch = 25  # reading the clock costs as much as a fast update
+            took.clear()
+    return statistics.median(took)
+
+
 def seconds(run, budget=2.0):
-    """Return the shortest of up to five runs, of fewer where they take longer than the budget."""
+    """Return the shortest of up to five runs, in seconds of the processor; of fewer beyond the budget."""
     best = None
-    begin = time.perf_counter()
+    begin = time.process_time()
     for _ in range(5):
-        start = time.perf_counter()
+        start = time.process_time()
         run()
-        took = time.perf_counter() - start
+        took = time.process_time() - start
         best = took if best is None else min(best, took)
-        if time.perf_counter() - begin > budget:
+        if time.process_time() - begin > budget:
             break
     return best
 

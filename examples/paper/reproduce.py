@@ -90,7 +90,8 @@ def report(found: Found) -> str:
     return "\n\n".join(
         [
             f"# The paper, run again\n\nBy `examples/paper/reproduce.py` on {platform.platform()}, Python "
-            f"{platform.python_version()}, {os.cpu_count()} cores. Times are this machine's.{peer}",
+            f"{platform.python_version()}, {os.cpu_count()} cores. "
+            f"Times are those of the processor, on this machine.{peer}",
             table("Two behaviours of a PID controller against f <= 1.1 (the first figure)", "figure 1", found,
                   "robustness +0.048 where it is satisfied, -0.198 where it is violated. It does not publish the "
                   "controllers: these are step responses of second order that reach 1.052 and 1.298"),

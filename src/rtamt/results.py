@@ -21,9 +21,14 @@ if TYPE_CHECKING:
     from rtamt.specification import Specification
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Result:
-    """What an evaluation gives: numbers and a verdict at the first instant, and the whole signal."""
+    """What an evaluation gives: numbers and a verdict at the first instant, and the whole signal.
+
+    >>> import rtamt
+    >>> rtamt.parse("always(x >= 3)").evaluate({"x": [5, 4, 2]})
+    <result of always(x >= 3): robustness -1.0 at 0.0>
+    """
 
     specification: Specification
     trace: Recording | DenseRecording
@@ -31,6 +36,10 @@ class Result:
     signal: Signal
     #: What predicates were worth: a name, or the function that was given.
     semantics: str | Judge = "standard"
+
+    def __repr__(self) -> str:
+        of = self.specification.name or self.specification.formula
+        return f"<result of {of}: robustness {self.robustness} at {self.signal.times[0]}>"
 
     @property
     def robustness(self) -> float:

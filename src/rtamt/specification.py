@@ -49,23 +49,30 @@ if TYPE_CHECKING:
     from rtamt.settings import Duration, Semantics, Settings
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Specification:
     """A requirement: one formula, with the names, types and sub-formulas of its document.
 
     Made by :func:`parse` and :func:`load`; immutable, so that it can be shared and reused.
+
+    >>> import rtamt
+    >>> rtamt.parse("specification slow always(speed <= 30)")
+    <specification slow: always(speed <= 30)>
     """
 
     document: Document
     period: Fraction | None = None
     unit: str = "s"
     backend: str = "cpp"
-    language: Language = field(default=STL, repr=False)
+    language: Language = STL
     time: str = "discrete"
     resolution: Fraction = NANOSECOND
     semantics: str | Judge = "standard"
     #: From a variable to ``"input"`` or ``"output"``: what the text declares, and what was given.
     roles: Mapping[str, str] = field(default_factory=dict)
+
+    def __repr__(self) -> str:
+        return f"<specification {f'{self.name}: ' if self.name else ''}{self.formula}>"
 
     @property
     def formula(self) -> Formula:
