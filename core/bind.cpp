@@ -335,6 +335,8 @@ NB_MODULE(_core, m) {
         .def("finish", &DenseMonitor::finish, "End the trace; return the rest of the first output.")
         .def("told", &DenseMonitor::told, nb::arg("output"),
              "What the last update made known of an output, times and values.")
+        .def("points", &DenseMonitor::points,
+             "The same of every output: a list for each, of pairs of time and value.")
         .def("reset", &DenseMonitor::reset, "Forget every sample.")
         .def("state", &DenseMonitor::state,
              "What the samples so far have left behind, but for what tell() says.")

@@ -315,6 +315,19 @@ nb::tuple DenseMonitor::told(std::size_t output) const {
     return hand_over(copy);
 }
 
+nb::list DenseMonitor::points() const {
+    require_idle();
+    nb::list every;
+    for (const EventList& list : results_) {
+        const Events events = list.view();
+        nb::list pairs;
+        for (std::size_t i = 0; i < events.count; ++i)
+            pairs.append(nb::make_tuple(events.times[i], events.values[i]));
+        every.append(pairs);
+    }
+    return every;
+}
+
 void DenseMonitor::reset() {
     require_idle();
     executor_.reset();

@@ -61,6 +61,9 @@ class DenseMonitor {
     // handed it over.
     [[nodiscard]] nb::tuple told(std::size_t output) const;
 
+    // The same of every output in one call: a list for each, of pairs of time and value.
+    [[nodiscard]] nb::list points() const;
+
     void reset();
 
     // What the garbage collector looks at.

@@ -115,6 +115,9 @@ class DenseMonitor:
     def told(self, output: int) -> _Events:
         """What the last update made known of an output."""
 
+    def points(self) -> list[list[tuple[int, float]]]:
+        """The same of every output: a list for each, of pairs of time and value."""
+
     def reset(self) -> None:
         """Forget every sample."""
 

@@ -167,10 +167,12 @@ class DenseMonitor(OnlineMonitor):
         """
         return self._signal(self._backend.told(self._output(name)))
 
-    def points(self, name: str) -> list[tuple[int, float]]:
-        """Return what ``monitor[name]`` tells as pairs of tick and value, for loops in which a microsecond counts."""
-        ticks, values = self._backend.told(self._output(name))
-        return list(zip(ticks.tolist(), values.tolist(), strict=True))
+    def points(self) -> list[list[tuple[int, float]]]:
+        """Return what the last update made known as pairs of tick and value: of the result, then of what is watched.
+
+        For loops in which a microsecond counts.
+        """
+        return self._backend.points()  # type: ignore[no-any-return]
 
     def part(self, formula: Formula) -> Signal:
         """Return what the last update made known of any part of the formulas; they have no future operators.

@@ -80,6 +80,10 @@ class PythonDenseMonitor:
         """Return what the last update made known of an output."""
         return self._told[output]
 
+    def points(self) -> list[list[tuple[int, float]]]:
+        """The same of every output: a list for each, of pairs of tick and value."""
+        return [list(zip(ticks.tolist(), values.tolist(), strict=True)) for ticks, values in self._told]
+
     def part(self, formula: Formula) -> Samples:
         """Return what the last chunk made known of a formula: it is taken once more, for this one alone."""
         before, columns = self._latest

@@ -49,11 +49,12 @@ class Outbox:
                 (verdict_topic(output.topic), self._verdict),
             )
         }
+        self._topic_of_verdicts = {output.topic: verdict_topic(output.topic) for output in binding.outputs}
 
     def topic(self, record: Record) -> str:
         """Return the topic that a record goes to."""
         topic = record.output.topic
-        return topic if isinstance(record, Robustness) else verdict_topic(topic)
+        return topic if isinstance(record, Robustness) else self._topic_of_verdicts[topic]
 
     def message(self, record: Record) -> Any:
         """Return the message of a record, its header stamped."""

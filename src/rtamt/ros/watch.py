@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from collections import deque
-from dataclasses import dataclass
 from fractions import Fraction
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -26,8 +25,7 @@ if TYPE_CHECKING:
     from rtamt.ros.binding import Output
 
 
-@dataclass(frozen=True, slots=True)
-class Robustness:
+class Robustness(NamedTuple):
     """How robust an output's pastified formula was at ``stamp`` (nanoseconds)."""
 
     output: Output
@@ -35,8 +33,7 @@ class Robustness:
     value: float
 
 
-@dataclass(frozen=True, slots=True)
-class Verdict:
+class Verdict(NamedTuple):
     """Whether an output's formula held at ``stamp - horizon``.
 
     ``stamp``: nanoseconds. ``horizon``: seconds. ``satisfied`` is None while that instant lies before
@@ -209,23 +206,19 @@ class DenseWatch(Watch):
         if not len(self._monitor.update(np.int64(stamp), **values)):
             return []
         records: list[Record] = []
-        for standing, (robustness, truth) in zip(self.standings, self.formulas, strict=True):
-            records += self._told(standing, self._monitor.points(robustness.name))
-            records += self._judged(standing, self._monitor.points(truth.name))
-        return records
-
-    def _told(self, standing: Standing, points: list[tuple[int, float]]) -> list[Record]:
+        _, *watched = self._monitor.points()
         if self._start is None:
-            self._start = points[0][0]
-        standing.latest = points[-1][1]
-        return [Robustness(standing.output, at, value) for at, value in points]
-
-    def _judged(self, standing: Standing, points: list[tuple[int, float]]) -> list[Record]:
-        assert self._start is not None
-        known = self._start + standing.lag
-        told = [(at, truth > 0 if at >= known else None) for at, truth in points]
-        standing.satisfied = told[-1][1]
-        return [Verdict(standing.output, at, standing.horizon, held) for at, held in told]
+            self._start = watched[0][0][0]
+        for standing, told, truths in zip(self.standings, watched[::2], watched[1::2], strict=True):
+            output, depth = standing.output, standing.horizon
+            known = self._start + standing.lag
+            for at, value in told:
+                records.append(Robustness(output, at, value))
+                standing.latest = value
+            for at, truth in truths:
+                standing.satisfied = truth > 0 if at >= known else None
+                records.append(Verdict(output, at, depth, standing.satisfied))
+        return records
 
     def reset(self) -> None:
         """Forget all samples."""
