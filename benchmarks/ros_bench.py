@@ -1,29 +1,34 @@
-"""Monitors in one ROS 1 node on one core, a message each 10 ms: samples lost, latency.
+"""Monitors in one ROS 1 node on one core, a message each 10 ms: samples lost, latency; `make bench-ros`.
 
-    benchmarks/ros_bench.py [--monitors 200] [--rate 100] [--seconds 10]
+    benchmarks/ros_bench.py [--monitors 200] [--rate 100] [--seconds 10] [--heard 1 20] [--output FILE]
 
 One topic of messages, one requirement for each monitor, each with a topic of its own, in dense time, so that every
-message is a sample and is answered at once. A talker publishes at the rate; a listener takes the stamps of
-what a tenth of the monitors publish and the time at which it hears them, the talker's process and its own included.
-The node runs on one core. Needs ROS 1 with rtamt_msgs and rtamt4ros built and sourced, and a master.
+message is a sample and is answered at once. A talker publishes at the rate and takes the time at which it hears
+the robustness on some of the topics; its own process, which is Python too, is part of the latency. Beside it a
+node that monitors nothing and publishes each message again on as many topics: what rospy alone costs.
 """
 
 from __future__ import annotations
 
 import argparse
+import json
 import os
-import shutil
-import statistics
 import subprocess
 import sys
 import tempfile
 import time
 from pathlib import Path
+from typing import Any
 
-import rospy
-from rtamt_msgs.msg import FloatStamped
+HERE = Path(__file__).parent
+sys.path.insert(0, str(HERE.parent))
 
-HEARD = 10  # one in so many monitors has a listener
+from tests.integration.ros.processes import free_port  # noqa: E402
+from tests.integration.ros.workspace import build, missing  # noqa: E402
+
+HEADER = """\
+| node | topics heard | answers | lost | median (ms) | 99 % (ms) | most (ms) | node's processor time a message (ms) |
+|---|---|---|---|---|---|---|---|"""
 
 
 def specification(monitors: int) -> str:
@@ -38,70 +43,67 @@ def specification(monitors: int) -> str:
 
 
 def main() -> None:
-    """Run node, talker and listener; print what came of it."""
-    parser = argparse.ArgumentParser()
+    """Run node, talker and listener for every number of topics; print a table, and write it."""
+    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     parser.add_argument("--monitors", type=int, default=200)
     parser.add_argument("--rate", type=float, default=100.0)
     parser.add_argument("--seconds", type=float, default=10.0)
+    parser.add_argument("--heard", type=int, nargs="+", default=[1, 20])
+    parser.add_argument("--output", type=Path, help="where the table is written as well")
     args = parser.parse_args()
+    if missing():
+        sys.exit(f"ROS 1 is not installed ({', '.join(missing())}); `make test` installs it where it may")
     with tempfile.TemporaryDirectory() as folder:
-        spec = Path(folder, "bench.stl")
-        spec.write_text(specification(args.monitors), encoding="utf-8")
-        command = ["rosrun", "rtamt4ros", "ros_stl_monitor.py", str(spec), "--time", "dense"]
-        if shutil.which("taskset"):
-            command = ["taskset", "-c", "0", *command]
-        node = subprocess.Popen(command)
+        home = Path(folder)
+        env = build(home)
+        port = free_port()
+        env |= {"ROS_MASTER_URI": f"http://127.0.0.1:{port}", "ROS_LOG_DIR": str(home / "log")}
+        (home / "bench.stl").write_text(specification(args.monitors), encoding="utf-8")
+        monitor = ["rosrun", "rtamt4ros", "ros_stl_monitor.py", str(home / "bench.stl"), "--time", "dense"]
+        traffic = [env["RTAMT_PYTHON"], str(HERE / "ros_traffic.py")]
+        core = ["rosmaster", "--core", "-p", str(port)]
+        master = subprocess.Popen(core, env=env, stdout=subprocess.DEVNULL)
+        lines = [
+            f"# {args.monitors} monitors in one ROS 1 node on one core, {args.rate:g} messages a second",
+            "",
+            f"Latency from the message's stamp to the robustness heard, `make bench-ros`, {args.seconds:g} s each; "
+            f"load before it {os.getloadavg()[0]:.1f} on {os.cpu_count()} processors.",
+            "",
+            HEADER,
+        ]
+        print("\n".join(lines), flush=True)
         try:
-            measure(args.monitors, args.rate, args.seconds, node.pid)
+            for topics in args.heard:
+                drive = [*traffic, "drive", str(topics), str(args.rate), str(args.seconds)]
+                for name, node in (("monitors", monitor), ("rospy alone", [*traffic, "relay", str(topics)])):
+                    lines.append(row(name, topics, measured(node, drive, env)))
+                    print(lines[-1], flush=True)
         finally:
-            node.terminate()
-            node.wait()
+            master.terminate()
+            master.wait()
+        if args.output is not None:
+            args.output.write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 
-def measure(monitors: int, rate: float, seconds: float, pid: int) -> None:
-    """Talk for some seconds, and print what was heard."""
-    rospy.init_node("bench", anonymous=True, disable_signals=True)
-    heard: dict[str, dict[int, float]] = {}
-
-    def listen(message: FloatStamped, topic: str) -> None:
-        heard[topic].setdefault(message.header.stamp.to_nsec(), time.time())
-
-    for i in range(0, monitors, HEARD):
-        topic = f"/bench/rob{i}"
-        heard[topic] = {}
-        rospy.Subscriber(topic, FloatStamped, listen, topic, tcp_nodelay=True)
-    talker = rospy.Publisher("/bench/x", FloatStamped, queue_size=1000, tcp_nodelay=True)
-    while talker.get_num_connections() < 1:
-        time.sleep(0.1)
-    time.sleep(3.0)  # until the listener is connected to every topic
-    start, sent, before = time.time(), [], cpu(pid)
-    for i in range(int(rate * seconds)):
-        time.sleep(max(0.0, start + i / rate - time.time()))
-        message = FloatStamped(value=float(i % 9))
-        message.header.stamp = rospy.Time.from_sec(time.time())
-        sent.append(message.header.stamp.to_nsec())
-        talker.publish(message)
-    time.sleep(2.0)
-    used = cpu(pid) - before
-    lost = sum(stamp not in told for told in heard.values() for stamp in sent)
-    late = sorted(
-        (told[stamp] - stamp / 1e9) * 1000 for told in heard.values() for stamp in sent if stamp in told
-    )
-    print(
-        f"{monitors} monitors, {len(sent)} messages at {rate:g} Hz: {lost} of {len(sent) * len(heard)} answers lost"
-    )
-    print(
-        f"latency from stamp to robustness: median {statistics.median(late):.3g} ms, "
-        f"99 % {late[int(len(late) * 0.99)]:.3g} ms, most {late[-1]:.3g} ms"
-    )
-    print(f"the node used {100 * used / seconds:.0f} % of a core")
+def measured(node: list[str], drive: list[str], env: dict[str, str]) -> dict[str, Any]:
+    """Run a node on one core, and what talks to it; return what that tells."""
+    pinned = ["taskset", "-c", "0", *node]
+    process = subprocess.Popen(pinned, env=env, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    try:
+        time.sleep(3.0)  # until it is there
+        told = subprocess.run([*drive, str(process.pid)], env=env, capture_output=True, text=True, check=True)
+    finally:
+        process.terminate()
+        process.wait()
+    found: dict[str, Any] = json.loads(told.stdout)
+    return found
 
 
-def cpu(pid: int) -> float:
-    """Return the seconds of a core that a process has used."""
-    fields = Path(f"/proc/{pid}/stat").read_text(encoding="ascii").rsplit(")", 1)[1].split()
-    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+def row(name: str, topics: int, told: dict[str, Any]) -> str:
+    """Return a row of the table."""
+    times = " | ".join(f"{told[key]:.3g}" for key in ("median", "p99", "most", "cpu"))
+    return f"| {name} | {topics} | {told['answers']} | {told['lost']} | {times} |"
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    main()

@@ -8,6 +8,7 @@ parameters as well: ~spec, ~period, ~unit, ~time, ~stale.
 """
 
 import contextlib
+import gc
 import sys
 import threading
 import time
@@ -42,13 +43,17 @@ class Node:
         self.lock = threading.Lock()
         self.simulated = rospy.get_param("/use_sim_time", False)
         self.outbox = Outbox(monitor.binding, MessageType.load, stamp)
-        self.publishers = {
-            topic: rospy.Publisher(topic, cls, queue_size=QUEUE) for topic, cls in self.outbox.topics.items()
-        }
+        self.heard = set()  # topics that somebody listens to: for the others no message is made
+        self.publishers = {topic: self.publisher(topic, cls) for topic, cls in self.outbox.topics.items()}
         self.diagnostics = self.on_diagnostics()
         self.due = 0.0
         for topic, kind in {known.topic: known.type for known in monitor.binding.inputs}.items():
             rospy.Subscriber(topic, self.outbox.classes[kind], self.receive, topic, tcp_nodelay=True)
+
+    def publisher(self, topic, cls):
+        """Return the publisher of a topic, which says when somebody listens."""
+        audience = Audience(topic, self.heard)
+        return rospy.Publisher(topic, cls, audience, tcp_nodelay=True, queue_size=QUEUE)
 
     def on_diagnostics(self):
         """Return the publisher of conditions; None where there is no message type for them."""
@@ -57,7 +62,7 @@ class Node:
         except ImportError:
             rospy.logwarn("diagnostic_msgs is not installed, so that nothing is published on /diagnostics")
             return None
-        return rospy.Publisher(DIAGNOSTICS, DiagnosticArray, queue_size=QUEUE)
+        return self.publisher(DIAGNOSTICS, DiagnosticArray)
 
     def receive(self, message, topic):
         """Take a message; called by rospy, a thread for each connection."""
@@ -71,9 +76,10 @@ class Node:
                 now = rospy.Time.now().to_nsec()
                 if now:  # simulated time is 0 until somebody publishes it
                     self.publish(self.monitor.tick(now))
-                self.tell(now)
-                pause = self.monitor.pause(rospy.Time.now().to_nsec())
-            self.sleep(pause)
+                notices = self.monitor.notices()
+                conditions = self.conditions(now, notices)
+            self.tell(now, notices, conditions)  # messages need not wait for that
+            self.sleep(self.monitor.pause(rospy.Time.now().to_nsec()))
 
     def sleep(self, seconds):
         """Sleep, or wait for the next simulated instant."""
@@ -87,19 +93,41 @@ class Node:
     def publish(self, records):
         """Publish robustness and verdicts to those who listen."""
         for record in records:
-            publisher = self.publishers[self.outbox.topic(record)]
-            if publisher.get_num_connections():
-                publisher.publish(self.outbox.message(record))
+            topic = self.outbox.topic(record)
+            if topic in self.heard:
+                self.publishers[topic].publish(self.outbox.message(record))
 
-    def tell(self, now):
-        """Log what happened; publish the conditions, once a second and when something did."""
-        notices = self.monitor.notices()
+    def tell(self, now, notices, conditions):
+        """Log what happened; publish the conditions."""
         for notice in notices:
             LOGS[notice.level](notice.message)
-        if self.diagnostics is not None and (notices or time.monotonic() >= self.due):
-            self.due = time.monotonic() + DIAGNOSTICS_EVERY
-            conditions = self.monitor.conditions(now)
+        if conditions:
             self.diagnostics.publish(self.outbox.diagnostics(conditions, rospy.get_name(), now))
+
+    def conditions(self, now, notices):
+        """Return the conditions once a second, and when something happened; none where nobody listens."""
+        if DIAGNOSTICS not in self.heard or not (notices or time.monotonic() >= self.due):
+            return []
+        self.due = time.monotonic() + DIAGNOSTICS_EVERY
+        return self.monitor.conditions(now)
+
+
+class Audience(rospy.SubscribeListener):
+    """Keeps a topic in a set as long as somebody listens to it."""
+
+    def __init__(self, topic, heard):
+        super().__init__()
+        self.topic = topic
+        self.heard = heard
+
+    def peer_subscribe(self, _name, _to_all, _to_peer):
+        """Hear that somebody listens."""
+        self.heard.add(self.topic)
+
+    def peer_unsubscribe(self, _name, peers):
+        """Hear that somebody listens no longer."""
+        if not peers:
+            self.heard.discard(self.topic)
 
 
 class Registration(threading.Thread):
@@ -157,6 +185,7 @@ def main():
     except rospy.ROSInterruptException:
         return 0
     Registration().start()
+    gc.freeze()  # what is here stays: looking through it again and again would make messages wait
     for output in node.monitor.binding.outputs:
         rospy.loginfo("%s: %s", output.name, output.specification.formula)
     with contextlib.suppress(rospy.ROSInterruptException):

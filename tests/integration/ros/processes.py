@@ -137,7 +137,7 @@ class Puppet(Process):
     def __init__(self, script, env, *args):
         self.events = []
         self._answers = queue.Queue()
-        super().__init__([env.get("RTAMT_TEST_PYTHON", sys.executable), str(HERE / script), *args], env)
+        super().__init__([env.get("RTAMT_PYTHON", sys.executable), str(HERE / script), *args], env)
         self._answer("its start")
 
     def heard(self, line):

@@ -111,7 +111,7 @@ def test_what_rosbag_records_is_checked_and_played_to_the_node(ros, puppet):
 
 def test_listings_3_to_7_of_the_paper_run_as_a_script(ros, puppet):
     (ros.folder / "monitor.py").write_text(SCRIPT)
-    ros.start(ros.env["RTAMT_TEST_PYTHON"], "monitor.py")
+    ros.start(ros.env["RTAMT_PYTHON"], "monitor.py")
     connected(puppet, "rtamt/req", "rtamt/gnt", "rtamt/rob")
     publish(puppet, "rtamt/req", 5.0)
     publish(puppet, "rtamt/gnt", 1.0)
