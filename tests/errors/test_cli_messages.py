@@ -6,7 +6,6 @@ import sys
 import pytest
 
 from rtamt.cli import COMMANDS
-from rtamt.readers.formats import SUFFIXES
 from tests.unit.cli import invoke
 
 USE_PYTHON = "; on the command line: --backend python\n"
@@ -104,7 +103,7 @@ def run(capsys, monkeypatch, tmp_path):
         (["check", "x", "nowhere.csv"], "there is no file 'nowhere.csv'"),
         (
             ["check", "x", "folder"],
-            f"cannot tell how to read 'folder': its name ends in none of {', '.join(SUFFIXES)}",
+            "'folder' is a folder without metadata.yaml, so that it is no bag of ROS 2; name a file",
         ),
         (["check", "y", "good.csv"], "good.csv has no column 'y', only time, x"),
         (

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 from rtamt.cli.command import CommandError
 from rtamt.cli.matrix import evaluate
-from rtamt.cli.recordings import is_bag
 from rtamt.errors import UsageError
+from rtamt.readers.formats import is_bag
 from rtamt.rewrite import interface
 from rtamt.ros.bags import Finding, write_mcap
 from rtamt.ros.binding import bind

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
@@ -14,7 +13,7 @@ from rtamt.errors import TraceError, UsageError
 from rtamt.language.units import duration
 from rtamt.readers.assemble import trace_of
 from rtamt.readers.cells import EXAMPLE, date_in
-from rtamt.readers.formats import BAG
+from rtamt.readers.formats import is_bag
 from rtamt.readers.reading import choice, opened
 from rtamt.ros.bags import columns_of
 
@@ -162,11 +161,6 @@ def clock_for(spec: Specification, trace: str, reading: Reading) -> Duration | N
     if reading.resample is not None or spec.time == "dense" or not is_bag(trace):
         return reading.resample
     return spec.period or 1
-
-
-def is_bag(trace: str) -> bool:
-    """Tell whether a recording is a ROS bag: each topic has a clock of its own."""
-    return os.path.splitext(trace)[1].lower() in BAG.suffixes
 
 
 def how_to_mend(error: Exception, data: Trace | None, before: int = 0) -> str:

@@ -39,7 +39,8 @@ class Format:
         return opener(path)
 
 
-#: A bag has a table for each topic; a specification's annotations say which topics it reads.
+#: A bag has a table for each topic; a specification's annotations say which topics it reads. ROS 2 records
+#: folders: such files, or parts of them, and metadata.yaml.
 BAG = Format("ROS bag", (".bag", ".db3", ".mcap"), "rosbag:open_bag")
 
 FORMATS = (
@@ -52,12 +53,27 @@ FORMATS = (
     BAG,
 )
 
+#: How compressed files of a bag end.
+_PACKED = (".zstd", ".zst")
+
 SUFFIXES = {suffix: known for known in FORMATS for suffix in known.suffixes}
+
+
+def is_bag(path: str) -> bool:
+    """Tell whether a path is that of a ROS bag: by its name, or a folder as ROS 2 records it."""
+    suffix = os.path.splitext(path)[1].lower()
+    return suffix in BAG.suffixes or (suffix not in SUFFIXES and os.path.isdir(path))
 
 
 def format_of(path: str) -> Format:
     """Return the format that a file's name tells; raise :class:`TraceError` where it tells none."""
-    suffix = os.path.splitext(path)[1].lower()
+    if is_bag(path):
+        return BAG
+    stem, suffix = os.path.splitext(path.lower())
+    if suffix in _PACKED and is_bag(stem):
+        raise TraceError(
+            f"'{path}' is a compressed file of a bag: give the bag's folder, in which metadata.yaml is, or unpack it"
+        )
     if suffix not in SUFFIXES:
         known, hint = ", ".join(SUFFIXES), did_you_mean(suffix, SUFFIXES) if suffix else ""
         raise TraceError(f"cannot tell how to read '{path}': its name ends in none of {known}{hint}")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from itertools import groupby
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -17,6 +18,9 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
     from rtamt.readers.source import Raw
+
+#: What ROS 2 puts into the folder of a bag.
+_METADATA = "metadata.yaml"
 
 #: Elements of an array that become columns of their own; longer ones are images and clouds of points.
 _ELEMENTS = 1000
@@ -54,8 +58,15 @@ def open_reader(path: str) -> Any:
 
 def _existing(path: str) -> Path:
     """Return a path; raise what ``open`` raises where there is no such file."""
-    with open(path, "rb"):
-        return Path(path)
+    if os.path.isdir(path):
+        if not os.path.isfile(os.path.join(path, _METADATA)):
+            raise TraceError(
+                f"'{path}' is a folder without {_METADATA}, so that it is no bag of ROS 2; name a file"
+            )
+    else:
+        with open(path, "rb"):
+            pass
+    return Path(path)
 
 
 def _table(reader: Any, topic: str, connections: list[Any]) -> Table | None:
@@ -67,7 +78,7 @@ def _table(reader: Any, topic: str, connections: list[Any]) -> Table | None:
     if len(kinds) > 1:
         raise TraceError(f"the topic {topic} carries several types of messages: {', '.join(sorted(kinds))}")
     connection, _, raw = first
-    steps = {f"{topic}{_text(path)}": path for path in _numbers(reader.deserialize(raw, connection.msgtype))}
+    steps = {f"{topic}{_text(path)}": path for path in _numbers(_message(reader, connection, raw))}
     clock = Field(f"{topic} stamp", f"{topic} stamp", "ns", "number")
 
     def load(wanted: Sequence[Field]) -> list[Raw]:
@@ -75,7 +86,7 @@ def _table(reader: Any, topic: str, connections: list[Any]) -> Table | None:
         stamps: list[int] = []
         rows: list[list[Any]] = []
         for known, recorded, data in reader.messages(connections=connections):
-            message = reader.deserialize(data, known.msgtype)
+            message = _message(reader, known, data)
             stamp = _stamp(message) or recorded
             if stamps and stamp <= stamps[-1]:
                 if stamp == stamps[-1]:
@@ -107,6 +118,21 @@ def _columns(wanted: Sequence[Field], clock: Field, stamps: list[int], rows: lis
 
 
 # ---- messages ------------------------------------------------------------------------------------
+
+
+def _message(reader: Any, connection: Any, raw: Any) -> Any:
+    """Return a message of a bag; raise :class:`TraceError` where it is none of its type."""
+    highlevel = library("rosbags.highlevel", "reading ROS bags", "ros")
+    try:
+        return reader.deserialize(raw, connection.msgtype)
+    except highlevel.AnyReaderError as error:
+        path = reader.paths[0]
+        # Only the folder says that each message is compressed.
+        part = path.is_file() and (path.parent / _METADATA).is_file()
+        hint = f"; the file is a part of a bag: give its folder, '{path.parent}'" if part else ""
+        raise TraceError(
+            f"a message on {connection.topic} cannot be read as {connection.msgtype}: {str(error).rstrip('.')}{hint}"
+        ) from None
 
 
 def _numbers(message: Any, before: Steps = ()) -> Iterator[Steps]:

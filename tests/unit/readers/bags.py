@@ -15,9 +15,9 @@ FLOAT = "std_msgs/msg/Float64"
 
 
 class Bag:
-    """A bag in the making: ``kind`` is ros1, sqlite3 or mcap."""
+    """A bag in the making: ``kind`` is ros1, sqlite3 or mcap; ``packed`` what is compressed, FILE or MESSAGE."""
 
-    def __init__(self, folder, kind):
+    def __init__(self, folder, kind, packed=None):
         self.ros1 = kind == "ros1"
         self.store = get_typestore(Stores.ROS1_NOETIC if self.ros1 else Stores.ROS2_JAZZY)
         for name, text in DEFINITIONS.items():
@@ -29,6 +29,9 @@ class Bag:
             plugin = rosbags.rosbag2.StoragePlugin[kind.upper()]
             self.writer = rosbags.rosbag2.Writer(folder / "drive", version=8, storage_plugin=plugin)
             self.path = folder / "drive" / ("drive.mcap" if kind == "mcap" else "drive.db3")
+            if packed is not None:
+                compression = rosbags.rosbag2.CompressionMode[packed]
+                self.writer.set_compression(compression, rosbags.rosbag2.CompressionFormat.ZSTD)
         self.topics = {}
 
     def __enter__(self):

@@ -130,6 +130,43 @@ def test_what_is_no_bag_is_refused_with_a_sentence(tmp_path, name):
     assert str(caught.value).startswith(f"'{path}' cannot be read as a ROS bag: ")
 
 
+@pytest.mark.parametrize("packed", [None, "FILE", "MESSAGE"])
+@pytest.mark.parametrize("kind", ["sqlite3", "mcap"])
+def test_the_folder_that_ros2_records_is_a_bag_compressed_or_not(tmp_path, kind, packed):
+    with Bag(tmp_path, kind, packed) as bag:
+        for i in range(20):
+            bag.stamped("/rtamt/req", START + i, 5.0 if i in {2, 9} else 0.0)
+            bag.stamped("/rtamt/gnt", START + i, 4.0 if i == 5 else 0.0)
+    folder, out = bag.path.parent, tmp_path / "out.mcap"
+    assert main(["check", str(LISTING_8), str(folder), "--quiet", "-o", str(out)]) == 1
+    again = rtamt.read(out)
+    assert again["/rtamt/rob.value"].values.min() == -2
+    assert again["/rtamt/req.value"].values.tolist() == [5.0 if i in {2, 9} else 0.0 for i in range(20)]
+
+
+def test_a_part_of_a_compressed_bag_says_that_the_folder_is_the_bag(tmp_path):
+    for packed in ("FILE", "MESSAGE"):
+        with Bag(tmp_path / packed, "sqlite3", packed) as bag:
+            bag.stamped("/x", 1, 1.0)
+    packed = tmp_path / "FILE/drive/drive.db3.zstd"
+    with pytest.raises(TraceError) as caught:
+        rtamt.read(packed)
+    assert str(caught.value) == (
+        f"'{packed}' is a compressed file of a bag: give the bag's folder, in which metadata.yaml is, or unpack it"
+    )
+    with pytest.raises(TraceError) as caught:
+        rtamt.read(bag.path)
+    assert str(caught.value) == (
+        "a message on /x cannot be read as rtamt_msgs/msg/FloatStamped: Invalid or unsupported CDR encapsulation; "
+        f"the file is a part of a bag: give its folder, '{bag.path.parent}'"
+    )
+    with pytest.raises(TraceError) as caught:
+        rtamt.read(tmp_path)
+    assert str(caught.value) == (
+        f"'{tmp_path}' is a folder without metadata.yaml, so that it is no bag of ROS 2; name a file"
+    )
+
+
 def test_topics_are_written_to_bags_only(tmp_path, capsys):
     trace = tmp_path / "log.csv"
     trace.write_text("time,x\n0,1\n1,2\n")
