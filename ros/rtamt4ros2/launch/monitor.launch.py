@@ -8,14 +8,22 @@ from launch_ros.parameter_descriptions import ParameterValue
 from launch import LaunchDescription
 
 #: Arguments and what holds where nothing is said.
-ARGUMENTS = {"period": "1", "unit": "s", "time": "discrete", "stale": "", "reliability": "reliable"}
+ARGUMENTS = {
+    "period": "1",
+    "unit": "s",
+    "time": "discrete",
+    "stale": "",
+    "reliability": "reliable",
+    "durability": "volatile",
+}
 
 
 def generate_launch_description():
     """Return the monitor's node."""
     names = ["spec", *ARGUMENTS]
     values = {name: ParameterValue(LaunchConfiguration(name), value_type=str) for name in names}
-    declared = [DeclareLaunchArgument("spec")]
+    values["use_sim_time"] = ParameterValue(LaunchConfiguration("use_sim_time"), value_type=bool)
+    declared = [DeclareLaunchArgument("spec"), DeclareLaunchArgument("use_sim_time", default_value="false")]
     declared += [DeclareLaunchArgument(name, default_value=value) for name, value in ARGUMENTS.items()]
     node = Node(package="rtamt4ros2", executable="ros_stl_monitor", output="screen", parameters=[values])
     return LaunchDescription([*declared, node])

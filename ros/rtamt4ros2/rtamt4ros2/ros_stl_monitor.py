@@ -10,14 +10,17 @@ import sys
 import time
 
 import rclpy
-import rclpy.executors
 from builtin_interfaces.msg import Time
+from rcl_interfaces.msg import ParameterDescriptor
+from rclpy._rclpy_pybind11 import RCLError  # rclpy offers it nowhere else
+from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.utilities import remove_ros_args
 
 from rtamt.errors import StlError
 from rtamt.ros.binding import MessageType
+from rtamt.ros.dds.participant import Quality
 from rtamt.ros.monitor import PAUSE
 from rtamt.ros.options import DEFAULTS, options, parser
 from rtamt.ros.outbox import DIAGNOSTICS, Outbox, diagnostic
@@ -33,7 +36,11 @@ class Monitor(Node):
     def __init__(self, arguments):
         name = (load(arguments.spec).name if arguments.spec else None) or "stl_monitor"
         super().__init__(name)
-        chosen = {key: self.declare_parameter(key, value).value for key, value in DEFAULTS.items()}
+        # The command line makes a number of 1, a launch file may make a text of it: both are taken.
+        chosen = {
+            key: self.declare_parameter(key, value, ParameterDescriptor(dynamic_typing=True)).value
+            for key, value in DEFAULTS.items()
+        }
         self.monitor = options(arguments, chosen).monitor()
         quality = self.quality()
         self.outbox = Outbox(self.monitor.binding, MessageType.load, stamp, lambda level: bytes([level]))
@@ -53,12 +60,16 @@ class Monitor(Node):
 
     def quality(self):
         """Return the quality of service of all topics, from parameters."""
-        reliability = self.declare_parameter("reliability", "reliable").value
-        durability = self.declare_parameter("durability", "volatile").value
+        default = Quality()
+        told = Quality(
+            self.declare_parameter("reliability", default.reliability).value,
+            self.declare_parameter("durability", default.durability).value,
+            self.declare_parameter("depth", default.depth).value,
+        )
         return QoSProfile(
-            depth=self.declare_parameter("depth", 100).value,
-            reliability=ReliabilityPolicy[reliability.upper()],
-            durability=DurabilityPolicy[durability.upper()],
+            depth=told.depth,
+            reliability=ReliabilityPolicy[told.reliability.upper()],
+            durability=DurabilityPolicy[told.durability.upper()],
         )
 
     def now(self):
@@ -90,8 +101,10 @@ class Monitor(Node):
 
     def run(self):
         """Watch until the node is shut down."""
+        executor = SingleThreadedExecutor()
+        executor.add_node(self)
         while rclpy.ok():
-            rclpy.spin_once(self, timeout_sec=min(PAUSE, self.look()))
+            executor.spin_once(timeout_sec=min(PAUSE, self.look()))
 
 
 def stamp(nanoseconds):
@@ -108,10 +121,15 @@ def main():
     except StlError as error:
         print(f"{PROGRAM}: {error}", file=sys.stderr)
         return 2
-    except (KeyboardInterrupt, rclpy.executors.ExternalShutdownException):
+    except (KeyboardInterrupt, ExternalShutdownException):
         return 0
+    except RCLError:
+        if rclpy.ok():
+            raise
+        return 0  # it was about to publish when it was told to end
     finally:
-        rclpy.try_shutdown()
+        if rclpy.ok():
+            rclpy.shutdown()
     return 0
 
 
