@@ -315,6 +315,11 @@ def _dated(raw: Raw, column: str) -> Raw:
     values = raw.filled(None).tolist() if isinstance(raw, np.ma.MaskedArray) else raw.tolist()
     dates = clocks.from_objects(values)
     if dates is not None and any(value is not None for value in values):
+        if len(clocks.zones_of(values)) > 1:
+            raise TraceError(
+                f"the time column '{column}' has dates with a time zone beside dates without one: "
+                f"use one way for all"
+            )
         return dates
     for value in values:
         if not (value is None or is_number(value) or isinstance(value, Decimal)):

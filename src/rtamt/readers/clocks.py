@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
-from datetime import date, datetime, timezone
+from datetime import date, datetime, timedelta
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from rtamt.engine.moments import nanoseconds_of
 from rtamt.engine.ticks import NANOSECOND, TimeScale
 from rtamt.errors import TraceError
 from rtamt.language.units import UNITS
@@ -35,6 +36,9 @@ _STAMPS = re.compile(rf"(?P<name>{'|'.join(NAMES)})(?:[ _](?P<unit>{'|'.join(_UN
 
 #: Integers at least this large count since 1970 in that unit: the year 1973 in it, 5138 in the next coarser one.
 _SINCE_1970 = (("ns", 10**17), ("us", 10**14), ("ms", 10**11))
+
+#: How numpy keeps a time that is none.
+_NOT_A_TIME = np.iinfo(np.int64).min
 
 #: Nanoseconds that a double of seconds holds exactly enough to be rounded back.
 _EXACT = 2**50
@@ -138,25 +142,38 @@ def _missing(clock: Clock, source: str, row: int) -> TraceError:
 
 
 def from_objects(values: Sequence[Any]) -> Raw | None:
-    """Return dates, times since a start, or texts of ISO dates as datetime64[ns] or timedelta64[ns]; else None.
+    """Return dates, or texts of ISO dates, as datetime64[ns], and times since a start as timedelta64[ns]; else None.
 
     A date with a time zone is converted to UTC; one without is taken as it stands. None is missing.
     """
-    result = np.empty(len(values), dtype="datetime64[ns]")
+    found = np.full(len(values), _NOT_A_TIME, np.int64)
+    kinds = set()
     for i, value in enumerate(values):
-        if isinstance(value, str):
-            try:
-                # Python 3.10 reads no 'Z', and milliseconds with three or six digits only.
-                value = datetime.fromisoformat(value.replace("Z", "+00:00"))  # noqa: PLW2901
-            except ValueError:
-                return None
         if value is None:
-            result[i] = np.datetime64("NaT")
-        elif isinstance(value, datetime):
-            utc = value.astimezone(timezone.utc).replace(tzinfo=None) if value.tzinfo is not None else value
-            result[i] = np.datetime64(utc, "ns")
-        elif isinstance(value, date):
-            result[i] = np.datetime64(value, "ns")
-        else:
+            continue
+        moment = _date_of(value)
+        if moment is None:
             return None
-    return result
+        kinds.add("m" if isinstance(moment, timedelta) else "M")
+        nanoseconds = nanoseconds_of(moment)
+        found[i] = _NOT_A_TIME if nanoseconds is None else nanoseconds
+    return None if len(kinds) > 1 else found.view(f"{kinds.pop() if kinds else 'M'}8[ns]")
+
+
+def zones_of(values: Sequence[Any]) -> set[bool]:
+    """Return whether dates have a time zone: one answer, or two where they are not alike."""
+    moments = (_date_of(value) for value in values if value is not None)
+    return {moment.tzinfo is not None for moment in moments if isinstance(moment, datetime)}
+
+
+def _date_of(value: Any) -> datetime | timedelta | None:
+    """Return a date, a text of one, or a time since a start; None for anything else."""
+    if isinstance(value, str):
+        try:
+            # Python 3.10 reads no 'Z', and milliseconds with three or six digits only.
+            return datetime.fromisoformat(value.replace("Z", "+00:00"))
+        except ValueError:
+            return None
+    if isinstance(value, date) and not isinstance(value, datetime):
+        return datetime(value.year, value.month, value.day)
+    return value if isinstance(value, (datetime, timedelta)) else None

@@ -54,6 +54,19 @@ def test_a_date_with_a_time_zone_beside_one_without_is_an_error():
     )
 
 
+def test_a_column_of_dates_with_and_without_a_time_zone_is_an_error():
+    with pytest.raises(rtamt.TraceError) as failure:
+        rtamt.read({"t": ["2024-05-01T10:00:00Z", "2024-05-01T10:00:01"], "x": [1, 2]})
+    assert str(failure.value) == (
+        "the time column 't' has dates with a time zone beside dates without one: use one way for all"
+    )
+
+
+def test_times_since_a_start():
+    trace = rtamt.read({"t": [timedelta(0), timedelta(milliseconds=100)], "x": [1, 2]}, time="t")
+    assert trace["x"].times.tolist() == [0, 0.1]
+
+
 def test_a_date_that_is_none_is_an_error():
     with pytest.raises(rtamt.TraceError, match=r"^time is nan at sample 1: give a finite number of seconds$"):
         rtamt.parse("x > 0").evaluate({"time": [NOON, pd.NaT], "x": [1, 2]})

@@ -49,7 +49,7 @@ def test_every_kind_of_data_gives_the_same_signal(data):
     "data",
     [
         {"t": DATES, "x": X},
-        {"t": ["2024-05-01T10:00:00Z", "2024-05-01T12:00:01+02:00", "2024-05-01 10:00:02"], "x": X},
+        {"t": ["2024-05-01T10:00:00Z", "2024-05-01T12:00:01+02:00", "2024-05-01 10:00:02+00:00"], "x": X},
         pd.DataFrame({"x": X}, index=pd.DatetimeIndex(DATES)),
         pd.DataFrame({"x": X}, index=pd.DatetimeIndex(DATES).tz_localize("UTC").tz_convert("Asia/Tokyo")),
         pl.DataFrame({"when": DATES, "x": X}),
