@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import plots
+import summary
 from cases import LONGEST, PATIENCE
 
 if TYPE_CHECKING:
@@ -18,13 +19,6 @@ if TYPE_CHECKING:
     from cases import Case
 
     from run import Tool
-
-TARGETS = {"online": 5.0, "offline": 20.0}
-
-SHORT = """\
-Where a row falls short: an update of Reelay (C++) and mstlo (Rust) costs little more than the call from Python, as
-ours does, and `step` is the way to pay less for it; offline, traces of 100 samples cost what the call and the
-checks of the data cost; a fused loop reads each sample once, the engine once an operator, from the cache."""
 
 
 def write(
@@ -39,8 +33,9 @@ def write(
     folder.mkdir(exist_ok=True)
     drawn = plots.draw(folder / "plots", running)
     parts = [
-        head(running, absent, facts),
-        targets(running),
+        head(facts),
+        summary.write(ratios(running), ready(running), machine),
+        how(running, absent),
         *(table(group, running, drawn) for group in groups(running)),
         start_up(running),
         at_once(many),
@@ -50,25 +45,30 @@ def write(
     (folder / "RESULTS.md").write_text("\n\n".join(parts) + "\n", encoding="utf-8")
 
 
-def head(running: list[Tool], absent: list[tuple[str, str]], facts: dict[str, Any]) -> str:
-    """Say where and how this was measured, and who is missing."""
+def head(facts: dict[str, Any]) -> str:
+    """Say where and when this was measured."""
     before, after = facts["load"]
-    tools = "\n".join(f"- {tool.version}" for tool in running if "(" not in tool.label)
-    missing = "\n".join(f"- {name}: {reason}" for name, reason in absent)
     return f"""# How fast
 
 Made by `make bench` on {dt.datetime.now(dt.timezone.utc):%Y-%m-%d} in {facts["seconds"]:.0f} s:
 {cpu()}, {os.cpu_count()} cores, {platform.system()}, Python {platform.python_version()}, numpy {np.__version__}.
 Load average before {before:.1f} and after {after:.1f}: where it is above 1 at the start, others used the
-machine too. What is measured is the processor's time of each tool's process, and the time on the clock only
-at start-up and for threads; a shared cache still shows, and ratios tell more than times.
+machine too. Figures are medians of {facts["rounds"]} interleaved round{"s" if facts["rounds"] > 1 else ""}."""
 
-Every tool runs in a process of its own, in an environment of its own. Figures are medians of {facts["rounds"]}
-interleaved round{"s" if facts["rounds"] > 1 else ""}; in brackets how many times as long as ours, the median
-of the rounds' ratios. Formulas are parsed and samples brought into the form that a tool takes (lists, dicts;
-for ours offline numpy arrays) before the clock runs. `this` online is `monitor.update(t, a=x)`, `this (step)`
-the positional `monitor.step(x)`, which hot loops call. Online, windows are full first. Every answer is the
-whole signal of robustness.
+
+def how(running: list[Tool], absent: list[tuple[str, str]]) -> str:
+    """Say how this was measured, and who is missing."""
+    tools = "\n".join(f"- {tool.version}" for tool in running if "(" not in tool.label)
+    missing = "\n".join(f"- {name}: {reason}" for name, reason in absent)
+    return f"""## How this was measured
+
+Every tool runs in a process of its own, in an environment of its own. What is measured is the processor's time
+of that process, and the time on the clock only at start-up and for threads; a shared cache still shows, and
+ratios tell more than times. In brackets stands how many times as long as ours a tool takes, the median of the
+rounds' ratios. Formulas are parsed and samples brought into the form that a tool takes (lists, dicts; for ours
+offline numpy arrays) before the clock runs. `this` online is `monitor.update(t, a=x)`, `this (step)` the positional
+`monitor.step(x)`, which hot loops call. Online, windows are full first. Every answer is the whole signal of
+robustness.
 
 {tools}
 
@@ -106,32 +106,6 @@ def ratios(running: list[Tool]) -> dict[tuple[Case, str], float]:
         for case, figures in tool.figures.items()
         if ours.get(case)
     }
-
-
-def targets(running: list[Tool]) -> str:
-    """Hold the ratios against what is aimed at, and list every row that falls short."""
-    lines = ["## Against the targets", "", "| mode | aimed at | rows | reached | median | least |"]
-    lines.append("|---|---:|---:|---:|---:|---|")
-    short: list[str] = []
-    for mode, target in TARGETS.items():
-        rows = {
-            key: ratio
-            for key, ratio in ratios(running).items()
-            if key[0].mode == mode and key[0].group != "parsing" and not key[1].startswith("this")
-        }
-        if not rows:
-            continue
-        case, label = min(rows, key=lambda key: rows[key])
-        lines.append(
-            f"| {mode} | {target:g}× | {len(rows)} | {sum(r >= target for r in rows.values())} | "
-            f"{median(rows.values()):.0f}× | {rows[case, label]:.1f}×: {label}, `{case.formula}`, {case.x} |"
-        )
-        short += [
-            f"- {mode}, {case.time} time, `{case.formula}`, {case.x}: {label} takes {ratio:.1f}×"
-            for (case, label), ratio in rows.items()
-            if ratio < target
-        ]
-    return "\n".join([*lines, "", SHORT if short else "None falls short.", "", *short])
 
 
 def table(group: str, running: list[Tool], drawn: list[str]) -> str:
@@ -178,6 +152,12 @@ def amount(seconds: float) -> str:
         if seconds >= size:
             return f"{seconds / size:.3g} {unit}"
     return f"{seconds * 1e9:.3g} ns"
+
+
+def ready(running: list[Tool]) -> dict[str, float]:
+    """Return of every other tool how many times as long as ours it takes to start."""
+    ours = median(running[0].start_up)
+    return {t.label: median(t.start_up) / ours for t in running[1:] if not t.label.startswith("this")}
 
 
 def start_up(running: list[Tool]) -> str:

@@ -29,8 +29,9 @@ CLOSE = 1e-9  # relative; a tool may round where the definition does not
 class Talk:
     """A conversation with the adapter of a tool; begun anew where the tool breaks down."""
 
-    def __init__(self, command: Sequence[str]) -> None:
+    def __init__(self, command: Sequence[str], patience: float = PATIENCE) -> None:
         self._command = list(command)
+        self._patience = patience
         self._start()
         self.peer: str = self._declared["peer"]
         self.modes: list[tuple[str, str]] = [(time, mode) for time, mode in self._declared["modes"]]
@@ -51,7 +52,7 @@ class Talk:
         silent = self._process.poll() is None
         self.close()
         self._start()
-        return {"crash": f"no answer in {PATIENCE:g} s" if silent else "the process ended"}
+        return {"crash": f"no answer in {self._patience:g} s" if silent else "the process ended"}
 
     def close(self) -> None:
         """End the process."""
@@ -72,7 +73,7 @@ class Talk:
         assert self._process.stdout is not None
         with selectors.DefaultSelector() as selector:
             selector.register(self._process.stdout, selectors.EVENT_READ)
-            if not selector.select(PATIENCE):
+            if not selector.select(self._patience):
                 return None
         line = self._process.stdout.readline()
         if line:

@@ -3,6 +3,7 @@
 import json
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -11,9 +12,11 @@ import pytest
 import rtamt
 
 FOLDER = Path(__file__).parents[2] / "benchmarks"
-sys.path.insert(0, str(FOLDER / "peers"))
+sys.path[:0] = [str(FOLDER), str(FOLDER / "peers")]
 
-import timescales  # noqa: E402 - found by the line above
+import summary  # noqa: E402 - found by the line above
+import timescales  # noqa: E402
+from cases import Case  # noqa: E402
 
 
 @pytest.mark.parametrize("unit", [1, 7])
@@ -35,6 +38,8 @@ def test_a_quick_run_measures_all_and_writes_report_and_plots(tmp_path):
     subprocess.run(command, check=True, capture_output=True, timeout=120)
     report = (tmp_path / "RESULTS.md").read_text(encoding="utf-8")
     for heading in (
+        "In short",
+        "How this was measured",
         "Paper: offline, dense time",
         "Online, discrete time",
         "Timescales: past form",
@@ -45,6 +50,21 @@ def test_a_quick_run_measures_all_and_writes_report_and_plots(tmp_path):
         assert plot.read_bytes().startswith(b"\x89PNG")
         assert f"plots/{plot.name}" in report
     assert len(list(tmp_path.joinpath("plots").iterdir())) == 7
+
+
+def test_the_summary_names_every_row_that_falls_short_and_where():
+    case = Case("online, dense time", "always[0:{k}](a >= -2)", 10, "", "dense", "online", {})
+    text = summary.write(
+        {(case, "mstlo"): 3.2, (replace(case, x=1000), "mstlo"): 7.0, (case, "this (step)"): 0.5},
+        {"Reelay": 0.4},
+        [{"formula": "a", "samples": 10_000, "ratio": 1.5}],
+    )
+    assert "| online, an update: a peer takes at least 5× | 2 | 1 | 1 | 5.1× |" in text
+    assert "| both: no peer is faster | 2 | 2 | 0 | 5.1× |" in text
+    assert "| offline: at most 2× of a loop by hand | 1 | 1 | 0 | 1.5× |" in text
+    assert "- online, dense time, `always[0:{k}](a >= -2)`, mstlo: 3.2× at 10\n" in text
+    assert "- start-up, Reelay: 0.4×\n" in text
+    assert text.count("\n- ") == 2
 
 
 def test_a_tool_that_is_asked_how_long_it_takes_answers_in_seconds_a_sample():
