@@ -83,6 +83,7 @@ Executor::Executor(const Plan& plan, Program program)
             fragile_.push_back({i, nullptr, 0.0});
         }
         kernels_.push_back(std::move(kernel));
+        if (size != 0) longest_ = std::max(longest_, instruction.n);
     }
     if (guarded_.empty()) fragile_.clear();
     connect();
@@ -240,11 +241,31 @@ void Executor::deliver(const Block& block, std::int64_t start,
     }
 }
 
+// How many of the next slots change nothing, because no value is present and every window is empty:
+// after a short trace a long lag has many of them. A call may count its slots: it gets them all.
+std::size_t Executor::idle(std::int64_t slot, std::size_t count) const noexcept {
+    if (slot < samples_ || !calls_.empty()) return 0;
+    std::int64_t next = slot + static_cast<std::int64_t>(count);
+    for (const Instruction& instruction : program_.instructions) {
+        if (instruction.lag > slot) {
+            next = std::min(next, instruction.lag);
+        } else if (slot < instruction.lag + samples_ + longest_) {
+            return 0;
+        }
+    }
+    return static_cast<std::size_t>(next - slot);
+}
+
 // Runs everything over `count` slots. When `checked`, the guarded group cannot fail.
 bool Executor::advance(std::span<const double* const> columns, std::size_t count,
                        std::span<double* const> outputs, bool checked) noexcept {
     const std::int64_t start = slot_;
     for (std::size_t offset = 0; offset < count;) {
+        if (const std::size_t skipped = idle(slot_, count - offset); skipped != 0) {
+            offset += skipped;
+            slot_ += static_cast<std::int64_t>(skipped);
+            continue;
+        }
         const Block block{slot_, std::min(count - offset, capacity_), samples_};
         load(columns, offset, block);
         aim(columns, offset, block, start, outputs);
@@ -263,8 +284,12 @@ bool Executor::survey(std::span<const double* const> columns, std::size_t count)
     checkpoint(count);
     bool sound = true;
     for (std::size_t offset = 0; sound && offset < count;) {
-        const Block block{slot_ + static_cast<std::int64_t>(offset),
-                          std::min(count - offset, capacity_), samples_};
+        const std::int64_t slot = slot_ + static_cast<std::int64_t>(offset);
+        if (const std::size_t skipped = idle(slot, count - offset); skipped != 0) {
+            offset += skipped;
+            continue;
+        }
+        const Block block{slot, std::min(count - offset, capacity_), samples_};
         load(columns, offset, block);
         sound = run_guarded(block);
         offset += block.count;

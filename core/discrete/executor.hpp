@@ -124,6 +124,7 @@ class Executor {
     std::size_t stride_ = 1;   // doubles from one register to the next
     std::size_t last_ = 0;     // place of the last slot in the registers
     std::int64_t slot_ = 0;    // the next slot
+    std::int64_t longest_ = 0; // slots after which no window or delay remembers anything
     std::int64_t samples_ = endless;
     bool finished_ = false;
     Failure failure_{};
@@ -145,6 +146,7 @@ class Executor {
     void aim(std::span<const double* const> columns, std::size_t offset, const Block& block,
              std::int64_t start, std::span<double* const> outputs) noexcept;
     void run_free(const Block& block) noexcept;
+    [[nodiscard]] std::size_t idle(std::int64_t slot, std::size_t count) const noexcept;
     [[nodiscard]] bool advance(std::span<const double* const> columns, std::size_t count,
                                std::span<double* const> outputs, bool checked) noexcept;
     [[nodiscard]] bool update(std::span<const double* const> columns, std::size_t count,

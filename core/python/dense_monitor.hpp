@@ -48,8 +48,8 @@ class DenseMonitor {
     // given one and whose `_events` are bytes: the times, then the values.
     void tell(const nb::type_object& signal, const nb::object& scale, std::optional<double> rate);
 
-    // Any variables at one instant, by name: Named or InDict. What became known of the first output;
-    // null, with a Python exception set, is a refusal.
+    // Any variables at one instant, by name: Named or InDict. What became known of the first
+    // output; null, with a Python exception set, is a refusal.
     template <class Values>
     [[nodiscard]] PyObject* update(PyObject* time, const Values& values) noexcept;
 

@@ -79,8 +79,8 @@ PyObject* call(PyObject* self, PyObject* const* args, std::size_t flags, PyObjec
         if (!backend.is_valid()) return nullptr;
         if (reinterpret_cast<PyObject*>(Py_TYPE(backend.ptr())) == method.backend_type &&
             nb::inst_ready(backend)) [[likely]] {
-            PyObject* result = method.take(
-                backend.ptr(), {{args + 1, count - 1}, {names, args + count}});
+            PyObject* result =
+                method.take(backend.ptr(), {{args + 1, count - 1}, {names, args + count}});
             if (result != nullptr || !has_more_to_say(method)) return result;
         }
     }
@@ -155,10 +155,10 @@ PyGetSetDef properties[] = {
 };
 
 PyType_Slot slots[] = {
-    {Py_tp_doc, const_cast<char*>(
-                    "Method(function, kind, /)\n--\n\n"
-                    "A function of a class that is called only where the compiled monitor in "
-                    "`_backend` does not take the arguments by itself.")},
+    {Py_tp_doc,
+     const_cast<char*>("Method(function, kind, /)\n--\n\n"
+                       "A function of a class that is called only where the compiled monitor in "
+                       "`_backend` does not take the arguments by itself.")},
     {Py_tp_new, reinterpret_cast<void*>(make)},
     {Py_tp_call, reinterpret_cast<void*>(PyVectorcall_Call)},
     {Py_tp_descr_get, reinterpret_cast<void*>(bind)},
@@ -170,11 +170,10 @@ PyType_Slot slots[] = {
     {0, nullptr},
 };
 
-PyType_Spec spec = {
-    "rtamt.engine._core.Method", sizeof(Method), 0,
-    Py_TPFLAGS_DEFAULT | Py_TPFLAGS_HAVE_GC | Py_TPFLAGS_HAVE_VECTORCALL |
-        Py_TPFLAGS_METHOD_DESCRIPTOR,
-    slots};
+PyType_Spec spec = {"rtamt.engine._core.Method", sizeof(Method), 0,
+                    Py_TPFLAGS_DEFAULT | Py_TPFLAGS_HAVE_GC | Py_TPFLAGS_HAVE_VECTORCALL |
+                        Py_TPFLAGS_METHOD_DESCRIPTOR,
+                    slots};
 
 } // namespace
 

@@ -236,6 +236,40 @@ TEST(after_finish_a_sample_is_refused_until_reset) {
     CHECK((outputs[0] == Signal{3, 3, 3, 9}));
 }
 
+// A window and a delay of a difference, with lags far beyond what they need, and an output between.
+Program late(std::int64_t lag) {
+    Builder builder;
+    const auto difference = builder.pointwise(Opcode::sub, builder.input(), builder.constant(1));
+    const auto window = builder.unary(Opcode::slide_max, difference, 3, lag, -inf);
+    const auto delay = builder.unary(Opcode::shift, window, 4, lag + 4, 7);
+    builder.output(delay).output(difference);
+    return builder.output(builder.unary(Opcode::slide_min, delay, 2, 2 * lag)).program();
+}
+
+TEST(the_end_of_a_short_trace_with_a_lag_of_years_comes_at_once) {
+    const std::vector<Signal> columns{{5, 2, 4, -1, 6}};
+    const std::size_t count = columns[0].size();
+    std::vector<Signal> expected(3);
+    Executor near(late(300));
+    CHECK(!ways::push(near, columns, 0, count, expected));
+    CHECK(!ways::finish(near, expected));
+    CHECK(expected[0] == Signal(5, -inf) && expected[2] == Signal(5, inf));
+    const auto far = std::int64_t{1} << 47U;
+    for (const std::size_t samples : {std::size_t{0}, count}) {
+        Executor executor(late(far));
+        std::vector<Signal> outputs(3);
+        CHECK(!ways::push(executor, columns, 0, samples, outputs));
+        CHECK(!ways::finish(executor, outputs));
+        CHECK(executor.finished());
+        for (std::size_t output = 0; output < outputs.size(); ++output) {
+            CHECK(outputs[output] == (samples == 0 ? Signal{} : expected[output]));
+        }
+    }
+    std::vector<Signal> whole(3, Signal(count));
+    CHECK(!Executor::evaluate(late(far), ways::pointers(columns, 0), count, ways::pointers(whole)));
+    CHECK(whole == expected);
+}
+
 TEST(an_empty_trace_has_no_values) {
     Builder builder;
     const auto a = builder.input();

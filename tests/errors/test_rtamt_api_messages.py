@@ -216,6 +216,16 @@ def test_a_monitor_that_does_not_fit_into_memory():
     )
 
 
+def test_a_monitor_whose_times_do_not_fit_into_memory():
+    spec = rtamt.parse("eventually[10000000000000:10000000000000](x)")
+    with pytest.raises(rtamt.UsageError) as caught:
+        spec.monitor()
+    assert str(caught.value) == (
+        "the monitor needs 7.45e+04 GiB of memory, which this machine does not give; shorten the longest bound "
+        "or lengthen the period"
+    )
+
+
 TEXTS = {
     "syntax": (
         "always(x >= 3",
