@@ -23,7 +23,7 @@ std::size_t state_size(const Instruction& instruction) noexcept {
 }
 
 std::unique_ptr<Kernel> make_kernel(const Instruction& instruction, std::int64_t operand_lag,
-                                    double* state, double* journal) {
+                                    double* state, double* journal, Same same) {
     using namespace pointwise;
     const auto n = static_cast<std::size_t>(instruction.n);
     switch (instruction.opcode) {
@@ -42,27 +42,27 @@ std::unique_ptr<Kernel> make_kernel(const Instruction& instruction, std::int64_t
     case Opcode::ln:
         return std::make_unique<Unary<Ln>>(operand_lag);
     case Opcode::add:
-        return std::make_unique<Binary<Add>>(operand_lag);
+        return std::make_unique<Binary<Add>>(operand_lag, same);
     case Opcode::sub:
-        return std::make_unique<Binary<Sub>>(operand_lag);
+        return std::make_unique<Binary<Sub>>(operand_lag, same);
     case Opcode::mul:
-        return std::make_unique<Binary<Mul>>(operand_lag);
+        return std::make_unique<Binary<Mul>>(operand_lag, same);
     case Opcode::div:
-        return std::make_unique<Binary<Div>>(operand_lag);
+        return std::make_unique<Binary<Div>>(operand_lag, same);
     case Opcode::pow:
-        return std::make_unique<Binary<Pow>>(operand_lag);
+        return std::make_unique<Binary<Pow>>(operand_lag, same);
     case Opcode::log:
-        return std::make_unique<Binary<Log>>(operand_lag);
+        return std::make_unique<Binary<Log>>(operand_lag, same);
     case Opcode::min:
-        return std::make_unique<Binary<Join<Min>>>(operand_lag);
+        return std::make_unique<Binary<Join<Min>>>(operand_lag, same);
     case Opcode::max:
-        return std::make_unique<Binary<Join<Max>>>(operand_lag);
+        return std::make_unique<Binary<Join<Max>>>(operand_lag, same);
     case Opcode::holds_gt:
-        return std::make_unique<Binary<HoldsGreater>>(operand_lag);
+        return std::make_unique<Binary<HoldsGreater>>(operand_lag, same);
     case Opcode::holds_ge:
-        return std::make_unique<Binary<HoldsGreaterEqual>>(operand_lag);
+        return std::make_unique<Binary<HoldsGreaterEqual>>(operand_lag, same);
     case Opcode::holds_eq:
-        return std::make_unique<Binary<HoldsEqual>>(operand_lag);
+        return std::make_unique<Binary<HoldsEqual>>(operand_lag, same);
     case Opcode::shift:
         return std::make_unique<Shift>(operand_lag, n, instruction.x, state, journal);
     case Opcode::slide_max:

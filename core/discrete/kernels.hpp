@@ -3,6 +3,7 @@
 
 #include "../kernel.hpp"
 #include "../program.hpp"
+#include "pointwise.hpp"
 
 #include <cstddef>
 #include <memory>
@@ -13,9 +14,10 @@ namespace rtamt::discrete {
 [[nodiscard]] std::size_t state_size(const Instruction& instruction) noexcept;
 
 // Null for inputs and constants, which compute nothing. `state` and `journal` point to state_size()
-// doubles each; the journal is only used by checkpoint() and rollback().
+// doubles each; the journal is only used by checkpoint() and rollback(). `same`: which operands are
+// constants.
 [[nodiscard]] std::unique_ptr<Kernel> make_kernel(const Instruction& instruction,
                                                   std::int64_t operand_lag, double* state,
-                                                  double* journal);
+                                                  double* journal, Same same = {});
 
 } // namespace rtamt::discrete

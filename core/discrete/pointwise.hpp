@@ -1,7 +1,7 @@
 // Functions of the operands at the same instant: arithmetic, comparison, and, or, not.
 //
 // Cost: one pass over the block, vectorised where the function allows it; none where no operand is
-// present. No memory.
+// present. A constant operand is read once. No memory.
 #pragma once
 
 #include "../algebra.hpp"
@@ -125,14 +125,24 @@ class Unary final : public Kernel {
     void transfer(Snapshot& /*snapshot*/) override {}
 };
 
+// Which operands are the same number at every slot.
+struct Same {
+    bool a = false;
+    bool b = false;
+};
+
 template <class Function>
 class Binary final : public Kernel {
   public:
-    using Kernel::Kernel;
+    explicit Binary(std::int64_t operand_lag, Same same = {}) noexcept
+        : Kernel(operand_lag), same_(same) {}
 
     std::size_t run(const Block& block) noexcept override {
         const Range range = block.present(lag());
-        return vectorised<Binary>(range.end - range.begin, out(), a(), b(), range);
+        const std::size_t count = range.end - range.begin;
+        if (same_.b) return vectorised<Right>(count, out(), a(), *b(), range);
+        if (same_.a) return vectorised<Left>(count, out(), *a(), b(), range);
+        return vectorised<Binary>(count, out(), a(), b(), range);
     }
 
     // a and b may be the same: they are only read.
@@ -145,6 +155,24 @@ class Binary final : public Kernel {
     }
 
     void transfer(Snapshot& /*snapshot*/) override {}
+
+  private:
+    struct Right {
+        [[nodiscard]] RTAMT_INLINE static std::size_t
+        over(double* __restrict out, const double* __restrict a, double b, Range range) noexcept {
+            return fill<Function::partial>(out, range,
+                                           [=](std::size_t i) { return Function::of(a[i], b); });
+        }
+    };
+    struct Left {
+        [[nodiscard]] RTAMT_INLINE static std::size_t
+        over(double* __restrict out, double a, const double* __restrict b, Range range) noexcept {
+            return fill<Function::partial>(out, range,
+                                           [=](std::size_t i) { return Function::of(a, b[i]); });
+        }
+    };
+
+    Same same_;
 };
 
 } // namespace rtamt::discrete
