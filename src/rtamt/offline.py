@@ -10,7 +10,6 @@ from rtamt.engine.evaluate import Evaluator
 from rtamt.engine.signals import Recording, Signal
 from rtamt.errors import BoundError
 from rtamt.rewrite.check import check_bounds
-from rtamt.rewrite.desugar import desugar
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Sequence
@@ -85,7 +84,7 @@ class Evaluators:
             key = (formulas, period.as_integer_ratio())  # fractions are slow to hash
             evaluator = self._discrete.get(key)
             if evaluator is None:
-                evaluator = self._discrete[key] = Evaluator(tuple(map(desugar, formulas)), period)
+                evaluator = self._discrete[key] = Evaluator(formulas, period)
             columns = evaluator(recording)
         return [Signal(times, values) for values in columns]
 
@@ -97,6 +96,6 @@ class Evaluators:
         key = (formulas, tick.as_integer_ratio(), inputs)
         evaluator = self._dense.get(key)
         if evaluator is None:
-            evaluator = dense_evaluate.Evaluator(tuple(map(desugar, formulas)), tick, inputs)
+            evaluator = dense_evaluate.Evaluator(formulas, tick, inputs)
             self._dense[key] = evaluator
         return [recording.signal(*events) for events in evaluator(recording)]

@@ -212,3 +212,20 @@ def test_a_sampling_period_set_for_dense_time_was_an_attribute_error(name: str) 
     ]
     with pytest.raises(rtamt.RTAMTException, match="fraction of the period"):
         spec.set_sampling_period(1, "s", 1.5)
+
+
+@pytest.mark.parametrize("time", ["discrete", "dense"])
+def test_both_back_ends_say_the_same_of_an_operation_that_has_no_value(time: str) -> None:
+    """The core told of 'x - y', without the last digits of the time; the definition of 'x >= y'."""
+    stamps, values = [1.7e9, 1.7e9 + 1], [1.0, np.inf]
+    data: Any = {"time": stamps, "x": values, "y": values}
+    if time == "dense":
+        data = {"x": (stamps, values), "y": (stamps, values)}
+    where = ("sample 1, " if time == "discrete" else "") + "time 1700000001 s"
+    for backend in BACKENDS:
+        with pytest.raises(rtamt.EvaluationError) as info:
+            rtamt.parse("always(x >= y)", backend=backend, time=time).evaluate(data)
+        assert str(info.value) == (
+            f"'x >= y' has no value at {where}: it is 0/0, inf - inf, 0 * inf, or a root or logarithm of a negative "
+            f"number; change the formula or the data so that this cannot happen"
+        )

@@ -224,6 +224,32 @@ def test_nan_from_an_operator_names_it_and_the_time() -> None:
     )
 
 
+@pytest.mark.parametrize("backend", ["cpp", "python"])
+@pytest.mark.parametrize("time", ["discrete", "dense"])
+def test_complex_numbers_and_text_from_an_operator_are_not_taken_for_numbers(backend: str, time: str) -> None:
+    data: Any = {"x": [1.0, -4.0]} if time == "discrete" else {"x": ([0.0, 1.0], [1.0, -4.0])}
+    for gives, kind in ((np.emath.sqrt, "complex128"), (lambda x: x.astype(str), "<U32")):
+        broken = replace(CLIP, definition=lambda x, _low, _high, gives=gives: gives(x))
+        with pytest.raises(rtamt.EvaluationError) as info:
+            parsed("clip(x, 0, 1)", broken, backend=backend, time=time).evaluate(data)
+        assert str(info.value) == (
+            f"the operator 'clip' gave values of type {kind} in 'clip(x, 0, 1)', "
+            f"expected real numbers; mend the operator"
+        )
+
+
+@pytest.mark.parametrize("backend", ["cpp", "python"])
+def test_a_verdict_that_an_operator_does_not_give_names_the_predicate_as_it_was_written(backend: str) -> None:
+    broken = replace(CLIP, operands=(F, N, N), result=F, definition=lambda x, _low, _high: x - x)
+    for text in ("clip(x < 3, 0, 1)", "clip(3 != x, 0, 1)", "clip(x >= 3, 0, 1)"):
+        spec = parsed(text, broken, backend=backend, semantics="boolean")
+        with pytest.raises(rtamt.EvaluationError) as info:
+            spec.monitor().update(0, x=1)
+        assert str(info.value).startswith(
+            f"the operator 'clip' gave NaN: '{text}' has no value at sample 0, time 0 s"
+        )
+
+
 def test_a_class_that_gives_too_few_values_is_told() -> None:
     class Idle:
         def push(self, x: Any) -> Any:

@@ -9,9 +9,10 @@ from typing import TYPE_CHECKING, Any, TypeVar
 from rtamt.engine.drivers import calls_of
 from rtamt.errors import EvaluationError, UsageError
 from rtamt.language.formula import Apply
+from rtamt.rewrite.desugar import written
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Collection
+    from collections.abc import Callable, Collection, Iterable
     from types import ModuleType
 
     from rtamt.engine.program import Program
@@ -82,14 +83,24 @@ def not_made(program: Program, error: RuntimeError) -> UsageError:
     return UsageError(f"the kernel of '{' or '.join(names)}' cannot be made: {error}")
 
 
-def check_call(error: Exception, formula: Formula | None) -> None:
-    """Raise what a user's own operator raised or said; do nothing where an operation only made NaN.
+def culprit(
+    error: Exception,
+    program: Program,
+    asked: Iterable[Formula],
+    original: Callable[[Formula], Formula] = lambda formula: formula,
+) -> Formula:
+    """Return where an operation made NaN, as it is written in the formulas that are ``asked``.
 
-    ``error``: the core's ``Undefined``. ``formula``: where.
+    ``error``: the core's ``Undefined``. ``original``: of a formula of the program, what it stands for.
+    Raises what a user's own operator raised or said.
     """
+    formula = program.origins[error.args[0]]
+    assert formula is not None
     if error.__cause__ is not None:
         raise error.__cause__
+    formula = written(original(formula), asked)
     if len(error.args) == 3 and isinstance(formula, Apply):
         raise EvaluationError(
             f"the kernel of '{formula.op.name}' failed in '{formula}': {error.args[2]}; mend the kernel"
         )
+    return formula

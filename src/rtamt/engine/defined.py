@@ -33,7 +33,7 @@ def values_of(node: Apply, operands: Sequence[Array], n: int, bounds: tuple[Any,
     op = node.op
     assert op.definition is not None, "expanded before"
     try:
-        values: Array = np.asarray(op.definition(*(operands if op.operands else (n,)), *bounds), float)
+        values = numbers_of(node, op.definition(*(operands if op.operands else (n,)), *bounds))
     except StlError:
         raise
     except Exception as error:
@@ -44,6 +44,17 @@ def values_of(node: Apply, operands: Sequence[Array], n: int, bounds: tuple[Any,
             f"it must return one value {'a' if what == 'sample' else 'an'} {what}, shape ({n},)"
         )
     return values
+
+
+def numbers_of(node: Apply, given: Any) -> Array:
+    """Return what an operator's own code gave, as doubles; numpy would drop imaginary parts and read text."""
+    values = np.asarray(given)
+    if values.dtype.kind not in "fiubO":
+        raise EvaluationError(
+            f"the operator '{node.op.name}' gave values of type {values.dtype} in '{node}', "
+            f"expected real numbers; mend the operator"
+        )
+    return values.astype(np.float64)
 
 
 def raised(node: Apply, error: Exception) -> EvaluationError:

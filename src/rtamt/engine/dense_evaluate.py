@@ -9,13 +9,14 @@ import numpy as np
 
 from rtamt.engine import dense_signals, signals
 from rtamt.engine.compile import DEFINED, compile_plan
-from rtamt.engine.core import check_call, core, not_made
+from rtamt.engine.core import core, culprit, not_made
 from rtamt.engine.drivers import calls_of, defined_signal
-from rtamt.engine.evaluate import gave_nan, is_called
 from rtamt.engine.signals import Signal
 from rtamt.engine.ticks import TimeScale, kind_of
-from rtamt.errors import EvaluationError, TraceError, UsageError
+from rtamt.engine.undefined import undefined
+from rtamt.errors import TraceError, UsageError
 from rtamt.language.formula import Apply, fold
+from rtamt.rewrite.desugar import desugar
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping, Sequence
@@ -88,11 +89,13 @@ def trace(
 
 
 class Evaluator:
-    """Evaluates the same core formulas (see ``desugar``) over recordings of ``inputs``, compiled once."""
+    """Evaluates the same formulas over recordings of ``inputs``, compiled once."""
 
     def __init__(self, formulas: Sequence[Formula], tick: Fraction, inputs: tuple[str, ...]) -> None:
+        self._asked = tuple(formulas)
+        formulas = tuple(map(desugar, formulas))
         # Also what these formulas do not read says where the recording starts and ends.
-        self._plan = compile_plan(tuple(formulas), tick, domain="dense", inputs=inputs)
+        self._plan = compile_plan(formulas, tick, domain="dense", inputs=inputs)
         # What unbounded future reads must have settled: past windows slide on after the last sample.
         self._settled = max(reach(formula, tick) for formula in formulas) if self._plan.stages else 0
 
@@ -100,18 +103,18 @@ class Evaluator:
         """Return the events of each formula from the recording's start on."""
         plan, columns = self._plan, dict(recording.columns)
         for stage in plan.stages:
-            values = run(stage.program, columns, recording.scale, plan, self._settled)
+            values = run(stage.program, columns, recording.scale, plan, self._asked, self._settled)
             for scan in stage.scans:
                 operands = [values[i] for i in scan.outputs]
                 if scan.kind == DEFINED:
                     columns[scan.name] = defined(scan, operands, recording, plan)
                 else:
                     columns[scan.name] = core().dense_scan(scan.kind, *operands)
-        return run(plan.program, columns, recording.scale, plan)
+        return run(plan.program, columns, recording.scale, plan, self._asked)
 
 
 def evaluate(formula: Formula, recording: DenseRecording) -> Signal:
-    """Return the robustness of a core formula (see ``desugar``) from the recording's start to its end."""
+    """Return the robustness of a formula from the recording's start to its end."""
     evaluator = Evaluator((formula,), recording.scale.tick, tuple(recording.columns))
     return recording.signal(*evaluator(recording)[0])
 
@@ -129,9 +132,14 @@ def reach(formula: Formula, tick: Fraction) -> int:
 
 
 def run(
-    program: Program, columns: Mapping[str, Samples], scale: TimeScale, plan: Plan, extra: int = 0
+    program: Program,
+    columns: Mapping[str, Samples],
+    scale: TimeScale,
+    plan: Plan,
+    asked: Sequence[Formula],
+    extra: int = 0,
 ) -> list[Samples]:
-    """Run one program of a plan over whole signals, and ``extra`` ticks on."""
+    """Run one program of a plan, for what is ``asked``, over whole signals and ``extra`` ticks on."""
     _core = core()
     try:
         values: list[Samples] = _core.dense_evaluate(
@@ -140,12 +148,8 @@ def run(
     except RuntimeError as error:
         raise not_made(program, error) from None
     except _core.Undefined as error:
-        instruction, tick, *_ = error.args
-        formula = program.origins[instruction]
-        assert formula is not None
-        formula = plan.original(formula)
-        check_call(error, formula)
-        raise undefined(formula, scale.show(tick)) from None
+        formula = culprit(error, program, asked, plan.original)
+        raise undefined(formula, f"time {scale.show(error.args[1])}") from None
     return values
 
 
@@ -154,15 +158,6 @@ def defined(scan: Scan, operands: list[Samples], recording: DenseRecording, plan
     ticks, values = defined_signal(scan.meaning, recording.scale.tick, operands)
     wrong = np.flatnonzero(np.isnan(values) & (ticks <= recording.end))
     if len(wrong):
-        raise undefined(plan.original(scan.meaning), recording.scale.show(int(ticks[wrong[0]])))
+        where = f"time {recording.scale.show(int(ticks[wrong[0]]))}"
+        raise undefined(plan.original(scan.meaning), where)
     return ticks, values
-
-
-def undefined(formula: Formula | None, time: str) -> EvaluationError:
-    """Return the error for a value that does not exist (0/0, inf - inf, …)."""
-    if is_called(formula):
-        return gave_nan(formula, f"time {time}")
-    return EvaluationError(
-        f"'{formula}' has no value at time {time}: it is 0/0, inf - inf, 0 * inf, or a root "
-        f"or logarithm of a negative number; change the formula or the data so that this cannot happen"
-    )

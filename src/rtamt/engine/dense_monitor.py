@@ -9,8 +9,7 @@ import numpy as np
 
 from rtamt.engine import dense_signals, signals
 from rtamt.engine.compile import compile_program
-from rtamt.engine.core import check_call, compiled, core, not_made
-from rtamt.engine.dense_evaluate import undefined
+from rtamt.engine.core import compiled, core, culprit, not_made
 from rtamt.engine.dense_python_backend import PythonDenseMonitor
 from rtamt.engine.dense_signals import TickSignal
 from rtamt.engine.drivers import calls_of
@@ -18,6 +17,7 @@ from rtamt.engine.online import OnlineMonitor, Watched, depth_of
 from rtamt.engine.python_backend import Refused
 from rtamt.engine.signals import Signal
 from rtamt.engine.ticks import NANOSECOND, TimeScale, kind_of
+from rtamt.engine.undefined import undefined
 from rtamt.errors import TraceError, UsageError
 from rtamt.rewrite.check import check_bounds, check_dense, check_online
 from rtamt.rewrite.desugar import desugar
@@ -230,11 +230,10 @@ class DenseMonitor(OnlineMonitor):
             raise self._no_value(error, scale) from None
 
     def _no_value(self, error: Exception, scale: TimeScale | None) -> EvaluationError:
-        instruction, tick, *_ = error.args
         assert self._program is not None
-        check_call(error, self._program.origins[instruction])
         assert scale is not None
-        return undefined(self._program.origins[instruction], scale.show(tick))
+        formula = culprit(error, self._program, self._formulas)
+        return undefined(formula, f"time {scale.show(error.args[1])}")
 
     def _signal(self, known: Samples) -> Signal:
         ticks, values = known

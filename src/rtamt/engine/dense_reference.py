@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 import numpy as np
 
 from rtamt.engine.defined import check_dense_meaning, signal_of
-from rtamt.engine.reference import undefined
+from rtamt.engine.undefined import undefined
 from rtamt.errors import UsageError
 from rtamt.language.dense_definitions import QUARTERS, Steps, merged
 from rtamt.language.formula import Apply, Const, Formula, Var, children, fold, postorder
@@ -233,7 +233,7 @@ def _evaluate(formula: Formula, trace: _Trace, limits: Limits) -> Steps:
         limit = limits[id(node)]
         for time, v in zip(*value, strict=True):
             if isnan(v) and (limit is None or time <= limit):
-                raise undefined(node, None, trace.seconds(time), [x.at(time) for x in below])
+                raise undefined(node, f"time {trace.seconds(time):.15g} s")
         return value
 
     # Later than the limits NaN may meet any operator, and none of it is told.

@@ -19,6 +19,7 @@ from rtamt.engine.defined import (
     DefinedEvents,
     DefinedSamples,
     check_dense_meaning,
+    numbers_of,
     raised,
     signal_of,
     values_of,
@@ -180,7 +181,7 @@ class SampleDriver(_Driver):
 
     def _add(self, values: Any, known: int) -> None:
         """Take over what the object gave; ``known`` values should have come by now."""
-        block = self._asked(np.asarray, values, dtype=np.float64)
+        block = self._asked(numbers_of, self._node, values)
         if block.shape != (known - self._given,):
             raise self._wrong(
                 f"returned an array of shape {block.shape}, expected ({known - self._given},): after {self._taken} "
@@ -208,7 +209,7 @@ class EventDriver(_Driver):
 
     def _events(self, given: Any) -> Events:
         times, values = given
-        ticks, numbers = np.ascontiguousarray(times), np.ascontiguousarray(values, np.float64)
+        ticks, numbers = np.ascontiguousarray(times), np.ascontiguousarray(numbers_of(self._node, values))
         if ticks.shape != numbers.shape or ticks.ndim != 1 or (len(ticks) and ticks.dtype.kind != "i"):
             raise self._wrong(
                 f"returned times of shape {ticks.shape} ({ticks.dtype}) and values of shape {numbers.shape}, "

@@ -7,16 +7,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rtamt.engine.compile import DEFINED, Plan, compile_plan
-from rtamt.engine.core import check_call, core, not_made
+from rtamt.engine.core import core, culprit, not_made
 from rtamt.engine.drivers import calls_of, defined_column
-from rtamt.errors import EvaluationError
+from rtamt.engine.undefined import at_sample, undefined
 from rtamt.language.formula import Apply, postorder
-from rtamt.language.operators import Blocks, Compiled
+from rtamt.rewrite.desugar import desugar
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
     from fractions import Fraction
-    from typing import TypeGuard
 
     from rtamt.engine.compile import Scan
     from rtamt.engine.program import Program
@@ -25,12 +24,13 @@ if TYPE_CHECKING:
 
 
 class Evaluator:
-    """Evaluates the same core formulas (see ``desugar``) over traces, compiling no more often than needed."""
+    """Evaluates the same formulas over traces, compiling no more often than needed."""
 
     def __init__(self, formulas: Sequence[Formula], period: Fraction) -> None:
-        self._formulas = tuple(formulas)
+        self._asked = tuple(formulas)
+        self._formulas = tuple(map(desugar, formulas))
         self._period = period
-        self._longest = longest_bound(formulas, period)
+        self._longest = longest_bound(self._formulas, period)
         self._plans: dict[int, Plan] = {}
 
     def __call__(self, trace: Recording) -> list[FloatArray]:
@@ -44,14 +44,14 @@ class Evaluator:
             plan = self._plans[clip] = compile_plan(self._formulas, self._period, clip)
         columns = dict(trace.columns)
         for stage in plan.stages:
-            values = run(stage.program, columns, trace, plan)
+            values = run(stage.program, columns, trace, plan, self._asked)
             for scan in stage.scans:
                 operands = [values[i] for i in scan.outputs]
                 if scan.kind == DEFINED:
                     columns[scan.name] = defined(scan, operands, trace, plan)
                 else:
                     columns[scan.name] = core().scan(scan.kind, *operands)
-        return run(plan.program, columns, trace, plan)
+        return run(plan.program, columns, trace, plan, self._asked)
 
 
 def longest_bound(formulas: Sequence[Formula], period: Fraction) -> int:
@@ -66,9 +66,13 @@ def longest_bound(formulas: Sequence[Formula], period: Fraction) -> int:
 
 
 def run(
-    program: Program, columns: Mapping[str, FloatArray], trace: Recording, plan: Plan
+    program: Program,
+    columns: Mapping[str, FloatArray],
+    trace: Recording,
+    plan: Plan,
+    asked: Sequence[Formula],
 ) -> list[FloatArray]:
-    """Run one program of a plan over whole columns."""
+    """Run one program of a plan, made for the formulas that are ``asked``, over whole columns."""
     _core = core()
     inputs = [columns[name] for name in program.inputs]
     try:
@@ -76,12 +80,9 @@ def run(
     except RuntimeError as error:
         raise not_made(program, error) from None
     except _core.Undefined as error:
-        instruction, sample, *_ = error.args
-        formula = program.origins[instruction]
-        assert formula is not None
-        formula = plan.original(formula)
-        check_call(error, formula)
-        raise undefined(formula, sample, float(trace.times[sample])) from None
+        sample = error.args[1]
+        formula = culprit(error, program, asked, plan.original)
+        raise undefined(formula, at_sample(sample, float(trace.times[sample]))) from None
     return values
 
 
@@ -91,29 +92,5 @@ def defined(scan: Scan, operands: list[FloatArray], trace: Recording, plan: Plan
     wrong = np.flatnonzero(np.isnan(values))
     if len(wrong):
         sample = int(wrong[0])
-        raise undefined(plan.original(scan.meaning), sample, float(trace.times[sample]))
+        raise undefined(plan.original(scan.meaning), at_sample(sample, float(trace.times[sample])))
     return values
-
-
-def undefined(formula: Formula | None, sample: int, time: float) -> EvaluationError:
-    """Return the error for a value that does not exist (0/0, inf - inf, …)."""
-    if is_called(formula):
-        return gave_nan(formula, f"sample {sample}, time {time:g} s")
-    return EvaluationError(
-        f"'{formula}' has no value at sample {sample}, time {time:g} s: it is 0/0, inf - inf, "
-        f"0 * inf, or a root or logarithm of a negative number; "
-        f"change the formula or the data so that this cannot happen"
-    )
-
-
-def is_called(formula: Formula | None) -> TypeGuard[Apply]:
-    """Tell whether a core formula is an operator that the core does not know."""
-    return isinstance(formula, Apply) and isinstance(formula.op.kernel, Blocks | Compiled | None)
-
-
-def gave_nan(formula: Apply, where: str) -> EvaluationError:
-    """Return the error for a user's operator that gave NaN."""
-    return EvaluationError(
-        f"the operator '{formula.op.name}' gave NaN: '{formula}' has no value at {where}; "
-        f"mend the operator, or change the formula or the data so that this cannot happen"
-    )

@@ -10,10 +10,10 @@ import numpy as np
 
 from rtamt.engine import python_backend, signals
 from rtamt.engine.compile import compile_program
-from rtamt.engine.core import check_call, compiled, core, core_monitor
-from rtamt.engine.evaluate import undefined
+from rtamt.engine.core import compiled, core, core_monitor, culprit
 from rtamt.engine.online import OnlineMonitor, Watched, depth_of
 from rtamt.engine.signals import Signal
+from rtamt.engine.undefined import at_sample, undefined
 from rtamt.errors import TraceError, UsageError, shown
 from rtamt.rewrite.check import check_bounds, check_online
 from rtamt.rewrite.desugar import desugar
@@ -268,12 +268,11 @@ class Monitor(OnlineMonitor):
 
     def _no_value(self, error: Exception, new: Sequence[float] | signals.FloatArray) -> Exception:
         """Name the sub-formula and the instant of a value that does not exist; ``new`` are the stamps taken."""
-        instruction, sample, *_ = error.args
         assert self._program is not None
-        check_call(error, self._program.origins[instruction])
+        formula = culprit(error, self._program, self._formulas)
         stamps = np.concatenate((self._backend.recent(min(self._oldest, self.samples)), new))
-        first = self.samples + len(new) - len(stamps)
-        return undefined(self._program.origins[instruction], sample, float(stamps[sample - first]))
+        first, sample = self.samples + len(new) - len(stamps), error.args[1]
+        return undefined(formula, at_sample(sample, float(stamps[sample - first])))
 
 
 def refused_time(time: Any, index: int, last: float | None) -> TraceError | None:

@@ -15,7 +15,8 @@ from typing import TYPE_CHECKING, TypeAlias
 import numpy as np
 
 from rtamt.engine.defined import values_of
-from rtamt.errors import EvaluationError, UsageError
+from rtamt.engine.undefined import at_sample, undefined
+from rtamt.errors import UsageError
 from rtamt.language.formula import Apply, Const, Formula, Var, fold
 from rtamt.language.operators import Bounds, Tense
 from rtamt.rewrite.desugar import spelled_out
@@ -80,20 +81,6 @@ def history(formula: Formula, period: Fraction) -> int | None:
     """
     formula = spelled_out(formula)
     return _reaches(formula, period, Tense.PAST)[id(formula)]
-
-
-def undefined(formula: Formula, index: int | None, time: float, operands: Sequence[float]) -> EvaluationError:
-    """Return the error that says that a sub-formula has no value at a sample, or in dense time at an instant.
-
-    ``operands`` are the values of its operands there, ``time`` is seconds; ``index`` is None in dense time.
-    """
-    sample = "" if index is None else f"sample {index}, "
-    values = [repr(float(value)).removesuffix(".0") for value in operands]
-    listed = f"operands are {' and '.join(values)}" if len(values) > 1 else f"operand is {values[0]}"
-    return EvaluationError(
-        f"'{formula}' has no value at {sample}time {repr(float(time)).removesuffix('.0')} s, "
-        f"where its {listed}; change the formula or the data so that this cannot happen"
-    )
 
 
 class ReferenceMonitor:
@@ -250,8 +237,7 @@ def _evaluate(
         if wrong.any():
             for i in range(stretch.n) if exact is None else exact(node):
                 if wrong[i]:
-                    operands = [float(operand[i]) for operand in below]
-                    raise undefined(node, stretch.first + i, stretch.time(i), operands)
+                    raise undefined(node, at_sample(stretch.first + i, stretch.time(i)))
         if every is not None:
             every[node] = value
         return value

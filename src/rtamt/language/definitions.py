@@ -173,9 +173,24 @@ def holds_ge(x: Array, y: Array) -> Array:
     return np.where(x >= y, inf, -inf)
 
 
+def holds_le(x: Array, y: Array) -> Array:
+    """+inf where x ≤ y, else -inf."""
+    return np.where(x <= y, inf, -inf)
+
+
+def holds_lt(x: Array, y: Array) -> Array:
+    """+inf where x < y, else -inf."""
+    return np.where(x < y, inf, -inf)
+
+
 def holds_eq(x: Array, y: Array) -> Array:
     """+inf where x = y, else -inf."""
     return np.where(x == y, inf, -inf)
+
+
+def holds_ne(x: Array, y: Array) -> Array:
+    """+inf where x ≠ y, else -inf."""
+    return np.where(x != y, inf, -inf)
 
 
 # ---- Boolean ------------------------------------------------------------------------------------

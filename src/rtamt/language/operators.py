@@ -121,15 +121,18 @@ def _prefix(name: str, spellings: str, power: int, doc: str, example: str, **mor
     return Operator(name, tuple(spellings.split()), Fixity.PREFIX, power, doc=doc, example=example, **more)
 
 
-# What a predicate's truth is made of: +inf or -inf. Not spelled in the language; the semantics that
-# need a verdict instead of a distance (rewrite/interface.py) put them in.
-_GT, _GE, _EQ = (
-    _function(
-        f"holds_{code}", 2, f"+inf where the operands compare '{sign}', else -inf.", f"holds_{code}(a, b)",
-        result=F, definition=definition, kernel=Pointwise(f"holds_{code}"),
-    )
-    for code, sign, definition in (("gt", ">", d.holds_gt), ("ge", ">=", d.holds_ge), ("eq", "==", d.holds_eq))
-)  # fmt: skip
+def _truth(code: str, spelling: str, definition: Any, **more: Any) -> Operator:
+    more = more or {"kernel": Pointwise(f"holds_{code}")}
+    doc, example = f"+inf where a {spelling} b, else -inf.", f"x {spelling} 3"
+    return _infix(f"holds_{code}", spelling, 90, doc, example, operands=(N, N), definition=definition, **more)
+
+
+# What a predicate's truth is made of: +inf or -inf. Not in the language, though they are printed like the
+# predicates; the semantics that need a verdict instead of a distance (rewrite/interface.py) put them in.
+_GT, _GE, _EQ = _truth("gt", ">", d.holds_gt), _truth("ge", ">=", d.holds_ge), _truth("eq", "==", d.holds_eq)
+_LE = _truth("le", "<=", d.holds_le, expansion=lambda a, b, _i: STL["not"](_GT(a, b)))
+_LT = _truth("lt", "<", d.holds_lt, expansion=lambda a, b, _i: STL["not"](_GE(a, b)))
+_NE = _truth("ne", "!=", d.holds_ne, expansion=lambda a, b, _i: STL["not"](_EQ(a, b)))
 
 
 def holds(number: Formula) -> Formula:
@@ -176,15 +179,15 @@ STL: Language = Language.of((
     _infix("gt", ">", 90, "More than: a - b.", "x > 3", operands=(N, N), latex="{0} > {1}", dual="le",
            definition=d.ge, expansion=lambda a, b, _i: STL["sub"](a, b), truth=lambda a, b, _i: _GT(a, b)),
     _infix("le", "<=", 90, "At most: b - a.", "x <= 3", operands=(N, N), latex=r"{0} \leq {1}", dual="gt",
-           definition=d.le, expansion=lambda a, b, _i: STL["sub"](b, a), truth=lambda a, b, _i: STL["not"](_GT(a, b))),
+           definition=d.le, expansion=lambda a, b, _i: STL["sub"](b, a), truth=lambda a, b, _i: _LE(a, b)),
     _infix("lt", "<", 90, "Less than: b - a.", "x < 3", operands=(N, N), latex="{0} < {1}", dual="ge",
-           definition=d.le, expansion=lambda a, b, _i: STL["sub"](b, a), truth=lambda a, b, _i: STL["not"](_GE(a, b))),
+           definition=d.le, expansion=lambda a, b, _i: STL["sub"](b, a), truth=lambda a, b, _i: _LT(a, b)),
     _infix("eq", "==", 90, "Equal: -|a - b|, at best 0.", "x == 3", operands=(N, N), latex="{0} = {1}", dual="ne",
            definition=d.eq, expansion=lambda a, b, _i: STL["neg"](STL["abs"](STL["sub"](a, b))),
            truth=lambda a, b, _i: _EQ(a, b)),
     _infix("ne", "!= !==", 90, "Different: |a - b|.", "x != 3", operands=(N, N), latex=r"{0} \neq {1}", dual="eq",
            definition=d.ne, expansion=lambda a, b, _i: STL["abs"](STL["sub"](a, b)),
-           truth=lambda a, b, _i: STL["not"](_EQ(a, b))),
+           truth=lambda a, b, _i: _NE(a, b)),
     # ---- Boolean -----------------------------------------------------------------------------
     _prefix("not", "not !", 80, "Negation: minus.", "not (x >= 3)", latex=r"\neg {0}",
             definition=d.neg, expansion=lambda a, _i: STL["neg"](a)),

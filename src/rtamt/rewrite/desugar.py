@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from rtamt.language.formula import Apply, Formula, Span, children, fold, postorder
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterable
 
 
 def desugar(formula: Formula) -> Formula:
@@ -21,6 +21,29 @@ def desugar(formula: Formula) -> Formula:
     '-(x - 3) or 2 - y'
     """
     return fold(formula, expand)
+
+
+def written(core: Formula, formulas: Iterable[Formula]) -> Formula:
+    """Return the part of ``formulas`` that a core formula stands for, so that a message can name what was written.
+
+    It is the core formula itself where no part expands to it.
+
+    >>> from rtamt.language.parser import parse_formula
+    >>> formula = parse_formula("always(x < 3)")
+    >>> print(written(parse_formula("3 - x"), [formula]), "|", written(parse_formula("y"), [formula]))
+    x < 3 | y
+    """
+    found: list[Formula] = []
+
+    def step(node: Formula, args: tuple[Formula, ...]) -> Formula:
+        expanded = expand(node, args)
+        if expanded == core:
+            found.append(node)
+        return expanded
+
+    for formula in formulas:
+        fold(formula, step)
+    return found[0] if found else core
 
 
 def spelled_out(formula: Formula) -> Formula:

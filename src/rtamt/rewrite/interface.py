@@ -40,7 +40,7 @@ def truth(predicate: Formula) -> Formula:
 
     >>> from rtamt.language.parser import parse_formula
     >>> truth(parse_formula("x >= 3")), truth(parse_formula("x + 1"))
-    (<formula holds_ge(x, 3)>, <formula holds_gt(x + 1, 0)>)
+    (<formula x >= 3>, <formula x + 1 > 0>)
     """
     if isinstance(predicate, Apply) and predicate.op.truth is not None:
         return predicate.op.truth(*predicate.args, predicate.interval)
@@ -126,7 +126,7 @@ def lower(formula: Formula, semantics: str | Judge, roles: Roles) -> Formula:
     >>> from rtamt.language.parser import parse_formula
     >>> formula = parse_formula("always(req >= 3 -> gnt >= 3)")
     >>> lower(formula, "output_robustness", {"req": "input"})
-    <formula always(holds_ge(req, 3) -> gnt >= 3)>
+    <formula always(req >= 3 -> gnt >= 3)>
     """
     judge = SEMANTICS[semantics] if isinstance(semantics, str) else semantics
     if judge is standard:
@@ -155,7 +155,7 @@ def boolean(formula: Formula) -> Formula:
 
     >>> from rtamt.language.parser import parse_formula
     >>> str(boolean(parse_formula("always(x >= 3)")))
-    'always holds_ge(x, 3)'
+    'always(x >= 3)'
     """
     return lower(formula, "boolean", {})
 

@@ -6,9 +6,10 @@ from typing import TYPE_CHECKING, Any
 
 from rtamt.engine import dense_evaluate, dense_reference, reference
 from rtamt.engine.compile import compile_program
-from rtamt.engine.core import check_call, core, core_monitor
-from rtamt.engine.evaluate import Evaluator, undefined
+from rtamt.engine.core import core, core_monitor, culprit
+from rtamt.engine.evaluate import Evaluator
 from rtamt.engine.python_backend import PythonMonitor, Refused
+from rtamt.engine.undefined import at_sample, undefined
 from rtamt.errors import UsageError
 from rtamt.language.formula import Const
 from rtamt.language.units import UNITS
@@ -55,7 +56,7 @@ def check_language(language: Language) -> None:
 def dense_signal(formula: Formula, recording: DenseRecording) -> Signal:
     """Return the robustness of a formula over a finished recording in dense time."""
     if is_compiled():
-        return dense_evaluate.evaluate(desugar(formula), recording)
+        return dense_evaluate.evaluate(formula, recording)
     steps = dense_reference.evaluate(formula, recording.columns, recording.scale.tick)
     return recording.signal(steps.times, steps.values)
 
@@ -63,7 +64,7 @@ def dense_signal(formula: Formula, recording: DenseRecording) -> Signal:
 def signal(formula: Formula, trace: Recording) -> FloatArray:
     """Return the robustness of a formula at every sample of a finished trace."""
     if is_compiled():
-        return Evaluator((desugar(formula),), trace.period)(trace)[0]
+        return Evaluator((formula,), trace.period)(trace)[0]
     start = float(trace.times[0])
     return reference.evaluate(formula, trace.columns, len(trace), trace.period, start)
 
@@ -122,9 +123,8 @@ class CompiledStream:
         try:
             robustness: float = self.monitor.update_pairs(timestamp, list(numbers.items()))
         except self._undefined as error:
-            instruction, sample, *_ = error.args
-            check_call(error, self._program.origins[instruction])
-            raise undefined(self._program.origins[instruction], sample, timestamp * self._unit) from None
+            formula = culprit(error, self._program, self._made_of[0])
+            raise undefined(formula, at_sample(error.args[1], timestamp * self._unit)) from None
         return robustness
 
     def __reduce__(self) -> tuple[Any, ...]:

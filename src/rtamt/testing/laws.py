@@ -218,7 +218,7 @@ def _fast_is_the_definition(case: _Case, draw: Callable[[Any], Any]) -> None:
     got: Array | None
     try:
         recording = signals.trace(columns, _NAMES, _ONE)
-        got = Evaluator((desugar(formula),), _ONE)(recording)[0]
+        got = Evaluator((formula,), _ONE)(recording)[0]
     except EvaluationError as error:
         _check_own_code(error)
         got = None
@@ -356,7 +356,7 @@ def _fast_is_the_dense_definition(case: _Case, draw: Callable[[Any], Any]) -> No
     recording = dense_evaluate.trace(_ticks(trace), variables(formula), _ONE)
     got: Any
     try:
-        signal = dense_evaluate.evaluate(desugar(formula), recording)
+        signal = dense_evaluate.evaluate(formula, recording)
         got = _stepped(signal.times // _NANOSECONDS, signal.values)
     except EvaluationError as error:
         _check_own_code(error)

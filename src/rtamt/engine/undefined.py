@@ -1,0 +1,43 @@
+"""What is said, by both back ends alike, where an operation has no value."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rtamt.errors import EvaluationError
+from rtamt.language.formula import Apply
+from rtamt.language.operators import Blocks, Compiled
+
+if TYPE_CHECKING:
+    from rtamt.language.formula import Formula
+
+
+def undefined(formula: Formula, where: str) -> EvaluationError:
+    """Return the error for a value that does not exist (0/0, inf - inf, …), or for a user's operator that gave NaN.
+
+    ``formula``: what has no value, as the user wrote it. ``where``: :func:`at_sample`, or ``"time 0.5 s"``.
+
+    >>> from rtamt.language.parser import parse_formula
+    >>> str(undefined(parse_formula("x / y"), at_sample(3, 0.3)))[:48]
+    "'x / y' has no value at sample 3, time 0.3 s: it"
+    """
+    if isinstance(formula, Apply) and _is_the_users(formula):
+        return EvaluationError(
+            f"the operator '{formula.op.name}' gave NaN: '{formula}' has no value at {where}; "
+            f"mend the operator, or change the formula or the data so that this cannot happen"
+        )
+    return EvaluationError(
+        f"'{formula}' has no value at {where}: it is 0/0, inf - inf, 0 * inf, or a root "
+        f"or logarithm of a negative number; change the formula or the data so that this cannot happen"
+    )
+
+
+def at_sample(sample: int, seconds: float) -> str:
+    """Return where a sample is, for a message; its stamp to the last digit that a double tells apart."""
+    return f"sample {sample}, time {seconds:.15g} s"
+
+
+def _is_the_users(formula: Apply) -> bool:
+    """Tell whether the core does not know an operator, and calls it."""
+    op = formula.op
+    return isinstance(op.kernel, Blocks | Compiled) or (op.kernel is None and op.expansion is None)
