@@ -17,6 +17,7 @@ from pyarrow import feather, parquet
 import rtamt
 from rtamt.errors import TraceError, UsageError
 from rtamt.readers.formats import FORMATS
+from tests.unit.readers.test_formats import ulog
 
 CORPUS = Path(__file__).parent / "corpus" / "files"
 
@@ -44,6 +45,9 @@ def written(suffix: str) -> bytes:
             parquet.write_table(TABLE, path)
         elif suffix == ".arrow":
             feather.write_feather(TABLE, path)
+        elif suffix == ".ulg":
+            rows = [(1_000_000, 12.5), (1_500_000, 12.25)]
+            ulog(path, [("battery", 0, "float x", rows), ("battery", 1, "float x", rows)], dropouts=[100])
         elif suffix == ".xlsx":
             book = openpyxl.Workbook()
             for row in (("t", "x", "note"), (0, 1.5, "go"), (1, None, "on"), (2, 3, "stop")):
@@ -84,7 +88,8 @@ def read(data: bytes, suffix: str) -> None:
             sentence = str(error) if "log" + suffix in str(error) else ""
         else:
             sentence = "read"
-            assert not any(np.isnan(trace[name].values).any() for name in trace)
+            # A flight log says NaN where there is no value; that is refused when a formula reads it.
+            assert suffix == ".ulg" or not any(np.isnan(trace[name].values).any() for name in trace)
     assert sentence
 
 
@@ -93,7 +98,8 @@ def test_any_csv_file_is_a_trace_or_an_error_that_names_it(data: bytes) -> None:
     read(data, ".csv")
 
 
-@pytest.mark.parametrize("suffix", [".parquet", ".arrow", ".xlsx"])
+# Not MDF: at some damaged files asammdf brings down the process.
+@pytest.mark.parametrize("suffix", [".parquet", ".arrow", ".xlsx", ".ulg"])
 @given(data=st.data())
 def test_any_binary_file_is_a_trace_or_an_error_that_names_it(data: st.DataObject, suffix: str) -> None:
     read(data.draw(damaged(suffix)), suffix)

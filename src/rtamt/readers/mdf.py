@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import struct
 from collections import Counter
 from datetime import timezone
 from typing import TYPE_CHECKING, Any
@@ -13,6 +12,7 @@ from rtamt.readers.source import Field, Source, Table, library, opening
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
+    from contextlib import AbstractContextManager
 
     from rtamt.readers.source import Raw
 
@@ -23,17 +23,16 @@ def open_mdf(path: str) -> Source:
     Channels whose values are texts for numbers (modes, states) are read as the numbers.
     """
     asammdf = library("asammdf", "MDF")
-    exceptions = library("asammdf.blocks.utils", "MDF")
-    with opening(path, "MDF", exceptions.MdfException, struct.error):
+    with _reading(path):
         file = asammdf.MDF(path)
     counts = Counter(channel.name for group in file.groups for channel in group.channels)
-    tables = tuple(_table(file, number, counts) for number in range(len(file.groups)))
+    tables = tuple(_table(file, path, number, counts) for number in range(len(file.groups)))
     start = file.start_time
     origin = np.datetime64(start.astimezone(timezone.utc).replace(tzinfo=None), "ns")
     return Source(path, tables, origin=origin, close=file.close)
 
 
-def _table(file: Any, number: int, counts: Counter[str]) -> Table:
+def _table(file: Any, path: str, number: int, counts: Counter[str]) -> Table:
     group = file.groups[number]
     master = file.masters_db.get(number)
     prefix = getattr(group.channel_group, "acq_name", "") or f"group{number}"
@@ -48,14 +47,20 @@ def _table(file: Any, number: int, counts: Counter[str]) -> Table:
         fields.append(field)
 
     def load(wanted: Sequence[Field]) -> list[Raw]:
-        return [
-            np.asarray(file.get_master(number))
-            if field == clock
-            else _samples(file, number, places[field.column])
-            for field in wanted
-        ]
+        with _reading(path):
+            return [
+                np.asarray(file.get_master(number))
+                if field == clock
+                else _samples(file, number, places[field.column])
+                for field in wanted
+            ]
 
     return Table(tuple(fields), load, clock=clock)
+
+
+def _reading(path: str) -> AbstractContextManager[None]:
+    # At a damaged block asammdf raises whatever comes first, here and when samples are read.
+    return opening(path, "MDF", Exception)
 
 
 def _unit(channel: Any) -> str:

@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import struct
+from contextlib import redirect_stdout
+from io import StringIO
 from typing import TYPE_CHECKING, Any
 
+from rtamt.errors import TraceError
 from rtamt.readers.source import Field, Source, Table, library, opening
 
 if TYPE_CHECKING:
@@ -26,10 +29,17 @@ def open_ulog(path: str) -> Source:
     exceptions = library("pyulog.exceptions", "PX4 flight logs")
     # What is no ULog fails in ways of its own: a struct is cut, a text cannot be decoded.
     broken = (exceptions.ULogException, struct.error, ValueError, KeyError, IndexError, TypeError)
-    with opening(path, "a PX4 flight log", *broken), open(path, "rb") as file:
+    # It prints what is damaged, where the robustness of a command line goes.
+    said = StringIO()
+    with opening(path, "a PX4 flight log", *broken), open(path, "rb") as file, redirect_stdout(said):
         log = core.ULog(file)
     topics = sorted(log.data_list, key=lambda topic: (topic.name, topic.multi_id))
-    return Source(path, tuple(map(_table, topics)), notes=_dropouts(log))
+    for topic in topics:
+        if _CLOCK not in topic.data:
+            raise TraceError(
+                f"'{path}' cannot be read as a PX4 flight log: the topic '{topic.name}' has no field '{_CLOCK}'"
+            )
+    return Source(path, tuple(map(_table, topics)), notes=(*_dropouts(log), *_damage(said.getvalue())))
 
 
 def _table(topic: Any) -> Table:
@@ -49,3 +59,11 @@ def _dropouts(log: Any) -> tuple[str, ...]:
         return ()
     lost = sum(dropout.duration for dropout in log.dropouts) / 1000  # durations are in milliseconds
     return (f"{len(log.dropouts)} dropouts of the logger, {lost:g} s in all: nothing was recorded in them",)
+
+
+def _damage(said: str) -> tuple[str, ...]:
+    lines = list(dict.fromkeys(line.strip() for line in said.splitlines() if line.strip()))
+    if not lines:
+        return ()
+    more = f" (and {len(lines) - 1} more)" if len(lines) > 1 else ""
+    return (f"pyulog says: {lines[0]}{more}",)

@@ -165,3 +165,42 @@ def test_what_is_no_mdf(tmp_path):
     (tmp_path / "a.mf4").write_bytes(b"nothing of the kind" * 10)
     with pytest.raises(rtamt.TraceError, match=r"^'.*a\.mf4' cannot be read as MDF: .*not a valid"):
         rtamt.read(tmp_path / "a.mf4")
+
+
+@pytest.mark.parametrize("where", ["__init__", "get"])
+def test_what_asammdf_raises_at_damaged_blocks_is_told(tmp_path, monkeypatch, where):
+    path = tmp_path / "a.mf4"
+    with asammdf.MDF(version="4.10") as file:
+        file.append([asammdf.Signal(np.array([3.0, 4.0]), np.array([0.0, 1.0]), name="speed")])
+        file.save(path)
+
+    def damaged(*_, **__):
+        raise ValueError("seek out of range")
+
+    monkeypatch.setattr(asammdf.MDF, where, damaged, raising=where == "__init__")
+    with pytest.raises(rtamt.TraceError) as error:
+        rtamt.read(path)
+    assert str(error.value) == f"'{path}' cannot be read as MDF: seek out of range"
+
+
+def test_a_topic_of_a_flight_log_without_its_clock_is_refused_and_not_a_key_error(tmp_path):
+    path = ulog(tmp_path / "a.ulg", [("battery", 0, "float x", [(1_000_000, 12.5)])])
+    path.write_bytes(path.read_bytes().replace(b"uint64_t timestamp", b"uint64_t timestemp"))
+    with pytest.raises(rtamt.TraceError) as error:
+        rtamt.read(path)
+    assert str(error.value) == (
+        f"'{path}' cannot be read as a PX4 flight log: the topic 'battery' has no field 'timestamp'"
+    )
+
+
+def test_what_pyulog_prints_of_a_damaged_flight_log_is_a_note_and_not_among_the_answers(tmp_path, capsys):
+    topics = [("battery", 0, "float x", [(1_000_000, 12.5)])]
+    path = ulog(tmp_path / "a.ulg", topics)
+    path.write_bytes(path.read_bytes() + struct.pack("<HBHQf", 14, ord("D"), 9, 2_000_000, 1.0))
+    trace = rtamt.read(path)
+    assert trace["battery.x"].values.tolist() == [12.5]
+    assert trace.notes == (
+        "pyulog says: Warning: no subscription found for message id 9. "
+        "Continuing, but file is most likely corrupt",
+    )
+    assert capsys.readouterr().out == ""
