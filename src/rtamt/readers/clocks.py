@@ -128,10 +128,11 @@ def times_of(clock: Clock, raw: Raw, source: str) -> NDArray[Any]:
     raw = _nanoseconds(raw)
     size = UNITS[clock.unit]
     if clock.kind == "ns":
+        named = f"'{clock.field.column}'"
         try:
             return TimeScale(NANOSECOND, "units", size).ticks(raw, clock.field.column)
         except TraceError as error:
-            raise TraceError(f"{source}: {error}") from None
+            raise TraceError(str(error).replace(named, f"{named} of {source}", 1)) from None
     # A division by a whole number rounds once; a product with 0.001 would round twice.
     return raw.astype(np.float64) / float(1 / size)
 

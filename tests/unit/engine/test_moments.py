@@ -85,5 +85,5 @@ def test_stamps_in_seconds_beside_nanoseconds_are_exact():
 
 
 def test_stamps_beyond_the_range_of_nanoseconds_are_an_error_and_never_wrap():
-    with pytest.raises(rtamt.TraceError, match=r"^'time' has a time too far from 0 for ticks of 1 ns"):
+    with pytest.raises(rtamt.TraceError, match=r"^'time' of a dict has a time too far from 0 for ticks"):
         rtamt.read({"time": np.array([0, 2**62]), "x": [1, 2]}, units={"time": "us"})
