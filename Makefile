@@ -122,7 +122,7 @@ $(VENV)/.extras: $(VENV)/.core
 PACKAGES := postgresql chromium
 # ROS 1: master, rospy, bags, and what builds the workspace in ros/.
 PACKAGES += ros-core catkin rosbash python3-rosbag python3-rospkg python3-genpy ros-message-generation
-PACKAGES += ros-std-msgs python3-std-msgs python3-nav-msgs python3-diagnostic-msgs
+PACKAGES += ros-std-msgs python3-std-msgs python3-nav-msgs python3-geometry-msgs python3-diagnostic-msgs
 # Octave, in which the block for Simulink runs, and what builds its gateway.
 PACKAGES += octave octave-dev
 $(VENV)/.apt: Makefile tools/apt-packages $(VENV)/.made

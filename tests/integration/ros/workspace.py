@@ -22,7 +22,7 @@ def missing():
     ]
     modules = [
         name
-        for name in ("rospy", "rosbag", "std_msgs", "nav_msgs", "diagnostic_msgs")
+        for name in ("rospy", "rosbag", "std_msgs", "geometry_msgs", "nav_msgs", "diagnostic_msgs")
         if not (DEBIAN / name).is_dir()
     ]
     return [*programs, *modules]
