@@ -118,6 +118,8 @@ def test_simulated_time_gives_the_offline_answer_one_horizon_later_and_again_aft
             puppet.wait_for("rtamt/rob/verdict", lambda messages: len(messages) >= len(told))
 
     puppet.ask(do="publish", topic="/clock", fields={"clock": 99 * SECOND})
+    # What is published before the node has seen that instant would be its sample.
+    puppet.wait_for("/diagnostics", lambda arrays: arrays and arrays[-1]["header"]["stamp"] == 99 * SECOND)
     play(100)
     puppet.ask(do="publish", topic="/clock", fields={"clock": 49 * SECOND})
     node.wait_for_output("the clock went back by 69 s: all monitors begin anew")
