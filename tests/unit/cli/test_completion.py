@@ -31,7 +31,7 @@ def test_the_shell_reads_its_script(run, tmp_path, shell):
     assert (done.returncode, done.stderr) == (0, "")
 
 
-@pytest.mark.parametrize(
+TYPED = pytest.mark.parametrize(
     ("typed", "expected"),
     [
         ("rtamt che", {"check"}),
@@ -40,6 +40,9 @@ def test_the_shell_reads_its_script(run, tmp_path, shell):
         ("rtamt check spe", {"spec.stl"}),
     ],
 )
+
+
+@TYPED
 def test_bash_completes(run, write, tmp_path, typed, expected):
     script = tmp_path / "script"
     script.write_text(run("completion", "bash").out, encoding="utf-8")
@@ -54,6 +57,19 @@ def test_bash_completes(run, write, tmp_path, typed, expected):
     """
     done = subprocess.run(["bash", "-c", ask], capture_output=True, text=True, check=True)
     assert set(done.stdout.split()) == expected, done.stderr
+
+
+@pytest.mark.skipif(shutil.which("fish") is None, reason="there is no fish here")
+@TYPED
+def test_fish_completes(run, write, tmp_path, typed, expected):
+    script = tmp_path / "script"
+    script.write_text(run("completion", "fish").out, encoding="utf-8")
+    write("spec.stl", "x >= 3")
+    ask = f"source {script}; complete --do-complete '{typed}'"
+    done = subprocess.run(
+        ["fish", "--no-config", "-c", ask], cwd=tmp_path, capture_output=True, text=True, check=True
+    )
+    assert {line.partition("\t")[0] for line in done.stdout.splitlines()} == expected, done.stderr
 
 
 def test_another_shell_is_refused(run):
