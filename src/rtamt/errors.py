@@ -154,6 +154,15 @@ def shown(value: object) -> str:
     return reprlib.repr(value)
 
 
+def with_article(noun: str) -> str:
+    """Return a noun with its article; most names of types that begin with a u are read "you".
+
+    >>> with_article("int"), with_article("Odometry"), with_article("UInt8"), with_article("str")
+    ('an int', 'an Odometry', 'a UInt8', 'a str')
+    """
+    return f"{'an' if noun[:1].lower() in set('aeio') else 'a'} {noun}"
+
+
 def did_you_mean(name: object, known: Iterable[str]) -> str:
     """Return ``"; did you mean 'x'?"`` for the nearest known name, else an empty string.
 

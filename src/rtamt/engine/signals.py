@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rtamt.engine.moments import nanoseconds_of
-from rtamt.errors import TraceError, UsageError, did_you_mean, shown
+from rtamt.errors import TraceError, UsageError, did_you_mean, shown, with_article
 from rtamt.language.units import format_duration
 
 if TYPE_CHECKING:
@@ -411,7 +411,7 @@ def field_of(value: Any, head: str, path: Sequence[str], index: int) -> Any:
         return field(value, path)
     except AttributeError:
         raise TraceError(
-            f"'{head}' has no field '{'.'.join(path)}' at sample {index}: it is a {type(value).__name__}",
+            f"'{head}' has no field '{'.'.join(path)}' at sample {index}: it is {with_article(type(value).__name__)}",
             variable=head,
             index=index,
         ) from None

@@ -91,7 +91,7 @@ class _Explainer:
         robustness = self._signals.at(core, cell)
         implicant = self._implicant(cell, satisfied)
         critical, moment = self._critical(cell, implicant)
-        stretches = tuple(self._stretch(interval, satisfied) for interval in implicant)
+        stretches = tuple(self._stretch(interval, cell, satisfied) for interval in implicant)
         told = formula_text(self._formula)
         return Explanation(
             told,
@@ -193,13 +193,13 @@ class _Explainer:
         places = {name: i for i, name in enumerate(self._structure.leaves)}
         return sorted(found, key=lambda interval: (places[interval.name], interval.start, interval.sign))
 
-    def _stretch(self, interval: Interval, satisfied: bool) -> tuple[Stretch, str]:
+    def _stretch(self, interval: Interval, cell: int, satisfied: bool) -> tuple[Stretch, str]:
         """Return an interval of the implicant as data, and when it is for a sentence."""
         leaf = self._structure.leaves[interval.name]
         line, last = self._line, interval.end - 1
         holds = satisfied == (interval.sign > 0)
         forever = interval.end >= NEVER
-        closed = not forever and line.closes(interval.end, self._formula)
+        closed = not forever and line.closes(interval.end, self._formula, cell)
         _, values = self._values[leaf.name].between(interval.start, interval.end)
         behind, ahead = self._reads(leaf)
         begin, end = max(interval.start - behind, 0), min(last + ahead, line.end - 1)

@@ -64,8 +64,11 @@ class Timeline(ABC):
         """The last cell that was recorded."""
 
     @abstractmethod
-    def closes(self, end: int, formula: Formula) -> bool:
-        """Tell whether an interval of cells up to ``end`` is better told by its last cell than by ``end``."""
+    def closes(self, end: int, formula: Formula, at: int) -> bool:
+        """Tell whether an interval of cells up to ``end`` is better told by its last cell than by ``end``.
+
+        It is part of the answer to why the formula has its verdict at the cell ``at``.
+        """
 
 
 class DiscreteTimeline(Timeline):
@@ -140,7 +143,7 @@ class DiscreteTimeline(Timeline):
         """See :class:`Timeline`."""
         return self.end - 1
 
-    def closes(self, end: int, formula: Formula) -> bool:  # noqa: ARG002 - samples are all there is
+    def closes(self, end: int, formula: Formula, at: int) -> bool:  # noqa: ARG002 - samples are all there is
         """See :class:`Timeline`."""
         return True
 
@@ -226,15 +229,16 @@ class DenseTimeline(Timeline):
         """See :class:`Timeline`."""
         return self._last
 
-    def closes(self, end: int, formula: Formula) -> bool:
+    def closes(self, end: int, formula: Formula, at: int) -> bool:
         """See :class:`Timeline`.
 
         [2 s, 5 s] and [2 s, 5 s + 1 tick) are the same ticks, as are [2 s, 5 s) and [2 s, 5 s - 1 tick]. What
-        is meant is the end on the grid that all samples and bounds share.
+        is meant is the end on the grid that all samples and bounds, and the instant asked for, share.
         """
         grain = self._grains.get(formula)
         if grain is None:
             grain = self._grains[formula] = self._grain(formula)
+        grain = math.gcd(grain, at + self._start)
         return (end + self._start) % grain != 0 == (end + self._start - 1) % grain
 
     def _grain(self, formula: Formula) -> int:

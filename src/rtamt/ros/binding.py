@@ -6,7 +6,7 @@ import importlib
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
-from rtamt.errors import UsageError, did_you_mean
+from rtamt.errors import UsageError, did_you_mean, with_article
 from rtamt.language.formula import variables
 from rtamt.ros.fields import Path, check_path, path_of
 
@@ -140,7 +140,7 @@ def _outputs(spec: Specification, types: Mapping[str, MessageType]) -> list[Outp
         path = path_of(assertion.name)
         if not path:
             raise UsageError(
-                f"'{variable}' is a {types[variable].name} and no number; "
+                f"'{variable}' is {with_article(types[variable].name)} and no number; "
                 f"say which field is the robustness, such as {variable}.value = ..."
             )
         alone = replace(spec, document=replace(document, assertions=document.assertions[: index + 1]))
@@ -158,14 +158,14 @@ def _inputs(formulas: list[Formula], document: Document, types: Mapping[str, Mes
         if variable not in types:
             declared = {d.name: d.type for d in document.declarations}
             kind = declared.get(variable)
-            what = "is not declared" if kind is None else f"is a {kind}"
+            what = "is not declared" if kind is None else f"is {with_article(kind)}"
             raise UsageError(
                 f"'{variable}' {what}, and a topic carries messages: import a type and declare it, such as "
                 f"'from std_msgs.msg import Float64' and 'input Float64 {variable}', then read {variable}.data"
             )
         if variable in names:
             raise UsageError(
-                f"'{variable}' is a {types[variable].name} and no number; read one of its fields, "
+                f"'{variable}' is {with_article(types[variable].name)} and no number; read one of its fields, "
                 f"such as {variable}.value"
             )
         for name in names:

@@ -6,7 +6,7 @@ import re
 from typing import TYPE_CHECKING, Any
 
 from rtamt.engine.signals import is_number
-from rtamt.errors import TraceError, UsageError, did_you_mean
+from rtamt.errors import TraceError, UsageError, did_you_mean, with_article
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -78,7 +78,9 @@ def check_path(name: str, sample: Any, kind: str) -> None:
     for step in path_of(name):
         if isinstance(step, int):
             if not hasattr(at, "__getitem__") or isinstance(at, str):
-                raise UsageError(f"'{done}' is no array, so that there is no '{name}' in a {kind}")
+                raise UsageError(
+                    f"'{done}' is no array, so that there is no '{name}' in {with_article(kind)}"
+                )
             if step >= len(at):
                 return
             at, done = at[step], f"{done}[{step}]"
@@ -94,7 +96,7 @@ def check_path(name: str, sample: Any, kind: str) -> None:
     if not is_number(at):
         inside = fields_of(at)
         such = f"; name one of its fields, such as {done}.{inside[0]}" if inside else ""
-        raise UsageError(f"'{name}' is no number but a {type(at).__name__}{such}")
+        raise UsageError(f"'{name}' is no number but {with_article(type(at).__name__)}{such}")
 
 
 def fields_of(message: Any) -> tuple[str, ...]:

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rtamt.engine.signals import field
-from rtamt.errors import NameInFormulaError, StlError, UsageError, did_you_mean
+from rtamt.errors import NameInFormulaError, StlError, UsageError, did_you_mean, with_article
 from rtamt.language.formula import Var, postorder, variables
 from rtamt.language.operators import STL, Language
 from rtamt.language.parser import parse_formula
@@ -99,7 +99,7 @@ class Declarations(ABC):
             raise UsageError(f"'{const_name}' is declared already; give the constant another name")
         if const_type not in SCALARS:
             raise UsageError(
-                f"the constant '{const_name}' cannot be a {const_type}; its type is float or int"
+                f"the constant '{const_name}' cannot be {with_article(const_type)}; its type is float or int"
             )
         try:
             value = float(const_val)
@@ -302,13 +302,12 @@ class Declarations(ABC):
             value = field(held, path)
         except AttributeError:
             missing = ".".join(path)
-            return (
-                f"'{head}' is a {kind} and has no field '{missing}'{did_you_mean(missing, _numbers_in(held))}"
-            )
+            hint = did_you_mean(missing, _numbers_in(held))
+            return f"'{head}' is {with_article(kind)} and has no field '{missing}'{hint}"
         if path or isinstance(value, Real):
             return ""
         such = [f", such as {head}.{number}" for number in _numbers_in(held)[:1]]
-        return f"'{head}' is a {kind} and no number; name one of its fields{''.join(such)}"
+        return f"'{head}' is {with_article(kind)} and no number; name one of its fields{''.join(such)}"
 
     def _assertions(self, document: Document) -> dict[str, Formula]:
         """Return the formulas by name, the result last."""
@@ -337,7 +336,9 @@ class Declarations(ABC):
         try:
             return cls()
         except TypeError as error:
-            raise UsageError(f"'{name}' cannot start as a {type_name} without arguments: {error}") from error
+            raise UsageError(
+                f"'{name}' cannot start as {with_article(type_name)} without arguments: {error}"
+            ) from error
 
 
 def head_of(name: str) -> str:

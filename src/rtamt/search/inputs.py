@@ -24,7 +24,7 @@ from typing import TYPE_CHECKING, Any, Protocol, TypeAlias
 import numpy as np
 
 from rtamt.engine.signals import is_number
-from rtamt.errors import UsageError, shown
+from rtamt.errors import UsageError, shown, with_article
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -96,7 +96,7 @@ class _Points:
         least = self._least()
         if self.points < least:
             raise UsageError(
-                f"a {type(self).__name__} has {shown(self.points)} points; it needs {least} or more"
+                f"{with_article(type(self).__name__)} has {shown(self.points)} points; it needs {least} or more"
             )
         Range(self.low, self.high)
 

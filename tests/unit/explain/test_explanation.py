@@ -312,3 +312,17 @@ def test_what_lasts_for_ever_was_told_to_end_a_tick_before_the_end_of_time(text)
     result = rtamt.parse(text, time="dense").evaluate({"y": ([0.0, 6.0], [1, -1]), "x": ([0.0], [0])})
     (stretch,) = result.explain().implicant
     assert (stretch.predicate, stretch.holds, stretch.start, stretch.end) == ("x > 9", False, 0.0, None)
+
+
+@pytest.mark.parametrize(
+    ("text", "at", "when"),
+    [
+        ("always[0:1](x >= 3)", 1.5, "failed from 2 s to 2.5 s (-2)"),
+        ("x >= 3", 1.5, "held at 1.5 s (2)"),
+        ("historically(x >= 3)", 2.5, "failed from 2 s to 2.5 s (-2)"),
+        ("always[0:1](x >= 3)", 3.9, "failed from 3.9 s until 4 s (-2)"),
+    ],
+)
+def test_an_instant_between_samples_is_not_told_a_nanosecond_too_late(text, at, when):
+    result = rtamt.parse(text, time="dense").evaluate({"x": ([0, 2, 4], [5, 1, 6])})
+    assert result.explain(at=at).sentences[-1] == f"  'x >= 3' {when}"
