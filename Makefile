@@ -93,7 +93,7 @@ fuzz: $(VENV)/.core $(VENV)/.group-test $(VENV)/.group-build ## look for input t
 	mkdir -p build/fuzz/found
 	build/fuzz/tests/fuzz/fuzz_program build/fuzz/found tests/fuzz/corpus/program -artifact_prefix=build/fuzz/ \
 	    -max_total_time=$(FUZZ_SECONDS) -timeout=10 -rss_limit_mb=1024 -malloc_limit_mb=512 -print_final_stats=1
-	$(RUN) -m pytest tests/fuzz --hypothesis-profile=fuzz
+	$(RUN) -m pytest tests/fuzz --hypothesis-profile=fuzz --timeout=0
 
 clean: ## remove all that was made here, .venv too
 	rm -rf $(VENV) build dist
