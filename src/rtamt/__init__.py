@@ -20,7 +20,8 @@ from rtamt.errors import (
 )
 from rtamt.language.operators import STL
 from rtamt.results import Result
-from rtamt.specification import Specification, load, parse, robustness
+from rtamt.specification import Specification
+from rtamt.texts import load, parse, robustness
 
 if TYPE_CHECKING:
     from rtamt.batch import evaluate_all, evaluate_batch

@@ -17,7 +17,7 @@ from rtamt.language.units import duration
 from rtamt.rewrite.interface import ROLES, Judge
 
 if TYPE_CHECKING:
-    from rtamt.language.specfile import Document
+    from rtamt.language.document import Document
 
 BACKENDS = ("cpp", "python")
 TIMES = ("discrete", "dense")

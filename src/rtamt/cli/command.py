@@ -20,12 +20,13 @@ from rtamt.errors import SpecificationError, StlError, UsageError
 from rtamt.language.units import UNITS, decimal
 from rtamt.readers.formats import SUFFIXES
 from rtamt.rewrite.interface import SEMANTICS
-from rtamt.specification import Specification, load, parse
+from rtamt.texts import load, parse
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from rtamt.settings import Settings
+    from rtamt.specification import Specification
 
 OK, VIOLATED, ERROR = 0, 1, 2
 

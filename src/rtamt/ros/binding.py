@@ -13,8 +13,8 @@ from rtamt.ros.fields import Path, check_path, path_of
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
+    from rtamt.language.document import Document
     from rtamt.language.formula import Formula
-    from rtamt.language.specfile import Document
     from rtamt.specification import Specification
 
 

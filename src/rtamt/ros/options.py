@@ -10,7 +10,7 @@ from rtamt.errors import UsageError
 from rtamt.language.units import UNITS
 from rtamt.ros.binding import bind
 from rtamt.ros.monitor import RosMonitor
-from rtamt.specification import load
+from rtamt.texts import load
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -17,7 +17,7 @@ from rtamt.language.operators import STL, Fixity, Language
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from rtamt.language.specfile import Document
+    from rtamt.language.document import Document
 
 
 def warn_of_chains(document: Document, read: Callable[[str, Language], Document], stacklevel: int) -> None:

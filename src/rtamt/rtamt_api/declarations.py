@@ -16,7 +16,7 @@ from rtamt.errors import NameInFormulaError, StlError, UsageError, did_you_mean,
 from rtamt.language.formula import Var, postorder, variables
 from rtamt.language.operators import STL, Language
 from rtamt.language.parser import parse_formula
-from rtamt.language.specfile import TYPES, Document, parse_document
+from rtamt.language.specfile import TYPES, parse_document
 from rtamt.language.units import check_unit
 from rtamt.rtamt_api.associativity import warn_of_chains
 from rtamt.rtamt_api.failures import raises_rtamt
@@ -27,6 +27,7 @@ if TYPE_CHECKING:
 
     from typing_extensions import Self
 
+    from rtamt.language.document import Document
     from rtamt.language.formula import Formula
 
 #: The types of variables that need no import, and their classes; ``long`` was Python 2's second int.

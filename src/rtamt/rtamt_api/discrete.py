@@ -22,8 +22,8 @@ from rtamt.rtamt_api.formulas import Formulas
 from rtamt.rtamt_api.options import sampling
 
 if TYPE_CHECKING:
+    from rtamt.language.document import Document
     from rtamt.language.formula import Formula
-    from rtamt.language.specfile import Document
 
 
 class DiscreteTimeSpecification(Formulas):

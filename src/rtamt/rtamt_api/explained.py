@@ -14,8 +14,8 @@ if TYPE_CHECKING:
     from rtamt.engine.dense_evaluate import DenseRecording
     from rtamt.engine.signals import Recording
     from rtamt.explain.report import Explanation
+    from rtamt.language.document import Document
     from rtamt.language.formula import Formula
-    from rtamt.language.specfile import Document
     from rtamt.rewrite.interface import Judge
 
 

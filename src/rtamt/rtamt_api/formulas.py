@@ -17,7 +17,7 @@ from rtamt.rtamt_api.options import Semantics
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from rtamt.language.specfile import Document
+    from rtamt.language.document import Document
     from rtamt.rewrite.interface import Judge
 
 

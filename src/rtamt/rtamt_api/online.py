@@ -15,7 +15,7 @@ from rtamt.rtamt_api.failures import raises_rtamt
 from rtamt.rtamt_api.formulas import Formulas
 
 if TYPE_CHECKING:
-    from rtamt.language.specfile import Document
+    from rtamt.language.document import Document
 
 
 class OnlineSpecification(Formulas):

@@ -33,7 +33,7 @@ from rtamt.errors import StlError, UsageError, did_you_mean, shown
 from rtamt.extras import library
 from rtamt.search.inputs import PiecewiseConstant, PiecewiseLinear, Pulse, Range, Sine, Step
 from rtamt.search.problem import Problem
-from rtamt.specification import load, parse
+from rtamt.texts import load, parse
 
 if TYPE_CHECKING:
     import os

@@ -3,9 +3,10 @@
 import pytest
 
 from rtamt.errors import NameInFormulaError, ParseError
+from rtamt.language.document import Assertion, Declaration, Import
 from rtamt.language.formula import Const, Var
 from rtamt.language.parser import parse_formula
-from rtamt.language.specfile import Assertion, Declaration, Import, parse_document
+from rtamt.language.specfile import parse_document
 
 # The form of the paper's listing 8.
 LISTING = """

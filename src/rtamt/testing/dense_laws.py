@@ -1,0 +1,119 @@
+"""The laws of :mod:`rtamt.testing.laws` that are about dense time."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from hypothesis import assume
+
+from rtamt.engine import dense_evaluate, dense_reference
+from rtamt.engine.dense_monitor import DenseMonitor
+from rtamt.errors import EvaluationError
+from rtamt.language.formula import variables
+from rtamt.language.operators import Tense
+from rtamt.testing.case import NAMES, ONE, Case, check_own_code
+from rtamt.testing.strategies import dense_chunkings, dense_traces
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from rtamt.language.formula import Formula
+    from rtamt.language.operators import Operator
+
+_NANOSECONDS = 10**9
+
+
+def has_dense_meaning(op: Operator) -> bool:
+    """Tell whether an operator means something in dense time, too."""
+    return op.dense is not None or op.expansion is not None or op.tense is Tense.NONE
+
+
+def _trace(case: Case, draw: Callable[[Any], Any], formula: Formula) -> dict[str, Any]:
+    trace = draw(dense_traces(NAMES, max_size=8, infinite=case.infinite))
+    return {name: trace[name] for name in variables(formula)}
+
+
+def _stepped(times: Any, values: Any) -> tuple[list[int], list[float]]:
+    """Return a step function as its changes alone."""
+    changes: list[tuple[int, float]] = []
+    for time, value in zip(times, values, strict=True):
+        if not changes or changes[-1][1] != value:
+            changes.append((int(time), float(value)))
+    return [t for t, _ in changes], [v for _, v in changes]
+
+
+def _densely_defined(formula: Formula, trace: dict[str, Any]) -> tuple[list[int], list[float]] | None:
+    try:
+        steps = dense_reference.evaluate(formula, trace, ONE)
+    except EvaluationError as error:
+        check_own_code(error)
+        return None
+    return _stepped(steps.times, steps.values)
+
+
+def _same_steps(case: Case, got: Any, expected: Any) -> bool:
+    if got is None or expected is None:
+        return got is expected
+    # Values that differ by less than the tolerance may be merged in one and not in the other.
+    instants = sorted({*got[0], *expected[0]})
+    return case.equal(_at(got, instants), _at(expected, instants))
+
+
+def _at(steps: tuple[list[int], list[float]], instants: list[int]) -> list[float]:
+    places = np.searchsorted(steps[0], instants, side="right") - 1
+    return [steps[1][place] if place >= 0 else np.nan for place in places]
+
+
+def _ticks(trace: dict[str, Any]) -> dict[str, Any]:
+    return {name: (np.asarray(t, np.int64) * _NANOSECONDS, values) for name, (t, values) in trace.items()}
+
+
+def _fast_is_the_dense_definition(case: Case, draw: Callable[[Any], Any]) -> None:
+    formula = case.formula(draw, dense=True, unbounded=True)
+    assume(variables(formula))
+    trace = _trace(case, draw, formula)
+    expected = _densely_defined(formula, trace)
+    recording = dense_evaluate.trace(_ticks(trace), variables(formula), ONE)
+    got: Any
+    try:
+        signal = dense_evaluate.evaluate(formula, recording)
+        got = _stepped(signal.times // _NANOSECONDS, signal.values)
+    except EvaluationError as error:
+        check_own_code(error)
+        got = None
+    # What has no value after the end, and is read by nothing, may pass unnoticed in one of them.
+    assume(expected is not None and got is not None)
+    if not _same_steps(case, got, expected):
+        raise case.broken("fast is the definition, in dense time", formula, trace, expected, got)
+
+
+def _dense_online_is_offline(case: Case, draw: Callable[[Any], Any]) -> None:
+    formula = case.formula(draw, dense=True)
+    assume(variables(formula))
+    trace = _trace(case, draw, formula)
+    expected = _densely_defined(formula, trace)
+    assume(expected is not None)
+    updates = draw(dense_chunkings(trace))
+    for backend in ("cpp", "python"):
+        monitor = DenseMonitor(formula, resolution=ONE, backend=backend)
+        for _ in range(2):  # a reset monitor is a new one
+            times: list[int] = []
+            values: list[float] = []
+            try:
+                told = [monitor.update_many(_ticks(update)) for update in updates] + [monitor.finish()]
+            except EvaluationError as error:
+                check_own_code(error)
+                assume(False)
+                raise
+            for signal in told:
+                times += (signal.times // _NANOSECONDS).tolist()
+                values += signal.values.tolist()
+            if times != sorted(set(times)) or not _same_steps(case, _stepped(times, values), expected):
+                law = f"online and finish is offline, in dense time ({backend})"
+                raise case.broken(law, formula, trace, expected, (times, values))
+            monitor.reset()
+
+
+#: Each is a function of a case and of what draws for it.
+DENSE_LAWS = (_fast_is_the_dense_definition, _dense_online_is_offline)

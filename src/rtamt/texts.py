@@ -1,0 +1,127 @@
+"""From texts and files to requirements: what ``import rtamt`` offers first."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from rtamt.engine.ticks import NANOSECOND
+from rtamt.errors import UsageError, shown
+from rtamt.language.operators import STL, Language
+from rtamt.language.specfile import parse_document
+from rtamt.rewrite import interface
+from rtamt.rewrite.check import check_bounds, check_dense
+from rtamt.settings import (
+    check_backend,
+    check_constants,
+    check_language,
+    positive_period,
+    roles_of,
+    time_domain,
+)
+from rtamt.specification import Specification
+
+if TYPE_CHECKING:
+    import os
+    from collections.abc import Mapping
+
+    from typing_extensions import Unpack
+
+    from rtamt.settings import Duration, Semantics, Settings
+
+
+def parse(
+    text: str,
+    *,
+    period: Duration | None = None,
+    unit: str = "s",
+    backend: str = "cpp",
+    constants: Mapping[str, float] | None = None,
+    language: Language = STL,
+    time: str = "discrete",
+    resolution: Duration = NANOSECOND,
+    semantics: Semantics = "standard",
+    roles: Mapping[str, str] | None = None,
+) -> Specification:
+    """Read a requirement: a formula, or the whole text of a specification file.
+
+    ``period``: the sampling period, seconds or text such as ``"100ms"``; if it is given, every bound
+    must be a multiple of it. ``unit``: of bounds without one. ``backend``: ``"cpp"`` or ``"python"``.
+    ``constants``: named numbers. ``time``: ``"discrete"``, or ``"dense"`` with ticks of ``resolution``
+    seconds, for evaluations and monitors that say nothing else. Raises :class:`SpecificationError`
+    with the place in the text.
+
+    ``semantics``: what a predicate is worth. By name: ``"standard"``, its robustness; ``"boolean"``,
+    +inf or -inf by its truth; and, relative to the interface (the paper's section 2.3),
+    ``"output_robustness"``, ``"input_vacuity"``, ``"input_robustness"``, ``"output_vacuity"``. Or a
+    function of a predicate and roles that returns the formula to put in its place. ``roles``: from a
+    variable to ``"input"`` or ``"output"``, before what the text declares; without a role it is an
+    output.
+
+    >>> import rtamt
+    >>> spec = rtamt.parse("always((req >= 3) -> eventually[0:5](gnt >= 3))", roles={"req": "input"})
+    >>> spec.input_names
+    ('req', 'gnt')
+    >>> never_asked = {"req": [1, 2], "gnt": [0, 0]}
+    >>> [spec.evaluate(never_asked, semantics=s).robustness for s in ("standard", "output_robustness")]
+    [1.0, inf]
+    """
+    check_language(language)
+    check_backend(backend)
+    check_constants({} if constants is None else constants)
+    document = parse_document(text, language=language, unit=unit, constants=constants)
+    exact = None if period is None else positive_period(period)
+    tick = positive_period(resolution, "resolution")
+    spec = Specification(
+        document,
+        exact,
+        unit,
+        backend,
+        language,
+        time_domain(time),
+        tick,
+        interface.semantics_of(semantics),
+        roles_of(document, {} if roles is None else roles),
+    )
+    if spec.time == "dense":
+        for assertion in document.assertions:
+            check_dense(assertion.formula, text)
+            check_bounds(assertion.formula, tick, text, "resolution")
+    if exact is not None:
+        for assertion in document.assertions:
+            check_bounds(assertion.formula, exact, text)
+    return spec
+
+
+def load(path: str | os.PathLike[str], **settings: Unpack[Settings]) -> Specification:
+    """Read a specification file (``.stl``); settings and errors as for :func:`parse`.
+
+    >>> import pathlib, tempfile
+    >>> import rtamt
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     path = pathlib.Path(folder, "limit.stl")
+    ...     _ = path.write_text("specification limit; input float x; always(x <= 3)")
+    ...     print(rtamt.load(path).name)
+    limit
+    """
+    try:
+        text = Path(path).read_text(encoding="utf-8-sig")
+    except TypeError:
+        raise UsageError(f"the path of a specification is {shown(path)}, expected text or a Path") from None
+    except OSError as error:
+        raise UsageError(f"cannot read the specification '{path}': {error.strerror}") from error
+    except UnicodeDecodeError as error:
+        raise UsageError(
+            f"'{path}' is not UTF-8 text (byte {error.start}); is it a specification?"
+        ) from error
+    return parse(text, **settings)
+
+
+def robustness(text: str, data: Any, **settings: Unpack[Settings]) -> float:
+    """Return the robustness of a recording at its first instant; settings and errors as for :func:`parse`.
+
+    >>> import rtamt
+    >>> rtamt.robustness("eventually(x >= 3)", {"x": [1, 2, 5]})
+    2.0
+    """
+    return parse(text, **settings).evaluate(data).robustness
