@@ -17,9 +17,6 @@ using dense::Failure;
 
 namespace {
 
-constexpr const char* in_use =
-    "The monitor is in use by another thread: give each thread a monitor of its own.";
-
 template <class Item>
 [[nodiscard]] nb::ndarray<nb::numpy, Item, nb::ndim<1>> array(Item* items, std::size_t count,
                                                               const nb::capsule& owner) {
@@ -114,13 +111,14 @@ DenseMonitor::DenseMonitor(Program program, const std::vector<nb::str>& names,
                            Exceptions exceptions)
     : calls_(std::move(calls)), executor_(std::move(program)),
       names_(names, executor_.program().inputs, ignored), exceptions_(std::move(exceptions)),
-      row_(names.size()), events_(names.size()), results_(executor_.program().outputs.size()),
-      spare_(results_.size()), until_(results_.size()), counts_(names.size()),
-      scale_name_(interned("_scale")), events_name_(interned("_events")) {}
+      gate_(exceptions_.refused), row_(names.size()), events_(names.size()),
+      results_(executor_.program().outputs.size()), spare_(results_.size()),
+      until_(results_.size()), counts_(names.size()), scale_name_(interned("_scale")),
+      events_name_(interned("_events")) {}
 
 void DenseMonitor::tell(const nb::type_object& signal, const nb::object& scale,
                         std::optional<double> rate) {
-    require_idle();
+    gate_.require_idle();
     signal_ = signal;
     scale_ = scale;
     rate_ = rate.value_or(0.0);
@@ -134,23 +132,19 @@ void DenseMonitor::tell(const nb::type_object& signal, const nb::object& scale,
 template <class Values>
 PyObject* DenseMonitor::update(PyObject* time, const Values& values) noexcept {
     if (!ready()) return nullptr;
-    busy_ = true;
-    const char* reason = told_ && read_time(time) ? read_values(values) : "time";
-    busy_ = false;
-    if (reason != nullptr) return refuse(reason);
+    const char* reason =
+        gate_.briefly([&] { return told_ && read_time(time) ? read_values(values) : "time"; });
+    if (reason != nullptr) return gate_.refuse(reason);
     for (EventList& list : spare_)
         list.resize(0);
-    busy_ = true;
     try {
-        const auto failure = executor_.push(events_, spare_);
-        busy_ = false;
+        const auto failure = gate_.briefly([&] { return executor_.push(events_, spare_); });
         if (failure) return fail(*failure);
         std::swap(results_, spare_);
         for (std::size_t input = 0; input < events_.size(); ++input)
             counts_[input] += static_cast<std::int64_t>(events_[input].count);
         close();
     } catch (const std::bad_alloc&) {
-        busy_ = false;
         return PyErr_NoMemory();
     }
     return answer();
@@ -248,25 +242,10 @@ nb::object DenseMonitor::signal_of(const Events& events) const noexcept {
     return signal;
 }
 
-PyObject* DenseMonitor::refuse(const char* reason) const noexcept {
-    if (PyErr_Occurred() == nullptr) PyErr_SetString(exceptions_.refused.ptr(), reason);
-    return nullptr;
-}
-
-// Whether an update may come now; if not, a Python exception is set.
-bool DenseMonitor::ready() const noexcept {
-    if (!busy_ && !executor_.finished()) [[likely]] {
-        return true;
-    }
-    if (busy_) PyErr_SetString(PyExc_RuntimeError, in_use);
-    (void)refuse("finished");
-    return false;
-}
-
 // ---- many samples -------------------------------------------------------------------------------
 
 nb::tuple DenseMonitor::push(const std::vector<EventColumn>& columns) {
-    require_idle();
+    gate_.require_idle();
     if (!ready()) throw nb::python_error();
     const std::vector<Events> inputs = events_of(columns, names_.count());
     for (std::size_t i = 0; i < inputs.size(); ++i) {
@@ -274,13 +253,13 @@ nb::tuple DenseMonitor::push(const std::vector<EventColumn>& columns) {
         if (events.count == 0) continue;
         if (events.times[0] <= executor_.last_time(i).value_or(-dense::never - 1) ||
             events.times[events.count - 1] > executor_.last_possible()) {
-            (void)refuse("time");
+            (void)gate_.refuse("time");
             throw nb::python_error();
         }
     }
     std::vector<EventList> results(results_.size());
     std::optional<Failure> failure;
-    exclusively(samples(inputs), [&] { failure = executor_.push(inputs, results); });
+    gate_.exclusively(samples(inputs), [&] { failure = executor_.push(inputs, results); });
     if (failure) {
         raise_undefined(exceptions_, *calls_, failure->instruction, failure->time, failure->fault);
     }
@@ -290,10 +269,10 @@ nb::tuple DenseMonitor::push(const std::vector<EventColumn>& columns) {
 }
 
 nb::tuple DenseMonitor::finish() {
-    require_idle();
+    gate_.require_idle();
     std::vector<EventList> results(results_.size());
     std::optional<Failure> failure;
-    exclusively(executor_.state_bytes(), [&] { failure = executor_.finish(results); });
+    gate_.exclusively(executor_.state_bytes(), [&] { failure = executor_.finish(results); });
     if (failure) {
         raise_undefined(exceptions_, *calls_, failure->instruction, failure->time, failure->fault);
     }
@@ -307,7 +286,7 @@ nb::tuple DenseMonitor::take(std::vector<EventList>& results) {
 }
 
 nb::tuple DenseMonitor::told(std::size_t output) const {
-    require_idle();
+    gate_.require_idle();
     require_output(output);
     const Events events = results_[output].view();
     EventList copy;
@@ -316,7 +295,7 @@ nb::tuple DenseMonitor::told(std::size_t output) const {
 }
 
 nb::list DenseMonitor::points() const {
-    require_idle();
+    gate_.require_idle();
     nb::list every;
     for (const EventList& list : results_) {
         const Events events = list.view();
@@ -329,7 +308,7 @@ nb::list DenseMonitor::points() const {
 }
 
 void DenseMonitor::reset() {
-    require_idle();
+    gate_.require_idle();
     executor_.reset();
     for (EventList& list : results_)
         list.resize(0);
@@ -339,14 +318,14 @@ void DenseMonitor::reset() {
 }
 
 nb::bytes DenseMonitor::state() {
-    require_idle();
+    gate_.require_idle();
     Snapshot snapshot;
     transfer(snapshot);
     return bytes_of(snapshot);
 }
 
 void DenseMonitor::restore(const nb::bytes& state) {
-    require_idle();
+    gate_.require_idle();
     Snapshot snapshot = snapshot_of(state);
     transfer(snapshot);
     snapshot.end();
@@ -361,23 +340,23 @@ void DenseMonitor::transfer(Snapshot& snapshot) {
 }
 
 std::vector<std::int64_t> DenseMonitor::counts() const {
-    require_idle();
+    gate_.require_idle();
     return counts_;
 }
 
 std::optional<std::int64_t> DenseMonitor::start() const {
-    require_idle();
+    gate_.require_idle();
     return executor_.start();
 }
 
 std::optional<std::int64_t> DenseMonitor::known(std::size_t output) const {
-    require_idle();
+    gate_.require_idle();
     require_output(output);
     return executor_.known_until(output);
 }
 
 std::vector<std::optional<std::int64_t>> DenseMonitor::last_times() const {
-    require_idle();
+    gate_.require_idle();
     std::vector<std::optional<std::int64_t>> times;
     times.reserve(names_.count());
     for (std::size_t input = 0; input < names_.count(); ++input)
@@ -386,33 +365,14 @@ std::vector<std::optional<std::int64_t>> DenseMonitor::last_times() const {
 }
 
 std::size_t DenseMonitor::state_bytes() const {
-    require_idle();
+    gate_.require_idle();
     return executor_.state_bytes();
-}
-
-void DenseMonitor::require_idle() const {
-    if (busy_) throw std::runtime_error(in_use);
 }
 
 void DenseMonitor::require_output(std::size_t output) const {
     if (output >= results_.size()) {
         throw std::out_of_range("There is no output " + std::to_string(output) + ".");
     }
-}
-
-template <class Work>
-void DenseMonitor::exclusively(std::size_t count, Work&& work) {
-    struct Busy {
-        bool& flag;
-        explicit Busy(bool& busy) noexcept : flag(busy) { flag = true; }
-        ~Busy() { flag = false; }
-        Busy(const Busy&) = delete;
-        Busy& operator=(const Busy&) = delete;
-        Busy(Busy&&) = delete;
-        Busy& operator=(Busy&&) = delete;
-    };
-    const Busy busy(busy_);
-    without_gil(count, std::forward<Work>(work));
 }
 
 } // namespace rtamt::python

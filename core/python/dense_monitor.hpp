@@ -10,6 +10,7 @@
 #include "arrays.hpp"
 #include "calls.hpp"
 #include "failures.hpp"
+#include "gate.hpp"
 #include "names.hpp"
 #include "numbers.hpp"
 
@@ -87,6 +88,7 @@ class DenseMonitor {
     Names names_;
     Numbers numbers_;
     Exceptions exceptions_;
+    Gate gate_;
     std::int64_t time_ = 0;                          // of the instant that is being read
     std::vector<double> row_;                        // its values
     std::vector<dense::Events> events_;              // one for each input that has a value then
@@ -101,14 +103,11 @@ class DenseMonitor {
     nb::str events_name_;
     bool told_ = false; // whether update() knows how time is told
     double rate_ = 0.0; // ticks a second; 0: times are ticks
-    bool busy_ = false; // another thread is inside, or a __float__ or an operator that came back
 
-    void require_idle() const;
     void transfer(Snapshot& snapshot);
     void require_output(std::size_t output) const;
-    PyObject* refuse(const char* reason) const noexcept;
     [[nodiscard]] PyObject* fail(const dense::Failure& failure) const noexcept;
-    [[nodiscard]] bool ready() const noexcept;
+    [[nodiscard]] bool ready() const noexcept { return gate_.open(executor_.finished()); }
     [[nodiscard]] bool read_time(PyObject* time) noexcept;
     template <class Values>
     [[nodiscard]] const char* read_values(const Values& values) noexcept;
@@ -116,9 +115,6 @@ class DenseMonitor {
     [[nodiscard]] PyObject* answer() const noexcept;
     [[nodiscard]] nb::object signal_of(const dense::Events& events) const noexcept;
     [[nodiscard]] nb::tuple take(std::vector<dense::EventList>& results);
-
-    template <class Work>
-    void exclusively(std::size_t count, Work&& work);
 };
 
 } // namespace rtamt::python

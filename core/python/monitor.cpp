@@ -16,9 +16,6 @@ namespace {
 // No input has this value, so it marks those that have none yet.
 constexpr double missing = std::numeric_limits<double>::quiet_NaN();
 
-constexpr const char* in_use =
-    "The monitor is in use by another thread: give each thread a monitor of its own.";
-
 // How many samples a value may come late, and the last one: those that a caller may have to name.
 [[nodiscard]] std::size_t history_of(const Program& program) noexcept {
     return static_cast<std::size_t>(program.latest()) + 1;
@@ -31,29 +28,12 @@ Monitor::Monitor(Program program, const std::vector<nb::str>& names, double peri
                  std::shared_ptr<Calls> calls, Exceptions exceptions)
     : calls_(std::move(calls)), executor_(std::move(program)),
       clock_(period, tolerance, strict, history_of(executor_.program())),
-      exceptions_(std::move(exceptions)), row_(names.size()), previous_(names.size(), missing) {
-    const std::size_t inputs = executor_.program().inputs;
-    if (names.size() != inputs) {
-        throw std::invalid_argument("Got " + std::to_string(names.size()) +
-                                    " names for a program with " + std::to_string(inputs) +
-                                    " inputs.");
-    }
+      names_(names, executor_.program().inputs, ignored), exceptions_(std::move(exceptions)),
+      gate_(exceptions_.refused), row_(names.size()), previous_(names.size(), missing) {
     if (!(period > 0.0) || !std::isfinite(period) || !(tolerance >= 0.0)) {
         throw std::invalid_argument(
             "The period must be positive and finite, the tolerance 0 or more.");
     }
-    for (const nb::str& name : names) {
-        if (places_.contains(name)) {
-            throw std::invalid_argument("Two inputs are called '" + std::string(name.c_str()) +
-                                        "'.");
-        }
-        places_[name] = nb::int_(names_.size());
-        PyObject* interned = nb::object(name).release().ptr();
-        PyUnicode_InternInPlace(&interned);
-        names_.push_back(nb::steal<nb::str>(interned));
-    }
-    ignored_ = nb::steal<nb::object>(PyFrozenSet_New(ignored.is_none() ? nullptr : ignored.ptr()));
-    if (!ignored_.is_valid()) throw nb::python_error();
 }
 
 // ---- one sample ---------------------------------------------------------------------------------
@@ -62,15 +42,15 @@ template <class Values>
 PyObject* Monitor::update(PyObject* time, const Values& values) noexcept {
     double t = 0.0;
     if (!ready()) return nullptr;
-    if (!numbers_.read(time, t) || !clock_.accepts(t)) return refuse("time");
-    if (values.count() != names_.size()) return refuse("names");
+    if (!numbers_.read(time, t) || !clock_.accepts(t)) return gate_.refuse("time");
+    if (values.count() != names_.count()) return gate_.refuse("names");
     std::size_t guess = 0;
     const char* wrong = values.each([&](PyObject* name, PyObject* value) -> const char* {
-        const auto index = place(name, guess++);
+        const auto index = names_.place(name, guess++);
         if (!index) return "names";
         return numbers_.read(value, row_[*index]) ? nullptr : "value";
     });
-    if (wrong != nullptr) return refuse(wrong);
+    if (wrong != nullptr) return gate_.refuse(wrong);
     return take([&] { clock_.advance(t); });
 }
 
@@ -80,37 +60,35 @@ template PyObject* Monitor::update(PyObject* time, const InDict& values) noexcep
 PyObject* Monitor::update_pairs(PyObject* time, PyObject* pairs) noexcept {
     double t = 0.0;
     if (!ready()) return nullptr;
-    if (!numbers_.read(time, t) || !clock_.accepts(t)) return refuse("time");
-    if (!PyList_Check(pairs) && !PyTuple_Check(pairs)) return refuse("pairs");
+    if (!numbers_.read(time, t) || !clock_.accepts(t)) return gate_.refuse("time");
+    if (!PyList_Check(pairs) && !PyTuple_Check(pairs)) return gate_.refuse("pairs");
     std::ranges::copy(previous_, row_.begin());
     std::size_t guess = 0;
     for (Py_ssize_t i = 0; i < PySequence_Fast_GET_SIZE(pairs); ++i) {
         PyObject* pair = PySequence_Fast_GET_ITEM(pairs, i);
         if ((!PyTuple_Check(pair) && !PyList_Check(pair)) || PySequence_Fast_GET_SIZE(pair) != 2) {
-            return refuse("pairs");
+            return gate_.refuse("pairs");
         }
         PyObject* name = PySequence_Fast_GET_ITEM(pair, 0);
         PyObject* value = PySequence_Fast_GET_ITEM(pair, 1);
-        if (const auto index = place(name, guess)) {
-            if (!numbers_.read(value, row_[*index])) return refuse("value");
+        if (const auto index = names_.place(name, guess)) {
+            if (!numbers_.read(value, row_[*index])) return gate_.refuse("value");
             guess = *index + 1;
             continue;
         }
-        const int skipped = PySet_Contains(ignored_.ptr(), name);
-        if (skipped < 0) PyErr_Clear(); // what cannot be hashed is no name
-        if (skipped <= 0) return refuse("names");
+        if (!names_.ignored(name)) return gate_.refuse("names");
     }
     for (const double value : row_) {
-        if (std::isnan(value)) return refuse("names");
+        if (std::isnan(value)) return gate_.refuse("names");
     }
     return take([&] { clock_.advance(t); });
 }
 
 PyObject* Monitor::step(std::span<PyObject* const> values) noexcept {
     if (!ready()) return nullptr;
-    if (values.size() != row_.size()) return refuse("count");
+    if (values.size() != row_.size()) return gate_.refuse("count");
     for (std::size_t i = 0; i < values.size(); ++i) {
-        if (!numbers_.read(values[i], row_[i])) return refuse("value");
+        if (!numbers_.read(values[i], row_[i])) return gate_.refuse("value");
     }
     return take([&] { clock_.tick(1); });
 }
@@ -119,9 +97,7 @@ PyObject* Monitor::step(std::span<PyObject* const> values) noexcept {
 template <class Accepted>
 PyObject* Monitor::take(Accepted&& accepted) noexcept {
     double value = 0.0;
-    busy_ = true;
-    const Outcome outcome = executor_.step(row_.data(), value);
-    busy_ = false;
+    const Outcome outcome = gate_.briefly([&] { return executor_.step(row_.data(), value); });
     if (outcome == Outcome::failed) [[unlikely]] {
         return fail();
     }
@@ -137,52 +113,24 @@ PyObject* Monitor::fail() const noexcept {
     return nullptr;
 }
 
-PyObject* Monitor::refuse(const char* reason) const noexcept {
-    if (PyErr_Occurred() == nullptr) PyErr_SetString(exceptions_.refused.ptr(), reason);
-    return nullptr;
-}
-
-// Whether a sample may come now; if not, a Python exception is set.
-bool Monitor::ready() const noexcept {
-    if (!busy_ && !executor_.finished()) [[likely]] {
-        return true;
-    }
-    if (busy_) PyErr_SetString(PyExc_RuntimeError, in_use);
-    (void)refuse("finished");
-    return false;
-}
-
-// The index of the input of this name, which is probably the one guessed; or nothing.
-std::optional<std::size_t> Monitor::place(PyObject* name, std::size_t guess) noexcept {
-    if (guess < names_.size() && names_[guess].ptr() == name) [[likely]] {
-        return guess;
-    }
-    PyObject* index = PyDict_GetItemWithError(places_.ptr(), name);
-    if (index == nullptr) {
-        PyErr_Clear(); // what cannot be hashed is no name
-        return std::nullopt;
-    }
-    return PyLong_AsSize_t(index);
-}
-
 // ---- many samples -------------------------------------------------------------------------------
 
 std::vector<Result> Monitor::push(const std::optional<Column>& times,
                                   const std::vector<Column>& columns) {
-    require_idle();
+    gate_.require_idle();
     if (executor_.finished()) {
-        (void)refuse("finished");
+        (void)gate_.refuse("finished");
         throw nb::python_error();
     }
     std::size_t count = times ? times->shape(0) : 0;
     if (!times && !columns.empty()) count = columns.front().shape(0);
-    const auto pointers = pointers_of(columns, names_.size(), count);
+    const auto pointers = pointers_of(columns, names_.count(), count);
     Results results;
     for (std::size_t i = 0; i < executor_.program().outputs.size(); ++i) {
         results.add(executor_.known(i, count));
     }
-    const auto failure =
-        exclusively(count, [&] { return executor_.push(pointers, count, results.pointers()); });
+    const auto failure = gate_.exclusively(
+        count, [&] { return executor_.push(pointers, count, results.pointers()); });
     if (failure) {
         raise_undefined(exceptions_, *calls_, failure->instruction, failure->sample,
                         failure->fault);
@@ -201,13 +149,13 @@ std::vector<Result> Monitor::push(const std::optional<Column>& times,
 }
 
 std::vector<Result> Monitor::finish() {
-    require_idle();
+    gate_.require_idle();
     Results results;
     for (std::size_t i = 0; i < executor_.program().outputs.size(); ++i) {
         results.add(executor_.remaining(i));
     }
-    const auto failure = exclusively(history_of(executor_.program()),
-                                     [&] { return executor_.finish(results.pointers()); });
+    const auto failure = gate_.exclusively(history_of(executor_.program()),
+                                           [&] { return executor_.finish(results.pointers()); });
     if (failure) {
         raise_undefined(exceptions_, *calls_, failure->instruction, failure->sample,
                         failure->fault);
@@ -216,21 +164,21 @@ std::vector<Result> Monitor::finish() {
 }
 
 void Monitor::reset() {
-    require_idle();
+    gate_.require_idle();
     executor_.reset();
     clock_.reset();
     std::ranges::fill(previous_, missing);
 }
 
 nb::bytes Monitor::state() {
-    require_idle();
+    gate_.require_idle();
     Snapshot snapshot;
     transfer(snapshot);
     return bytes_of(snapshot);
 }
 
 void Monitor::restore(const nb::bytes& state) {
-    require_idle();
+    gate_.require_idle();
     Snapshot snapshot = snapshot_of(state);
     transfer(snapshot);
     snapshot.end();
@@ -243,7 +191,7 @@ void Monitor::transfer(Snapshot& snapshot) {
 }
 
 double Monitor::last(std::uint32_t instruction) const {
-    require_idle();
+    gate_.require_idle();
     if (instruction >= executor_.program().instructions.size()) {
         throw std::out_of_range("There is no instruction " + std::to_string(instruction) + ".");
     }
@@ -251,7 +199,7 @@ double Monitor::last(std::uint32_t instruction) const {
 }
 
 std::optional<double> Monitor::latest(std::size_t output) const {
-    require_idle();
+    gate_.require_idle();
     const Program& program = executor_.program();
     if (output >= program.outputs.size()) {
         throw std::out_of_range("There is no output " + std::to_string(output) + ".");
@@ -262,7 +210,7 @@ std::optional<double> Monitor::latest(std::size_t output) const {
 }
 
 Result Monitor::recent(std::size_t count) const {
-    require_idle();
+    gate_.require_idle();
     const std::size_t available = clock_.stamps().available();
     if (count > available) {
         throw std::invalid_argument("Only the times of the last " + std::to_string(available) +
@@ -272,25 +220,6 @@ Result Monitor::recent(std::size_t count) const {
     results.add(count);
     clock_.stamps().copy(count, results.pointers().front());
     return std::move(results.hand_over().front());
-}
-
-void Monitor::require_idle() const {
-    if (busy_) throw std::runtime_error(in_use);
-}
-
-template <class Work>
-std::optional<Failure> Monitor::exclusively(std::size_t count, Work&& work) {
-    struct Busy {
-        bool& flag;
-        explicit Busy(bool& busy) noexcept : flag(busy) { flag = true; }
-        ~Busy() { flag = false; }
-        Busy(const Busy&) = delete;
-        Busy& operator=(const Busy&) = delete;
-        Busy(Busy&&) = delete;
-        Busy& operator=(Busy&&) = delete;
-    };
-    const Busy busy(busy_);
-    return without_gil(count, std::forward<Work>(work));
 }
 
 } // namespace rtamt::python

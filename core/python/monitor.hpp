@@ -9,6 +9,7 @@
 #include "arrays.hpp"
 #include "calls.hpp"
 #include "failures.hpp"
+#include "gate.hpp"
 #include "names.hpp"
 #include "numbers.hpp"
 
@@ -67,25 +68,18 @@ class Monitor {
     discrete::Executor executor_;
     discrete::Clock clock_;
     Numbers numbers_;
+    Names names_;
     Exceptions exceptions_;
-    std::vector<nb::str> names_;   // interned, in the order of the inputs
-    nb::dict places_;              // from name to index
-    nb::object ignored_;           // names of variables that exist and are not read
+    Gate gate_;
     std::vector<double> row_;      // the sample that is being read
     std::vector<double> previous_; // the last sample that was taken; NaN where there is none
-    bool busy_ = false; // another thread is inside, without the GIL or in a Python operator
 
-    void require_idle() const;
     void transfer(Snapshot& snapshot);
-    PyObject* refuse(const char* reason) const noexcept;
-    [[nodiscard]] bool ready() const noexcept;
-    [[nodiscard]] std::optional<std::size_t> place(PyObject* name, std::size_t guess) noexcept;
+    [[nodiscard]] bool ready() const noexcept { return gate_.open(executor_.finished()); }
     [[nodiscard]] PyObject* fail() const noexcept;
 
     template <class Accepted>
     [[nodiscard]] PyObject* take(Accepted&& accepted) noexcept;
-    template <class Work>
-    [[nodiscard]] std::optional<discrete::Failure> exclusively(std::size_t count, Work&& work);
 };
 
 } // namespace rtamt::python
