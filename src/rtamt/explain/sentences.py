@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import inf, isinf
+from math import isinf
 from typing import TYPE_CHECKING
 
 from rtamt.language.formula import size
@@ -72,13 +72,20 @@ def _decision(point: CriticalPoint, when: str) -> str:
         return f"{told}: a constant"
     if point.lowest == point.highest:
         return f"{told}: something else gives the same robustness, and moving this one alone changes nothing"
-    if isinf(point.lowest) and isinf(point.highest):
-        return f"{told}: the robustness follows it"
-    if point.lowest == -inf:
-        return f"{told}: the robustness follows it up to {_short(point.highest)}"
-    if point.highest == inf:
-        return f"{told}: the robustness follows it down to {_short(point.lowest)}"
-    return f"{told}: the robustness follows it from {_short(point.lowest)} to {_short(point.highest)}"
+    return f"{told}: the robustness follows it{_reach(point)}"
+
+
+def _reach(point: CriticalPoint) -> str:
+    """Return how far the robustness follows the critical value: nothing where it does whatever the value."""
+    down = "" if isinf(point.lowest) else f" to {_short(point.lowest)}"
+    up = "" if isinf(point.highest) else f" to {_short(point.highest)}"
+    if point.value == point.highest:
+        return f" down{down}, not up"
+    if point.value == point.lowest:
+        return f" up{up}, not down"
+    if down and up:
+        return f" from {_short(point.lowest)}{up}"
+    return f" down{down}" if down else f" up{up}" if up else ""
 
 
 def _short(value: float) -> str:

@@ -45,7 +45,7 @@ def test_in_dense_time_segments_end_where_they_end():
     data = {"req": ([0, 1.5, 2], [0, 6, 0]), "gnt": ([0, 3.75, 5], [0, 7, 0])}
     assert explained(TEXT.replace("0:2", "0:1"), data, time="dense").sentences == (
         "violated by 3 at 0 s: always(req >= 3 -> eventually[0:1](gnt >= 3))",
-        "'req >= 3' is 3 at 1.5 s: the robustness follows it from -3 to 3",
+        "'req >= 3' is 3 at 1.5 s: the robustness follows it down to -3, not up",
         "whatever the signals do elsewhere, it is violated because",
         "  'req >= 3' held from 1.5 s until 2 s (3)",
         "  'gnt >= 3' failed from 1.5 s until 3 s (-3)",
