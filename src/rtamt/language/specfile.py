@@ -3,7 +3,8 @@
 ::
 
     document    = [ "specification" , word ] , { import } , { declaration | annotation } ,
-                  assertion , { ";" , assertion } , [ ";" ]
+                  assertion , { separator , assertion } , [ ";" ]
+    separator   = ";" | after a named assertion, as in RTAMT's files: the end of the line
     import      = "from" , module , "import" , word , [ ";" ]
     declaration = ( [ "input" | "output" ] , type , name | "const" , type , name , "=" , value ) , [ ";" ]
     annotation  = "@" , "topic" , "(" , name , "," , topic , ")" , [ ";" ]
@@ -229,7 +230,7 @@ class _DocumentParser(FormulaParser):
     # ---- the formulas ----------------------------------------------------------------------------
 
     def _assertions(self, variables: tuple[str, ...]) -> tuple[Assertion, ...]:
-        """``assertion , { ";" , assertion } , [ ";" ]``."""
+        """``assertion , { separator , assertion } , [ ";" ]``."""
         pending = self._names_to_come()
         found: list[Assertion] = []
         while self.token.kind != "end":
@@ -247,7 +248,8 @@ class _DocumentParser(FormulaParser):
             if name is not None:
                 del pending[name]
                 self._definitions[name] = formula
-            if self.token.kind != "end" and not self.accept(";"):
+            # Of two formulas without names the first would go unread: there the semicolon must be meant.
+            if self.token.kind != "end" and not (self.accept(";") or (name and self._begins_a_line())):
                 raise self._not_finished()
             while self.accept(";"):
                 pass
@@ -255,6 +257,9 @@ class _DocumentParser(FormulaParser):
             empty = "the text is empty" if self.index == 0 else "the text has declarations but no formula"
             raise self.error(empty, self.token.span)
         return tuple(found)
+
+    def _begins_a_line(self) -> bool:
+        return "\n" in self.text[self.tokens[self.index - 1].end : self.token.start]
 
     def _assertion_name(self) -> str | None:
         """``[ name , "=" ]``."""

@@ -99,6 +99,29 @@ def test_semicolons_after_declarations_may_be_there_or_not():
     )
 
 
+def test_rtamts_files_with_a_definition_a_line_and_no_semicolons():
+    text = """specification TTC
+      float gap
+      float fast
+      float slow
+      const float safe = 3.5
+
+      closing = fast - slow
+      near = - (gap) + safe * closing >= 0
+
+      cond = near and fast > slow  // on one's own lane
+      cond -> (gap / closing >= safe)
+    """
+    meant = "(-gap + 3.5 * (fast - slow) >= 0 and fast > slow) -> (gap / (fast - slow) >= 3.5)"
+    assert parse_document(text).formula == parse_formula(meant)
+
+
+@pytest.mark.parametrize("text", ["x >= 3\ny >= 3", "a = x >= 3 y >= 3", "x >= 3\na = y >= 3\na"])
+def test_a_formula_without_a_name_is_not_passed_over_where_a_semicolon_is_missing(text):
+    with pytest.raises(ParseError):
+        parse_document(text)
+
+
 def test_declared_elsewhere():
     document = parse_document(
         "ok and x > c; ", variables=["x"], constants={"c": 2.0}, definitions={"ok": Var("y")}, unit="ms"
