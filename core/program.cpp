@@ -269,6 +269,25 @@ std::int64_t Program::operand_lag(const Instruction& instruction) const noexcept
     return std::max<std::int64_t>(lag, 0);
 }
 
+bool Program::can_fail(const Instruction& instruction) const noexcept {
+    if (!info(instruction.opcode).partial) return false;
+    const auto harmless = [&](std::uint32_t operand, bool zero_too) {
+        if (!is_constant(operand)) return false;
+        const double x = instructions[operand].x;
+        return std::isfinite(x) && (zero_too || x != 0.0);
+    };
+    switch (instruction.opcode) {
+    case Opcode::add:
+    case Opcode::sub:
+        return !harmless(instruction.a, true) && !harmless(instruction.b, true);
+    case Opcode::mul:
+    case Opcode::div:
+        return !harmless(instruction.a, false) && !harmless(instruction.b, false);
+    default:
+        return true;
+    }
+}
+
 std::int64_t Program::latest() const noexcept {
     std::int64_t latest = 0;
     for (const std::uint32_t output : outputs) {

@@ -89,6 +89,16 @@ struct Program {
     // The lag shared by the operands of an instruction; constants have no time and do not count.
     [[nodiscard]] std::int64_t operand_lag(const Instruction& instruction) const noexcept;
 
+    // Whether an instruction can make NaN of operands that are none. A finite number that is added
+    // or subtracted cannot, nor one that is not 0 as a factor or divisor: predicates such as x
+    // >= 3.
+    [[nodiscard]] bool can_fail(const Instruction& instruction) const noexcept;
+
+    // Whether an operand is a constant; no_operand is none.
+    [[nodiscard]] bool is_constant(std::uint32_t operand) const noexcept {
+        return operand != no_operand && instructions[operand].opcode == Opcode::constant;
+    }
+
     // How many slots after the last sample the last output becomes known.
     [[nodiscard]] std::int64_t latest() const noexcept;
 };

@@ -52,7 +52,7 @@ std::vector<bool> Executor::guarded() const {
     std::vector<bool> guarded(program_.instructions.size(), false);
     for (std::size_t i = guarded.size(); i-- > 0;) {
         const Instruction& instruction = program_.instructions[i];
-        if (info(instruction.opcode).partial) guarded[i] = true;
+        if (program_.can_fail(instruction)) guarded[i] = true;
         if (!guarded[i]) continue;
         program_.each_operand(instruction, [&](std::uint32_t operand) { guarded[operand] = true; });
     }

@@ -39,7 +39,7 @@ Executor::Plan Executor::plan(const Program& program) {
     plan.guarded.assign(size, false);
     for (std::size_t i = size; i-- > 0;) {
         const Instruction& instruction = program.instructions[i];
-        if (info(instruction.opcode).partial) plan.guarded[i] = true;
+        if (program.can_fail(instruction)) plan.guarded[i] = true;
         if (!plan.guarded[i]) continue;
         program.each_operand(instruction,
                              [&](std::uint32_t operand) { plan.guarded[operand] = true; });
@@ -63,9 +63,6 @@ Executor::Executor(const Plan& plan, Program program)
     : program_(std::move(program)), arena_(plan.state + plan.journal),
       registers_(program_.instructions.size()) {
     kernels_.reserve(program_.instructions.size());
-    const auto is_constant = [this](std::uint32_t operand) {
-        return operand != no_operand && program_.instructions[operand].opcode == Opcode::constant;
-    };
     for (std::uint32_t i = 0; i < program_.instructions.size(); ++i) {
         const Instruction& instruction = program_.instructions[i];
         const std::size_t size = state_size(instruction);
@@ -74,8 +71,9 @@ Executor::Executor(const Plan& plan, Program program)
         auto kernel =
             instruction.opcode == Opcode::call
                 ? make_call(i)
-                : make_kernel(instruction, program_.operand_lag(instruction), state, journal,
-                              {is_constant(instruction.a), is_constant(instruction.b)});
+                : make_kernel(
+                      instruction, program_.operand_lag(instruction), state, journal,
+                      {program_.is_constant(instruction.a), program_.is_constant(instruction.b)});
         if (kernel) {
             (plan.guarded[i] ? guarded_ : free_).push_back({kernel.get(), i});
             if (plan.guarded[i]) {

@@ -1,5 +1,7 @@
 #include "dense_monitor.hpp"
 
+#include <structmember.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -49,9 +51,20 @@ constexpr double near = 0x1p51;
     return begin + static_cast<std::int64_t>(std::nearbyint(rest * static_cast<double>(rate)));
 }
 
-// As attributes are looked up by.
-[[nodiscard]] nb::str interned(const char* name) {
-    return nb::steal<nb::str>(PyUnicode_InternFromString(name));
+// Where objects of a class keep an attribute that is one of its __slots__.
+[[nodiscard]] Py_ssize_t slot_of(const nb::type_object& type, const char* name) {
+    const nb::object member = nb::getattr(type, name);
+    if (Py_TYPE(member.ptr()) != &PyMemberDescr_Type) {
+        throw std::invalid_argument("The class of the answers has no slot '" + std::string(name) +
+                                    "'.");
+    }
+    return reinterpret_cast<PyMemberDescrObject*>(member.ptr())->d_member->offset;
+}
+
+// Fills an empty slot of a new object.
+void fill_slot(const nb::object& object, Py_ssize_t slot, nb::object value) noexcept {
+    char* memory = reinterpret_cast<char*>(object.ptr()) + slot;
+    *reinterpret_cast<PyObject**>(memory) = value.release().ptr();
 }
 
 // How many samples a call brings.
@@ -113,12 +126,13 @@ DenseMonitor::DenseMonitor(Program program, const std::vector<nb::str>& names,
       names_(names, executor_.program().inputs, ignored), exceptions_(std::move(exceptions)),
       gate_(exceptions_.refused), row_(names.size()), events_(names.size()),
       results_(executor_.program().outputs.size()), spare_(results_.size()),
-      until_(results_.size()), counts_(names.size()), scale_name_(interned("_scale")),
-      events_name_(interned("_events")) {}
+      until_(results_.size()), counts_(names.size()) {}
 
 void DenseMonitor::tell(const nb::type_object& signal, const nb::object& scale,
                         std::optional<double> rate) {
     gate_.require_idle();
+    scale_slot_ = slot_of(signal, "_scale");
+    events_slot_ = slot_of(signal, "_events");
     signal_ = signal;
     scale_ = scale;
     rate_ = rate.value_or(0.0);
@@ -227,7 +241,7 @@ nb::object DenseMonitor::signal_of(const Events& events) const noexcept {
     const std::size_t times = events.count * sizeof(*events.times);
     const std::size_t values = events.count * sizeof(*events.values);
     auto signal = nb::steal(type->tp_alloc(type, 0));
-    const auto bytes =
+    auto bytes =
         nb::steal(PyBytes_FromStringAndSize(nullptr, static_cast<Py_ssize_t>(times + values)));
     if (!signal.is_valid() || !bytes.is_valid()) return {};
     if (events.count != 0) {
@@ -235,10 +249,8 @@ nb::object DenseMonitor::signal_of(const Events& events) const noexcept {
         std::memcpy(memory, events.times, times);
         std::memcpy(memory + times, events.values, values);
     }
-    if (PyObject_SetAttr(signal.ptr(), scale_name_.ptr(), scale_.ptr()) != 0 ||
-        PyObject_SetAttr(signal.ptr(), events_name_.ptr(), bytes.ptr()) != 0) {
-        return {};
-    }
+    fill_slot(signal, scale_slot_, scale_);
+    fill_slot(signal, events_slot_, std::move(bytes));
     return signal;
 }
 

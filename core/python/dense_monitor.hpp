@@ -46,7 +46,7 @@ class DenseMonitor {
 
     // How update() tells time until the next reset(): in seconds of so many ticks, or by integers
     // of whatever kind that are ticks. It answers with objects of this class, whose `_scale` is the
-    // given one and whose `_events` are bytes: the times, then the values.
+    // given one and whose `_events` are bytes: the times, then the values; both are slots of it.
     void tell(const nb::type_object& signal, const nb::object& scale, std::optional<double> rate);
 
     // Any variables at one instant, by name: Named or InDict. What became known of the first
@@ -98,9 +98,9 @@ class DenseMonitor {
     std::vector<std::int64_t> counts_;               // samples of each input
     nb::object signal_;                              // the class of the answers
     nb::object scale_;
-    nb::object nothing_; // the answer without events
-    nb::str scale_name_; // of the attributes of an answer
-    nb::str events_name_;
+    nb::object nothing_;        // the answer without events
+    Py_ssize_t scale_slot_ = 0; // where answers keep their attributes
+    Py_ssize_t events_slot_ = 0;
     bool told_ = false; // whether update() knows how time is told
     double rate_ = 0.0; // ticks a second; 0: times are ticks
 
