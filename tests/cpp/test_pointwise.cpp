@@ -3,6 +3,7 @@
 #include "programs.hpp"
 #include "ways.hpp"
 
+#include <cmath>
 #include <utility>
 
 using oracle::inf;
@@ -108,4 +109,38 @@ TEST(infinite_values_are_legal) {
     CHECK(!ways::offline(builder.program(), {{inf, -inf}}, 2, outputs));
     CHECK((outputs[0] == Signal{inf, -inf}));
     CHECK((outputs[1] == Signal{inf, 0.0}));
+}
+
+// Of a sample and a constant, in either order.
+template <class Function>
+static bool makes_nan(double constant, bool first) {
+    bool seen = false;
+    for (const double sample : {-inf, -1e308, -2.0, -0.0, 0.0, 0.5, 1e308, inf}) {
+        seen |= std::isnan(first ? Function::of(constant, sample) : Function::of(sample, constant));
+    }
+    return seen;
+}
+
+TEST(an_operation_with_a_constant_can_fail_if_some_sample_makes_nan) {
+    namespace pointwise = rtamt::discrete::pointwise;
+    struct Case {
+        Opcode opcode;
+        bool (*makes_nan)(double, bool);
+    };
+    for (const Case& example : {Case{Opcode::add, makes_nan<pointwise::Add>},
+                                Case{Opcode::sub, makes_nan<pointwise::Sub>},
+                                Case{Opcode::mul, makes_nan<pointwise::Mul>},
+                                Case{Opcode::div, makes_nan<pointwise::Div>}}) {
+        for (const double constant : {-inf, -1e308, -3.0, -0.0, 0.0, 5e-324, 3.0, 1e308, inf}) {
+            for (const bool first : {true, false}) {
+                Builder builder;
+                const auto a = builder.input();
+                const auto c = builder.constant(constant);
+                builder.output(builder.pointwise(example.opcode, first ? c : a, first ? a : c));
+                const auto& program = builder.program();
+                CHECK(program.can_fail(program.instructions.back()) ==
+                      example.makes_nan(constant, first));
+            }
+        }
+    }
 }
