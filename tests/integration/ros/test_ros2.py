@@ -121,6 +121,7 @@ def test_simulated_time_and_quality_of_service(dds):
     for topic, kind in (("rtamt/req", FLOAT), ("rtamt/gnt", FLOAT), ("/clock", "rosgraph_msgs/msg/Clock")):
         puppet.ask(do="advertise", topic=topic, kind=kind)
     puppet.ask(do="subscribe", topic="rtamt/rob", kind=FLOAT)
+    puppet.ask(do="subscribe", topic="/diagnostics", kind="diagnostic_msgs/msg/DiagnosticArray")
     deaf = dds.node("--sim-time")  # reliable: it is not offered that
     node = dds.node("--sim-time", "--reliability", "best_effort", "--node", "hears")
     for topic in ("rtamt/req", "rtamt/gnt", "/clock", "rtamt/rob"):
@@ -138,6 +139,14 @@ def test_simulated_time_and_quality_of_service(dds):
     heard = puppet.messages("rtamt/rob")
     assert {message["value"] for message in heard} == {2.0}
     assert all(100 < message["header"]["stamp"]["sec"] <= tick.seconds for message in heard)
+
+    def conditions(name):
+        arrays = puppet.messages("/diagnostics")
+        return [s["message"] for array in arrays for s in array["status"] if s["hardware_id"] == name]
+
+    wait_for(lambda: conditions("response"), "the deaf node's condition")
+    assert all(said.startswith("waiting for the first message") for said in conditions("response"))
+    wait_for(lambda: "satisfied" in conditions("hears"), "the hearing node's condition")
     assert node.stop(signal.SIGTERM) == 0
     assert deaf.stop(signal.SIGTERM) == 0
 

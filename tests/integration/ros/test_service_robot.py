@@ -22,12 +22,12 @@ def without_ros():
 
 
 def test_the_planner_falls_first_when_its_tree_is_cut_off(ros):
-    arguments = ["fault:=planner", f"seed:={SEED}", "duration:=24", "speed:=5"]
+    arguments = ["fault:=planner", f"seed:={SEED}", "duration:=40", "speed:=5"]
     launch = ros.start("roslaunch", "service_robot", "experiment.launch", *arguments)
     launch.wait_for_output("system: violated")
     fell = {name: (float(time), bool(first)) for name, time, first in FELL.findall(launch.output)}
     plain = without_ros()
     assert [name for name, (_, first) in fell.items() if first] == ["planner"]
-    assert set(fell) == {"planner", "system"}
+    assert {"planner", "system"} <= set(fell) <= set(plain)
     for name, (time, _) in fell.items():  # dense time here, discrete time there: a sample more or less
         assert time == pytest.approx(plain[name], abs=0.11)
