@@ -18,7 +18,7 @@ from rtamt.cli.language import add_language_option, read_language
 from rtamt.engine.core import core
 from rtamt.errors import SpecificationError, StlError, UsageError
 from rtamt.language.units import UNITS, decimal
-from rtamt.readers.formats import SUFFIXES
+from rtamt.readers.formats import METADATA, SUFFIXES
 from rtamt.rewrite.interface import SEMANTICS
 from rtamt.texts import load, parse
 
@@ -115,8 +115,12 @@ def add_stamp_options(parser: argparse.ArgumentParser, what: str) -> None:
 
 
 def is_trace(path: str | None) -> bool:
-    """Tell whether a text is a file of recordings; a ``.txt`` may be a specification as well."""
-    return path is not None and os.path.isfile(path) and _is_called_like_a_trace(path)
+    """Tell whether a text is a file of recordings, or a bag's folder; a ``.txt`` may be a specification as well."""
+    if path is None:
+        return False
+    return (os.path.isfile(path) and _is_called_like_a_trace(path)) or os.path.isfile(
+        os.path.join(path, METADATA)
+    )
 
 
 def _is_called_like_a_trace(path: str) -> bool:
@@ -141,9 +145,9 @@ def read_specification(args: argparse.Namespace, time: str = "discrete") -> Spec
         "semantics": args.semantics,
         "language": read_language(args.language),
     }
+    if is_trace(spec):
+        raise CommandError(f"'{spec}' is a trace; the specification comes before the traces")
     if os.path.isfile(spec):
-        if is_trace(spec):
-            raise CommandError(f"'{spec}' is a trace; the specification comes before the traces")
         try:
             return load(spec, **options)
         except SpecificationError as error:

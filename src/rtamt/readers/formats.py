@@ -59,6 +59,10 @@ _PACKED = (".zstd", ".zst")
 SUFFIXES = {suffix: known for known in FORMATS for suffix in known.suffixes}
 
 
+#: What ROS 2 puts into the folder of a bag.
+METADATA = "metadata.yaml"
+
+
 def is_bag(path: str) -> bool:
     """Tell whether a path is that of a ROS bag: by its name, or a folder as ROS 2 records it."""
     suffix = os.path.splitext(path)[1].lower()

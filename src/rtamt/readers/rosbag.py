@@ -12,15 +12,13 @@ import numpy as np
 from rtamt.engine.signals import is_number
 from rtamt.errors import TraceError
 from rtamt.extras import library
+from rtamt.readers.formats import METADATA
 from rtamt.readers.source import Field, Source, Table, opening
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
     from rtamt.readers.source import Raw
-
-#: What ROS 2 puts into the folder of a bag.
-_METADATA = "metadata.yaml"
 
 #: Elements of an array that become columns of their own; longer ones are images and clouds of points.
 _ELEMENTS = 1000
@@ -59,9 +57,9 @@ def open_reader(path: str) -> Any:
 def _existing(path: str) -> Path:
     """Return a path; raise what ``open`` raises where there is no such file."""
     if os.path.isdir(path):
-        if not os.path.isfile(os.path.join(path, _METADATA)):
+        if not os.path.isfile(os.path.join(path, METADATA)):
             raise TraceError(
-                f"'{path}' is a folder without {_METADATA}, so that it is no bag of ROS 2; name a file"
+                f"'{path}' is a folder without {METADATA}, so that it is no bag of ROS 2; name a file"
             )
     else:
         with open(path, "rb"):
@@ -128,7 +126,7 @@ def _message(reader: Any, connection: Any, raw: Any) -> Any:
     except highlevel.AnyReaderError as error:
         path = reader.paths[0]
         # Only the folder says that each message is compressed.
-        part = path.is_file() and (path.parent / _METADATA).is_file()
+        part = path.is_file() and (path.parent / METADATA).is_file()
         hint = f"; the file is a part of a bag: give its folder, '{path.parent}'" if part else ""
         raise TraceError(
             f"a message on {connection.topic} cannot be read as {connection.msgtype}: {str(error).rstrip('.')}{hint}"

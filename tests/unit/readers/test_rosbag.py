@@ -132,13 +132,16 @@ def test_what_is_no_bag_is_refused_with_a_sentence(tmp_path, name):
 
 @pytest.mark.parametrize("packed", [None, "FILE", "MESSAGE"])
 @pytest.mark.parametrize("kind", ["sqlite3", "mcap"])
-def test_the_folder_that_ros2_records_is_a_bag_compressed_or_not(tmp_path, kind, packed):
+def test_the_folder_that_ros2_records_is_a_bag_compressed_or_not(tmp_path, kind, packed, capsys):
     with Bag(tmp_path, kind, packed) as bag:
         for i in range(20):
             bag.stamped("/rtamt/req", START + i, 5.0 if i in {2, 9} else 0.0)
             bag.stamped("/rtamt/gnt", START + i, 4.0 if i == 5 else 0.0)
     folder, out = bag.path.parent, tmp_path / "out.mcap"
     assert main(["check", str(LISTING_8), str(folder), "--quiet", "-o", str(out)]) == 1
+    capsys.readouterr()
+    assert main(["info", str(folder)]) == 0
+    assert "/rtamt/gnt.value" in capsys.readouterr().out
     again = rtamt.read(out)
     assert again["/rtamt/rob.value"].values.min() == -2
     assert again["/rtamt/req.value"].values.tolist() == [5.0 if i in {2, 9} else 0.0 for i in range(20)]
