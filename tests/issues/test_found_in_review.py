@@ -229,3 +229,19 @@ def test_both_back_ends_say_the_same_of_an_operation_that_has_no_value(time: str
             f"'x >= y' has no value at {where}: it is 0/0, inf - inf, 0 * inf, or a root or logarithm of a negative "
             f"number; change the formula or the data so that this cannot happen"
         )
+
+
+@pytest.mark.parametrize(
+    ("second", "value", "message"),
+    [
+        (0.0, 1.0, "time does not increase at sample 1: 1700000000.25 s comes after 1700000000.25 s; "),
+        (0.5, 1.0, "sample 1 at 1700000000.75 s is 0.5 s after the one before, expected 1 s (within 10%): "),
+        (1.0, np.nan, "'x' is NaN at sample 1, time 1700000001.25 s: "),
+    ],
+)
+def test_stamps_that_count_from_1970_were_all_told_as_17e9(second: float, value: float, message: str) -> None:
+    monitor = rtamt.parse("x >= 1").monitor()
+    monitor.update(1700000000.25, x=1.0)
+    with pytest.raises(rtamt.TraceError) as info:
+        monitor.update(1700000000.25 + second, x=value)
+    assert str(info.value).startswith(message)

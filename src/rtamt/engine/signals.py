@@ -266,7 +266,7 @@ def check_numbers(name: str, column: FloatArray, times: FloatArray, first: int =
 def nan_error(name: str, index: int, time: float) -> TraceError:
     """Return the error for a NaN in the data."""
     return TraceError(
-        f"'{name}' is NaN at sample {index}, time {time:g} s: fill the gap or leave the sample out",
+        f"'{name}' is NaN at sample {index}, time {time:.15g} s: fill the gap or leave the sample out",
         variable=name,
         index=index,
         time=time,
@@ -297,7 +297,7 @@ def check_increasing(times: FloatArray, before: float | None = None, first: int 
 def not_increasing(index: int, time: float, before: float) -> TraceError:
     """Return the error for a stamp that is not later than the one before."""
     return TraceError(
-        f"time does not increase at sample {index}: {time:g} s comes after {before:g} s; "
+        f"time does not increase at sample {index}: {time:.15g} s comes after {before:.15g} s; "
         f"sort the samples and drop repeated stamps",
         variable=TIME,
         index=index,
@@ -347,7 +347,7 @@ def check_regular(
 def irregular(index: int, time: float, before: float, period: Fraction, tolerance: float) -> TraceError:
     """Return the error for a sample that is not one period after the one before."""
     return TraceError(
-        f"sample {index} at {time:g} s is {time - before:g} s after the one before, expected "
+        f"sample {index} at {time:.15g} s is {time - before:g} s after the one before, expected "
         f"{format_duration(period)} (within {tolerance:.0%}): give the right period, or resample the trace",
         variable=TIME,
         index=index,
