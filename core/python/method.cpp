@@ -28,7 +28,8 @@ PyObject* update(PyObject* backend, const Arguments& arguments) noexcept {
     return nb::inst_ptr<Monitor>(backend)->update(arguments.positional[0], arguments.named);
 }
 
-PyObject* step(PyObject* backend, const Arguments& arguments) noexcept {
+PyObject* step(PyObject* backend, // NOLINT(misc-const-correctness): as the other kinds
+               const Arguments& arguments) noexcept {
     if (arguments.named.count() != 0) return nullptr;
     return nb::inst_ptr<Monitor>(backend)->step(arguments.positional);
 }
@@ -177,7 +178,7 @@ PyType_Spec spec = {"rtamt.engine._core.Method", sizeof(Method), 0,
 
 } // namespace
 
-void add_method_type(nb::module_& module) {
+void add_method_type(const nb::module_& module) {
     const auto type = nb::steal(PyType_FromModuleAndSpec(module.ptr(), &spec, nullptr));
     if (!type.is_valid()) throw nb::python_error();
     module.attr("Method") = type;

@@ -13,6 +13,6 @@ namespace rtamt::python {
 namespace nb = nanobind;
 
 // Adds the type to the module, in which it finds the compiled monitors and what they raise.
-void add_method_type(nb::module_& module);
+void add_method_type(const nb::module_& module);
 
 } // namespace rtamt::python

@@ -254,7 +254,7 @@ TEST(the_end_of_a_short_trace_with_a_lag_of_years_comes_at_once) {
     CHECK(!ways::push(near, columns, 0, count, expected));
     CHECK(!ways::finish(near, expected));
     CHECK(expected[0] == Signal(5, -inf) && expected[2] == Signal(5, inf));
-    const auto far = std::int64_t{1} << 47U;
+    constexpr std::int64_t far = 140'737'488'355'328; // 2^47
     for (const std::size_t samples : {std::size_t{0}, count}) {
         Executor executor(late(far));
         std::vector<Signal> outputs(3);
