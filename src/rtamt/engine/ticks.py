@@ -77,12 +77,13 @@ class TimeScale:
         ``times``: as :func:`sequence_of` returns them. Integers are exact. ``first`` is the index of
         ``times[0]`` in the recording of ``name``, for messages.
         """
-        if self.kind == "seconds" and times.__class__ is np.ndarray and times.dtype == np.float64:
-            plain = self._plain(times)
-            if plain is not None:
-                return plain
-        self._require_kind(times, name, first)
         try:
+            plain = times.__class__ is np.ndarray and times.dtype == np.float64
+            if plain and self.kind == "seconds" and self.unit == 1:
+                found = self._plain(times)
+                if found is not None:
+                    return found
+            self._require_kind(times, name, first)
             if self.kind in ("seconds", "units"):
                 return self._of_numbers(times, name, first)
             if self.kind == "nanoseconds":
@@ -92,15 +93,15 @@ class TimeScale:
             raise self.too_far(name) from None
 
     def _plain(self, numbers: FloatArray) -> TickArray | None:
-        """Return the ticks of doubles that do not decrease and are near 0; None where there are others."""
-        ratio = self.unit / self.tick
-        bound = float(NEAR / ratio)
+        """Return the ticks of seconds that do not decrease and are near 0; None where there are others."""
+        rate, whole = float(self.tick.denominator), float(self.tick.numerator)
+        bound = NEAR * whole / rate
         # In order, all are as near as the first and the last; NaN is in no order.
         if not len(numbers) or not -bound < numbers[0] <= numbers[-1] < bound:
             return None
         if not np.logical_and.reduce(numbers[1:] >= numbers[:-1]):
             return None
-        scaled: FloatArray = np.rint(numbers * float(ratio.numerator) / float(ratio.denominator))
+        scaled: FloatArray = np.rint(numbers * rate / whole)
         return scaled.astype(np.int64)
 
     def _require_kind(self, times: Any, name: str, first: int) -> None:
