@@ -5,7 +5,8 @@ function online_monitor(block)
 %   parameters:
 %
 %   1. the specification: its text, a file with it (.stl), or a program that
-%      'rtamt compile' has written (.rtamt),
+%      'rtamt compile' has written (.rtamt); to set named constants of it, in a cell
+%      array with their names and values: {'response.stl', 'limit', 4},
 %   2. the names of its variables, in the order of the elements of the input:
 %      {'req', 'gnt'} or 'req, gnt',
 %   3. the sampling period in seconds, or -1: that of the input.

@@ -1,7 +1,9 @@
 /* The C API (rtamt.h) for MATLAB and Octave: one MEX function whose first argument says what to do.
  *
  *     id = rtamt_gateway('create', bytes)            uint8, of a program in discrete time
- *     about = rtamt_gateway('describe', id)          a structure: inputs, seconds of a step, lag
+ *     about = rtamt_gateway('describe', id)          a structure: inputs, constants, seconds of a
+ *                                                    step, lag
+ *     rtamt_gateway('set', id, place, value)         the constant at this place, counted from 1
  *     known = rtamt_gateway('peek', id, values)      what 'step' would give; nothing is taken
  *     known = rtamt_gateway('step', id, values)      takes a sample; NaN: nothing is known yet
  *     [first, values] = rtamt_gateway('finish', id)  the rest, and where it begins
@@ -38,6 +40,11 @@ static void release(session* old) {
     free(old->known);
     free(old->row);
     free(old);
+}
+
+static void forget_ahead(session* self) {
+    rtamt_destroy(self->ahead);
+    self->ahead = NULL;
 }
 
 static void release_all(void) {
@@ -129,21 +136,43 @@ static void create(int results, mxArray* result[], int count, const mxArray* arg
 }
 
 static void describe(int results, mxArray* result[], int count, const mxArray* arguments[]) {
-    const char* fields[] = {"inputs", "seconds", "lag"};
+    const char* fields[] = {"inputs", "constants", "seconds", "lag"};
     const rtamt_monitor* monitor = (*find(count, arguments))->taken;
     const uint32_t inputs = rtamt_inputs(monitor);
+    const uint32_t parameters = rtamt_parameters(monitor);
     mxArray* names = mxCreateCellMatrix(1, inputs);
+    mxArray* constants = mxCreateCellMatrix(1, parameters);
     int64_t numerator = 0;
     int64_t denominator = 1;
     (void)results;
     for (uint32_t i = 0; i < inputs; ++i)
         mxSetCell(names, i, mxCreateString(rtamt_input(monitor, i)));
+    for (uint32_t i = 0; i < parameters; ++i)
+        mxSetCell(constants, i, mxCreateString(rtamt_parameter(monitor, i)));
     rtamt_period(monitor, &numerator, &denominator);
-    result[0] = mxCreateStructMatrix(1, 1, 3, fields);
+    result[0] = mxCreateStructMatrix(1, 1, 4, fields);
     mxSetField(result[0], 0, "inputs", names);
+    mxSetField(result[0], 0, "constants", constants);
     mxSetField(result[0], 0, "seconds",
                mxCreateDoubleScalar((double)numerator / (double)denominator));
     mxSetField(result[0], 0, "lag", mxCreateDoubleScalar((double)rtamt_lag(monitor, 0)));
+}
+
+static void set(int results, mxArray* result[], int count, const mxArray* arguments[]) {
+    session* self = *find(count, arguments);
+    uint32_t place = 0;
+    (void)results;
+    (void)result;
+    for (int i = 2; i < 4; ++i) {
+        if (i >= count || !mxIsDouble(arguments[i]) || mxGetNumberOfElements(arguments[i]) != 1) {
+            refuse("rtamt:usage", "The third argument is a place, the fourth one a number.");
+        }
+    }
+    place = (uint32_t)mxGetScalar(arguments[2]) - 1U;
+    if (rtamt_set_parameter(self->taken, place, mxGetScalar(arguments[3])) != RTAMT_OK) {
+        refuse("rtamt:constants", rtamt_message(self->taken));
+    }
+    forget_ahead(self);
 }
 
 static int is_ahead(const session* self) {
@@ -153,11 +182,6 @@ static int is_ahead(const session* self) {
 static int is_row(const session* self, const double* values, size_t size) {
     return size == rtamt_inputs(self->taken) &&
            memcmp(self->row, values, size * sizeof(double)) == 0;
-}
-
-static void forget_ahead(session* self) {
-    rtamt_destroy(self->ahead);
-    self->ahead = NULL;
 }
 
 static mxArray* row_of(const double* values, size_t count) {
@@ -226,9 +250,8 @@ void mexFunction(int results, mxArray* result[], int count, const mxArray* argum
     static const struct {
         const char* name;
         command* run;
-    } commands[] = {{"peek", peek},         {"step", step},     {"create", create},
-                    {"describe", describe}, {"finish", finish}, {"reset", reset},
-                    {"destroy", destroy}};
+    } commands[] = {{"peek", peek}, {"step", step},     {"create", create}, {"describe", describe},
+                    {"set", set},   {"finish", finish}, {"reset", reset},   {"destroy", destroy}};
     char name[16] = "";
     mexAtExit(release_all);
     if (count > 0 && mxIsChar(arguments[0]) && mxGetString(arguments[0], name, sizeof name) == 0) {

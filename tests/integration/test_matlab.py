@@ -206,6 +206,17 @@ def test_the_block_takes_part_in_the_callbacks_of_the_engine(octave):
 
 
 @needs_octave
+def test_named_constants_are_set_beside_the_specification_and_outlast_a_reset(octave):
+    said = octave(
+        "spec = 'const float limit = 3  const float scale = 1  historically(x >= limit * scale)';"
+        "block = RuntimeBlock({{spec, 'scale', 2, 'limit', single(2.5)}, 'x', 1}); block.prepare(1, -1);"
+        "disp(block.step(0, 9)); block.call('InitializeConditions'); disp(block.step(0, 8));"
+        "block.call('Terminate'); disp(rtamt_robustness({spec, 'limit', -1}, 'x', 1, [5; 3])');"
+    )
+    assert said.split() == ["4", "3", "6", "4"]
+
+
+@needs_octave
 def test_initial_conditions_begin_a_new_trace_at_any_time_and_two_blocks_are_two_monitors(octave):
     said = octave(
         "a = RuntimeBlock({'historically(x >= 3)', 'x', 0.1}); a.prepare(1, -1);"
@@ -238,6 +249,7 @@ def test_after_an_error_the_monitor_is_as_it_was(octave):
 
 PREPARE = "block = RuntimeBlock({{{}}}); block.prepare({}, {});"
 SPEC = "'always[0:1](x >= y)'"
+CONSTANTS = "'const float limit = 3  x >= limit'"
 REFUSED = {
     "a variable that the specification does not read": (
         PREPARE.format(f"{SPEC}, 'x, y, z', 1", 3, 1),
@@ -260,6 +272,39 @@ REFUSED = {
         "rtamt:variables",
         "The names of the variables must be text, such as 'req, gnt', or a cell array of texts, such as "
         "{'req', 'gnt'}.",
+    ),
+    "a constant that is not there": (
+        PREPARE.format(f"{{{CONSTANTS}, 'limitt', 4}}, 'x', 1", 1, 1),
+        "rtamt:constants",
+        "The specification has no constant 'limitt' that can be set: it has limit. A constant that bounds an "
+        "interval is fixed.",
+    ),
+    "a constant that bounds an interval": (
+        PREPARE.format("{'const float T = 1  always[0:T](x >= 1)', 'T', 2}, 'x', 1", 1, 1),
+        "rtamt:constants",
+        "The specification has no constant 'T' that can be set: it has none. A constant that bounds an "
+        "interval is fixed.",
+    ),
+    "a constant without a value": (
+        PREPARE.format(f"{{{CONSTANTS}, 'limit'}}, 'x', 1", 1, 1),
+        "rtamt:constants",
+        "After the specification come names and values of constants in turn, such as {'response.stl', "
+        "'limit', 4}.",
+    ),
+    "a constant twice": (
+        PREPARE.format(f"{{{CONSTANTS}, 'limit', 1, 'limit', 2}}, 'x', 1", 1, 1),
+        "rtamt:constants",
+        "The constant 'limit' is given twice.",
+    ),
+    "a constant that is a vector": (
+        PREPARE.format(f"{{{CONSTANTS}, 'limit', [1 2]}}, 'x', 1", 1, 1),
+        "rtamt:constants",
+        "The constant 'limit' must be one real number.",
+    ),
+    "a constant that is NaN": (
+        PREPARE.format(f"{{{CONSTANTS}, 'limit', NaN}}, 'x', 1", 1, 1),
+        "rtamt:constants",
+        "The parameter 'limit' may not be NaN.",
     ),
     "a vector of another width": (
         PREPARE.format(f"{SPEC}, 'x, y', 1", 3, 1),
