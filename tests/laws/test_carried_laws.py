@@ -17,15 +17,22 @@ from rtamt.engine.monitor import Monitor
 from rtamt.engine.program import Program
 from rtamt.errors import EvaluationError
 from rtamt.language.formula import Apply, Const, Formula, fold, variables
-from rtamt.rewrite.interface import boolean
+from rtamt.rewrite.interface import SEMANTICS, boolean, lower
 from tests import capi
 from tests.strategies import dense_chunkings, dense_traces, formulas, traces
 
 ONE = Fraction(1)
 
 
-def carried(formula: Formula, domain: str = "discrete") -> bytes:
-    return carried_program(formula, period=ONE, domain=domain).to_bytes()
+def carried(formula: Formula, domain: str = "discrete", judged: Formula | None = None) -> bytes:
+    return carried_program(formula, period=ONE, domain=domain, judged=judged).to_bytes()
+
+
+def draw_judged(data: st.DataObject, formula: Formula) -> Formula:
+    """Return the formula under any semantics, any of its variables being inputs."""
+    inputs = data.draw(st.sets(st.sampled_from(("x", "y"))))
+    roles = {name: "input" for name in variables(formula) if name in inputs}
+    return lower(formula, data.draw(st.sampled_from(tuple(SEMANTICS))), roles)
 
 
 def bits(values: Any) -> list[int]:
@@ -43,11 +50,13 @@ def rows_of(formula: Formula, columns: dict[str, Any]) -> list[tuple[float, ...]
 def test_samples_in_the_same_bits_out(data: st.DataObject) -> None:
     formula, columns = data.draw(formulas()), data.draw(traces(infinite=True))
     rows = rows_of(formula, columns)
-    here, there, truth = Monitor(formula), capi.Monitor(carried(formula)), Monitor(boolean(formula))
+    judged = draw_judged(data, formula)
+    code = carried(formula, judged=judged)
+    here, there, truth = Monitor(judged), capi.Monitor(code), Monitor(boolean(formula))
     cut = data.draw(st.integers(0, len(rows)))
     for i, row in enumerate(rows):
         if i == cut:  # a state can go to another monitor
-            state, there = there.save(), capi.Monitor(carried(formula))
+            state, there = there.save(), capi.Monitor(code)
             there.restore(state)
         try:
             expected = here.step(*row)
@@ -67,7 +76,7 @@ def test_samples_in_the_same_bits_out(data: st.DataObject) -> None:
         return
     assert bits(there.finish()[1]) == bits(rest.values)
     there.reset()
-    first = Monitor(formula).step(*rows[0])
+    first = Monitor(judged).step(*rows[0])
     assert bits(there.step(rows[0])[0]) == bits(np.nan if first is None else first)
 
 
@@ -79,12 +88,14 @@ def test_events_in_the_same_events_out(data: st.DataObject) -> None:
     assume(names)
     trace = {name: column for name, column in data.draw(dense_traces()).items() if name in names}
     updates = data.draw(dense_chunkings(trace))
-    here, there = DenseMonitor(formula, resolution=ONE), capi.Monitor(carried(formula, "dense"))
+    judged = draw_judged(data, formula)
+    code = carried(formula, "dense", judged)
+    here, there = DenseMonitor(judged, resolution=ONE), capi.Monitor(code)
     cut = data.draw(st.integers(0, len(updates)))
     try:
         for i, update in enumerate(updates):
             if i == cut:
-                state, there = there.save(), capi.Monitor(carried(formula, "dense"))
+                state, there = there.save(), capi.Monitor(code)
                 there.restore(state)
             samples = [
                 (names.index(name), int(tick), float(value))
