@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import shutil
 from dataclasses import dataclass
+from pathlib import Path
 from tempfile import mkdtemp
 from typing import TYPE_CHECKING, Any
 
@@ -11,8 +12,8 @@ from rtamt.errors import UsageError, did_you_mean
 from rtamt.extras import library
 
 if TYPE_CHECKING:
+    import os
     from collections.abc import Iterator
-    from pathlib import Path
 
 
 @dataclass(frozen=True)
@@ -24,14 +25,19 @@ class FmuPlant:
     outputs at that time, and the inputs given as functions (a requirement may read both); the first is at 0.
     """
 
-    path: Path
+    path: str | os.PathLike[str]
     duration: float | None
     step: float | None = None
 
     def __call__(self, **inputs: Any) -> Iterator[tuple[float, dict[str, float]]]:
         """Simulate; yields ``(time, {output: value})``."""
         fmpy = library("fmpy", "an FMU", "fmi")
-        description = fmpy.read_model_description(str(self.path))
+        if not Path(self.path).is_file():
+            raise UsageError(f"there is no unit '{self.path}'")
+        try:
+            description = fmpy.read_model_description(str(self.path))
+        except Exception as error:  # fmpy lets out what zip and XML readers say
+            raise UsageError(f"'{self.path}' cannot be read as an FMU: {error}") from error
         if description.coSimulation is None:
             raise UsageError(f"'{self.path}' is no unit for co-simulation")
         variables = {variable.name: variable for variable in description.modelVariables}

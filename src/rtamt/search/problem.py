@@ -137,7 +137,8 @@ class Problem:
         names = self.spec.input_names
         times: list[float] = []
         columns: dict[str, list[float]] = {name: [] for name in names}
-        for time, values in samples:
+        for sample in samples:
+            time, values = _sample(sample)
             times.append(time)
             for name in names:
                 if name not in values:
@@ -167,6 +168,17 @@ class Problem:
             return None
         duration = self.spec.horizon if self.duration is None else self.duration
         return None if duration == inf else round(duration / float(self.spec.period)) + 1
+
+
+def _sample(given: Any) -> tuple[float, Mapping[str, float]]:
+    """Return the time and the values of what a plant yielded."""
+    if isinstance(given, tuple | list) and len(given) == 2:
+        time, values = given
+        if is_number(time) and isinstance(values, Mapping):
+            return float(time), values
+    raise UsageError(
+        f"the plant yielded {shown(given)}; a sample is (time, {{variable: value}}), such as (0.1, {{'x': 2.5}})"
+    )
 
 
 def _where(number: int, point: Mapping[str, float]) -> str:

@@ -75,6 +75,18 @@ def test_a_unit_that_is_asked_for_what_it_has_not(unit, settings, inputs, senten
     assert str(caught.value) == sentence.format(path=path)
 
 
+def test_a_file_that_is_not_there_and_one_that_is_no_unit(tmp_path):
+    (tmp_path / "text.fmu").write_text("no unit")
+    for name, sentence in {
+        "gone": "there is no unit '{path}'",
+        "text": "'{path}' cannot be read as an FMU: File is not a zip file",
+    }.items():
+        path = tmp_path / f"{name}.fmu"
+        with pytest.raises(UsageError) as caught:
+            next(FmuPlant(str(path), duration=1, step=0.1)())
+        assert str(caught.value) == sentence.format(path=path)
+
+
 def test_a_step_that_the_unit_refuses_says_at_which_point(unit):
     spec = rtamt.parse("always(robustness <= 3)", period="150ms")
     problem = Problem(spec, FmuPlant(unit(), 1, 0.15), {"x": Range(0, 1)}, 1)
