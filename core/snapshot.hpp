@@ -3,11 +3,14 @@
 //
 // Every part lists what it holds once, in its transfer(), for both directions. Buffers that only
 // serve within an update are no part of it. The bytes are those of this machine and this layout.
+// They may come from anywhere: whatever is used to find memory, or an order is relied upon, is
+// required to be as the part itself would have left it.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <optional>
 #include <span>
 #include <stdexcept>
 #include <type_traits>
@@ -35,6 +38,33 @@ class Snapshot {
         requires std::is_trivially_copyable_v<Value>
     void item(Value& value) {
         cells(&value, 1);
+    }
+
+    void item(bool& flag) {
+        auto byte = static_cast<std::uint8_t>(flag);
+        item(byte);
+        require(byte <= 1);
+        flag = byte != 0;
+    }
+
+    template <class Value>
+    void item(std::optional<Value>& optional) {
+        bool present = optional.has_value();
+        Value value = optional.value_or(Value{});
+        item(present);
+        item(value);
+        optional = present ? std::optional(value) : std::nullopt;
+    }
+
+    // How many cells follow, of so many bytes each.
+    void count(std::size_t& count, std::size_t size) {
+        item(count);
+        require(count <= rest_.size() / size);
+    }
+
+    // What does not hold for what was read makes it no state of this program.
+    void require(bool holds) const {
+        if (loading_ && !holds) foreign();
     }
 
     // As many as both sides know.

@@ -146,7 +146,8 @@ RTAMT_API rtamt_status rtamt_clone(rtamt_monitor* monitor, rtamt_monitor** copy)
  * The bytes are for this version of the library on this kind of machine. */
 RTAMT_API rtamt_status rtamt_save(rtamt_monitor* monitor, void* state, size_t room, size_t* size);
 
-/* Takes over a state that a monitor of the same program has saved; a damaged one is refused. */
+/* Takes over a state that a monitor of the same program has saved; a damaged one is refused, and a
+ * forged one does no harm. */
 RTAMT_API rtamt_status rtamt_restore(rtamt_monitor* monitor, const void* state, size_t size);
 
 #ifdef __cplusplus

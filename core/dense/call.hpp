@@ -60,7 +60,9 @@ class Call final : public Kernel {
         foreign_.rollback();
         state_ = saved_;
     }
-    void transfer(Snapshot& /*snapshot*/) override { Foreign::refuse_transfer(); }
+    void transfer(Snapshot& /*snapshot*/, std::int64_t /*frontier*/) override {
+        Foreign::refuse_transfer();
+    }
 
   protected:
     void reset() noexcept override {

@@ -77,7 +77,7 @@ class EventList {
 
     void transfer(Snapshot& snapshot) {
         std::size_t count = count_;
-        snapshot.item(count);
+        snapshot.count(count, sizeof(std::int64_t) + sizeof(double));
         if (snapshot.loading()) {
             make_room(count);
             resize(count);

@@ -14,6 +14,9 @@ namespace {
 // Samples of an input in one step of the frontier: registers of this size stay in the cache.
 constexpr std::size_t block_size = 256;
 
+// Samples come after this tick, so that the time between two of them is one too.
+constexpr std::int64_t earliest = -(std::int64_t{1} << 62);
+
 } // namespace
 
 // ---- building -----------------------------------------------------------------------------------
@@ -362,10 +365,39 @@ void Executor::transfer(Snapshot& snapshot) {
         snapshot.item(output.told);
         snapshot.item(output.last);
     }
+    snapshot.require(sound());
+    if (!started_ || finished_) return; // kernels begin before they run again
     for (const auto& units : {std::span(guarded_), std::span(free_)}) {
-        for (const Unit& unit : units)
-            unit.kernel->transfer(snapshot);
+        for (const Unit& unit : units) {
+            if (snapshot.loading()) unit.kernel->begin(origin_);
+            if (!fresh_) unit.kernel->transfer(snapshot, frontier_);
+        }
     }
+}
+
+// Whether the times are such as updates leave behind.
+bool Executor::sound() const noexcept {
+    const auto waits_from_the_start = [](const Feed& feed) { return feed.next() == feed.first(); };
+    const auto in_range = [&](const Feed& feed) {
+        return !feed.first() || (*feed.first() > earliest && *feed.last() <= last_possible());
+    };
+    if (!std::ranges::all_of(feeds_, in_range)) return false;
+    if (!started_) {
+        return end_ == never && std::ranges::all_of(feeds_, waits_from_the_start);
+    }
+    std::int64_t origin = -never;
+    for (const Feed& feed : feeds_) {
+        if (!feed.first()) return false;
+        origin = std::max(origin, *feed.first());
+    }
+    if (feeds_.empty() || origin_ != origin) return false;
+    if (finished_) return !fresh_ && end_ == latest_last();
+    if (end_ != never) return false;
+    if (fresh_) return std::ranges::all_of(feeds_, waits_from_the_start);
+    return frontier_ >= origin_ && frontier_ == earliest_last() &&
+           std::ranges::all_of(feeds_, [&](const Feed& feed) {
+               return feed.next() ? *feed.next() > frontier_ : *feed.last() == frontier_;
+           });
 }
 
 std::optional<Failure> Executor::evaluate(Program program, std::span<const Events> inputs,

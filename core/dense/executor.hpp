@@ -134,6 +134,7 @@ class Executor {
     void add_constants(const std::vector<bool>& guarded);
 
     [[nodiscard]] bool open() noexcept;
+    [[nodiscard]] bool sound() const noexcept;
     [[nodiscard]] std::int64_t earliest_last() const noexcept;
     [[nodiscard]] std::int64_t latest_last() const noexcept;
     [[nodiscard]] std::int64_t step(std::int64_t target) noexcept;

@@ -70,6 +70,12 @@ class Feed {
         rest_ = queue_.view();
         snapshot.item(first_);
         snapshot.item(last_);
+        snapshot.require(sound());
+    }
+
+    // Between updates: when the first sample that waits is.
+    [[nodiscard]] std::optional<std::int64_t> next() const noexcept {
+        return rest_.count == 0 ? std::nullopt : std::optional(rest_.times[0]);
     }
 
     // Makes the value at the start of the trace the one event of the view.
@@ -99,6 +105,17 @@ class Feed {
     [[nodiscard]] std::size_t bytes() const noexcept { return queue_.bytes(); }
 
   private:
+    // Whether the samples that wait are in order, the last one the last of all.
+    [[nodiscard]] bool sound() const noexcept {
+        if (first_.has_value() != last_.has_value()) return false;
+        if (!first_) return rest_.count == 0;
+        for (std::size_t i = 1; i < rest_.count; ++i) {
+            if (rest_.times[i] <= rest_.times[i - 1]) return false;
+        }
+        return *first_ <= *last_ && (rest_.count == 0 || (rest_.times[0] >= *first_ &&
+                                                          rest_.times[rest_.count - 1] == *last_));
+    }
+
     struct Saved {
         std::optional<std::int64_t> first;
         std::optional<std::int64_t> last;

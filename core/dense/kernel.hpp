@@ -41,9 +41,9 @@ class Kernel {
     virtual void checkpoint() noexcept = 0;
     virtual void rollback() noexcept = 0;
 
-    // Writes or reads what the samples so far have left behind; not between checkpoint() and
-    // rollback().
-    virtual void transfer(Snapshot& snapshot) = 0;
+    // Writes or reads what the samples up to the frontier have left behind; not between
+    // checkpoint() and rollback(). A kernel that reads has begun as the one that wrote.
+    virtual void transfer(Snapshot& snapshot, std::int64_t frontier) = 0;
 
     // How many events can come without any more from the operands.
     [[nodiscard]] virtual std::size_t pending() const noexcept { return 0; }
@@ -84,10 +84,6 @@ class Kernel {
     std::int64_t start_ = 0;
 };
 
-inline void Kernel::transfer(Snapshot& snapshot) {
-    snapshot.item(start_);
-}
-
 // A kernel whose result need not begin where its operands do. What it says before its start is
 // held back, and its value at the start told there.
 class Temporal : public Kernel {
@@ -98,9 +94,9 @@ class Temporal : public Kernel {
 
     void checkpoint() noexcept override { saved_ = told_; }
     void rollback() noexcept override { told_ = saved_; }
-    void transfer(Snapshot& snapshot) override {
-        Kernel::transfer(snapshot);
-        snapshot.item(told_);
+    void transfer(Snapshot& snapshot, std::int64_t frontier) override {
+        snapshot.item(told_.last);
+        told_.begun = start() <= frontier;
     }
 
   protected:

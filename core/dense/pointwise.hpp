@@ -76,10 +76,7 @@ class Unary final : public Kernel {
 
     void checkpoint() noexcept override { saved_ = last_; }
     void rollback() noexcept override { last_ = saved_; }
-    void transfer(Snapshot& snapshot) override {
-        Kernel::transfer(snapshot);
-        snapshot.item(last_);
-    }
+    void transfer(Snapshot& snapshot, std::int64_t /*frontier*/) override { snapshot.item(last_); }
 
   protected:
     void reset() noexcept override { last_ = Results<Function::partial>::none; }
@@ -108,10 +105,7 @@ class Binary final : public Kernel {
 
     void checkpoint() noexcept override { saved_ = state_; }
     void rollback() noexcept override { state_ = saved_; }
-    void transfer(Snapshot& snapshot) override {
-        Kernel::transfer(snapshot);
-        snapshot.item(state_);
-    }
+    void transfer(Snapshot& snapshot, std::int64_t /*frontier*/) override { snapshot.item(state_); }
 
   protected:
     void reset() noexcept override { state_ = {{}, Results<Function::partial>::none}; }

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -64,7 +65,7 @@ class Ring {
     // The cells, oldest first; not between checkpoint() and rollback().
     void transfer(Snapshot& snapshot) {
         std::size_t count = size();
-        snapshot.item(count);
+        snapshot.count(count, sizeof(Cell));
         if (snapshot.loading()) clear();
         for (std::size_t i = 0; i < count; ++i) {
             Cell cell{};
@@ -72,6 +73,19 @@ class Ring {
             snapshot.item(cell);
             if (snapshot.loading()) push_back(cell);
         }
+    }
+
+    // Whether the time of the cells, a member of them, increases from after `begin` up to `end`.
+    template <class Time>
+    [[nodiscard]] bool increasing(std::int64_t begin, std::int64_t end,
+                                  Time&& time) const noexcept {
+        std::int64_t last = begin;
+        for (std::size_t i = 0; i < size(); ++i) {
+            const std::int64_t now = std::invoke(time, (*this)[i]);
+            if (now <= last) return false;
+            last = now;
+        }
+        return empty() || last <= end;
     }
 
     // How many cells from the front on satisfy a condition that, once false, stays so. Cost: the

@@ -43,9 +43,10 @@ class Shift final : public Temporal {
         Temporal::rollback();
         waiting_.rollback();
     }
-    void transfer(Snapshot& snapshot) override {
-        Temporal::transfer(snapshot);
+    void transfer(Snapshot& snapshot, std::int64_t frontier) override {
+        Temporal::transfer(snapshot, frontier);
         waiting_.transfer(snapshot);
+        snapshot.require(waiting_.increasing(frontier, later(frontier, distance_), &Event::time));
     }
 
     [[nodiscard]] std::size_t pending() const noexcept override { return waiting_.size(); }

@@ -42,8 +42,8 @@ class Since final : public Temporal {
         Temporal::rollback();
         state_ = saved_;
     }
-    void transfer(Snapshot& snapshot) override {
-        Temporal::transfer(snapshot);
+    void transfer(Snapshot& snapshot, std::int64_t frontier) override {
+        Temporal::transfer(snapshot, frontier);
         snapshot.item(state_);
     }
 

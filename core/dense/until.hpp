@@ -52,10 +52,13 @@ class Until final : public Temporal {
         window_.rollback();
         state_ = saved_;
     }
-    void transfer(Snapshot& snapshot) override {
-        Temporal::transfer(snapshot);
+    void transfer(Snapshot& snapshot, std::int64_t frontier) override {
+        Temporal::transfer(snapshot, frontier);
         window_.transfer(snapshot);
         snapshot.item(state_);
+        snapshot.require(state_.older <= window_.size());
+        snapshot.require(window_.increasing(-never - 1, frontier, &Segment::begin));
+        snapshot.require(window_.empty() || expiry(0) > frontier);
     }
 
     [[nodiscard]] std::size_t pending() const noexcept override { return window_.size(); }

@@ -48,9 +48,13 @@ class Slide final : public Temporal {
         Temporal::rollback();
         wedge_.rollback();
     }
-    void transfer(Snapshot& snapshot) override {
-        Temporal::transfer(snapshot);
+    void transfer(Snapshot& snapshot, std::int64_t frontier) override {
+        Temporal::transfer(snapshot, frontier);
         wedge_.transfer(snapshot);
+        snapshot.require(wedge_.empty() || wedge_.back().expiry == never);
+        snapshot.require(wedge_.increasing(frontier, never, &Segment::expiry));
+        snapshot.require(wedge_.size() < 2 ||
+                         wedge_[wedge_.size() - 2].expiry <= later(frontier, width_));
     }
 
     [[nodiscard]] std::size_t pending() const noexcept override { return wedge_.size(); }

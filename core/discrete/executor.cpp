@@ -366,6 +366,8 @@ void Executor::transfer(Snapshot& snapshot) {
     snapshot.item(slot_);
     snapshot.item(samples_);
     snapshot.item(finished_);
+    snapshot.require(slot_ >= 0 && slot_ < endless / 2); // and so with many more samples
+    snapshot.require(finished_ ? samples_ >= 0 && samples_ <= slot_ : samples_ == endless);
     for (const auto& kernel : kernels_) {
         if (kernel) kernel->transfer(snapshot);
     }

@@ -43,7 +43,9 @@ class Shift final : public Kernel {
     }
 
     void transfer(Snapshot& snapshot) override {
-        snapshot.item(state_);
+        snapshot.item(state_.next);
+        snapshot.item(state_.full);
+        snapshot.require(state_.next <= distance_);
         snapshot.cells(ring_, state_.full ? distance_ : state_.next);
     }
 

@@ -45,6 +45,7 @@ class Stamps {
         snapshot.item(regular_);
         snapshot.item(origin_);
         snapshot.item(last_);
+        snapshot.require(regular_ <= count_ && next_ == (count_ - regular_) % size_);
         snapshot.cells(ring_, std::min(count_ - regular_, size_));
     }
 

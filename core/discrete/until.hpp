@@ -59,7 +59,10 @@ class Until final : public Kernel {
     }
 
     void transfer(Snapshot& snapshot) override {
-        snapshot.item(state_);
+        snapshot.item(state_.fill);
+        snapshot.item(state_.back);
+        snapshot.item(state_.front);
+        snapshot.require(state_.fill <= width_);
         snapshot.cells(ring_, 2 * (state_.front ? width_ : state_.fill));
     }
 

@@ -123,7 +123,7 @@ std::int64_t Component::instant(double time) const {
     // Far from zero, time itself is not told more exactly.
     const double rounding = 4.0 * std::numeric_limits<double>::epsilon() * std::abs(time) / step();
     constexpr double most = 9e15;
-    if (!(std::abs(place - nearest) <= tolerance + rounding) || nearest > most) {
+    if (!(std::abs(place - nearest) <= tolerance + rounding) || std::abs(nearest) > most) {
         refuse("The communication point " + shown(time) +
                " s is no sampling instant: points must be " + shown(now_.start) +
                " s plus a multiple of the period, " + shown(step()) + " s.");
@@ -226,9 +226,13 @@ void Component::set_real(std::uint32_t reference, double value) {
 // ---- state --------------------------------------------------------------------------------------
 
 void Component::Now::transfer(Snapshot& snapshot) {
-    snapshot.item(phase);
+    auto number = static_cast<std::uint8_t>(phase);
+    snapshot.item(number);
+    snapshot.require(number <= static_cast<std::uint8_t>(Phase::terminated));
+    phase = static_cast<Phase>(number);
     for (double* value : {&start, &reached, &robustness, &verdict, &since})
         snapshot.item(*value);
+    snapshot.require(std::isfinite(start) && std::isfinite(reached));
     snapshot.item(known);
     snapshot.cells(inputs.data(), inputs.size());
 }

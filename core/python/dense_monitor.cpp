@@ -346,7 +346,8 @@ void DenseMonitor::restore(const nb::bytes& state) {
 void DenseMonitor::transfer(Snapshot& snapshot) {
     executor_.transfer(snapshot);
     snapshot.cells(counts_.data(), counts_.size());
-    snapshot.cells(until_.data(), until_.size());
+    for (auto& until : until_)
+        snapshot.item(until);
     for (EventList& list : results_)
         list.transfer(snapshot);
 }

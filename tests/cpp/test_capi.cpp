@@ -1,6 +1,7 @@
 #include "capi/rtamt.h"
 
 #include "check.hpp"
+#include "forged.hpp"
 #include "programs.hpp"
 
 #include <array>
@@ -42,6 +43,25 @@ Bytes save(const Handle& monitor) {
     Bytes state(size);
     CHECK(rtamt_save(monitor.get(), state.data(), size, &size) == RTAMT_OK);
     return state;
+}
+
+// Every kernel of discrete time with a state at once, over two inputs.
+programs::Program everything() {
+    using rtamt::Opcode;
+    programs::Builder builder;
+    const auto x = builder.input();
+    const auto y = builder.input();
+    const auto until = builder.binary(Opcode::until, x, y, 5, 4);
+    const auto window = builder.unary(Opcode::slide_max, x, 4, 3);
+    const auto since = builder.binary(Opcode::since, x, y, 0, 0);
+    const auto running = builder.unary(Opcode::run_min, since, 0, 0);
+    const auto before = builder.unary(Opcode::shift, running, 2, 0, -9.0);
+    const auto both = builder.pointwise(Opcode::min, until, builder.later(window, 1));
+    const auto ratio = builder.pointwise(Opcode::div, both, builder.later(before, 4));
+    builder.output(builder.unary(Opcode::slide_min, ratio, 3, 6));
+    programs::Program program = builder.program();
+    program.note = programs::note_of({1, 10, "", "everything", {"x", "y"}, {"robustness"}, {}, {}});
+    return program;
 }
 
 bool same(const Row& a, const Row& b) {
@@ -230,4 +250,39 @@ TEST(no_damaged_state_is_restored) {
     CHECK(rtamt_message(stranger.get()) ==
           std::string("This is the state of a monitor of another program."));
     CHECK(save(other) == before);
+}
+
+TEST(a_forged_state_with_a_right_checksum_is_refused_or_does_no_harm) {
+    const Bytes bytes = programs::bytes_of(everything());
+    std::size_t refused = 0;
+    std::size_t taken = 0;
+    for (const int cut : {0, 1, 4, 6, 11, 12}) {
+        const Handle monitor = create(bytes);
+        const auto run = [](const Handle& runner, int from, int to) {
+            for (int i = from; i < to; ++i) {
+                const Row row{static_cast<double>(i * 5 % 7) - 3.0, 1.0 + i % 3};
+                double known = 0.0;
+                (void)rtamt_step(runner.get(), row.data(), 2, &known, 1);
+            }
+        };
+        run(monitor, 0, cut);
+        if (cut == 12) CHECK(rtamt_finish(monitor.get()) == RTAMT_OK);
+        const Handle victim = create(bytes);
+        forged::each(save(monitor), [&](const Bytes& state) {
+            const Bytes before = save(victim);
+            if (rtamt_restore(victim.get(), state.data(), state.size()) != RTAMT_OK) {
+                ++refused;
+                CHECK(save(victim) == before);
+                return;
+            }
+            ++taken;
+            run(victim, cut, cut + 9);
+            const Bytes later = save(victim);
+            CHECK(rtamt_restore(victim.get(), later.data(), later.size()) == RTAMT_OK);
+            (void)rtamt_finish(victim.get());
+            std::int64_t until = 0;
+            (void)rtamt_known_until(victim.get(), 0, &until);
+        });
+    }
+    CHECK(refused > 1000 && taken > 1000); // numbers that only change values are as good as others
 }

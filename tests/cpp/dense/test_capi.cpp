@@ -1,6 +1,7 @@
 #include "capi/rtamt.h"
 
 #include "../check.hpp"
+#include "../forged.hpp"
 #include "../programs.hpp"
 
 #include <cmath>
@@ -172,4 +173,41 @@ TEST(no_damaged_state_is_restored) {
         CHECK(rtamt_restore(monitor.get(), state.data(), place) == RTAMT_REFUSED);
     }
     CHECK(save(monitor) == state);
+}
+
+TEST(a_forged_state_with_a_right_checksum_is_refused_or_does_no_harm) {
+    const programs::Program program = everything();
+    std::size_t refused = 0;
+    std::size_t taken = 0;
+    for (const int cut : {0, 1, 2, 5, 11, 12}) {
+        const Handle monitor = create(program);
+        for (int i = 0; i < cut; ++i)
+            (void)push(monitor, {sample(i)});
+        if (cut == 11)
+            (void)push(monitor, {{20, 1.0, 0}, {23, 2.0, 0}}); // ahead of the other input
+        if (cut == 12) CHECK(rtamt_finish(monitor.get()) == RTAMT_OK);
+        const Handle victim = create(program);
+        forged::each(save(monitor), [&](const Bytes& state) {
+            const Bytes before = save(victim);
+            if (rtamt_restore(victim.get(), state.data(), state.size()) != RTAMT_OK) {
+                ++refused;
+                CHECK(save(victim) == before);
+                return;
+            }
+            ++taken;
+            for (int i = cut; i < cut + 9; ++i) {
+                const rtamt_sample next = sample(i);
+                (void)rtamt_push(victim.get(), &next, 1);
+            }
+            const Samples jump{{40, 1.0, 0}, {40, -1.0, 1}};
+            (void)rtamt_push(victim.get(), jump.data(), jump.size());
+            const Bytes later = save(victim);
+            CHECK(rtamt_restore(victim.get(), later.data(), later.size()) == RTAMT_OK);
+            (void)rtamt_finish(victim.get());
+            (void)told(victim);
+            std::int64_t until = 0;
+            (void)rtamt_known_until(victim.get(), 0, &until);
+        });
+    }
+    CHECK(refused > 1000 && taken > 1000); // numbers that only change values are as good as others
 }

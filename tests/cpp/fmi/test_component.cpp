@@ -1,6 +1,7 @@
 #include "fmi/component.hpp"
 
 #include "../check.hpp"
+#include "../forged.hpp"
 #include "../programs.hpp"
 #include "fmi/attempt.hpp"
 
@@ -179,6 +180,40 @@ TEST(a_state_goes_to_another_unit_and_a_damaged_one_nowhere) {
                   "no exception");
         }
         CHECK(other.save() == before);
+    }
+}
+
+TEST(a_forged_state_with_a_right_checksum_is_refused_or_does_no_harm) {
+    for (const Domain domain : {Domain::discrete, Domain::dense}) {
+        const Folder folder(domain);
+        Component component = folder.component();
+        component.begin(0.0);
+        component.settle();
+        set(component, 3.0, 1.0);
+        component.advance(0.0, 0.1);
+        const auto state = component.save();
+        // Layout, phase, five numbers, known, two inputs, checksum; then the state of the monitor.
+        const auto outside = state.begin() + 4 + 1 + 5 * 8 + 1 + 2 * 8 + 4;
+        const std::vector<std::uint8_t> head(state.begin(), outside);
+        CHECK(programs::sealed(head) == head);
+        std::size_t refused = 0;
+        std::size_t taken = 0;
+        Component victim = folder.component();
+        forged::each(head, [&](std::vector<std::uint8_t> forgery) {
+            forgery.insert(forgery.end(), outside, state.end());
+            const auto before = victim.save();
+            if (check::message<std::invalid_argument>([&] { victim.restore(forgery); }) !=
+                "no exception") {
+                ++refused;
+                CHECK(victim.save() == before);
+                return;
+            }
+            ++taken;
+            (void)refusal(victim, 0.1, 0.1);
+            (void)refusal(victim, -1e300, 0.1);
+            (void)victim.integer(verdict);
+        });
+        CHECK(refused > 50 && taken > 50);
     }
 }
 
