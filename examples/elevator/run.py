@@ -1,14 +1,16 @@
 """Sensitivity and falsification of the elevators (the paper's Fig. 12): ``python examples/elevator/run.py``.
 
-Writes ``sensitivity.png`` (16 simulations without a fault) and ``falsification.png`` (the first
-hydraulic circuit fails after 2 s) into the folder given as argument, by default ``build/elevator``, and prints
-what they show.
+Writes ``sensitivity.png`` (16 simulations without a fault, and 16 in which the first hydraulic circuit fails
+after 2 s) and ``falsification.png`` (with that fault) into the folder given as argument, by default
+``build/elevator``, and prints what they show.
 """
 
 from __future__ import annotations
 
 import sys
 from pathlib import Path
+
+import matplotlib.pyplot as plt
 
 import rtamt
 from elevator import Elevators
@@ -32,25 +34,37 @@ def study(side: str = "left", **faults: float) -> Sensitivity:
 
 
 def search(side: str = "left", *, seed: int = 1, **faults: float) -> Falsification:
-    """Look for a command that an elevator does not follow."""
-    return falsify(problem(side, **faults), optimizer="cma", budget=60, seed=seed)
+    """Look for commands that an elevator does not follow, also after the first one: the picture shows them all."""
+    return falsify(problem(side, **faults), optimizer="cma", budget=60, seed=seed, stop=False)
+
+
+def table(landscape: Sensitivity) -> str:
+    """Return the robustness over frequency (down) and amplitude (across)."""
+    lines = ["      " + "".join(f"{amplitude:8.2f}" for amplitude in landscape.axes["pc.amplitude"])]
+    for frequency, row in zip(landscape.axes["pc.frequency"], landscape.robustness, strict=True):
+        lines.append(f"{frequency:6.2f}" + "".join(f"{value:8.3f}" for value in row))
+    return "\n".join(lines)
 
 
 def main(folder: Path) -> None:
-    """Draw both pictures, and print the table of the first."""
+    """Draw both pictures, and print what they show."""
     folder.mkdir(parents=True, exist_ok=True)
-    for side in ("left", "right"):
-        landscape = study(side)
-        print(f"{side}: robustness over frequency (down) and amplitude (across), no fault")
-        amplitudes = landscape.axes["pc.amplitude"]
-        print("      " + "".join(f"{amplitude:8.2f}" for amplitude in amplitudes))
-        for frequency, row in zip(landscape.axes["pc.frequency"], landscape.robustness, strict=True):
-            print(f"{frequency:6.2f}" + "".join(f"{value:8.3f}" for value in row))
-        if side == "left":
-            landscape.plot().figure.savefig(folder / "sensitivity.png", dpi=120)
+    figure, pair = plt.subplots(1, 2, figsize=(12, 4.8), layout="constrained")
+    for axes, (what, faults) in zip(
+        pair, {"no fault": {}, "H1 fails at 2 s": {"H1": 2.0}}.items(), strict=True
+    ):
+        landscape = study(**faults)
+        print(f"left, {what}: robustness over frequency (down) and amplitude (across)\n{table(landscape)}")
+        landscape.plot(axes).set(title=f"left elevator, {what}", xlabel="frequency (Hz)", ylabel="amplitude")
+    figure.savefig(folder / "sensitivity.png", dpi=120)
+    print(
+        f"right, no fault: robustness over frequency (down) and amplitude (across)\n{table(study('right'))}"
+    )
     found = search(H1=2.0)
     print(f"left, H1 fails at 2 s: {found}")
-    found.plot().figure.savefig(folder / "falsification.png", dpi=120)
+    axes = found.plot()
+    axes.set(title="left elevator, H1 fails at 2 s: the search with CMA-ES")
+    axes.figure.savefig(folder / "falsification.png", dpi=120)
 
 
 if __name__ == "__main__":

@@ -24,7 +24,7 @@ def descent(found: Falsification, axes: Any = None) -> Any:
     axes.step(number, np.minimum.accumulate(values), where="post", color="tab:orange", label="least so far")
     wrong = np.array([not evaluation.satisfied for evaluation in found.evaluations])
     if wrong.any():
-        axes.plot(number[wrong], values[wrong], "X", markersize=9, color="tab:red", label="violation")
+        axes.plot(number[wrong], values[wrong], "X", markersize=6, color="tab:red", label="violation")
     axes.set_xlabel("simulation")
     axes.set_ylabel("robustness")
     axes.legend()

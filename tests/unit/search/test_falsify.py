@@ -196,6 +196,33 @@ def test_a_plant_without_a_variable_of_the_requirement():
     )
 
 
+@pytest.mark.parametrize(
+    ("given", "told"), [(0.5, "0.5"), ((0.0, 2.0), "(0.0, 2.0)"), ((0.0, {}, 1), "(0.0, {}, 1)")]
+)
+def test_a_plant_that_yields_no_samples(given, told):
+    problem = Problem(BALL.spec, lambda **_: iter([given]), BALL.inputs)
+    with pytest.raises(UsageError) as caught:
+        problem.run({"speed": 2.0})
+    assert str(caught.value) == (
+        f"simulation 0 (speed=2): the plant yielded {told}; a sample is (time, {{variable: value}}), such as "
+        "(0.1, {'x': 2.5})"
+    )
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_cma_finds_a_violation_that_lies_in_a_corner_alone(seed):
+    corner = [(-1) ** k for k in range(12)]
+
+    def plant(**inputs):
+        return {"x": [sum(sign * value for sign, value in zip(corner, inputs.values(), strict=True))]}
+
+    inputs = {f"u{k}": Range(-1, 1) for k in range(12)}
+    problem = Problem(rtamt.parse("always(x < 11.9999)"), plant, inputs)
+    found = falsify(problem, optimizer="cma", budget=300, seed=seed)
+    assert found.falsified
+    assert list(found.best.point.values()) == corner
+
+
 def test_input_signals_reach_the_plant():
     spec = rtamt.parse("always[0:10](abs(command - position) <= 2)", period="10ms")
     problem = Problem(spec, follower, {"command": Pulse(amplitude=Range(1, 4), frequency=0.25)}, duration=10)
