@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ctypes
 import shutil
 from dataclasses import dataclass
 from pathlib import Path
@@ -51,8 +52,12 @@ class FmuPlant:
         folder = mkdtemp()
         try:
             fmpy.extract(str(self.path), folder)
-            unit = self._instance(description, folder)
-            yield from _simulate(unit, description, variables, inputs, step, round(duration / step))
+            said: list[str] = []
+            unit = self._instance(description, folder, said)
+            try:
+                yield from _simulate(unit, description, variables, inputs, step, round(duration / step))
+            except library("fmpy.fmi1", "an FMU", "fmi").FMICallException as error:
+                raise UsageError(f"the unit '{self.path}' says: {' '.join(said) or error}") from error
         finally:
             shutil.rmtree(folder, ignore_errors=True)
 
@@ -62,7 +67,7 @@ class FmuPlant:
             raise UsageError(f"'{self.path}' has no default step size; give the step in seconds")
         return float(step)
 
-    def _instance(self, description: Any, folder: str) -> Any:
+    def _instance(self, description: Any, folder: str, said: list[str]) -> Any:
         third = description.fmiVersion.startswith("3")
         module = library("fmpy.fmi3" if third else "fmpy.fmi2", "an FMU", "fmi")
         unit = (module.FMU3Slave if third else module.FMU2Slave)(
@@ -71,8 +76,30 @@ class FmuPlant:
             modelIdentifier=description.coSimulation.modelIdentifier,
             instanceName="plant",
         )
-        unit.instantiate()
+        # Without a logger of ours fmpy would print what the unit says among the results.
+        if third:
+            unit.instantiate(logMessage=lambda _env, status, _kind, text: _note(said, status, text))
+        else:
+            unit.instantiate(callbacks=_callbacks(module, said))
         return unit
+
+
+def _callbacks(module: Any, said: list[str]) -> Any:
+    """Return what FMI 2.0 wants of a host: a logger, which fmpy's proxy hands whole sentences, and memory."""
+    callbacks = module.fmi2CallbackFunctions()
+    callbacks.logger = module.fmi2CallbackLoggerTYPE(
+        lambda _env, _name, status, _kind, text: _note(said, status, text)
+    )
+    callbacks.allocateMemory = module.defaultCallbacks.allocateMemory
+    callbacks.freeMemory = module.defaultCallbacks.freeMemory
+    library("fmpy.logging", "an FMU", "fmi").addLoggerProxy(ctypes.byref(callbacks))
+    return callbacks
+
+
+def _note(said: list[str], status: int, text: bytes) -> None:
+    """Keep what a unit says that is more than a warning (status 2 or higher)."""
+    if status > 1:
+        said.append(text.decode("utf-8", "replace"))
 
 
 def _simulate(

@@ -87,8 +87,15 @@ def test_a_file_that_is_not_there_and_one_that_is_no_unit(tmp_path):
         assert str(caught.value) == sentence.format(path=path)
 
 
-def test_a_step_that_the_unit_refuses_says_at_which_point(unit):
+@BOTH
+def test_a_step_that_the_unit_refuses_says_at_which_point(unit, version, capsys):
     spec = rtamt.parse("always(robustness <= 3)", period="150ms")
-    problem = Problem(spec, FmuPlant(unit(), 1, 0.15), {"x": Range(0, 1)}, 1)
-    with pytest.raises(UsageError, match=r"^simulation 2 \(x=0\.5\): the plant failed: FMICallException: "):
+    path = unit(version)
+    problem = Problem(spec, FmuPlant(path, 1, 0.15), {"x": Range(0, 1)}, 1)
+    with pytest.raises(UsageError) as caught:
         problem.run({"x": 0.5}, 2)
+    assert str(caught.value) == (
+        f"simulation 2 (x=0.5): the unit '{path}' says: The communication point 0.15 s is no sampling instant: "
+        "points must be 0 s plus a multiple of the period, 0.1 s."
+    )
+    assert capsys.readouterr().out == ""
