@@ -24,9 +24,9 @@ constexpr std::int64_t farthest = 4'611'686'018'427'387'904; // 2^62
     throw std::invalid_argument(sentence);
 }
 
-[[nodiscard]] std::string shown(double number, const char* format) {
+[[nodiscard]] std::string shown(double number) {
     char text[32];
-    (void)std::snprintf(text, sizeof text, format, number);
+    (void)std::snprintf(text, sizeof text, "%.15g", number);
     return text;
 }
 
@@ -228,8 +228,8 @@ std::string Monitor::undefined(const Undefined& failure) const {
 
 std::string Monitor::time_of(std::int64_t step) const {
     const double seconds = static_cast<double>(step) * metadata_.seconds();
-    if (program().domain == Domain::dense) return "time " + shown(seconds, "%.12g") + " s";
-    return "sample " + std::to_string(step) + ", time " + shown(seconds, "%g") + " s";
+    if (program().domain == Domain::dense) return "time " + shown(seconds) + " s";
+    return "sample " + std::to_string(step) + ", time " + shown(seconds) + " s";
 }
 
 DiscreteRunner& Monitor::discrete() const {

@@ -56,6 +56,13 @@ def test_the_verdict_is_boolean_where_the_robustness_is_zero():
     assert known == {">=": [0.0, float("inf")], ">": [0.0, float("-inf")]}
 
 
+def test_a_time_is_told_to_its_last_digit():
+    monitor = capi.Monitor(rtamt.parse("x / y >= 1").compile(period=1234567.8).to_bytes())
+    monitor.step((1.0, 1.0))
+    with pytest.raises(capi.RefusedError, match=r"has no value at sample 1, time 1234567\.8 s:"):
+        monitor.step((0.0, 0.0))
+
+
 def test_messages_name_the_constant_that_may_have_another_value_by_now():
     monitor = capi.Monitor(RATIO.to_bytes())
     with pytest.raises(capi.RefusedError) as refused:
