@@ -17,12 +17,12 @@ import xmlrpc.client
 import rosgraph
 import rospy
 
+from rtamt import load
 from rtamt.errors import StlError
 from rtamt.ros.binding import MessageType
 from rtamt.ros.options import options, parser
 from rtamt.ros.outbox import DIAGNOSTICS, Outbox
 from rtamt.ros.report import Level
-from rtamt.specification import load
 
 PROGRAM = "ros_stl_monitor.py"
 QUEUE = 100  # messages that wait for a slow subscriber

@@ -18,13 +18,13 @@ from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.utilities import remove_ros_args
 
+from rtamt import load
 from rtamt.errors import StlError
 from rtamt.ros.binding import MessageType
 from rtamt.ros.dds.participant import Quality
 from rtamt.ros.monitor import PAUSE
 from rtamt.ros.options import DEFAULTS, options, parser
 from rtamt.ros.outbox import DIAGNOSTICS, Outbox, diagnostic
-from rtamt.specification import load
 
 PROGRAM = "ros_stl_monitor"
 DIAGNOSTICS_EVERY = 1.0  # seconds of wall time
