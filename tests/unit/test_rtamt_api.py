@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 import rtamt
+from rtamt.exception import exception
 from rtamt.spec.stl.discrete_time import specification as legacy
 
 CLASSES = (
@@ -76,6 +77,7 @@ def test_old_spellings_are_the_same_classes():
     assert rtamt.STLDiscreteTimeSpecification is rtamt.StlDiscreteTimeSpecification
     for cls in CLASSES:
         assert getattr(legacy, cls.__name__) is cls
+    assert exception.RTAMTException is rtamt.RTAMTException
 
 
 def test_options_have_rtamts_values():

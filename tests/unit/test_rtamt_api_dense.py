@@ -336,3 +336,20 @@ def test_before_parse():
     message = "no specification has been read; set spec and call parse() first"
     spec = rtamt.StlDenseTimeSpecification()
     assert said(spec.evaluate, ["x", [[0, 1]]]) == said(spec.update, ["x", [[0, 1]]]) == message
+
+
+@pytest.mark.parametrize(
+    "formula", ["x and y", "once[0:3](x) xor y", "historically(x) or y", "x since[1:2] y"]
+)
+def test_the_final_update_tells_all_that_offline_tells(formula):
+    x, y = [[0, 1], [2, -3], [7, 4]], [[0, 2], [3, -1], [5, 2]]
+    expected = declared(formula).evaluate(["x", x], ["y", y])
+    spec = declared(formula)
+    assert spec.final_update(["x", x], ["y", y]) == expected
+    with pytest.raises(rtamt.RTAMTException, match="reset"):
+        spec.update(["x", [[8, 0]]])
+    spec.reset()
+    told = spec.update(["x", x[:2]], ["y", y[:1]])
+    told += spec.final_update(["x", x[2:]], ["y", y[1:]])
+    assert {time: value for time, value in told if [time, value] in expected} == dict(expected)
+    assert [time for time, _ in told] == sorted({time for time, _ in told})

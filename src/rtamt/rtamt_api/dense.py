@@ -178,6 +178,33 @@ class StlDenseTimeOnlineSpecification(OnlineSpecification, DenseTimeSpecificatio
         self._value_of = self._told
         return _points(signal, self._whole)
 
+    @raises_rtamt
+    def final_update(self, *dataset: Sequence[Any]) -> list[list[float]]:
+        """Take the last samples, as :meth:`update` does, and return all that was not told before.
+
+        Every signal holds its last value to the end, the latest of all times. Then only :meth:`reset` goes on.
+        Raises :class:`RTAMTException` for wrong data, and where a variable never had a sample.
+
+        >>> import rtamt
+        >>> spec = rtamt.StlDenseTimeOnlineSpecification()
+        >>> for name in ("x", "y"):
+        ...     spec.declare_var(name, "float")
+        >>> spec.spec = "x and y"
+        >>> spec.parse()
+        >>> spec.update(["x", [[0, 1], [4, 3]]], ["y", [[0, 2]]])
+        [[0, 1.0]]
+        >>> spec.final_update(["y", [[1, 0]]])
+        [[1, 0.0], [4, 0.0]]
+        """
+        told = self.update(*dataset)
+        rest = _points(self._require_monitor().finish(), self._whole)
+        if told and rest and told[-1][0] == rest[0][0]:
+            del rest[0]
+        points = told + rest
+        last = len(points) - 1
+        # Where the update ended nothing need have changed.
+        return [point for i, point in enumerate(points) if i in {0, last} or point[1] != points[i - 1][1]]
+
     def reset(self) -> None:
         """Forget the signals; the next samples are the first."""
         self._value_of = None

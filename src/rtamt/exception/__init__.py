@@ -1,0 +1,1 @@
+"""RTAMT's module path for its exception."""
