@@ -34,7 +34,8 @@ def drive(topics: int, rate: float, seconds: float, pid: int) -> None:
     talker = rospy.Publisher("/bench/x", FloatStamped, queue_size=1000, tcp_nodelay=True)
     while talker.get_num_connections() < 1 or any(known.get_num_connections() < 1 for known in listeners):
         time.sleep(0.1)
-    start, sent, before = time.time() + 0.5, [], cpu(pid)
+    # A listener knows of a connection before the publisher does.
+    start, sent, before = time.time() + 2.0, [], cpu(pid)
     for i in range(int(rate * seconds)):
         time.sleep(max(0.0, start + i / rate - time.time()))
         message = FloatStamped(value=float(i % 9))
