@@ -43,7 +43,7 @@ class Node:
         self.lock = threading.Lock()
         self.simulated = rospy.get_param("/use_sim_time", False)
         self.outbox = Outbox(monitor.binding, MessageType.load, stamp)
-        self.heard = set()  # topics that somebody listens to: for the others no message is made
+        self.heard = monitor.wanted = set()  # topics that somebody listens to: nothing is made for the others
         self.publishers = {topic: self.publisher(topic, cls) for topic, cls in self.outbox.topics.items()}
         self.diagnostics = self.on_diagnostics()
         self.due = 0.0
@@ -93,9 +93,7 @@ class Node:
     def publish(self, records):
         """Publish robustness and verdicts to those who listen."""
         for record in records:
-            topic = self.outbox.topic(record)
-            if topic in self.heard:
-                self.publishers[topic].publish(self.outbox.message(record))
+            self.publishers[self.outbox.topic(record)].publish(self.outbox.message(record))
 
     def tell(self, now, notices, conditions):
         """Log what happened; publish the conditions."""

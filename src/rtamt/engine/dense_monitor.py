@@ -168,9 +168,9 @@ class DenseMonitor(OnlineMonitor):
         return self._signal(self._backend.told(self._output(name)))
 
     def points(self) -> list[list[tuple[int, float]]]:
-        """Return what the last update made known as pairs of tick and value: of the result, then of what is watched.
+        """Return what the last update made known as pairs of tick and value, for loops in which a microsecond counts.
 
-        For loops in which a microsecond counts.
+        A list for the result, empty where :meth:`update` has returned it, then one for each watched formula.
         """
         return self._backend.points()  # type: ignore[no-any-return]
 

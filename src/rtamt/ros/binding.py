@@ -67,6 +67,11 @@ class Output:
     #: The assertion as a specification of its own.
     specification: Specification
 
+    @property
+    def verdicts(self) -> str:
+        """The topic of its verdicts."""
+        return f"{self.topic}/verdict"
+
 
 @dataclass(frozen=True, slots=True)
 class Binding:

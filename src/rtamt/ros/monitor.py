@@ -13,7 +13,7 @@ from rtamt.ros.watch import DenseWatch, DiscreteWatch, Robustness, Verdict, toge
 from rtamt.settings import positive_period, time_domain
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
+    from collections.abc import Callable, Container, Mapping, Sequence
 
     from rtamt.ros.binding import Binding
     from rtamt.ros.watch import Record, Standing, Watch
@@ -86,6 +86,8 @@ class RosMonitor:
             self._discrete = [
                 DiscreteWatch(outputs, topic_of, self.period) for outputs in together(binding.outputs)
             ]
+        #: Topics for which records are made, such as those that somebody listens to; None: all.
+        self.wanted: Container[str] | None = None
         self._values: dict[str, float] = {}
         self._heard: dict[str, int] = {}  # when a topic last spoke
         self._stamps: dict[str, int] = {}  # of its last message
@@ -176,7 +178,7 @@ class RosMonitor:
     ) -> list[Record]:
         """Give a watch its sample; one that is refused leaves a hole, so that the watch begins anew."""
         try:
-            records = watch.take(stamp, values)
+            records = watch.take(stamp, values, self.wanted)
         except StlError as error:
             watch.reset()
             if watch.fault is None:
@@ -257,6 +259,8 @@ class RosMonitor:
 
     def conditions(self, now: int) -> list[Condition]:
         """Return how every output is, for ``/diagnostics``."""
+        for watch in self.watches:
+            watch.look()
         told = {
             standing.output.name: self._condition(watch, standing, now)
             for watch in self.watches

@@ -46,15 +46,13 @@ class Outbox:
             for output in binding.outputs
             for topic, cls in (
                 (output.topic, self.classes[output.type]),
-                (verdict_topic(output.topic), self._verdict),
+                (output.verdicts, self._verdict),
             )
         }
-        self._topic_of_verdicts = {output.topic: verdict_topic(output.topic) for output in binding.outputs}
 
     def topic(self, record: Record) -> str:
         """Return the topic that a record goes to."""
-        topic = record.output.topic
-        return topic if isinstance(record, Robustness) else self._topic_of_verdicts[topic]
+        return record.output.topic if isinstance(record, Robustness) else record.output.verdicts
 
     def message(self, record: Record) -> Any:
         """Return the message of a record, its header stamped."""
@@ -93,8 +91,3 @@ class Outbox:
 def diagnostic(name: str) -> MessageType:
     """Return a type of ``diagnostic_msgs``."""
     return MessageType("diagnostic_msgs.msg", name)
-
-
-def verdict_topic(topic: str) -> str:
-    """Return the topic of verdicts beside one of robustness."""
-    return f"{topic}/verdict"

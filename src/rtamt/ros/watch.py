@@ -19,7 +19,7 @@ from rtamt.language.records import Pointwise
 from rtamt.rewrite.horizon import horizon
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Container, Mapping, Sequence
 
     from rtamt.language.formula import Formula
     from rtamt.ros.binding import Output
@@ -53,17 +53,19 @@ Record: TypeAlias = Robustness | Verdict
 
 
 class Standing:
-    """One output, and how it stands: ``latest`` robustness, and whether it is ``satisfied``.
+    """One output, and how it stood at the last :meth:`Watch.look`: ``latest`` robustness, whether it was ``satisfied``.
 
     ``horizon``: seconds. ``lag``: the same in samples, in dense time in nanoseconds.
     """
 
-    __slots__ = ("horizon", "lag", "latest", "output", "satisfied")
+    __slots__ = ("horizon", "lag", "latest", "output", "satisfied", "topic", "verdicts")
 
     def __init__(self, output: Output, period: Fraction | None) -> None:
         depth = horizon(output.specification.formula, period or Fraction(1))
         assert depth is not None, "unbounded future was refused"
         self.output = output
+        self.topic = output.topic
+        self.verdicts = output.verdicts
         self.horizon = float(depth)
         self.lag = int(depth / (period or NANOSECOND))
         self.forget()
@@ -155,21 +157,38 @@ class DiscreteWatch(Watch):
             first.formula, text=first.text, period=period, backend=backend, watch=every
         )
 
-    def take(self, stamp: int, values: Mapping[str, float]) -> list[Record]:
-        """Take one sample; raise :class:`StlError` where it cannot be used."""
+    def take(
+        self, stamp: int, values: Mapping[str, float], wanted: Container[str] | None = None
+    ) -> list[Record]:
+        """Take one sample, return records for the topics that are wanted (None: all).
+
+        Raises :class:`StlError` where it cannot be used.
+        """
         monitor = self._monitor
         monitor.step(*[values[name] for name in monitor.input_names])
-        samples = monitor.samples
         records: list[Record] = []
         for standing, (robustness, truth) in zip(self.standings, self.formulas, strict=True):
-            value, held = monitor[robustness.name], monitor[truth.name]
-            assert isinstance(value, float), "a formula of the past is known at once"
-            assert isinstance(held, float)
-            standing.latest = value
-            standing.satisfied = held > 0 if samples > standing.lag else None
-            records.append(Robustness(standing.output, stamp, value))
-            records.append(Verdict(standing.output, stamp, standing.horizon, standing.satisfied))
+            if wanted is None or standing.topic in wanted:
+                records.append(Robustness(standing.output, stamp, self._value(robustness)))
+            if wanted is None or standing.verdicts in wanted:
+                records.append(Verdict(standing.output, stamp, standing.horizon, self._held(standing, truth)))
         return records
+
+    def _value(self, watched: Watched) -> float:
+        value = self._monitor[watched.name]
+        assert isinstance(value, float), "a formula of the past is known at once"
+        return value
+
+    def _held(self, standing: Standing, truth: Watched) -> bool | None:
+        return self._value(truth) > 0 if self._monitor.samples > standing.lag else None
+
+    def look(self) -> None:
+        """Bring the standings up to date."""
+        if not self._monitor.samples:
+            return
+        for standing, (robustness, truth) in zip(self.standings, self.formulas, strict=True):
+            standing.latest = self._value(robustness)
+            standing.satisfied = self._held(standing, truth)
 
 
 class DenseWatch(Watch):
@@ -185,43 +204,61 @@ class DenseWatch(Watch):
         )
         self._start: int | None = None
         self._held: deque[tuple[int, dict[str, float]]] = deque(maxlen=HELD)
+        #: What became known last, of the result and then of each watched formula.
+        self._points: list[list[tuple[int, float]]] = []
 
     def hold(self, stamp: int, values: Mapping[str, float]) -> None:
         """Keep a message while another topic has nothing to say, of many the latest: the trace begins when all do."""
         self._held.append((stamp, self._mine(values)))
 
-    def take(self, stamp: int, values: Mapping[str, float]) -> list[Record]:
-        """Take the numbers of one message; raise :class:`StlError` where they cannot be used."""
+    def take(
+        self, stamp: int, values: Mapping[str, float], wanted: Container[str] | None = None
+    ) -> list[Record]:
+        """Take the numbers of one message, return records for the topics that are wanted (None: all).
+
+        Raises :class:`StlError` where they cannot be used.
+        """
         records: list[Record] = []
         while self._held:
             before, held = self._held.popleft()
-            records += self._update(before, held)
-        return records + self._update(stamp, self._mine(values))
+            records += self._update(before, held, wanted)
+        return records + self._update(stamp, self._mine(values), wanted)
 
     def _mine(self, values: Mapping[str, float]) -> dict[str, float]:
         return {name: values[name] for name in self.names if name in values}
 
-    def _update(self, stamp: int, values: dict[str, float]) -> list[Record]:
+    def _update(self, stamp: int, values: dict[str, float], wanted: Container[str] | None) -> list[Record]:
         # An integer of numpy means nanoseconds. All outputs are known up to the same instant.
         if not len(self._monitor.update(np.int64(stamp), **values)):
             return []
-        records: list[Record] = []
-        _, *watched = self._monitor.points()
+        self._points = points = self._monitor.points()
         if self._start is None:
-            self._start = watched[0][0][0]
-        for standing, told, truths in zip(self.standings, watched[::2], watched[1::2], strict=True):
-            output, depth = standing.output, standing.horizon
-            known = self._start + standing.lag
-            for at, value in told:
-                records.append(Robustness(output, at, value))
-                standing.latest = value
-            for at, truth in truths:
-                standing.satisfied = truth > 0 if at >= known else None
-                records.append(Verdict(output, at, depth, standing.satisfied))
+            self._start = points[1][0][0]  # the first place is of what update() returned
+        records: list[Record] = []
+        for standing, told, truths in zip(self.standings, points[1::2], points[2::2], strict=True):
+            output = standing.output
+            if wanted is None or standing.topic in wanted:
+                records += [Robustness(output, at, value) for at, value in told]
+            if wanted is None or standing.verdicts in wanted:
+                depth = standing.horizon
+                records += [Verdict(output, at, depth, self._judge(standing, at, v)) for at, v in truths]
         return records
+
+    def _judge(self, standing: Standing, at: int, truth: float) -> bool | None:
+        assert self._start is not None
+        return truth > 0 if at >= self._start + standing.lag else None
+
+    def look(self) -> None:
+        """Bring the standings up to date."""
+        for standing, told, truths in zip(
+            self.standings, self._points[1::2], self._points[2::2], strict=False
+        ):
+            standing.latest = told[-1][1]
+            standing.satisfied = self._judge(standing, *truths[-1])
 
     def reset(self) -> None:
         """Forget all samples."""
         super().reset()
         self._held.clear()
+        self._points = []
         self._start = None

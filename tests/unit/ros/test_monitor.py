@@ -178,6 +178,16 @@ def test_an_output_whose_sample_has_no_value_begins_anew_alone(time):
     assert [c.name.split()[-1] for c in watched.conditions(0)] == ["rob.value", "all.value", "gnt.value"]
 
 
+@pytest.mark.parametrize("time", ["discrete", "dense"])
+def test_only_what_is_wanted_is_told_and_the_conditions_know_all(time):
+    watched = monitor("rob.value = req.value >= 3; all.value = req.value <= 3", time=time)
+    watched.wanted = {"rtamt/rob", "rtamt/all/verdict"}
+    told = watched.message("/req", message(5, at=1), SECOND) + watched.tick(SECOND)
+    assert (numbers(told), verdicts(told), len(told)) == ([(1, 2)], [False], 2)
+    assert [condition.message for condition in watched.conditions(SECOND)] == ["satisfied", "violated"]
+    assert [dict(condition.values)["robustness"] for condition in watched.conditions(SECOND)] == ["2", "-2"]
+
+
 def test_a_message_without_the_number_is_refused_and_the_old_one_is_no_value_of_now():
     text = HEAD + 'rob.value = "req.values[1]" >= 0'
     watched = RosMonitor(bind(rtamt.parse(text)))
