@@ -15,7 +15,7 @@ namespace {
 constexpr std::size_t block_size = 256;
 
 // Samples come after this tick, so that the time between two of them is one too.
-constexpr std::int64_t earliest = -(std::int64_t{1} << 62);
+constexpr std::int64_t before_all = -(never / 2) - 1;
 
 } // namespace
 
@@ -379,7 +379,7 @@ void Executor::transfer(Snapshot& snapshot) {
 bool Executor::sound() const noexcept {
     const auto waits_from_the_start = [](const Feed& feed) { return feed.next() == feed.first(); };
     const auto in_range = [&](const Feed& feed) {
-        return !feed.first() || (*feed.first() > earliest && *feed.last() <= last_possible());
+        return !feed.first() || (*feed.first() > before_all && *feed.last() <= last_possible());
     };
     if (!std::ranges::all_of(feeds_, in_range)) return false;
     if (!started_) {

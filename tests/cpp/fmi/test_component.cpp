@@ -193,7 +193,8 @@ TEST(a_forged_state_with_a_right_checksum_is_refused_or_does_no_harm) {
         component.advance(0.0, 0.1);
         const auto state = component.save();
         // Layout, phase, five numbers, known, two inputs, checksum; then the state of the monitor.
-        const auto outside = state.begin() + 4 + 1 + 5 * 8 + 1 + 2 * 8 + 4;
+        constexpr std::ptrdiff_t size = 66;
+        const auto outside = state.begin() + size;
         const std::vector<std::uint8_t> head(state.begin(), outside);
         CHECK(programs::sealed(head) == head);
         std::size_t refused = 0;
