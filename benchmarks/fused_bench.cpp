@@ -192,7 +192,7 @@ bool compare(const char* name, const Program& program, const Column& a, const Co
 
 } // namespace
 
-int main(int argc, const char** argv) {
+int main(int argc, const char* const* argv) {
     const std::size_t samples = argc > 1 ? std::strtoull(argv[1], nullptr, 10) : 1'000'000;
     const std::size_t rounds = argc > 2 ? std::strtoull(argv[2], nullptr, 10) : 15;
     std::mt19937 engine(1);
