@@ -68,7 +68,7 @@ class Tool:
         if before is not None and self._too_long(case, before):
             return
         workload = {**case.workload, "limit": limit}
-        if self.label == "RTAMT" and "warm" in workload:
+        if self.label == "RTAMT" and case.time == "discrete" and "warm" in workload:
             workload["warm"] = 0  # its windows are full, of infinities, from the start
         answer = self.talk.ask(
             {

@@ -28,6 +28,11 @@ TABLE = {
 }
 
 
+def predicate(number):
+    """Return the name of a predicate: its grammar knows letters alone in names."""
+    return "p" + "".join("abcdefghij"[int(digit)] for digit in str(number))
+
+
 class Ltl(Writer):
     """Its language; remembers the signals that stand for predicates."""
 
@@ -46,7 +51,7 @@ class Ltl(Writer):
         if node.get("op") in VALUES:
             name, value = plain(node)
             self.predicates.append((name, value, VALUES[node["op"]]))
-            return f"p{chr(96 + len(self.predicates))}"
+            return predicate(len(self.predicates))
         if "op" not in node:
             raise UnsupportedError("a number as a formula")
         if node["op"] == "unless" and node.get("interval") is not None:
@@ -61,8 +66,8 @@ def answer(formula, time, mode, signals, end):
     language = Ltl()
     phi = mtl.parse(language.write(formula))
     data = {
-        f"p{chr(97 + k)}": [(t, of(v, value)) for t, v in signals[name]]
-        for k, (name, value, of) in enumerate(language.predicates)
+        predicate(k): [(t, of(v, value)) for t, v in signals[name]]
+        for k, (name, value, of) in enumerate(language.predicates, 1)
     }
     return {"points": [[t, phi(data, time=t, quantitative=True)] for t in range(end)]}
 
@@ -76,8 +81,8 @@ def prepare(formula, time, mode, signals):
     if time == "discrete":
         signals = {name: list(enumerate(column)) for name, column in signals.items()}
     data = {
-        f"p{chr(97 + k)}": [(t, of(v, value)) for t, v in signals[name]]
-        for k, (name, value, of) in enumerate(language.predicates)
+        predicate(k): [(t, of(v, value)) for t, v in signals[name]]
+        for k, (name, value, of) in enumerate(language.predicates, 1)
     }
     return lambda: phi(data, time=None, quantitative=True)
 

@@ -76,7 +76,7 @@ def answer(formula, time, mode, signals, end):
 
 
 def prepare(formula, time, mode, signals):
-    """Offline ask at every sample; online add a sample, then ask one horizon back."""
+    """Offline ask for the whole signal; online add a sample, then ask one horizon back."""
     if Stl.is_number(formula):
         raise UnsupportedError("a number as a formula")
     if time == "discrete":
@@ -91,18 +91,21 @@ def prepare(formula, time, mode, signals):
     if mode == "offline":
 
         def evaluate():
-            for row in rows:
-                driver.add_sample(row)
             monitor = driver.get_monitor(name)
-            return [monitor.eval_rob(row[0]) for row in rows]
+            for row in rows:
+                monitor.add_sample(row)
+            monitor.set_eval_time(rows[0][0], rows[-1][0])
+            monitor.eval_rob()
+            return monitor.get_signal().get_samples_list()
 
         return evaluate
     ahead = horizon(formula)
+    monitor = driver.get_monitor(name)
 
     def run(begin, end):
         for row in rows[begin:end]:
-            driver.add_sample(row)
-            driver.get_monitor(name).eval_rob(max(row[0] - ahead, 0.0))
+            monitor.add_sample(row)
+            monitor.eval_rob(max(row[0] - ahead, 0.0))
 
     return run
 

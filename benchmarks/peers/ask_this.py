@@ -78,11 +78,15 @@ def stepping(spec, signals):
     return run
 
 
-def updating(monitor, names):
-    """Return the loop that a user writes who knows the names: ``update(t, a=a, b=b)``."""
+def updating(monitor, names, time):
+    """Return the loop that a user writes who knows the names: ``update(t, a=a, b=b)``.
+
+    An answer in dense time is read, as the peers' lists are: its arrays are made when they are asked for.
+    """
     values = ", ".join(f"v{k}" for k in range(len(names)))
     given = ", ".join(f"{name}=v{k}" for k, name in enumerate(names))
-    code = f"def run(update, rows):\n    for t, {values} in rows:\n        update(t, {given})\n"
+    read = "\n        told.times, told.values" if time == "dense" else ""
+    code = f"def run(update, rows):\n    for t, {values} in rows:\n        told = update(t, {given}){read}\n"
     scope = {}
     exec(code, scope)  # noqa: S102 - of names of the benchmark's own
     return lambda rows: scope["run"](monitor.update, rows)
@@ -105,7 +109,7 @@ def prepare(formula, time, mode, signals):
         rows = [
             (events[0][0], *(value for _, value in events)) for events in zip(*signals.values(), strict=True)
         ]
-    update = updating(spec.monitor(), list(signals))
+    update = updating(spec.monitor(), list(signals), time)
     return lambda begin, end: update(rows[begin:end])
 
 

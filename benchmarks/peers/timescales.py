@@ -10,7 +10,7 @@ LOWER, UPPER = 3, 10  # bounds in units; units are 1, 10 and 100 samples
 
 _BETWEEN = "(r > 0 and not(q > 0) and once(q > 0)) -> "
 _UNTIL_R = "(q > 0 and not(r > 0) and eventually(r > 0)) -> "
-_ANSWERED = "((s > 0) -> once[{l}:{u}](p > 0)) and not(not(s > 0) since[{u}:inf] (p > 0))"
+_ANSWERED = "((z > 0) -> once[{l}:{u}](p > 0)) and not(not(z > 0) since[{u}:inf] (p > 0))"
 
 #: Of each family the past form and the future form; {l} and {u} are the bounds.
 FAMILIES = {
@@ -48,11 +48,11 @@ FAMILIES = {
     ),
     "response globally": (
         f"historically({_ANSWERED})",
-        "always((p > 0) -> eventually[{l}:{u}](s > 0))",
+        "always((p > 0) -> eventually[{l}:{u}](z > 0))",
     ),
     "response between q and r": (
         f"historically({_BETWEEN}(({_ANSWERED}) since (q > 0)))",
-        f"always({_UNTIL_R}(((p > 0) -> eventually[{{l}}:{{u}}](s > 0)) until (r > 0)))",
+        f"always({_UNTIL_R}(((p > 0) -> (not(r > 0) until[{{l}}:{{u}}] (z > 0 and not(r > 0)))) until (r > 0)))",
     ),
 }
 
@@ -82,8 +82,8 @@ def _pattern(family, unit, wrong):
         return {"q": [0], "r": [3 * up + up // 2], "p": [*times, 3 * up]}, 4 * up, 3 * up + up // 2
     answer = [] if wrong else [1 + half]
     if scope == "globally":
-        return {"p": [1], "s": answer}, up + 4, 1 + up
-    return {"q": [0], "p": [1], "s": answer, "r": [up + 3]}, up + 6, up + 3
+        return {"p": [1], "z": answer}, up + 4, 1 + up
+    return {"q": [0], "p": [1], "z": answer, "r": [up + 3]}, up + 6, up + 3
 
 
 def _column(ones, length):

@@ -53,14 +53,16 @@ class TickSignal(Signal):
     def times(self) -> NDArray[Any]:
         """Times as the caller tells them."""
         if not hasattr(self, "_times"):
-            self._times = self._scale.times(np.frombuffer(self._events, np.int64, len(self)).copy())
+            ticks = np.frombuffer(self._events, np.int64, len(self._events) // 16)
+            self._times = self._scale.times(ticks)
         return self._times
 
     @property
     def values(self) -> FloatArray:
         """Robustness at these times."""
         if not hasattr(self, "_values"):
-            self._values = np.frombuffer(self._events, np.float64, len(self), 8 * len(self)).copy()
+            half = len(self._events) // 2
+            self._values = np.frombuffer(self._events, np.float64, half // 8, half).copy()
         return self._values
 
 

@@ -14,7 +14,7 @@ a number in a unit that was agreed on before          ``"units"``         int wh
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from datetime import datetime, timedelta
 from fractions import Fraction
 from numbers import Integral, Rational
@@ -70,6 +70,12 @@ class TimeScale:
     tick: Fraction
     kind: str
     unit: Fraction = UNITS["s"]
+    #: ``tick / unit`` as two doubles: an online answer must not wait for fractions.
+    _ratio: tuple[float, float] = field(init=False, repr=False, compare=False)
+
+    def __post_init__(self) -> None:
+        numerator, denominator = (self.tick / self.unit).as_integer_ratio()
+        object.__setattr__(self, "_ratio", (float(numerator), float(denominator)))
 
     def ticks(self, times: Any, name: str, first: int = 0) -> TickArray:
         """Return times as ticks, rounded to the nearest; raise :class:`TraceError` where that cannot be.
@@ -186,8 +192,8 @@ class TimeScale:
         """Return ticks as the caller tells time, in the type that the module's table says."""
         if self.kind == "seconds":
             # One division by a whole number rounds once: 300 ms come back as 0.3.
-            numerator, denominator = (self.tick / self.unit).as_integer_ratio()
-            return (ticks if numerator == 1 else ticks * float(numerator)) / float(denominator)
+            numerator, denominator = self._ratio
+            return (ticks if numerator == 1 else ticks * numerator) / denominator
         if self.kind == "units":
             scaled = [tick * self.tick / self.unit for tick in ticks.tolist()]
             numbers = [int(t) if t.denominator == 1 else float(t) for t in scaled]
