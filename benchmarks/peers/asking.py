@@ -10,15 +10,16 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
+from tests.conformance.trees import in_steps, tree
+
 import rtamt
 from rtamt.errors import EvaluationError
-from rtamt.language.formula import Apply, Const, Formula, Interval, Var, fold, postorder, variables
+from rtamt.language.formula import Apply, Formula, fold, postorder, variables
 from rtamt.language.operators import STL
 from rtamt.language.records import Bounds, Tense
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
-    from fractions import Fraction
 
     from tests.conformance.cases import Case
 
@@ -147,7 +148,7 @@ class Asked:
 
 def question_of(case: Case, mode: tuple[str, str], conventions: dict[str, str]) -> Question | None:
     """Translate a case; None where nothing of it can be judged."""
-    formula = fold(rtamt.parse(case.formula).formula, lambda node, args: _in_steps(node, args, case.seconds))
+    formula = in_steps(rtamt.parse(case.formula).formula, case.seconds)
     signals = case.signals if case.time == "discrete" else together(case.signals)
     _, asked, *_ = case.id.split("/")
     question = Question(formula, mode, signals, conventions, asked if STL.get(asked) else "")
@@ -226,32 +227,6 @@ def _cut(steps: Sequence[Any], question: Question) -> list[Any]:
     if question.mode[0] == "discrete":
         return [v for _, v in kept]
     return [pair for k, pair in enumerate(kept) if k == 0 or pair[1] != kept[k - 1][1]]
-
-
-def _in_steps(node: Formula, args: tuple[Formula, ...], step: Fraction) -> Formula:
-    if not isinstance(node, Apply):
-        return node
-    bounds = node.interval
-    if bounds is not None:
-        bounds = Interval(bounds.begin / step, None if bounds.end is None else bounds.end / step)
-    return Apply(node.op, args, bounds)
-
-
-def tree(formula: Formula) -> dict[str, Any]:
-    """Return a formula whose bounds are whole steps as adapters read it."""
-    whole: dict[str, Any] = fold(formula, _tree)
-    return whole
-
-
-def _tree(node: Formula, args: tuple[Any, ...]) -> dict[str, Any]:
-    if isinstance(node, Var):
-        return {"var": node.name}
-    if isinstance(node, Const):
-        return {"const": node.value}
-    assert isinstance(node, Apply)
-    bounds = node.interval
-    ends = None if bounds is None else [int(bounds.begin), None if bounds.end is None else int(bounds.end)]
-    return {"op": node.op.name, "args": list(args), "interval": ends}
 
 
 def _inside(formula: Formula) -> int | None:

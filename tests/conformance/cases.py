@@ -31,6 +31,7 @@ class Case:
     formula: str
     step: str
     signals: dict[str, list[Any]]
+    tree: dict[str, Any] = field(default_factory=dict, kw_only=True)
     semantics: str = "standard"
     inputs: list[str] = field(default_factory=list)
     values: list[Any] = field(default_factory=list)

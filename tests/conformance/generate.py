@@ -24,6 +24,7 @@ from rtamt.language.operators import STL
 from rtamt.language.records import Bounds, Operator, Sort
 from tests.conformance import cases, corners
 from tests.conformance.cases import SEMANTICS, Case
+from tests.conformance.trees import in_steps, tree
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -118,13 +119,14 @@ class Drawing:
 
 
 def answered(case: Case, backend: str = "python") -> Case:
-    """Fill in the answer: from the definition, which is the Python back end."""
+    """Fill in the tree and the answer: from the definition, which is the Python back end."""
     settings: dict[str, Any] = {"semantics": case.semantics, "roles": dict.fromkeys(case.inputs, "input")}
     if case.time == "discrete":
         settings["period"] = case.seconds
     else:
         settings |= {"time": "dense", "resolution": case.seconds}
     spec = rtamt.parse(case.formula, backend=backend, **settings)
+    case.tree = tree(in_steps(spec.formula, case.seconds))
     signal = spec.evaluate(data_of(case)).signal
     values = [v > 0 for v in signal.values] if case.semantics == "boolean" else signal.values
     depth = None if spec.horizon == inf else round(Fraction(spec.horizon) / case.seconds)

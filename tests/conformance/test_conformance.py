@@ -3,19 +3,23 @@
 from __future__ import annotations
 
 from math import inf
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
 
 import rtamt
-from rtamt.language.formula import Apply, postorder
-from rtamt.language.operators import STL
+from rtamt.language import parser
+from rtamt.language.formula import Apply, Const, Formula, Interval, Var, postorder
+from rtamt.language.operators import STL, Fixity
 from tests.conformance import cases
 from tests.conformance.generate import ALONE, data_of, ticks_of
 from tests.oracle import meaning
 
 if TYPE_CHECKING:
+    from fractions import Fraction
+
     from tests.conformance.cases import Case
 
 # As many parts as keep a failure close to its case and the suite quick to start.
@@ -194,3 +198,57 @@ def test_online_in_chunks(part: int) -> None:
 def test_a_case_is_written_as_it_was_read(name: str) -> None:
     lines = (cases.FOLDER / name).read_text(encoding="utf-8").splitlines()
     assert [cases.line(case) for case in cases.read(name)] == lines
+
+
+def formula_of(tree: dict[str, Any], step: Fraction) -> Formula:
+    """Read a tree, as another tool would."""
+    if "var" in tree:
+        return Var(tree["var"])
+    if "const" in tree:
+        return Const(tree["const"])
+    interval = None
+    if tree["interval"] is not None:
+        begin, end = tree["interval"]
+        interval = Interval(begin * step, None if end is None else end * step)
+    return Apply(STL[tree["op"]], tuple(formula_of(arg, step) for arg in tree["args"]), interval)
+
+
+def test_every_tree_is_its_formula() -> None:
+    for case in CORPUS:
+        assert formula_of(case.tree, case.seconds) == rtamt.parse(case.formula).formula, case.id
+
+
+def test_bounds_of_a_tree_are_in_steps_and_named_parts_stand_where_they_are_used() -> None:
+    found = {case.id: case.tree for case in CORPUS}
+    assert found["corner/discrete/period-100ms/standard"]["interval"] == [0, 3]
+    assert found["corner/discrete/unbounded-from-2/standard"]["interval"] == [2, None]
+    assert found["corner/discrete/named-parts/standard"] == {
+        "op": "always",
+        "args": [{"op": "le", "args": [{"var": "x"}, {"const": 3.0}], "interval": None}],
+        "interval": [0, 1],
+    }
+
+
+README = (Path(__file__).parent / "README.md").read_text(encoding="utf-8")
+
+
+def test_the_readme_has_the_grammar_of_the_parser() -> None:
+    _, _, rest = (parser.__doc__ or "").partition("::\n")
+    productions = [line.strip() for line in rest.splitlines() if " = " in line]
+    assert len(productions) == 8
+    listing = README.split("```ebnf\n")[1].split("```")[0]
+    assert listing.splitlines() == productions
+
+
+def test_the_readme_has_the_precedence_of_the_table() -> None:
+    written = [op for op in STL if op.fixity in (Fixity.PREFIX, Fixity.LEFT, Fixity.RIGHT)]
+    rows = [
+        " ".join(f"'{op.spellings[0]}'" for op in written if op.power == power)
+        for power in sorted({op.power for op in written}, reverse=True)
+    ]
+    listing = README.split("bind alike:\n\n```text\n")[1].split("```")[0].splitlines()
+    assert listing == [f"{rows[0]} before an operand", *rows[1:]]
+    assert [op.spellings[0] for op in written if op.fixity is Fixity.RIGHT] == ["->"]
+    named = [op.spellings[0] for op in STL if op.fixity in (Fixity.FUNCTION, Fixity.ATOM)]
+    others = README.split("All others are")[1].split("\n- ")[0]
+    assert [name for name in named if f"`{name}" not in others] == []

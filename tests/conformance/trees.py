@@ -1,0 +1,41 @@
+"""Formulas as trees of JSON: what a case carries beside the text, and what adapters of other tools read."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from rtamt.language.formula import Apply, Const, Formula, Interval, Var, fold
+
+if TYPE_CHECKING:
+    from fractions import Fraction
+
+
+def in_steps(formula: Formula, step: Fraction) -> Formula:
+    """Return a formula with its bounds in steps, samples or ticks, instead of seconds."""
+
+    def counted(node: Formula, args: tuple[Formula, ...]) -> Formula:
+        if not isinstance(node, Apply):
+            return node
+        bounds = node.interval
+        if bounds is not None:
+            bounds = Interval(bounds.begin / step, None if bounds.end is None else bounds.end / step)
+        return Apply(node.op, args, bounds)
+
+    return fold(formula, counted)
+
+
+def tree(formula: Formula) -> dict[str, Any]:
+    """Return a formula whose bounds are whole steps as a tree."""
+    whole: dict[str, Any] = fold(formula, _node)
+    return whole
+
+
+def _node(node: Formula, args: tuple[Any, ...]) -> dict[str, Any]:
+    if isinstance(node, Var):
+        return {"var": node.name}
+    if isinstance(node, Const):
+        return {"const": node.value}
+    assert isinstance(node, Apply)
+    bounds = node.interval
+    ends = None if bounds is None else [int(bounds.begin), None if bounds.end is None else int(bounds.end)]
+    return {"op": node.op.name, "args": list(args), "interval": ends}
