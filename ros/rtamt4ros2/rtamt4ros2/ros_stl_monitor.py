@@ -44,11 +44,15 @@ class Monitor(Node):
         self.monitor = options(arguments, chosen).monitor()
         quality = self.quality()
         self.outbox = Outbox(self.monitor.binding, MessageType.load, stamp, lambda level: bytes([level]))
+        # Who asks for less hears a reliable publisher, too; not the other way round.
+        offered = QoSProfile(
+            depth=quality.depth, reliability=ReliabilityPolicy.RELIABLE, durability=quality.durability
+        )
         self.senders = {
-            topic: self.create_publisher(cls, topic, quality) for topic, cls in self.outbox.topics.items()
+            topic: self.create_publisher(cls, topic, offered) for topic, cls in self.outbox.topics.items()
         }
         array = diagnostic("DiagnosticArray").load()
-        self.diagnostics = self.create_publisher(array, DIAGNOSTICS, quality)
+        self.diagnostics = self.create_publisher(array, DIAGNOSTICS, offered)
         self.due = 0.0
         for topic, kind in {known.topic: known.type for known in self.monitor.binding.inputs}.items():
             self.create_subscription(
@@ -59,7 +63,7 @@ class Monitor(Node):
             )
 
     def quality(self):
-        """Return the quality of service of all topics, from parameters."""
+        """Return the quality of service that is asked of topics, from parameters."""
         default = Quality()
         told = Quality(
             self.declare_parameter("reliability", default.reliability).value,

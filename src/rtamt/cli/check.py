@@ -6,6 +6,8 @@ import json
 import sys
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from rtamt.cli.bag import write_bag
 from rtamt.cli.command import (
     ERROR,
@@ -20,7 +22,7 @@ from rtamt.cli.command import (
     short,
     stamp_text,
 )
-from rtamt.cli.given import requirements_and_traces, variables_of
+from rtamt.cli.given import assertion_of, judged, requirements_and_traces, variables_of
 from rtamt.cli.matrix import Outcome, Requirement, outcomes
 from rtamt.cli.recordings import add_reading_options, reading_of
 from rtamt.cli.reports import REPORTS, write_report
@@ -29,8 +31,9 @@ from rtamt.language.units import format_duration
 
 if TYPE_CHECKING:
     import argparse
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
 
+    from rtamt.engine.signals import Signal
     from rtamt.results import Result
 
 _DESCRIPTION = """\
@@ -55,7 +58,8 @@ either. With --time dense -o writes the robustness where it changes, and at the 
 
 In a bag the annotations of SPEC say which topics are read ('@ topic(req, rtamt/req)'). In discrete time
 it is sampled as a node would: the latest message, every --period (default: 1 s). With -o out.mcap the bag
-is written again, with the topics of robustness and verdicts that SPEC names.
+is written again, with the topics of robustness and verdicts that SPEC names. Every assertion that a
+node would publish is judged, each in a row of its own; of any other SPEC the last assertion.
 
 Large files are read in chunks, in memory that does not grow with them, where the future of the formula
 is bounded (but for always and eventually at its top). Many files are read on all cores.
@@ -112,15 +116,10 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     """Evaluate every requirement over every trace, print what came of it."""
     color = use_color(args.color, sys.stdout)
-    requirements, traces = requirements_and_traces(args, "check")
+    given, traces = requirements_and_traces(args, "check")
+    _check_output(args.output, given, traces)
+    requirements = judged(given)
     pairs = len(requirements) * len(traces)
-    if args.output is not None and pairs > 1:
-        what = (
-            f"{len(traces)} traces"
-            if len(requirements) == 1
-            else f"{len(requirements)} requirements and {len(traces)} traces"
-        )
-        raise CommandError(f"--output takes the robustness of one trace, got {what}")
     if args.jobs is not None and args.jobs < 1:
         raise CommandError(f"--jobs is {args.jobs}; give a number of processes, 1 or more")
     reading = reading_of(args, variables_of(requirements), whole=args.output is not None)
@@ -138,15 +137,31 @@ def run(args: argparse.Namespace) -> int:
             progress.bar(len(found), pairs, outcome.trace)
     if not args.json and not args.quiet and any(not outcome.error for outcome in found):
         print(_as_table(requirements, found, color))
-    if found[0].result is not None and args.output is not None:
+    results = [outcome.result for outcome in found if outcome.result is not None]
+    if args.output is not None and len(results) == len(found):
         if args.output.lower().endswith(".mcap"):
-            write_bag(requirements[0], traces[0], reading, found[0].result, args.output)
+            write_bag(given[0], traces[0], reading, results[-1], args.output)
         else:
-            _write(found[0].result, args.output)
+            _write(results, args.output)
     for kind in REPORTS:
         if getattr(args, kind) is not None:
             write_report(kind, getattr(args, kind), requirements, found)
     return max(CODES[outcome.verdict] for outcome in found)
+
+
+def _check_output(output: str | None, given: Sequence[Requirement], traces: Sequence[str]) -> None:
+    """Raise where the robustness cannot be written: it is that of one trace, in a format that we write."""
+    if output is None:
+        return
+    if output.lower().endswith((".bag", ".db3")):
+        raise CommandError(f"--output is '{output}', but bags are written as MCAP: write to a file .mcap")
+    if len(given) * len(traces) > 1:
+        what = (
+            f"{len(traces)} traces"
+            if len(given) == 1
+            else f"{len(given)} requirements and {len(traces)} traces"
+        )
+        raise CommandError(f"--output takes the robustness of one trace, got {what}")
 
 
 def _as_json(outcome: Outcome) -> str:
@@ -187,14 +202,24 @@ def _as_table(requirements: Sequence[Requirement], found: Sequence[Outcome], col
     return text
 
 
-def _write(result: Result, path: str) -> None:
-    rows = zip(map(stamp_text, result.signal.times), result.signal.values.tolist(), strict=True)
+def _write(results: Sequence[Result], path: str) -> None:
+    """Write a column of robustness for each result; a cell is empty where one has no sample."""
+    names = (
+        ["robustness"] if len(results) == 1 else [assertion_of(result.specification) for result in results]
+    )
+    times = np.unique(np.concatenate([result.signal.times for result in results]))
+    rows = zip(map(stamp_text, times), *(_cells(result.signal, times) for result in results), strict=True)
     try:
         with open(path, "w", encoding="utf-8", newline="") as file:
-            file.write("time,robustness\n")
-            file.writelines(f"{time},{value!r}\n" for time, value in rows)
+            file.write(f"{','.join(['time', *names])}\n")
+            file.writelines(f"{','.join(row)}\n" for row in rows)
     except OSError as error:
         raise CommandError(f"cannot write '{path}': {error.strerror}") from None
+
+
+def _cells(signal: Signal, times: np.ndarray[Any, Any]) -> Iterator[str]:
+    values = iter(signal.values.tolist())
+    return (repr(next(values)) if here else "" for here in np.isin(times, signal.times).tolist())
 
 
 COMMAND = Command("check", "evaluate recordings: robustness and verdict", configure, run)

@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 from argparse import Namespace
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rtamt.cli.command import CommandError, read_specification
 from rtamt.cli.matrix import Requirement, evaluate
 from rtamt.cli.recordings import reading_of
+from rtamt.errors import UsageError
+from rtamt.ros.binding import bind
 
 if TYPE_CHECKING:
     from rtamt.results import Result
+    from rtamt.specification import Specification
 
 
 def variables_of(requirements: list[Requirement]) -> set[str]:
@@ -28,6 +32,34 @@ def requirements_and_traces(args: Namespace, command: str) -> tuple[list[Require
         for spec, text in zip(specs, given, strict=True)
     ]
     return requirements, traces
+
+
+def judged(requirements: list[Requirement]) -> list[Requirement]:
+    """Return a requirement for every assertion that a node would publish; other specifications as they are.
+
+    The last assertion is judged in any case.
+    """
+    return [one for requirement in requirements for one in _published(requirement)]
+
+
+def _published(requirement: Requirement) -> list[Requirement]:
+    spec = requirement.spec
+    try:
+        specs = [output.specification for output in bind(spec).outputs]
+    except UsageError:  # it was not written for nodes
+        return [requirement]
+    if len(specs[-1].document.assertions) < len(spec.document.assertions):
+        specs.append(spec)
+    if len(specs) == 1:
+        return [requirement]
+    return [
+        replace(requirement, spec=one, label=f"{requirement.label}: {assertion_of(one)}") for one in specs
+    ]
+
+
+def assertion_of(spec: Specification) -> str:
+    """Return the name of the assertion that is judged; "robustness" for one without."""
+    return spec.document.assertions[-1].name or "robustness"
 
 
 def _split(args: Namespace, command: str) -> tuple[list[str], list[str]]:

@@ -12,7 +12,7 @@ from rtamt.cli.command import (
     add_time_option,
     complain,
 )
-from rtamt.cli.given import requirements_and_traces, variables_of
+from rtamt.cli.given import judged, requirements_and_traces, variables_of
 from rtamt.cli.matrix import outcomes
 from rtamt.cli.recordings import add_instant_option, add_reading_options, instant, reading_of
 from rtamt.cli.reports.html import formulas, row
@@ -58,7 +58,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Evaluate every requirement over every trace, write the page."""
-    requirements, traces = requirements_and_traces(args, "report")
+    given, traces = requirements_and_traces(args, "report")
+    requirements = judged(given)
     reading = reading_of(args, variables_of(requirements), whole=True)
     rows: list[Row] = []
     cards: dict[Row, Card] = {}

@@ -35,7 +35,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--reliability",
         default="reliable",
         metavar="{reliable,best_effort}",
-        help="of topics; best_effort also hears reliable publishers (default: reliable)",
+        help="of what is read; best_effort hears every publisher (default: reliable); what is published is reliable",
     )
     parser.add_argument(
         "--durability",

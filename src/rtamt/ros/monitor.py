@@ -24,6 +24,7 @@ STALE_PERIODS = 10
 STALE_DENSE = Fraction(5)
 #: Seconds between two looks at the clock, at most: how soon silence and the end are noticed.
 PAUSE = 0.1
+_NO_CLOCK = "simulated time has not begun: nobody publishes /clock"
 
 
 class RosMonitor:
@@ -97,6 +98,7 @@ class RosMonitor:
         self._notices: list[Notice] = []
         self._faults: dict[str, str] = {}  # of topics whose last message could not be used
         self._repeated: set[str] = set()  # topics whose last message had the stamp of the one before
+        self._timeless = False  # it was said that messages come before the simulated clock is set
 
     @property
     def watches(self) -> Sequence[DiscreteWatch | DenseWatch]:
@@ -119,6 +121,9 @@ class RosMonitor:
         """Take a message that arrived at ``now``; return what became known, in dense time only."""
         records: list[Record] = []
         self._advance(now)
+        if now == 0 and not self._timeless:
+            self._timeless = True
+            self._say(Level.WARN, _NO_CLOCK)
         try:
             values = {name: read(message) for name, read in self._readers[topic]}
         except StlError as error:
@@ -286,6 +291,8 @@ class RosMonitor:
         elif silent:
             ages = [f"{topic} for {_seconds(now - self._heard[topic])}" for topic in silent]
             level, text = Level.STALE, f"no message on {', '.join(ages)}"
+        elif now == 0 and self._heard and standing.satisfied is not False:
+            level, text = Level.WARN, _NO_CLOCK
         elif missing:
             level, text = Level.WARN, f"waiting for the first message on {', '.join(missing)}"
         elif standing.satisfied is False:

@@ -31,6 +31,7 @@ class Puppet:
     def __init__(self, quality):
         self.types = Types()
         self.participant = Participant("puppet", self.types, quality)
+        self.participant._offered = self.participant._quality  # unlike a monitor, it may offer best effort
         self.classes = {}
         self.lock = threading.Lock()  # a participant is used by one thread at a time
         self.graph = None

@@ -9,6 +9,7 @@ import sys
 
 import pytest
 
+from rtamt.cli import main
 from tests.integration.ros.processes import Process, Puppet, free_port, stop_all, wait_for
 
 FLOAT = "rtamt_msgs/msg/FloatStamped"
@@ -122,6 +123,8 @@ def test_simulated_time_and_quality_of_service(dds):
         puppet.ask(do="advertise", topic=topic, kind=kind)
     puppet.ask(do="subscribe", topic="rtamt/rob", kind=FLOAT)
     puppet.ask(do="subscribe", topic="/diagnostics", kind="diagnostic_msgs/msg/DiagnosticArray")
+    listener = dds.puppet()
+    listener.ask(do="subscribe", topic="rtamt/rob", kind=FLOAT)
     deaf = dds.node("--sim-time")  # reliable: it is not offered that
     node = dds.node("--sim-time", "--reliability", "best_effort", "--node", "hears")
     for topic in ("rtamt/req", "rtamt/gnt", "/clock", "rtamt/rob"):
@@ -138,6 +141,13 @@ def test_simulated_time_and_quality_of_service(dds):
     wait_for(tick, "robustness")
     heard = puppet.messages("rtamt/rob")
     assert {message["value"] for message in heard} == {2.0}
+    # What the node publishes is reliable whatever it reads.
+    wait_for(lambda: tick() and listener.messages("rtamt/rob"), "robustness at a reliable listener")
+    deaf.wait_for_output(
+        "[WARN] a publisher on rtamt/req is not heard, for its reliability is less than is asked for: "
+        "--reliability best_effort hears it"
+    )
+    assert "is not heard" not in node.output
     assert all(100 < message["header"]["stamp"]["sec"] <= tick.seconds for message in heard)
 
     def conditions(name):
@@ -149,6 +159,17 @@ def test_simulated_time_and_quality_of_service(dds):
     wait_for(lambda: "satisfied" in conditions("hears"), "the hearing node's condition")
     assert node.stop(signal.SIGTERM) == 0
     assert deaf.stop(signal.SIGTERM) == 0
+
+
+@pytest.mark.parametrize("domain", ["abc", "-1", "233"])
+def test_a_domain_that_there_is_not_is_said(tmp_path, monkeypatch, capsys, domain):
+    pytest.importorskip("cyclonedds", reason="ROS 2 topics need cyclonedds: pip install 'rtamt[ros]'")
+    monkeypatch.setenv("ROS_DOMAIN_ID", domain)
+    (tmp_path / "spec.stl").write_text(SPEC)
+    assert main(["ros2", str(tmp_path / "spec.stl")]) == 2
+    assert (
+        capsys.readouterr().err == f"rtamt: ROS_DOMAIN_ID is '{domain}'; give a whole number from 0 to 232\n"
+    )
 
 
 def test_a_type_that_is_not_known_is_said(dds):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import json
 from pathlib import Path
 
 import pytest
@@ -183,3 +184,40 @@ def test_the_definitions_in_the_package_are_those_of_the_ros_package():
     for name, text in DEFINITIONS.items():
         package, _, short = name.split("/")
         assert (ROOT / "ros" / package / "msg" / f"{short}.msg").read_text() == text
+
+
+def test_every_published_assertion_is_judged_not_the_last_alone(drive, tmp_path, capsys):
+    spec = tmp_path / "two.stl"
+    spec.write_text("""
+        specification two
+        from rtamt_msgs.msg import FloatStamped
+        input FloatStamped req  output FloatStamped a  output FloatStamped b
+        @ topic(req, rtamt/req)
+        a.value = always(req.value <= -100);
+        b.value = always(req.value <= 100)
+    """)
+    junit, rob, out = tmp_path / "junit.xml", tmp_path / "rob.csv", tmp_path / "out.mcap"
+    assert main(["check", str(spec), str(drive), "--json", "--junit", str(junit), "-o", str(rob)]) == 1
+    rows = [json.loads(line) for line in capsys.readouterr().out.splitlines()]
+    assert [(row["requirement"], row["satisfied"]) for row in rows] == [
+        ("two: a.value", False),
+        ("two: b.value", True),
+    ]
+    assert 'name="two: a.value" tests="1" failures="1"' in junit.read_text()
+    with rob.open() as file:
+        first = next(csv.DictReader(file))
+    assert [float(first[name]) for name in ("a.value", "b.value")] == [row["robustness"] for row in rows]
+    assert main(["check", str(spec), str(drive), "--quiet", "--time", "dense", "-o", str(rob)]) == 1
+    assert rtamt.read(rob)["b.value"].values[0] == rows[1]["robustness"]
+    assert main(["check", str(spec), str(drive), "--quiet", "-o", str(out)]) == 1
+    assert {"/rtamt/a.value", "/rtamt/b.value"} <= set(rtamt.read(out).names)
+
+
+@pytest.mark.parametrize("name", ["out.bag", "out.db3"])
+def test_a_bag_that_is_no_mcap_is_not_written(drive, tmp_path, capsys, name):
+    out = tmp_path / name
+    assert main(["check", str(LISTING_8), str(drive), "-o", str(out)]) == 2
+    assert capsys.readouterr().err == (
+        f"rtamt: --output is '{out}', but bags are written as MCAP: write to a file .mcap\n"
+    )
+    assert not out.exists()

@@ -15,6 +15,8 @@ from rtamt.ros import Robustness, RosMonitor, Verdict, bind
 from rtamt.ros.report import Level
 
 SECOND = 10**9
+#: What is said of messages that arrive at 0, which is a simulated clock that nobody has set.
+NO_CLOCK = "simulated time has not begun: nobody publishes /clock"
 HEAD = """
 from rtamt_msgs.msg import FloatStamped
 input FloatStamped req  output FloatStamped gnt  output FloatStamped rob  output FloatStamped all
@@ -126,7 +128,7 @@ def test_messages_before_the_first_simulated_instant_are_not_stale_when_the_cloc
     watched = monitor("rob.value = req.value >= 0")
     watched.message("/req", message(1), 0)
     assert numbers(watched.tick(100 * SECOND)) == [(100, 1)]
-    assert said(watched) == []
+    assert said(watched) == [NO_CLOCK]
 
 
 def test_simulated_time_that_goes_back_begins_anew():
@@ -147,11 +149,11 @@ def test_a_number_that_is_none_leaves_a_hole_and_is_said_once():
     assert watched.tick(SECOND) == []
     assert watched.tick(2 * SECOND) == []
     problem = "'req.value' is NaN at sample 1, time 1 s: fill the gap or leave the sample out"
-    assert said(watched) == [f"'rob.value' begins anew, its samples cannot be used: {problem}"]
+    assert said(watched) == [NO_CLOCK, f"'rob.value' begins anew, its samples cannot be used: {problem}"]
     assert watched.conditions(0)[0].level == Level.ERROR
     watched.message("/req", message(3), 2 * SECOND)
     assert numbers(watched.tick(3 * SECOND)) == [(3, 3)]
-    assert watched.conditions(0)[0].level == Level.OK
+    assert watched.conditions(3 * SECOND)[0].level == Level.OK
 
 
 @pytest.mark.parametrize("time", ["discrete", "dense"])
@@ -196,7 +198,7 @@ def test_a_message_without_the_number_is_refused_and_the_old_one_is_no_value_of_
     watched.message("/req", SimpleNamespace(values=[1]), 1)
     assert watched.tick(SECOND) == []
     problem = "a message has no 'req.values[1]': the array is shorter"
-    assert said(watched) == [f"a message on /req cannot be used: {problem}"]
+    assert said(watched) == [NO_CLOCK, f"a message on /req cannot be used: {problem}"]
     assert watched.conditions(0)[0].message == problem
 
 
@@ -223,7 +225,7 @@ def test_dense_stamps_that_go_back_begin_anew_and_equal_ones_are_left_out_once_s
     watched.message("/req", message(-1, at=50), 0)
     for _ in range(2):
         assert watched.message("/req", message(9, at=50), 1) == []
-    assert said(watched) == ["messages on /req with the stamp of the one before them are left out"]
+    assert said(watched) == [NO_CLOCK, "messages on /req with the stamp of the one before them are left out"]
     assert numbers(watched.message("/req", message(3, at=2), 2)) == [(2, 3)]
     assert said(watched) == ["the stamps on /req went back by 48 s: all monitors begin anew"]
 
@@ -396,3 +398,17 @@ def test_a_module_that_cannot_be_imported_is_said():
         "the message module 'no_msgs.msg' cannot be imported: No module named 'no_msgs'; "
         "is the workspace built, and its setup file sourced?"
     )
+
+
+@pytest.mark.parametrize("time", ["discrete", "dense"])
+def test_messages_before_simulated_time_has_begun_are_no_ok_and_said_once(time):
+    watched = monitor("rob.value = req.value >= 3", time=time)
+    assert said(watched) == []
+    watched.message("/req", message(5, at=1), 0)
+    watched.message("/req", message(5, at=2), 0)
+    assert said(watched) == [NO_CLOCK]
+    (condition,) = watched.conditions(0)
+    assert (condition.level, condition.message) == (Level.WARN, NO_CLOCK)
+    watched.tick(SECOND)
+    assert watched.conditions(SECOND)[0].message == "satisfied"
+    assert said(watched) == []

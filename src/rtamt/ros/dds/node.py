@@ -7,6 +7,7 @@ import sys
 import time
 from typing import TYPE_CHECKING, Any
 
+from rtamt.ros.dds.participant import LEAST
 from rtamt.ros.outbox import DIAGNOSTICS, Outbox, diagnostic
 
 if TYPE_CHECKING:
@@ -87,6 +88,16 @@ class Node:
             print(f"[{notice.level.name}] {notice.message}", file=sys.stderr, flush=True)
         if notices or time.monotonic() >= self._due:
             self._due = time.monotonic() + _DIAGNOSTICS_EVERY
+            self._tell_refused()
             conditions = self._monitor.conditions(now)
             array = self._outbox.diagnostics(conditions, self._participant.name, now)
             self._participant.publish(DIAGNOSTICS, array)
+
+    def _tell_refused(self) -> None:
+        for topic, quality in self._participant.refused():
+            print(
+                f"[WARN] a publisher on {topic} is not heard, for its {quality} is less than is asked for: "
+                f"--{quality} {LEAST[quality]} hears it",
+                file=sys.stderr,
+                flush=True,
+            )

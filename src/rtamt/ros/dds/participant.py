@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import UsageError, did_you_mean
@@ -16,6 +16,12 @@ if TYPE_CHECKING:
 
 RELIABILITY = ("reliable", "best_effort")
 DURABILITY = ("volatile", "transient_local")
+#: The DDS standard's numbers of the qualities in which a publisher may offer too little.
+_POLICIES = {2: "durability", 11: "reliability"}
+#: Of each, what every publisher offers.
+LEAST = {"durability": "volatile", "reliability": "best_effort"}
+#: The last domain whose ports exist.
+LAST_DOMAIN = 232
 #: Messages that are taken at a time.
 _AT_ONCE = 1000
 
@@ -41,7 +47,10 @@ class Quality:
 
 
 class Participant:
-    """One node: subscribes, publishes, and tells the graph. Close it at the end."""
+    """One node: subscribes, publishes, and tells the graph. Close it at the end.
+
+    ``quality``: what is asked of publishers; what the node itself publishes is always reliable.
+    """
 
     def __init__(self, name: str, types: Types, quality: Quality) -> None:
         self.name = name
@@ -50,9 +59,10 @@ class Participant:
             part: library(f"cyclonedds.{part}", "speaking to ROS 2", "ros")
             for part in ("core", "domain", "topic", "pub", "sub", "util")
         }
-        domain = int(os.environ.get("ROS_DOMAIN_ID") or 0)
-        self._participant = self._cyclone["domain"].DomainParticipant(domain)
+        self._participant = self._cyclone["domain"].DomainParticipant(_domain())
         self._quality = self._qos(quality)
+        # Who asks for less hears a reliable publisher, too; not the other way round.
+        self._offered = self._qos(replace(quality, reliability="reliable"))
         self._wake = self._cyclone["core"].WaitSet(self._participant)
         self._conditions: list[Any] = []
         self._readers: dict[str, Any] = {}
@@ -96,7 +106,7 @@ class Participant:
 
     def advertise(self, topic: str, cls: Any) -> None:
         """Announce that messages will be published on a topic."""
-        self._writers[topic] = self._writer(_on_wire(topic), cls, self._quality)
+        self._writers[topic] = self._writer(_on_wire(topic), cls, self._offered)
         self._tell()
 
     def publish(self, topic: str, message: Any) -> None:
@@ -108,6 +118,18 @@ class Participant:
         if topic in self._writers:
             return len(self._writers[topic].get_matched_subscriptions())
         return len(self._readers[topic].get_matched_publications())
+
+    def refused(self) -> list[tuple[str, str]]:
+        """Return topics of which a publisher is not heard since the last call, with the quality that it lacks.
+
+        That is reliability or durability: a publisher that offers less than is asked for stays unheard.
+        """
+        found = []
+        for topic, reader in self._readers.items():
+            status = reader.get_requested_incompatible_qos_status()
+            if status.total_count_change and status.last_policy_id in _POLICIES:
+                found.append((topic, _POLICIES[status.last_policy_id]))
+        return found
 
     def wait(self, seconds: float) -> None:
         """Wait until a message is there, at most so long."""
@@ -148,6 +170,14 @@ class Participant:
         self._readers.clear()
         self._writers.clear()
         del self._wake, self._graph, self._participant
+
+
+def _domain() -> int:
+    """Return the domain that the environment chooses, 0 by default."""
+    text = os.environ.get("ROS_DOMAIN_ID") or "0"
+    if not (text.isascii() and text.isdigit() and int(text) <= LAST_DOMAIN):
+        raise UsageError(f"ROS_DOMAIN_ID is '{text}'; give a whole number from 0 to {LAST_DOMAIN}")
+    return int(text)
 
 
 def _on_wire(topic: str) -> str:
