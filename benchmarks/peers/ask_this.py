@@ -81,12 +81,12 @@ def stepping(spec, signals):
 def updating(monitor, names, time):
     """Return the loop that a user writes who knows the names: ``update(t, a=a, b=b)``.
 
-    An answer in dense time is read, as the peers' lists are: its arrays are made when they are asked for.
+    An answer in dense time is read, as the peers' lists are.
     """
     values = ", ".join(f"v{k}" for k in range(len(names)))
     given = ", ".join(f"{name}=v{k}" for k, name in enumerate(names))
-    read = "\n        told.times, told.values" if time == "dense" else ""
-    code = f"def run(update, rows):\n    for t, {values} in rows:\n        told = update(t, {given}){read}\n"
+    read = ".points()" if time == "dense" else ""
+    code = f"def run(update, rows):\n    for t, {values} in rows:\n        update(t, {given}){read}\n"
     scope = {}
     exec(code, scope)  # noqa: S102 - of names of the benchmark's own
     return lambda rows: scope["run"](monitor.update, rows)

@@ -27,6 +27,9 @@ if TYPE_CHECKING:
     from rtamt.specification import Specification
 
 
+#: Samples from which on the engine lets other threads run: `many` in core/python/arrays.hpp.
+LONG = 4096
+
 AnyRecording = TypeVar("AnyRecording", bound="Recording | DenseRecording")
 
 
@@ -47,7 +50,8 @@ def evaluate_batch(
     (``time=``, ``period=``, ...). It is compiled once. The compiled core runs without the interpreter's
     lock, so that long recordings keep every core of the machine busy; short ones cost what their checks
     in Python cost. An iterator is read one recording at a time, as threads become free.
-    ``workers``: threads; by default one for each core.
+    ``workers``: threads; by default one for each core as soon as a recording is long enough for the engine to
+    let other threads run.
 
     Raises what ``evaluate`` raises at the first recording that is wrong, its number (from 0) in front.
 
@@ -68,9 +72,9 @@ def evaluate_batch(
     if isinstance(traces, Sized):
         count = min(count, len(traces))
     work = _Work(partial(spec.evaluate, tolerance=tolerance, **reading), traces)
-    if count <= 1:
-        work.run()
-    else:
+    if workers is None or count == 1:
+        work.run(alone=count > 1)
+    if count > 1:
         with ThreadPoolExecutor(count, "rtamt") as pool:
             try:
                 for done in [pool.submit(work.run) for _ in range(count)]:
@@ -90,8 +94,8 @@ class _Work:
         self._results: dict[int, Result] = {}
         self._errors: dict[int, Exception] = {}
 
-    def run(self) -> None:
-        """Evaluate until there is nothing left to do; for one thread."""
+    def run(self, *, alone: bool = False) -> None:
+        """Evaluate until there is nothing left to do; for one thread, ``alone`` until it is worth more."""
         while True:
             with self._lock:
                 item = None if self._errors else next(self._traces, None)
@@ -99,9 +103,12 @@ class _Work:
                 return
             number, trace = item
             try:
-                self._results[number] = self._evaluate(trace)
+                result = self._results[number] = self._evaluate(trace)
             except Exception as error:  # noqa: BLE001 - kept for results(), which raises it
                 self._errors[number] = error
+                return
+            if alone and len(result.signal) >= LONG:
+                return
 
     def stop(self) -> None:
         """Let no thread take another recording."""

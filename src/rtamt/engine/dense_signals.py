@@ -25,6 +25,9 @@ if TYPE_CHECKING:
     Samples = tuple[TickArray, FloatArray]
 
 
+_ONE = struct.Struct("=qd").unpack
+
+
 class TickSignal(Signal):
     """A signal whose arrays are made when they are asked for: most online updates tell a point or none.
 
@@ -43,11 +46,13 @@ class TickSignal(Signal):
     def __len__(self) -> int:
         return len(self._events) // 16
 
-    def points(self) -> list[tuple[int, float]]:
-        """Return ticks and values as they are, for loops in which a microsecond counts."""
-        count = len(self)
-        numbers = struct.unpack(f"={count}q{count}d", self._events)
-        return list(zip(numbers[:count], numbers[count:], strict=True))
+    def points(self) -> list[tuple[Any, float]]:
+        """Return (time, value) pairs; of a single one, as most updates tell, without an array in between."""
+        rate = self._scale.rate
+        if rate is None or len(self._events) != 16:
+            return super().points()
+        tick, value = _ONE(self._events)
+        return [(tick / rate, value)]
 
     @property
     def times(self) -> NDArray[Any]:

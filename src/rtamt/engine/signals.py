@@ -85,6 +85,17 @@ class Signal:
         """What: one value for each time."""
         return self._values
 
+    def points(self) -> list[tuple[Any, float]]:
+        """Return (time, value) pairs of Python's own numbers: the cheapest way to read what an update told.
+
+        >>> import rtamt
+        >>> monitor = rtamt.parse("historically[0:1](x >= 3)").monitor(time="dense")
+        >>> monitor.update(0.5, x=5.0).points()
+        [(0.5, 2.0)]
+        """
+        times = self.times.tolist() if self.times.dtype.kind in "fi" else self.times
+        return list(zip(times, self.values.tolist(), strict=True))
+
     def __len__(self) -> int:
         return len(self.times)
 

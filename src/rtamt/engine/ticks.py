@@ -72,10 +72,14 @@ class TimeScale:
     unit: Fraction = UNITS["s"]
     #: ``tick / unit`` as two doubles: an online answer must not wait for fractions.
     _ratio: tuple[float, float] = field(init=False, repr=False, compare=False)
+    #: By what ticks are divided to be the caller's times; None where they are told in another way.
+    rate: float | None = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
         numerator, denominator = (self.tick / self.unit).as_integer_ratio()
         object.__setattr__(self, "_ratio", (float(numerator), float(denominator)))
+        divided = self.kind == "seconds" and numerator == 1
+        object.__setattr__(self, "rate", float(denominator) if divided else None)
 
     def ticks(self, times: Any, name: str, first: int = 0) -> TickArray:
         """Return times as ticks, rounded to the nearest; raise :class:`TraceError` where that cannot be.

@@ -288,3 +288,15 @@ def test_doubles_that_no_tick_holds_are_refused_alike(times: list[float]) -> Non
             scale.ticks(told, "x")
         said.append(str(caught.value))
     assert said[0] == said[1]
+
+
+@pytest.mark.parametrize("later", [2.5, 3 * 10**9, np.int64(5 * 10**9), datetime(2026, 3, 1), timedelta(seconds=3)])
+@pytest.mark.parametrize("resolution", ["1ns", "1/3s"])
+def test_points_are_the_pairs_of_times_and_values(later: Any, resolution: str) -> None:
+    zero = later - later
+    first = datetime(1970, 1, 1) if isinstance(later, datetime) else zero
+    monitor = rtamt.parse("historically[0:2](x >= 3)").monitor(time="dense", resolution=resolution)
+    answers = [monitor.update(first, x=5.0), monitor.update(later, x=1.0), monitor.finish()]
+    for told in answers:
+        assert told.points() == list(zip(told.times, told.values, strict=True))
+    assert [len(told) for told in answers[:2]] == [1, 1]
