@@ -290,7 +290,9 @@ def test_doubles_that_no_tick_holds_are_refused_alike(times: list[float]) -> Non
     assert said[0] == said[1]
 
 
-@pytest.mark.parametrize("later", [2.5, 3 * 10**9, np.int64(5 * 10**9), datetime(2026, 3, 1), timedelta(seconds=3)])
+@pytest.mark.parametrize(
+    "later", [2.5, 3 * 10**9, np.int64(5 * 10**9), datetime(2026, 3, 1), timedelta(seconds=3)]
+)
 @pytest.mark.parametrize("resolution", ["1ns", "1/3s"])
 def test_points_are_the_pairs_of_times_and_values(later: Any, resolution: str) -> None:
     zero = later - later
