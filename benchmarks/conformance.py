@@ -4,6 +4,11 @@ A peer is asked only what it claims (its adapter's table of operators and modes)
 conventions: where these differ, the expected answer is that of the formula which says in our language
 what the peer means by it. Where the literature leaves a choice nobody is judged: dense traces begin and
 end at the same instant for all signals, and only instants count whose windows end inside the trace.
+
+Every value that a tool tells is judged, of all tools alike: one that is wrong makes the answer disagree. An
+answer without a wrong value that does not reach all those instants (told too late, too little, or nothing)
+is "right, but incomplete". How far an answer reaches is the last instant that the tool names; of one that
+names changes only and no end, the notes say so, the time of the last sample that it was given.
 """
 
 from __future__ import annotations
@@ -45,7 +50,8 @@ class Row:
         default_factory=lambda: {k: Counter() for k in ("alone", "nested")}
     )
     outcomes: Counter[str] = field(default_factory=Counter)
-    worst: dict[str, Question] = field(default_factory=dict)
+    # The smallest question that went wrong; an incomplete answer only where there is no other.
+    worst: dict[str, tuple[tuple[bool, int], Question]] = field(default_factory=dict)
 
     def count(self, question: Question, outcome: Asked) -> None:
         """Count one answer under every operator of its formula."""
@@ -58,8 +64,9 @@ class Row:
             self.agreed[kind][op] += outcome.kind == "agrees"
         if outcome.kind != "agrees":
             blamed = question.alone or "nested"
-            if blamed not in self.worst or question.size < self.worst[blamed].size:
-                self.worst[blamed] = question
+            rank = (outcome.kind == "incomplete", question.size)
+            if blamed not in self.worst or rank < self.worst[blamed][0]:
+                self.worst[blamed] = rank, question
 
     def cell(self, op: str) -> str:
         """Return what the table says of one operator."""
@@ -96,7 +103,7 @@ def main() -> None:
                     row.count(question, ask(talk, question))
             sys.stderr.write(f"\r{talk.peer}, {' '.join(mode)}: {dict(row.outcomes)}\n")
             rows.append(row)
-            examples += [example(talk, blamed, row.worst[blamed]) for blamed in sorted(row.worst)]
+            examples += [example(talk, blamed, row.worst[blamed][1]) for blamed in sorted(row.worst)]
         talk.close()
     OUT.write_text(report(rows, absent, examples, len(corpus)), encoding="utf-8")
     sys.stderr.write(f"written: {OUT}\n")
@@ -107,7 +114,7 @@ def example(talk: Talk, blamed: str, question: Question) -> str:
     small, outcome = shrunk(talk, question, SHRINK)
     trace = "; ".join(f"{name} = {samples}" for name, samples in small.signals.items())
     return (
-        f"| {talk.peer} | {' '.join(small.mode)} | {blamed} | `{small.text}` | {trace} | "
+        f"| {talk.peer} | {' '.join(small.mode)} | {blamed} | {outcome.kind} | `{small.text}` | {trace} | "
         f"{shown(outcome.expected)} | {shown(outcome.got)} |"
     )
 
@@ -129,15 +136,15 @@ def report(rows: list[Row], absent: list[tuple[str, str]], examples: list[str], 
         "",
         (__doc__ or "").split("\n\n", 1)[1].strip(),
         "",
-        "| tool | mode | agrees | disagrees | error | crash | not asked |",
-        "|---|---|---:|---:|---:|---:|---:|",
+        "| tool | mode | agrees | right, but incomplete | disagrees | error | crash | not asked |",
+        "|---|---|---:|---:|---:|---:|---:|---:|",
     ]
-    kinds = ("agrees", "disagrees", "error", "crash", "unsupported")
+    kinds = ("agrees", "incomplete", "disagrees", "error", "crash", "unsupported")
     lines += [
         f"| {row.talk.peer} | {' '.join(row.mode)} | {' | '.join(str(row.outcomes[k]) for k in kinds)} |"
         for row in rows
     ]
-    lines += [f"| {name} | | not installed: {why} | | | | |" for name, why in absent]
+    lines += [f"| {name} | | not installed: {why} | | | | | |" for name, why in absent]
     lines += ["", "What each was asked, and how:", ""]
     lines += [
         f"- {talk.peer}: {talk.notes}"
@@ -149,7 +156,8 @@ def report(rows: list[Row], absent: list[tuple[str, str]], examples: list[str], 
         "## By operator",
         "",
         "Agreed of asked: over plain predicates alone · in nested formulas, where another operator may be at fault.",
-        "Operators that a tool has not, or was not asked about, are left out.",
+        "An incomplete answer counts as asked, not as agreed. Operators that a tool has not, or was not asked "
+        "about, are left out.",
     ]
     for talk in dict.fromkeys(row.talk for row in rows):
         own = [row for row in rows if row.talk is talk]
@@ -163,11 +171,12 @@ def report(rows: list[Row], absent: list[tuple[str, str]], examples: list[str], 
         "",
         "## A smallest counterexample each",
         "",
-        "Found by shrinking formula and trace as long as the tool and the definition differ. Traces in samples, or "
+        "Found by shrinking formula and trace as long as the same comes of it; an incomplete answer is shown only "
+        "where nothing worse was found. Traces in samples, or "
         "[tick, value]; of the dense tools that are asked at ticks, the answer is what they said there.",
         "",
-        "| tool | mode | operator | formula | trace | definition | tool's answer |",
-        "|---|---|---|---|---|---|---|",
+        "| tool | mode | operator | what came of it | formula | trace | definition | tool's answer |",
+        "|---|---|---|---|---|---|---|---|",
         *examples,
         "",
     ]

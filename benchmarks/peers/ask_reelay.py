@@ -97,7 +97,8 @@ serve(
         "peer": f"Reelay {version('reelay')}",
         "modes": [["discrete", "online"], ["dense", "online"]],
         "conventions": {},
-        "notes": "past operators; predicates of a variable and a number; its pre is s_prev",
+        "notes": "past operators; predicates of a variable and a number; its pre is s_prev; in dense time it "
+        "names changes only, and what it has not named by the last sample is taken as unchanged",
     },
     answer,
     prepare,

@@ -139,7 +139,11 @@ class Question:
 
 @dataclass(frozen=True)
 class Asked:
-    """What came of a question: agrees, disagrees, error, crash or unsupported."""
+    """What came of a question: agrees, incomplete, disagrees, error, crash or unsupported.
+
+    Incomplete is an answer that is right wherever the tool told one, but not told for every instant that is
+    judged: too late, too little or nothing.
+    """
 
     kind: str
     expected: Any = None
@@ -187,30 +191,36 @@ def ask(talk: Talk, question: Question) -> Asked:
                 kind, None if kind == "unsupported" else _cut(question.expected(), question), said[kind]
             )
     expected = question.expected()
+    end = question.end or 0
     if time == "discrete":
         got = [[i, v] for i, v in enumerate(said["values"])]
-        agrees = len(got) >= (question.end or 0) and all(
-            _same(expected[i][1], got[i][1]) for i in range(question.end or 0)
+        return Asked(
+            _judged(expected, got, len(got) >= end, end), _cut(expected, question), _cut(got, question)
         )
-        return Asked("agrees" if agrees else "disagrees", _cut(expected, question), _cut(got, question))
-    points = said.get("points")
-    got = points if points is not None else said["values"]
-    kind = "agrees" if _agree(expected, got, said, question.end or 0) else "disagrees"
-    until = said.get("until", question.end)
-    told = (
-        _cut(got, question) if until >= (question.end or 0) else f"{_cut(got, question)}, told up to {until}"
-    )
-    return Asked(kind, _cut(expected, question), told)
+    got = said["points"] if "points" in said else said["values"]
+    told, whole = _told(expected, got, said, end)
+    kind = _judged(expected, told, whole, end)
+    until = said.get("until", end)
+    shown = _cut(got, question)
+    return Asked(kind, _cut(expected, question), shown if until >= end else f"{shown}, told up to {until}")
 
 
-def _agree(expected: list[Any], got: list[Any], said: Mapping[str, Any], end: int) -> bool:
-    """Tell whether two step functions are one on [0, end), or agree at the points that were asked."""
+def _told(expected: list[Any], got: list[Any], said: Mapping[str, Any], end: int) -> tuple[list[Any], bool]:
+    """Return what a dense answer says wherever it or the expected one changes, and whether that is all."""
     if "points" in said:
-        return all(_same(_at(expected, t), v) for t, v in got if t < end)
-    if not got or said.get("until", end) < end or got[0][0] > 0:
-        return False
-    instants = sorted({t for t, _ in (*expected, *got) if 0 <= t < end} | {0})
-    return all(_same(_at(expected, t), _at(got, t)) for t in instants)
+        return got, {t for t, _ in got} >= set(range(end))
+    if not got:
+        return [], False
+    first, until = max(got[0][0], 0), said.get("until", end)
+    instants = {t for t in (first, *(t for t, _ in (*expected, *got))) if first <= t <= until}
+    return [[t, _at(got, t)] for t in sorted(instants)], first == 0 and until >= end
+
+
+def _judged(expected: list[Any], told: list[Any], whole: bool, end: int) -> str:
+    """Return what an answer is worth: every value told counts, and an answer that stops early is incomplete."""
+    if not all(_same(_at(expected, t), v) for t, v in told if t < end):
+        return "disagrees"
+    return "agrees" if whole else "incomplete"
 
 
 def _at(steps: Sequence[Sequence[Any]], t: float) -> float:

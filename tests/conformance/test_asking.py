@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
+from typing import Any
 
 import pytest
 
+import rtamt
 from tests.conformance import cases
 
 PEERS = Path(__file__).parents[2] / "benchmarks" / "peers"
@@ -77,6 +79,49 @@ def test_what_a_tool_does_is_told_apart(liar: asking.Talk, time: str, operator: 
     todo = [CORPUS[f"{time}/{operator}/{k:02}"] for k in range(20)]
     found = [asking.question_of(case, (time, "offline"), {}) for case in todo]
     assert any(asking.ask(liar, one).kind == kind for one in found if one is not None)
+
+
+class Said:
+    """A tool that gives one answer, whatever it is asked."""
+
+    def __init__(self, said: dict[str, Any]) -> None:
+        self.said = said
+
+    def ask(self, _question: Any) -> dict[str, Any]:
+        return self.said
+
+
+# once x, from 0 to 3: 1, 2, 2, 5; in dense time judged on [0, 3).
+@pytest.mark.parametrize(
+    ("time", "said", "kind"),
+    [
+        ("discrete", {"values": [1.0, 2.0, 2.0, 5.0]}, "agrees"),
+        ("discrete", {"values": [1.0, 2.0]}, "incomplete"),
+        ("discrete", {"values": []}, "incomplete"),
+        ("discrete", {"values": [1.0, 3.0]}, "disagrees"),
+        ("dense", {"values": [[0, 1.0], [1, 2.0], [3, 5.0]], "until": 3}, "agrees"),
+        ("dense", {"values": [[0, 1.0], [1, 2.0]]}, "agrees"),
+        ("dense", {"values": [[0, 1.0], [1, 2.0]], "until": 2}, "incomplete"),
+        ("dense", {"values": [[1, 2.0]], "until": 3}, "incomplete"),
+        ("dense", {"values": [], "until": 0}, "incomplete"),
+        ("dense", {"values": [[-2, 3.0]], "until": -1}, "incomplete"),
+        ("dense", {"values": [[0, 1.0], [0.5, 2.0], [1, 2.0]], "until": 2}, "disagrees"),
+        ("dense", {"values": [[0, 1.0], [2, 2.0]], "until": 2}, "disagrees"),
+        ("dense", {"values": [[0, 3.0]], "until": 0}, "disagrees"),
+        ("dense", {"points": [[0, 1.0], [1, 2.0], [2, 2.0]]}, "agrees"),
+        ("dense", {"points": [[0, 1.0], [1, 2.0]]}, "incomplete"),
+        ("dense", {"points": [[0, 1.0], [1, 1.0]]}, "disagrees"),
+    ],
+)
+def test_an_answer_that_is_right_but_incomplete_is_told_from_a_wrong_one(
+    time: str, said: dict[str, Any], kind: str
+) -> None:
+    values = [1.0, 2.0, 2.0, 5.0]
+    signal: list[Any] = values if time == "discrete" else [[t, v] for t, v in enumerate(values)]
+    once = rtamt.parse("once x").formula
+    asked = asking.Question(once, (time, "online"), {"x": signal}, {})
+    talk: Any = Said(said)
+    assert asking.ask(talk, asked).kind == kind
 
 
 def test_a_counterexample_is_made_small_and_stays_one(liar: asking.Talk) -> None:
