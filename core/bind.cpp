@@ -267,6 +267,8 @@ NB_MODULE(_core, m) {
     m.doc() =
         "The compiled back end: runs serialised programs over samples, in discrete or dense time.";
 
+    nb::register_exception_translator(rtamt::python::translate_memory);
+
     const Exceptions exceptions{
         new_exception(m, "Refused", "An update was refused; the monitor is as it was."),
         new_exception(m, "Undefined",

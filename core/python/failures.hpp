@@ -7,6 +7,9 @@
 #include <nanobind/nanobind.h>
 
 #include <cstdint>
+#include <exception>
+#include <new>
+#include <stdexcept>
 
 namespace rtamt::python {
 
@@ -15,6 +18,19 @@ struct Exceptions {
     nb::object undefined; // an operation made NaN: instruction, sample or tick; and, of a call that
                           // failed, what it said
 };
+
+// What the module's functions throw when memory runs out becomes Python's MemoryError, with the
+// sentence that the C interface has.
+inline void translate_memory(const std::exception_ptr& exception, void* /*payload*/) {
+    constexpr const char* sentence = "There is not enough memory.";
+    try {
+        std::rethrow_exception(exception);
+    } catch (const std::bad_alloc&) {
+        PyErr_SetString(PyExc_MemoryError, sentence);
+    } catch (const std::length_error&) { // of a container
+        PyErr_SetString(PyExc_MemoryError, sentence);
+    }
+}
 
 // Sets Undefined; its cause is what a Python operator raised, if one did.
 inline void set_undefined(const Exceptions& exceptions, Calls& calls, std::uint32_t instruction,

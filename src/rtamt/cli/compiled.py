@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rtamt.cli.command import CommandError
+from rtamt.engine.core import core
 from rtamt.engine.program import MAGIC, Program
 from rtamt.errors import UsageError
 from rtamt.language.units import format_duration
@@ -22,11 +23,28 @@ def compiled(path: str) -> Program | None:
     try:
         with Path(path).open("rb") as file:
             code = file.read(len(MAGIC))
-            return Program.from_bytes(code + file.read()) if code == MAGIC else None
+            if code != MAGIC:
+                return None
+            code += file.read()
     except OSError as error:
         raise CommandError(f"cannot read '{path}': {error.strerror}") from error
+    try:
+        program = Program.from_bytes(code)
+        _check(program, code)
     except UsageError as error:
         raise CommandError(f"{path}: {error}") from error
+    return program
+
+
+def _check(program: Program, code: bytes) -> None:
+    """Raise :class:`UsageError` for what no core runs: an impossible width, an operand that is not there."""
+    try:
+        if program.domain == "discrete":
+            core().memory(code)
+        else:
+            core().DenseMonitor(code, list(program.inputs))
+    except ValueError as error:
+        raise UsageError(str(error).rstrip(".").replace("This", "this", 1)) from None
 
 
 def listing(program: Program) -> Iterator[str]:

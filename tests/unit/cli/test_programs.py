@@ -1,6 +1,10 @@
 """``rtamt compile``, ``rtamt info`` of what it wrote, and ``rtamt fmu``."""
 
+import struct
 import zipfile
+import zlib
+
+import pytest
 
 SPEC = "const float limit = 3  always[0:200ms](x >= limit)"
 
@@ -52,6 +56,34 @@ def test_what_is_said_of_a_damaged_program(run, tmp_path):
         "on the way\n"
     )
     assert run("info", "spec.rtamt", "--json").code == 2
+
+
+def resealed(code, found, put):
+    """Return a program with one number in another's place, and the checksum that belongs to it."""
+    assert code.count(found) > 0
+    body = code[:-4].replace(found, put)
+    return body + struct.pack("<I", zlib.crc32(body))
+
+
+@pytest.mark.parametrize(
+    ("time", "width", "limits"), [("discrete", 3, "1 to 2^48"), ("dense", 200_000_000, "0 to 2^62")]
+)
+def test_a_resealed_program_of_an_impossible_width_is_not_listed(run, tmp_path, time, width, limits):
+    run(
+        "compile",
+        SPEC,
+        *(["--period", "100ms"] if time == "discrete" else ["--time", "dense"]),
+        "-o",
+        "huge.rtamt",
+    )
+    file = tmp_path / "huge.rtamt"
+    file.write_bytes(resealed(file.read_bytes(), struct.pack("<q", width), struct.pack("<q", 2**62 + 1)))
+    assert run("info", "huge.rtamt") == (
+        2,
+        "",
+        "rtamt: huge.rtamt: this is not a program that can be run: instruction 3 (slide_min) has the width "
+        f"{2**62 + 1}, outside {limits}\n",
+    )
 
 
 def test_nothing_to_do_and_nowhere_to_write(run):

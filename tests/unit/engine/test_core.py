@@ -359,6 +359,12 @@ def test_wrong_calls_say_what_is_wrong() -> None:
         _core.Monitor.__new__(_core.Monitor).step(1.0)
 
 
+def test_a_monitor_whose_memory_cannot_be_had_is_refused_in_a_sentence() -> None:
+    huge = program(A, Instruction("slide_max", a=0, n=2**48), outputs=(1,), inputs=("a",))
+    with pytest.raises(MemoryError, match=r"^There is not enough memory\.$"):
+        _core.Monitor(huge, ["a"])
+
+
 def test_scans_are_unbounded_future() -> None:
     phi, psi = np.array([1.0, 5.0, -2.0]), np.array([-9.0, 3.0, 4.0])
     assert _core.scan("run_max", phi).tolist() == [5.0, 5.0, -2.0]
