@@ -40,7 +40,7 @@ test-install: $(VENV)/.made ## `pip install .` in an empty environment, and a ch
 	build/install/bin/python -m pip install --quiet .
 	build/install/bin/rtamt check $(EXAMPLE)/spec.stl $(EXAMPLE)/a_satisfied.csv
 
-lint: $(VENV)/.core $(VENV)/.group-lint ## ruff, mypy, import contracts, clang-format, clang-tidy
+lint: $(VENV)/.core $(VENV)/.group-test $(VENV)/.group-lint ## ruff, mypy, import contracts, clang-format, clang-tidy
 	$(RUN) -m ruff check
 	$(RUN) -m ruff format --check
 	$(RUN) -m mypy
