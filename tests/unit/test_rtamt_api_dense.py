@@ -353,3 +353,11 @@ def test_the_final_update_tells_all_that_offline_tells(formula):
     told += spec.final_update(["x", x[2:]], ["y", y[1:]])
     assert {time: value for time, value in told if [time, value] in expected} == dict(expected)
     assert [time for time, _ in told] == sorted({time for time, _ in told})
+
+
+def test_a_final_update_that_fails_takes_nothing():
+    spec = declared("x and y")
+    spec.update(["x", [[0, 1]]])
+    with pytest.raises(rtamt.RTAMTException, match="'y' never had a sample"):
+        spec.final_update(["x", [[4, 3]]])
+    assert spec.final_update(["x", [[2, 3]]], ["y", [[0, 2]]]) == [[0, 1.0], [2, 2.0]]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from copy import copy
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
@@ -9,7 +10,7 @@ from rtamt.engine import dense_evaluate, signals
 from rtamt.engine.dense_monitor import DenseMonitor
 from rtamt.engine.online import Watched
 from rtamt.engine.ticks import NANOSECOND, TimeScale, all_integers
-from rtamt.errors import NameInFormulaError, TraceError, UsageError, shown
+from rtamt.errors import NameInFormulaError, StlError, TraceError, UsageError, shown
 from rtamt.language.formula import Var, postorder, variables
 from rtamt.language.printer import canonical
 from rtamt.language.units import UNITS
@@ -183,7 +184,8 @@ class StlDenseTimeOnlineSpecification(OnlineSpecification, DenseTimeSpecificatio
         """Take the last samples, as :meth:`update` does, and return all that was not told before.
 
         Every signal holds its last value to the end, the latest of all times. Then only :meth:`reset` goes on.
-        Raises :class:`RTAMTException` for wrong data, and where a variable never had a sample.
+        Raises :class:`RTAMTException` for wrong data, and where a variable never had a sample; the monitor is then
+        as it was.
 
         >>> import rtamt
         >>> spec = rtamt.StlDenseTimeOnlineSpecification()
@@ -196,8 +198,16 @@ class StlDenseTimeOnlineSpecification(OnlineSpecification, DenseTimeSpecificatio
         >>> spec.final_update(["y", [[1, 0]]])
         [[1, 0.0], [4, 0.0]]
         """
+        before = copy(self)
         told = self.update(*dataset)
-        rest = _points(self._require_monitor().finish(), self._whole)
+        try:
+            signal = self._require_monitor().finish()
+        except StlError:  # the last samples are not taken either
+            self.__setstate__(before.__getstate__())
+            raise
+        if len(signal):
+            self._publish(float(signal.values[-1]))
+        rest = _points(signal, self._whole)
         if told and rest and told[-1][0] == rest[0][0]:
             del rest[0]
         points = told + rest
