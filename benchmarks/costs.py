@@ -18,8 +18,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 import rtamt
-from rtamt.engine.compile import compile_program
-from rtamt.engine.core import core
+from rtamt.compiler.plan import compile_program
+from rtamt.engine.native import core
 from rtamt.language.parser import parse_formula
 from rtamt.rewrite.desugar import desugar
 

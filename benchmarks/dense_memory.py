@@ -9,8 +9,8 @@ from fractions import Fraction
 
 import numpy as np
 
-from rtamt.engine.compile import compile_program
-from rtamt.engine.core import core
+from rtamt.compiler.plan import compile_program
+from rtamt.engine.native import core
 from rtamt.language.parser import parse_formula
 from rtamt.rewrite.desugar import desugar
 

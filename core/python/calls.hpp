@@ -1,5 +1,5 @@
 // Kernels that are not of the core, as Python hands them over: the table of a loaded library, or a
-// function that makes a driver (rtamt.engine.drivers), which stands for any Python class.
+// function that makes a driver (rtamt.engine.user_operators), which stands for any Python class.
 //
 // A call to Python takes the GIL. What it raises is kept until the failure is told.
 #pragma once

@@ -5,7 +5,6 @@ from typing import TYPE_CHECKING, Any
 
 from rtamt.engine.dense_monitor import DenseMonitor
 from rtamt.engine.monitor import Monitor
-from rtamt.engine.signals import Signal
 from rtamt.errors import (
     BoundError,
     EvaluationError,
@@ -20,13 +19,13 @@ from rtamt.errors import (
 )
 from rtamt.language.operators import STL
 from rtamt.results import Result
+from rtamt.signals.arrays import Signal
 from rtamt.specification import Specification
 from rtamt.texts import load, parse, robustness
 
 if TYPE_CHECKING:
     from rtamt.batch import evaluate_all, evaluate_batch
-    from rtamt.engine.trace import Channel, Trace
-    from rtamt.readers.reading import read, scan
+    from rtamt.readers.read import read, scan
     from rtamt.rtamt_api import (
         IAStlInputRobustnessDenseTimeOfflineSpecification,
         IAStlInputRobustnessDenseTimeOnlineSpecification,
@@ -61,8 +60,9 @@ if TYPE_CHECKING:
         STLSpecification,
         TimeInterpretation,
     )
-    from rtamt.streams import StreamResult, check_stream
-    from rtamt.verdicts import first_violation
+    from rtamt.signals.trace import Channel, Trace
+    from rtamt.verdicts.first_violation import first_violation
+    from rtamt.verdicts.streaming import StreamResult, check_stream
 
 __version__ = "1.0.0.dev0"
 
@@ -131,15 +131,15 @@ __all__ = [
 
 #: What a program that only parses and monitors does not need, and where it is; the rest is the paper's API.
 _LATER = {
-    "Channel": "rtamt.engine.trace",
-    "StreamResult": "rtamt.streams",
-    "Trace": "rtamt.engine.trace",
-    "check_stream": "rtamt.streams",
+    "Channel": "rtamt.signals.trace",
+    "StreamResult": "rtamt.verdicts.streaming",
+    "Trace": "rtamt.signals.trace",
+    "check_stream": "rtamt.verdicts.streaming",
     "evaluate_all": "rtamt.batch",
     "evaluate_batch": "rtamt.batch",
-    "first_violation": "rtamt.verdicts",
-    "read": "rtamt.readers.reading",
-    "scan": "rtamt.readers.reading",
+    "first_violation": "rtamt.verdicts.first_violation",
+    "read": "rtamt.readers.read",
+    "scan": "rtamt.readers.read",
 }
 
 

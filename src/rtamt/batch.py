@@ -11,10 +11,10 @@ from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from rtamt.engine.signals import TOLERANCE, Recording, is_number
+from rtamt.engine.offline import Evaluators
 from rtamt.errors import StlError, UsageError, placed, shown
-from rtamt.offline import Evaluators
 from rtamt.results import Result
+from rtamt.signals.arrays import TOLERANCE, Recording, is_number
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Hashable, Iterator, Sequence
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from typing_extensions import Unpack
 
     from rtamt.engine.dense_evaluate import DenseRecording
-    from rtamt.offline import Question
+    from rtamt.engine.offline import Question
     from rtamt.settings import Reading
     from rtamt.specification import Specification
 

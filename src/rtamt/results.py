@@ -6,18 +6,18 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
-from rtamt.engine.signals import Recording, Signal
 from rtamt.errors import EvaluationError, UsageError, did_you_mean
 from rtamt.language.formula import variables
-from rtamt.rewrite import interface
 from rtamt.rewrite.check import check_bounds, check_dense
+from rtamt.rewrite.semantics import boolean, is_number, no_verdict
+from rtamt.signals.arrays import Recording, Signal
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from rtamt.engine.dense_evaluate import DenseRecording
     from rtamt.explain.report import Explanation
-    from rtamt.rewrite.interface import Judge
+    from rtamt.rewrite.semantics import Judge
     from rtamt.specification import Specification
 
 
@@ -56,11 +56,11 @@ class Result:
         >>> [rtamt.parse(text).evaluate({"x": [3]}).satisfied for text in ("x >= 3", "x > 3")]
         [True, False]
         """
-        lowered = interface.boolean(self.specification.formula)
+        lowered = boolean(self.specification.formula)
         try:
             truth = self.specification.signal_of(lowered, self.trace)
         except EvaluationError as error:
-            raise interface.no_verdict(error) from error
+            raise no_verdict(error) from error
         return bool(truth.values[0] > 0)
 
     def explain(self, at: Any = None) -> Explanation:
@@ -161,6 +161,6 @@ class Result:
         else:
             check_dense(formula, name)
             check_bounds(formula, self.trace.scale.tick, name, "resolution")
-        if not interface.is_number(formula):
+        if not is_number(formula):
             formula = self.specification.judged(formula, self.semantics)
         return self.specification.signal_of(formula, self.trace)

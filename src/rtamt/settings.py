@@ -9,12 +9,12 @@ from math import isnan
 from types import MappingProxyType
 from typing import TYPE_CHECKING, TypeAlias, TypedDict
 
-from rtamt.engine.signals import is_number
 from rtamt.errors import UsageError, did_you_mean, shown
 from rtamt.language.formula import variables
 from rtamt.language.operators import Language
 from rtamt.language.units import duration
-from rtamt.rewrite.interface import ROLES, Judge
+from rtamt.rewrite.semantics import ROLES, Judge
+from rtamt.signals.arrays import is_number
 
 if TYPE_CHECKING:
     from rtamt.language.document import Document

@@ -7,34 +7,35 @@ from fractions import Fraction
 from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any, Literal, overload
 
-from rtamt.engine import carry, signals
+from rtamt.compiler import standalone
 from rtamt.engine.dense_monitor import DenseMonitor
 from rtamt.engine.monitor import Monitor
+from rtamt.engine.offline import Evaluators, Question
 from rtamt.engine.online import Watched
-from rtamt.engine.signals import Recording
-from rtamt.engine.ticks import NANOSECOND
 from rtamt.language.formula import Formula, variables
 from rtamt.language.operators import STL, Language
 from rtamt.language.parser import parse_formula
 from rtamt.language.printer import to_text
 from rtamt.language.specfile import parse_document
-from rtamt.offline import Evaluators, Question
 from rtamt.results import Result
-from rtamt.rewrite import interface
 from rtamt.rewrite.check import check_bounds, check_dense
 from rtamt.rewrite.horizon import horizon
 from rtamt.rewrite.pastify import pastify
+from rtamt.rewrite.semantics import is_number, lower, semantics_of
 from rtamt.settings import names_of, positive_period, time_domain
+from rtamt.signals import arrays
+from rtamt.signals.arrays import Recording
+from rtamt.signals.ticks import NANOSECOND
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
+    from rtamt.compiler.program import Program
     from rtamt.engine.dense_evaluate import DenseRecording
-    from rtamt.engine.program import Program
-    from rtamt.engine.signals import Signal
     from rtamt.language.document import Document
-    from rtamt.rewrite.interface import Judge
+    from rtamt.rewrite.semantics import Judge
     from rtamt.settings import Duration, Semantics
+    from rtamt.signals.arrays import Signal
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -105,7 +106,7 @@ class Specification:
         *,
         time: str | None = None,
         period: Duration | None = None,
-        tolerance: float = signals.TOLERANCE,
+        tolerance: float = arrays.TOLERANCE,
         resolution: Duration | None = None,
         semantics: Semantics | None = None,
     ) -> Result:
@@ -176,7 +177,7 @@ class Specification:
         *,
         time: Literal["discrete"] | None = None,
         period: Duration | None = None,
-        tolerance: float = signals.TOLERANCE,
+        tolerance: float = arrays.TOLERANCE,
         semantics: Semantics | None = None,
         watch: str | Iterable[str] = (),
     ) -> Monitor: ...
@@ -196,7 +197,7 @@ class Specification:
         *,
         time: str | None = None,
         period: Duration | None = None,
-        tolerance: float = signals.TOLERANCE,
+        tolerance: float = arrays.TOLERANCE,
         resolution: Duration | None = None,
         semantics: Semantics | None = None,
         watch: str | Iterable[str] = (),
@@ -276,7 +277,7 @@ class Specification:
         """
         domain = self._time(time)
         step = self._resolution(resolution) if domain == "dense" else self._period(period) or Fraction(1)
-        return carry.carried_program(
+        return standalone.carried_program(
             self.formula,
             judged=self.judged(self.formula, self._semantics(semantics)),
             period=step,
@@ -288,14 +289,14 @@ class Specification:
     def judged(self, formula: Formula, semantics: str | Judge | None = None) -> Formula:
         """Return the formula whose robustness is the value of ``formula`` under a semantics.
 
-        ``semantics``: by default that of the specification; see :func:`rtamt.rewrite.interface.lower`.
+        ``semantics``: by default that of the specification; see :func:`rtamt.rewrite.semantics.lower`.
         """
         chosen = self._semantics(semantics)
         if not isinstance(chosen, str):
-            return interface.lower(formula, chosen, self.roles)
+            return lower(formula, chosen, self.roles)
         judged = self._lowered.get((formula, chosen))
         if judged is None:
-            judged = self._lowered[formula, chosen] = interface.lower(formula, chosen, self.roles)
+            judged = self._lowered[formula, chosen] = lower(formula, chosen, self.roles)
         return judged
 
     def signal_of(self, formula: Formula, trace: Recording | DenseRecording) -> Signal:
@@ -324,7 +325,7 @@ class Specification:
 
     def _watched(self, name: str, semantics: Semantics | None) -> Watched:
         formula = self.named(name)
-        if not interface.is_number(formula):
+        if not is_number(formula):
             formula = self.judged(formula, self._semantics(semantics))
         named = any(assertion.name == name for assertion in self.document.assertions)
         return Watched(name, formula, self.text if named else name)
@@ -363,7 +364,7 @@ class Specification:
         return self.resolution if resolution is None else positive_period(resolution, "resolution")
 
     def _semantics(self, semantics: Semantics | None) -> str | Judge:
-        return self.semantics if semantics is None else interface.semantics_of(semantics)
+        return self.semantics if semantics is None else semantics_of(semantics)
 
     def __reduce__(self) -> tuple[Any, ...]:
         # The text says it all, and is read without recursion however long it is.

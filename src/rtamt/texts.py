@@ -5,12 +5,11 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from rtamt.engine.ticks import NANOSECOND
 from rtamt.errors import UsageError, shown
 from rtamt.language.operators import STL, Language
 from rtamt.language.specfile import parse_document
-from rtamt.rewrite import interface
 from rtamt.rewrite.check import check_bounds, check_dense
+from rtamt.rewrite.semantics import semantics_of
 from rtamt.settings import (
     check_backend,
     check_constants,
@@ -19,6 +18,7 @@ from rtamt.settings import (
     roles_of,
     time_domain,
 )
+from rtamt.signals.ticks import NANOSECOND
 from rtamt.specification import Specification
 
 if TYPE_CHECKING:
@@ -80,7 +80,7 @@ def parse(
         language,
         time_domain(time),
         tick,
-        interface.semantics_of(semantics),
+        semantics_of(semantics),
         roles_of(document, {} if roles is None else roles),
     )
     if spec.time == "dense":

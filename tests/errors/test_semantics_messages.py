@@ -4,7 +4,7 @@ import pytest
 
 import rtamt
 from rtamt.language.formula import Var
-from rtamt.rewrite.interface import SEMANTICS
+from rtamt.rewrite.semantics import SEMANTICS
 
 NAMES = "standard, output_robustness, input_vacuity, input_robustness, output_vacuity, boolean"
 

@@ -17,8 +17,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from rtamt.compiler.plan import compile_program
 from rtamt.engine import _core
-from rtamt.engine.compile import compile_program
 from rtamt.language.parser import parse_formula
 from rtamt.rewrite.desugar import desugar
 

@@ -18,7 +18,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 import rtamt
-from rtamt.engine.carry import carried_program
+from rtamt.compiler.standalone import carried_program
 from rtamt.engine.monitor import Monitor
 from rtamt.errors import EvaluationError
 from rtamt.language.formula import variables

@@ -11,13 +11,13 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from rtamt.engine.carry import carried_program
+from rtamt.compiler.program import Program
+from rtamt.compiler.standalone import carried_program
 from rtamt.engine.dense_monitor import DenseMonitor
 from rtamt.engine.monitor import Monitor
-from rtamt.engine.program import Program
 from rtamt.errors import EvaluationError
 from rtamt.language.formula import Apply, Const, Formula, fold, variables
-from rtamt.rewrite.interface import SEMANTICS, boolean, lower
+from rtamt.rewrite.semantics import SEMANTICS, boolean, lower
 from tests import capi
 from tests.strategies import dense_chunkings, dense_traces, formulas, traces
 

@@ -9,10 +9,10 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from rtamt.engine.reference import ReferenceMonitor, evaluate, evaluate_all, history
 from rtamt.errors import EvaluationError
 from rtamt.language.formula import Apply, Formula, Interval, Var, children, fold, postorder
 from rtamt.language.operators import STL, Bounds, Operator, Sort, Tense
+from rtamt.reference.discrete import ReferenceMonitor, evaluate, evaluate_all, history
 from rtamt.rewrite.horizon import horizon
 from tests.oracle import boolean
 from tests.strategies import chunkings, formulas, traces

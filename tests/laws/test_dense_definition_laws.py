@@ -9,12 +9,12 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from rtamt.engine import reference
-from rtamt.engine.dense_reference import DenseReferenceMonitor, StepFunction, evaluate
 from rtamt.errors import EvaluationError
 from rtamt.language.dense_definitions import QUARTERS, Steps, critical, lifted
 from rtamt.language.formula import Apply, Formula, Interval, Var, postorder
 from rtamt.language.operators import STL, Bounds, Operator, Sort, Tense
+from rtamt.reference import discrete as reference
+from rtamt.reference.dense import DenseReferenceMonitor, StepFunction, evaluate
 from rtamt.rewrite.horizon import horizon
 from rtamt.rewrite.pastify import pastify
 from tests.oracle import dense_grid

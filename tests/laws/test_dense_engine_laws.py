@@ -10,10 +10,11 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from rtamt.engine import dense_evaluate, dense_reference
+from rtamt.engine import dense_evaluate
 from rtamt.engine.dense_monitor import DenseMonitor
 from rtamt.errors import EvaluationError
 from rtamt.language.formula import Formula, variables
+from rtamt.reference import dense as dense_reference
 from rtamt.rewrite.desugar import desugar
 from rtamt.rewrite.horizon import horizon
 from tests.strategies import dense_chunkings, dense_traces, formulas

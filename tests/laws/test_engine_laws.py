@@ -13,16 +13,17 @@ from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
 import rtamt
-from rtamt.engine import reference, signals
-from rtamt.engine.compile import compile_program
+from rtamt.compiler.plan import compile_program
 from rtamt.engine.evaluate import Evaluator
 from rtamt.engine.monitor import Monitor
 from rtamt.errors import EvaluationError
 from rtamt.language.formula import Apply, Formula, Var, fold, variables
 from rtamt.language.operators import STL, Bounds, Pointwise, Sort, Tense
+from rtamt.reference import discrete as reference
 from rtamt.rewrite.desugar import desugar
 from rtamt.rewrite.horizon import horizon
-from rtamt.rewrite.interface import boolean
+from rtamt.rewrite.semantics import boolean
+from rtamt.signals import arrays
 from tests.oracle import zero
 from tests.oracle.boolean import satisfied
 from tests.strategies import chunkings, formulas, traces
@@ -46,7 +47,7 @@ def by_definition(formula: Formula, columns: dict[str, Any], period: Fraction = 
 
 def by_engine(formula: Formula, columns: dict[str, Any], period: Fraction = ONE) -> np.ndarray | None:
     used = {name: columns[name] for name in columns}
-    trace = signals.trace(used, tuple(used), period)
+    trace = arrays.trace(used, tuple(used), period)
     try:
         return Evaluator((desugar(formula),), period)(trace)[0]
     except EvaluationError:

@@ -14,19 +14,20 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 import rtamt
-from rtamt.engine import dense_reference, reference
 from rtamt.engine.dense_monitor import DenseMonitor
 from rtamt.engine.monitor import Monitor
 from rtamt.engine.online import Watched
 from rtamt.errors import EvaluationError
 from rtamt.language.formula import Formula, postorder, variables
+from rtamt.reference import dense as dense_reference
+from rtamt.reference import discrete as reference
 from tests.oracle import zero
 from tests.strategies import chunkings, dense_chunkings, dense_traces, formulas, traces
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from rtamt.engine.signals import Signal
+    from rtamt.signals.arrays import Signal
 
 ONE = Fraction(1)
 NAMES = ("x", "y")

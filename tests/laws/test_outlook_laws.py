@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 import rtamt
 from rtamt.errors import EvaluationError
 from rtamt.language.printer import to_text
-from rtamt.search.outlook import Outlook
+from rtamt.search.robust_interval import Outlook
 from tests.strategies import formulas, traces
 
 # Without arithmetic every recording has a value for every formula.

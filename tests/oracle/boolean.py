@@ -9,9 +9,9 @@ from __future__ import annotations
 import operator
 from typing import TYPE_CHECKING
 
-from rtamt.engine.reference import evaluate
 from rtamt.language.formula import Apply, Formula, fold
 from rtamt.language.operators import Bounds, Sort
+from rtamt.reference.discrete import evaluate
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping

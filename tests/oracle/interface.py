@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rtamt.engine.reference import evaluate
 from rtamt.language.formula import Apply, Formula, fold, postorder
 from rtamt.language.formula import Var as Variable
 from rtamt.language.operators import Bounds, Sort
+from rtamt.reference.discrete import evaluate
 from tests.oracle.boolean import COMPARISONS
 
 if TYPE_CHECKING:

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import rtamt
-from rtamt.engine.compile import compile_program
+from rtamt.compiler.plan import compile_program
 from rtamt.extend import (
     QUARTERS,
     STL,

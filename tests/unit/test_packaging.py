@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 import rtamt
-from rtamt.engine.core import core
+from rtamt.engine.native import core
 
 if sys.version_info >= (3, 11):
     import tomllib

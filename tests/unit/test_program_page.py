@@ -5,7 +5,7 @@ import struct
 from pathlib import Path
 
 import rtamt
-from rtamt.engine.program import OPCODES
+from rtamt.compiler.program import OPCODES
 
 PAGE = (Path(__file__).parents[2] / "docs" / "reference" / "program.md").read_text(encoding="utf-8")
 

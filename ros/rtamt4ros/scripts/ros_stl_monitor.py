@@ -21,7 +21,7 @@ from rtamt import load
 from rtamt.errors import StlError
 from rtamt.ros.binding import MessageType
 from rtamt.ros.options import options, parser
-from rtamt.ros.outbox import DIAGNOSTICS, Outbox
+from rtamt.ros.publisher import DIAGNOSTICS, Outbox
 from rtamt.ros.report import Level
 
 PROGRAM = "ros_stl_monitor.py"

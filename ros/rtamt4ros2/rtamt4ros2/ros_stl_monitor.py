@@ -24,7 +24,7 @@ from rtamt.ros.binding import MessageType
 from rtamt.ros.dds.participant import Quality
 from rtamt.ros.monitor import PAUSE
 from rtamt.ros.options import DEFAULTS, options, parser
-from rtamt.ros.outbox import DIAGNOSTICS, Outbox, diagnostic
+from rtamt.ros.publisher import DIAGNOSTICS, Outbox, diagnostic
 
 PROGRAM = "ros_stl_monitor"
 DIAGNOSTICS_EVERY = 1.0  # seconds of wall time

@@ -6,18 +6,18 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rtamt.cli.command import CommandError
-from rtamt.cli.matrix import evaluate
+from rtamt.cli.runner import evaluate
 from rtamt.errors import UsageError
 from rtamt.readers.formats import is_bag
-from rtamt.rewrite import interface
+from rtamt.rewrite.semantics import boolean
 from rtamt.ros.bags import Finding, write_mcap
 from rtamt.ros.binding import bind
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from rtamt.cli.matrix import Requirement
-    from rtamt.cli.recordings import Reading
+    from rtamt.cli.reading_options import Reading
+    from rtamt.cli.runner import Requirement
     from rtamt.results import Result
 
 #: The topic of a requirement that names none.
@@ -50,5 +50,5 @@ def _findings(requirement: Requirement, trace: str, reading: Reading, result: Re
 
 def _finding(name: str, topic: str, result: Result) -> Finding:
     spec = result.specification
-    truth = spec.signal_of(interface.boolean(spec.formula), result.trace)
+    truth = spec.signal_of(boolean(spec.formula), result.trace)
     return Finding(name, topic, result.signal, truth)

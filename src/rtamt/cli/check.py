@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from rtamt.cli.arguments import assertion_of, judged, requirements_and_traces, variables_of
 from rtamt.cli.bag import write_bag
 from rtamt.cli.command import (
     ERROR,
@@ -22,10 +23,9 @@ from rtamt.cli.command import (
     short,
     stamp_text,
 )
-from rtamt.cli.given import assertion_of, judged, requirements_and_traces, variables_of
-from rtamt.cli.matrix import Outcome, Requirement, outcomes
-from rtamt.cli.recordings import add_reading_options, reading_of
+from rtamt.cli.reading_options import add_reading_options, reading_of
 from rtamt.cli.reports import REPORTS, write_report
+from rtamt.cli.runner import Outcome, Requirement, outcomes
 from rtamt.cli.terminal import Progress, printed, table, use_color
 from rtamt.language.units import format_duration
 
@@ -33,8 +33,8 @@ if TYPE_CHECKING:
     import argparse
     from collections.abc import Iterator, Sequence
 
-    from rtamt.engine.signals import Signal
     from rtamt.results import Result
+    from rtamt.signals.arrays import Signal
 
 _DESCRIPTION = """\
 Evaluate recordings against requirements, every requirement over every recording: the robustness at the

@@ -15,11 +15,11 @@ from typing import TYPE_CHECKING, Any, NoReturn
 import numpy as np
 
 from rtamt.cli.language import add_language_option, read_language
-from rtamt.engine.core import core
+from rtamt.engine.native import core
 from rtamt.errors import SpecificationError, StlError, UsageError
 from rtamt.language.units import UNITS, decimal
 from rtamt.readers.formats import METADATA, SUFFIXES
-from rtamt.rewrite.interface import SEMANTICS
+from rtamt.rewrite.semantics import SEMANTICS
 from rtamt.texts import load, parse
 
 if TYPE_CHECKING:

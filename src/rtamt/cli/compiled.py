@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rtamt.cli.command import CommandError
-from rtamt.engine.core import core
-from rtamt.engine.program import MAGIC, Program
+from rtamt.compiler.program import MAGIC, Program
+from rtamt.engine.native import core
 from rtamt.errors import UsageError
 from rtamt.language.units import format_duration
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from typing import TYPE_CHECKING
 
+from rtamt.cli.arguments import result_of_one
 from rtamt.cli.command import (
     OK,
     VIOLATED,
@@ -13,8 +14,7 @@ from rtamt.cli.command import (
     add_specification_options,
     add_time_option,
 )
-from rtamt.cli.given import result_of_one
-from rtamt.cli.recordings import add_instant_option, add_reading_options, instant
+from rtamt.cli.reading_options import add_instant_option, add_reading_options, instant
 from rtamt.cli.terminal import Progress
 from rtamt.errors import StlError
 

@@ -13,7 +13,7 @@ from rtamt.errors import UsageError
 if TYPE_CHECKING:
     import argparse
 
-    from rtamt.search.record import Evaluation
+    from rtamt.search.log import Evaluation
 
 _DESCRIPTION = """\
 Simulate a plant again and again with inputs chosen by an optimizer, until its requirement is

@@ -17,11 +17,11 @@ from rtamt.cli.command import (
     read_specification,
 )
 from rtamt.cli.compiled import compiled, listing
-from rtamt.cli.recordings import add_reading_options, recording
+from rtamt.cli.reading_options import add_reading_options, recording
 from rtamt.cli.terminal import is_printable, printed
-from rtamt.engine.compile import compile_program
-from rtamt.engine.core import core
-from rtamt.engine.drivers import calls_of
+from rtamt.compiler.plan import compile_program
+from rtamt.engine.native import core
+from rtamt.engine.user_operators import calls_of
 from rtamt.errors import BoundError, UsageError
 from rtamt.language.units import format_duration
 from rtamt.rewrite.check import check_bounds, check_online
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     import argparse
     from collections.abc import Iterator
 
-    from rtamt.engine.program import Program
+    from rtamt.compiler.program import Program
     from rtamt.language.formula import Formula
     from rtamt.specification import Specification
 

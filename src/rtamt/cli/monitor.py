@@ -23,18 +23,18 @@ from rtamt.cli.command import (
     read_specification,
     stamp_text,
 )
-from rtamt.cli.live import Live
-from rtamt.cli.samples import STDIN, Samples
+from rtamt.cli.live_view import Live
+from rtamt.cli.stdin_reader import STDIN, Samples
 from rtamt.cli.terminal import printed
-from rtamt.engine.signals import TOLERANCE
 from rtamt.errors import StlError, TraceError
+from rtamt.signals.arrays import TOLERANCE
 
 if TYPE_CHECKING:
     import argparse
 
     from rtamt.engine.dense_monitor import DenseMonitor
     from rtamt.engine.monitor import Monitor
-    from rtamt.engine.signals import Signal
+    from rtamt.signals.arrays import Signal
 
 _DESCRIPTION = """\
 Watch a stream of samples. Each line of input is one sample; each line of output is the robustness

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from rtamt.cli.arguments import judged, requirements_and_traces, variables_of
 from rtamt.cli.check import CODES
 from rtamt.cli.command import (
     Command,
@@ -12,10 +13,9 @@ from rtamt.cli.command import (
     add_time_option,
     complain,
 )
-from rtamt.cli.given import judged, requirements_and_traces, variables_of
-from rtamt.cli.matrix import outcomes
-from rtamt.cli.recordings import add_instant_option, add_reading_options, instant, reading_of
+from rtamt.cli.reading_options import add_instant_option, add_reading_options, instant, reading_of
 from rtamt.cli.reports.html import formulas, row
+from rtamt.cli.runner import outcomes
 from rtamt.cli.terminal import Progress
 from rtamt.errors import StlError
 from rtamt.plot.scene import scene

@@ -7,26 +7,26 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rtamt.engine import dense_signals, signals
-from rtamt.engine.compile import DEFINED, compile_plan
-from rtamt.engine.core import core, culprit, not_made
-from rtamt.engine.drivers import calls_of, defined_signal
-from rtamt.engine.signals import Signal
-from rtamt.engine.ticks import TimeScale, kind_of
-from rtamt.engine.undefined import undefined
+from rtamt.compiler.plan import DEFINED, compile_plan
+from rtamt.engine.native import core, culprit, not_made
+from rtamt.engine.user_operators import calls_of, defined_signal
 from rtamt.errors import TraceError, UsageError
 from rtamt.language.formula import Apply, fold
+from rtamt.language.undefined_value import undefined
 from rtamt.rewrite.desugar import desugar
+from rtamt.signals import arrays, dense_arrays
+from rtamt.signals.arrays import Signal
+from rtamt.signals.ticks import TimeScale, kind_of
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping, Sequence
     from fractions import Fraction
 
-    from rtamt.engine.compile import Plan, Scan
-    from rtamt.engine.dense_signals import Samples
-    from rtamt.engine.program import Program
-    from rtamt.engine.ticks import TickArray
+    from rtamt.compiler.plan import Plan, Scan
+    from rtamt.compiler.program import Program
     from rtamt.language.formula import Formula
+    from rtamt.signals.dense_arrays import Samples
+    from rtamt.signals.ticks import TickArray
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -48,7 +48,7 @@ class DenseRecording:
         """The latest last tick."""
         return max(int(ticks[-1]) for ticks, _ in self.columns.values())
 
-    def signal(self, ticks: TickArray, values: signals.FloatArray) -> Signal:
+    def signal(self, ticks: TickArray, values: arrays.FloatArray) -> Signal:
         """Return events as a signal up to the end: a point for every change, and one at the end."""
         end = self.end
         if len(ticks) and ticks[-1] > end:
@@ -74,15 +74,15 @@ def trace(
     """
     if not names:
         raise UsageError("the formula reads no variable, so in dense time nothing says when to evaluate it")
-    columns = dense_signals.columns_of(data, names, known)
+    columns = dense_arrays.columns_of(data, names, known)
     for name in names:
         if name not in columns:
-            raise signals.missing_variable(name, [str(key) for key in getattr(data, "columns", data)])
+            raise arrays.missing_variable(name, [str(key) for key in getattr(data, "columns", data)])
         if not len(columns[name][0]):
             raise TraceError(f"'{name}' has no samples: give at least one", variable=name)
     scale = scale or TimeScale(tick, kind_of(columns[names[0]][0]))
-    samples = {name: dense_signals.samples_of(columns[name], name, scale) for name in names}
-    result = DenseRecording(samples, scale, signals.units_of(data))
+    samples = {name: dense_arrays.samples_of(columns[name], name, scale) for name in names}
+    result = DenseRecording(samples, scale, arrays.units_of(data))
     if result.start > result.end:
         raise TraceError("the signals have no instant in common")
     return result

@@ -7,28 +7,28 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rtamt.engine import dense_signals, signals
-from rtamt.engine.compile import compile_program
-from rtamt.engine.core import compiled, core, culprit, not_made
+from rtamt.compiler.plan import compile_program
 from rtamt.engine.dense_python_backend import PythonDenseMonitor
-from rtamt.engine.dense_signals import TickSignal
-from rtamt.engine.drivers import calls_of
+from rtamt.engine.native import compiled, core, culprit, not_made
 from rtamt.engine.online import OnlineMonitor, Watched, depth_of
 from rtamt.engine.python_backend import Refused
-from rtamt.engine.signals import Signal
-from rtamt.engine.ticks import NANOSECOND, TimeScale, kind_of
-from rtamt.engine.undefined import undefined
+from rtamt.engine.user_operators import calls_of
 from rtamt.errors import TraceError, UsageError
+from rtamt.language.undefined_value import undefined
 from rtamt.rewrite.check import check_bounds, check_dense, check_online
 from rtamt.rewrite.desugar import desugar
+from rtamt.signals import arrays, dense_arrays
+from rtamt.signals.arrays import Signal
+from rtamt.signals.dense_arrays import TickSignal
+from rtamt.signals.ticks import NANOSECOND, TimeScale, kind_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Sequence
     from fractions import Fraction
 
-    from rtamt.engine.dense_signals import Samples
     from rtamt.errors import EvaluationError
     from rtamt.language.formula import Formula
+    from rtamt.signals.dense_arrays import Samples
 
 
 class DenseMonitor(OnlineMonitor):
@@ -130,7 +130,7 @@ class DenseMonitor(OnlineMonitor):
         flat = self._read_by_formula(values)
         for name in flat:
             if name not in self.input_names:
-                raise signals.unknown_variable(name, self.input_names)
+                raise arrays.unknown_variable(name, self.input_names)
         return self._take({name: (times, [value]) for name, value in flat.items()})
 
     def update_many(self, data: Any) -> Signal:
@@ -138,7 +138,7 @@ class DenseMonitor(OnlineMonitor):
 
         Variables may be left out or have no samples. Returns and raises as :meth:`update` does.
         """
-        return self._take(dense_signals.columns_of(data, self.input_names, self._known))
+        return self._take(dense_arrays.columns_of(data, self.input_names, self._known))
 
     def finish(self) -> Signal:
         """Say that no more samples will come: every signal holds its last value. Returns the rest."""
@@ -218,7 +218,7 @@ class DenseMonitor(OnlineMonitor):
         empty = (np.empty(0, np.int64), np.empty(0))
         so_far = zip(self.input_names, self._backend.counts, self._backend.last_times, strict=True)
         return [
-            dense_signals.samples_of(columns[name], name, scale, count, last) if name in columns else empty
+            dense_arrays.samples_of(columns[name], name, scale, count, last) if name in columns else empty
             for name, count, last in so_far
         ]
 

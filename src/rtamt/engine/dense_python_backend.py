@@ -10,17 +10,17 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rtamt.engine.dense_reference import DenseReferenceMonitor
 from rtamt.engine.python_backend import Refused
+from rtamt.reference.dense import DenseReferenceMonitor
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
     from fractions import Fraction
 
-    from rtamt.engine.dense_reference import Events, Known
-    from rtamt.engine.dense_signals import Samples
-    from rtamt.engine.ticks import TimeScale
     from rtamt.language.formula import Formula
+    from rtamt.reference.dense import Events, Known
+    from rtamt.signals.dense_arrays import Samples
+    from rtamt.signals.ticks import TimeScale
 
 
 class PythonDenseMonitor:

@@ -6,21 +6,21 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rtamt.engine.compile import DEFINED, Plan, compile_plan
-from rtamt.engine.core import core, culprit, not_made
-from rtamt.engine.drivers import calls_of, defined_column
-from rtamt.engine.undefined import at_sample, undefined
+from rtamt.compiler.plan import DEFINED, Plan, compile_plan
+from rtamt.engine.native import core, culprit, not_made
+from rtamt.engine.user_operators import calls_of, defined_column
 from rtamt.language.formula import Apply, postorder
+from rtamt.language.undefined_value import at_sample, undefined
 from rtamt.rewrite.desugar import desugar
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
     from fractions import Fraction
 
-    from rtamt.engine.compile import Scan
-    from rtamt.engine.program import Program
-    from rtamt.engine.signals import FloatArray, Recording
+    from rtamt.compiler.plan import Scan
+    from rtamt.compiler.program import Program
     from rtamt.language.formula import Formula
+    from rtamt.signals.arrays import FloatArray, Recording
 
 
 class Evaluator:

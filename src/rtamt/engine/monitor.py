@@ -8,15 +8,16 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rtamt.engine import python_backend, signals
-from rtamt.engine.compile import compile_program
-from rtamt.engine.core import compiled, core, core_monitor, culprit
+from rtamt.compiler.plan import compile_program
+from rtamt.engine import python_backend
+from rtamt.engine.native import compiled, core, core_monitor, culprit
 from rtamt.engine.online import OnlineMonitor, Watched, depth_of
-from rtamt.engine.signals import Signal
-from rtamt.engine.undefined import at_sample, undefined
 from rtamt.errors import TraceError, UsageError, shown
+from rtamt.language.undefined_value import at_sample, undefined
 from rtamt.rewrite.check import check_bounds, check_online
 from rtamt.rewrite.desugar import desugar
+from rtamt.signals import arrays
+from rtamt.signals.arrays import Signal
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Sequence
@@ -50,7 +51,7 @@ class Monitor(OnlineMonitor):
         *,
         text: str | None = None,
         period: Fraction = Fraction(1),
-        tolerance: float = signals.TOLERANCE,
+        tolerance: float = arrays.TOLERANCE,
         backend: str = "cpp",
         known: Collection[str] = (),
         watch: Sequence[Watched] = (),
@@ -59,7 +60,7 @@ class Monitor(OnlineMonitor):
         for watched in (Watched("", formula, text), *watch):
             check_bounds(watched.formula, period, watched.text)
             check_online(watched.formula, watched.text)
-        signals.check_tolerance(tolerance)
+        arrays.check_tolerance(tolerance)
         super().__init__(formula, watch, known, again)
         self._period = period
         self._tolerance = tolerance
@@ -240,15 +241,15 @@ class Monitor(OnlineMonitor):
 
     # ---- what goes wrong -------------------------------------------------------------------------
 
-    def _chunk(self, data: Any) -> tuple[signals.FloatArray, list[signals.FloatArray]]:
+    def _chunk(self, data: Any) -> tuple[arrays.FloatArray, list[arrays.FloatArray]]:
         last = float(self._backend.last_time) if self.samples else None
-        times, columns, n = signals.columns_of(data, self.input_names, self._known)
+        times, columns, n = arrays.columns_of(data, self.input_names, self._known)
         if times is None:
             times = np.array(self._next_time() + float(self._period) * np.arange(n), dtype=np.float64)
-        signals.check_increasing(times, last, self.samples)
-        signals.check_regular(times, self._period, self._tolerance, last, self.samples)
+        arrays.check_increasing(times, last, self.samples)
+        arrays.check_regular(times, self._period, self._tolerance, last, self.samples)
         for name, column in columns.items():
-            signals.check_numbers(name, column, times, self.samples)
+            arrays.check_numbers(name, column, times, self.samples)
         return times, [columns[name] for name in self.input_names]
 
     def _is_finished(self) -> UsageError:
@@ -264,9 +265,9 @@ class Monitor(OnlineMonitor):
         if error is not None:
             return error
         assert last is not None
-        return signals.irregular(index, float(time), last, self._period, self._tolerance)
+        return arrays.irregular(index, float(time), last, self._period, self._tolerance)
 
-    def _no_value(self, error: Exception, new: Sequence[float] | signals.FloatArray) -> Exception:
+    def _no_value(self, error: Exception, new: Sequence[float] | arrays.FloatArray) -> Exception:
         """Name the sub-formula and the instant of a value that does not exist; ``new`` are the stamps taken."""
         assert self._program is not None
         formula = culprit(error, self._program, self._formulas)
@@ -277,14 +278,14 @@ class Monitor(OnlineMonitor):
 
 def refused_time(time: Any, index: int, last: float | None) -> TraceError | None:
     """Return what is wrong with a sample's time stamp, if anything is."""
-    if not signals.is_number(time):
+    if not arrays.is_number(time):
         return TraceError(
             f"time is {shown(time)} at sample {index}, expected a number of seconds", variable="time"
         )
     if not isfinite(time):
         return TraceError(f"time is {float(time)} at sample {index}: give a finite number of seconds")
     if last is not None and time <= last:
-        return signals.not_increasing(index, float(time), last)
+        return arrays.not_increasing(index, float(time), last)
     return None
 
 
@@ -294,15 +295,15 @@ def refused_values(
     """Return what is wrong with a sample's values, if anything is."""
     for name in values:
         if name not in names:
-            return signals.unknown_variable(name, names)
+            return arrays.unknown_variable(name, names)
     for name in names:
         if name not in values:
-            return signals.missing_variable(name, tuple(values))
+            return arrays.missing_variable(name, tuple(values))
         value = values[name]
-        if not signals.is_number(value):
+        if not arrays.is_number(value):
             return TraceError(
                 f"'{name}' is {shown(value)} at sample {index}, expected a number", variable=name, index=index
             )
         if isnan(value):
-            return signals.nan_error(name, index, float(time))
+            return arrays.nan_error(name, index, float(time))
     return None

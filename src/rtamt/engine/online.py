@@ -7,15 +7,15 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
-from rtamt.engine import signals
 from rtamt.errors import UsageError, did_you_mean
 from rtamt.language.formula import variables
 from rtamt.rewrite.horizon import horizon
+from rtamt.signals import arrays
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Mapping, Sequence
 
-    from rtamt.engine.program import Program
+    from rtamt.compiler.program import Program
     from rtamt.language.formula import Formula
 
     Self = TypeVar("Self", bound="OnlineMonitor")
@@ -93,7 +93,7 @@ class OnlineMonitor(ABC):
         for name in self.input_names:
             head, *path = name.split(".")
             if path and name not in values and head in values:
-                flat[name] = signals.field_of(values[head], head, path, self.samples)
+                flat[name] = arrays.field_of(values[head], head, path, self.samples)
         return flat
 
     # ---- copies ----------------------------------------------------------------------------------

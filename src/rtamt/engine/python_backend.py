@@ -13,15 +13,15 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rtamt.engine import signals
-from rtamt.engine.reference import ReferenceMonitor, history
+from rtamt.reference.discrete import ReferenceMonitor, history
 from rtamt.rewrite.horizon import horizon
+from rtamt.signals import arrays
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from rtamt.engine.signals import FloatArray
     from rtamt.language.formula import Formula
+    from rtamt.signals.arrays import FloatArray
 
 
 class Refused(Exception):  # noqa: N818 - the compiled monitor's word
@@ -208,7 +208,7 @@ class _Questioned(ReferenceMonitor):
 
 
 def _number(value: Any) -> float:
-    if not signals.is_number(value):
+    if not arrays.is_number(value):
         raise Refused("not a number")
     number = float(value)
     if isnan(number):

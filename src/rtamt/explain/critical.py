@@ -22,7 +22,7 @@ from rtamt.language.records import Shift, Since, Tense, Until, Window
 if TYPE_CHECKING:
     from fractions import Fraction
 
-    from rtamt.explain.cells import Steps
+    from rtamt.explain.instants import Steps
     from rtamt.explain.signals import Signals
 
 #: What decides a value that no predicate does.

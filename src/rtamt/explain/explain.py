@@ -6,20 +6,20 @@ from itertools import islice
 from math import inf
 from typing import TYPE_CHECKING, Any
 
-from rtamt.engine.signals import Recording
 from rtamt.errors import EvaluationError
-from rtamt.explain.cells import NEVER, Steps, two_valued
 from rtamt.explain.critical import Point, Walk
-from rtamt.explain.demands import Demands
+from rtamt.explain.instants import NEVER, Steps, two_valued
 from rtamt.explain.minimise import Forcing, intervals_of, minimal
-from rtamt.explain.needs import Needs
+from rtamt.explain.necessary import Needs
+from rtamt.explain.propagate import Demands
 from rtamt.explain.report import CriticalPoint, Explanation, Stretch
 from rtamt.explain.sentences import formula_text, predicate_text, sentences
 from rtamt.explain.signals import Signals, truths
 from rtamt.explain.structure import Structure, literal, reaches
-from rtamt.explain.timeline import timeline
+from rtamt.explain.time_axis import timeline
 from rtamt.language.formula import postorder
-from rtamt.rewrite import interface
+from rtamt.rewrite.semantics import boolean, no_verdict
+from rtamt.signals.arrays import Recording
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -72,9 +72,9 @@ class _Explainer:
         predicates = [leaf.formula for leaf in leaves.values()]
         self._values = self._measured([semantics(predicate) for predicate in predicates])
         try:
-            self._truth = self._measured([interface.boolean(predicate) for predicate in predicates])
+            self._truth = self._measured([boolean(predicate) for predicate in predicates])
         except EvaluationError as error:
-            raise interface.no_verdict(error) from error
+            raise no_verdict(error) from error
         self._signals = Signals(self._structure, self._line, self._values)
         self._holds = truths(self._structure.order, self._line, self._truth)
         self._walk = Walk(self._signals, self._line.period, self._line.end)

@@ -12,16 +12,16 @@ from dataclasses import dataclass
 from math import inf
 from typing import TYPE_CHECKING
 
-from rtamt.explain.cells import NONE, Cells, Steps, two_valued
+from rtamt.explain.instants import NONE, Cells, Steps, two_valued
 from rtamt.explain.signals import truths
 from rtamt.explain.structure import literal, reaches
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
-    from rtamt.explain.demands import Demands
+    from rtamt.explain.propagate import Demands
     from rtamt.explain.structure import Place, Structure
-    from rtamt.explain.timeline import Timeline
+    from rtamt.explain.time_axis import Timeline
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rtamt.explain.cells import Cells, Steps, two_valued
+from rtamt.explain.instants import Cells, Steps, two_valued
 from rtamt.explain.structure import CHOOSING, NEGATION, opcode
 from rtamt.language.formula import Apply, Const, Formula, Var, children
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from rtamt.explain.structure import Structure
-    from rtamt.explain.timeline import Timeline
+    from rtamt.explain.time_axis import Timeline
 
 
 class Signals:

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING, TypeGuard
 
-from rtamt.explain.cells import NEVER
+from rtamt.explain.instants import NEVER
 from rtamt.language.formula import Apply, Const, Formula, Interval, Span, Var, fold, postorder, variables
 from rtamt.language.operators import STL
 from rtamt.language.records import Bounds, Pointwise, Shift, Since, Sort, Tense, Until, Window

@@ -13,7 +13,7 @@ from rtamt.fmi.variables import Variable, convention, variables_of
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from rtamt.engine.program import Program
+    from rtamt.compiler.program import Program
 
 #: What a simulator may want to filter by: the runtime says nothing else.
 _LOG = {

@@ -14,7 +14,7 @@ from rtamt.errors import UsageError
 from rtamt.language.units import format_duration
 
 if TYPE_CHECKING:
-    from rtamt.engine.program import Program
+    from rtamt.compiler.program import Program
 
 #: The grammar of the naming convention "structured": names with dots, or anything in single quotes.
 _STRUCTURED = re.compile(r"[A-Za-z_]\w*(\.[A-Za-z_]\w*)*", re.ASCII)

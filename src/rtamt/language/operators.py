@@ -128,7 +128,7 @@ def _truth(code: str, spelling: str, definition: Any, **more: Any) -> Operator:
 
 
 # What a predicate's truth is made of: +inf or -inf. Not in the language, though they are printed like the
-# predicates; the semantics that need a verdict instead of a distance (rewrite/interface.py) put them in.
+# predicates; the semantics that need a verdict instead of a distance (rewrite/semantics.py) put them in.
 _GT, _GE, _EQ = _truth("gt", ">", d.holds_gt), _truth("ge", ">=", d.holds_ge), _truth("eq", "==", d.holds_eq)
 _LE = _truth("le", "<=", d.holds_le, expansion=lambda a, b, _i: STL["not"](_GT(a, b)))
 _LT = _truth("lt", "<", d.holds_lt, expansion=lambda a, b, _i: STL["not"](_GE(a, b)))

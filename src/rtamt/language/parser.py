@@ -22,7 +22,7 @@ from math import inf, isinf
 from typing import TYPE_CHECKING
 
 from rtamt.errors import NameInFormulaError, ParseError, SpecificationError, did_you_mean
-from rtamt.language import complaints
+from rtamt.language import diagnostics
 from rtamt.language.formula import Apply, Const, Formula, Span, Var
 from rtamt.language.grammar import INFINITY, MAX_DEPTH, is_predicate, passes_on, sign
 from rtamt.language.intervals import parse_interval
@@ -135,7 +135,7 @@ class FormulaParser:
             return self.group()
         if self._begins_topic(self.index):
             return self.name()
-        raise self.error(*complaints.no_operand(self.tokens, self.index))
+        raise self.error(*diagnostics.no_operand(self.tokens, self.index))
 
     def number(self) -> Const:
         """``number = decimal literal``."""
@@ -152,7 +152,7 @@ class FormulaParser:
         opening = self.next()
         inner = self.expression()
         if not self.accept(")"):
-            raise self.error(*complaints.no_close(self.language, self.tokens, self.index, opening))
+            raise self.error(*diagnostics.no_close(self.language, self.tokens, self.index, opening))
         return inner
 
     def call(self, op: Operator) -> Formula:
@@ -167,7 +167,7 @@ class FormulaParser:
             operands.append(self.expression())
         if not self.accept(")"):
             raise self.error(
-                *complaints.no_close(self.language, self.tokens, self.index, opening, "',' or ')'")
+                *diagnostics.no_close(self.language, self.tokens, self.index, opening, "',' or ')'")
             )
         span = Span(name.start, self.tokens[self.index - 1].end)
         count = len(op.operands)
@@ -292,7 +292,7 @@ class FormulaParser:
         if not (prefix or infix) or (compared and self.scope.variables is None):
             return
         if infix:
-            raise self.error(*complaints.no_operand(self.tokens, self.index - 1))
+            raise self.error(*diagnostics.no_operand(self.tokens, self.index - 1))
         raise self.error(
             f"expected an operand after '{name}', got {follows}; if it is a variable, write {quoted(name)}",
             span,
@@ -394,5 +394,5 @@ def parse_formula(
     parser = FormulaParser(text, language, unit, scope)
     formula = parser.formula()
     if parser.token.kind != "end":
-        raise parser.error(*complaints.no_operator(language, parser.tokens, parser.index))
+        raise parser.error(*diagnostics.no_operator(language, parser.tokens, parser.index))
     return formula

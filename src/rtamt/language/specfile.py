@@ -23,7 +23,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Literal
 
 from rtamt.errors import NameInFormulaError, ParseError, did_you_mean
-from rtamt.language import complaints
+from rtamt.language import diagnostics
 from rtamt.language.document import Assertion, Declaration, Document, Import
 from rtamt.language.formula import Formula, Span
 from rtamt.language.grammar import INFINITY
@@ -289,7 +289,7 @@ class _DocumentParser(FormulaParser):
     def _not_finished(self) -> SpecificationError:
         if self.token.kind == "name" and self.tokens[self.index + 1].text == "=":
             return self.error(f"expected ';' before the definition of {self.token}", self.token.span)
-        return self.error(*complaints.no_operator(self.language, self.tokens, self.index, "';'"))
+        return self.error(*diagnostics.no_operator(self.language, self.tokens, self.index, "';'"))
 
     # ---- looking ahead ---------------------------------------------------------------------------
 

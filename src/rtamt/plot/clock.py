@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rtamt.engine.signals import Recording
-from rtamt.engine.ticks import date_of
+from rtamt.signals.arrays import Recording
+from rtamt.signals.ticks import date_of
 
 if TYPE_CHECKING:
     from rtamt.engine.dense_evaluate import DenseRecording
-    from rtamt.engine.signals import FloatArray
+    from rtamt.signals.arrays import FloatArray
 
 #: Stamps that start later than this many seconds are told from their start on.
 _FAR = 1e5

@@ -15,9 +15,9 @@ from rtamt.plot import style
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from rtamt.engine.signals import FloatArray
     from rtamt.plot.lines import Line
     from rtamt.plot.scene import Node, Panel, Scene
+    from rtamt.signals.arrays import FloatArray
 
 #: Inches.
 _WIDTH, _PANEL, _ROW, _HEAD, _FOOT = 10.0, 1.2, 0.9, 0.55, 0.8

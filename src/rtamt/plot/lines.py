@@ -10,7 +10,7 @@ import numpy as np
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from rtamt.engine.signals import FloatArray
+    from rtamt.signals.arrays import FloatArray
 
 #: A half-open stretch of positions.
 Range = tuple[float, float]

@@ -8,22 +8,22 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rtamt.engine.signals import Recording
 from rtamt.explain.sentences import predicate_text
 from rtamt.language.formula import Apply, Var, variables
 from rtamt.language.records import Bounds, Fixity
 from rtamt.plot.clock import Clock
 from rtamt.plot.lines import Line, Range, ranges
 from rtamt.plot.panels import groups
-from rtamt.rewrite.interface import boolean, is_predicate
+from rtamt.rewrite.semantics import boolean, is_predicate
+from rtamt.signals.arrays import Recording
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from rtamt.engine.signals import Signal
     from rtamt.explain.report import Explanation, Stretch
     from rtamt.language.formula import Formula
     from rtamt.results import Result
+    from rtamt.signals.arrays import Signal
 
 #: Sub-formulas that are shown at most; of a larger formula those next to its top.
 _MOST = 200

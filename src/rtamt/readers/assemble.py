@@ -9,17 +9,17 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rtamt.engine.signals import TIME, is_number
-from rtamt.engine.ticks import NANOSECOND, TimeScale
-from rtamt.engine.trace import Channel, Trace, show_time
 from rtamt.errors import TraceError, did_you_mean, shown
-from rtamt.readers import clocks
+from rtamt.readers import timestamps
+from rtamt.signals.arrays import TIME, is_number
+from rtamt.signals.ticks import NANOSECOND, TimeScale
+from rtamt.signals.trace import Channel, Trace, show_time
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
-    from rtamt.readers.clocks import Clock
     from rtamt.readers.source import Field, Raw, Source, Table
+    from rtamt.readers.timestamps import Clock
 
 
 @dataclass(frozen=True, slots=True)
@@ -209,7 +209,7 @@ def _time_field(source: Source, table: Table, choice: Choice) -> tuple[Field | N
     if table.clock is not None:
         return table.clock, False
     wanted = [choice.names.get(name, name) for name in choice.columns or ()]
-    return clocks.guess_field(table.fields, source.name, [*wanted, *choice.names.values()]), True
+    return timestamps.guess_field(table.fields, source.name, [*wanted, *choice.names.values()]), True
 
 
 # ---- values --------------------------------------------------------------------------------------
@@ -220,7 +220,7 @@ def _clock(source: Source, selection: Selection, raws: Sequence[Raw], choice: Ch
         return None
     unit = choice.units.get(selection.clock.column, choice.units.get(TIME))
     guessed = selection.guessed and selection.clock.column.lower() != TIME
-    return clocks.clock_of(
+    return timestamps.clock_of(
         selection.clock, _dated(raws[0], selection.clock.column), unit, guessed, source.name
     )
 
@@ -236,7 +236,7 @@ def _channels(
     """Return the signals of a table, the columns that were left out, and a note for each with NaN left out."""
     times = None
     if clock is not None:
-        times = clocks.times_of(clock, _dated(raws[0], clock.field.column), source.name)
+        times = timestamps.times_of(clock, _dated(raws[0], clock.field.column), source.name)
     values = raws if clock is None else raws[1:]
     made, left_out, notes = {}, [], []
     for (name, field), raw in zip(selection.signals, values, strict=True):
@@ -313,9 +313,9 @@ def _dated(raw: Raw, column: str) -> Raw:
     if raw.dtype.kind not in "OUS":
         return raw
     values = raw.filled(None).tolist() if isinstance(raw, np.ma.MaskedArray) else raw.tolist()
-    dates = clocks.from_objects(values)
+    dates = timestamps.from_objects(values)
     if dates is not None and any(value is not None for value in values):
-        if len(clocks.zones_of(values)) > 1:
+        if len(timestamps.zones_of(values)) > 1:
             raise TraceError(
                 f"the time column '{column}' has dates with a time zone beside dates without one: "
                 f"use one way for all"

@@ -18,7 +18,7 @@ from rtamt.language.units import UNITS
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator, Sequence
 
-    from rtamt.engine.signals import FloatArray
+    from rtamt.signals.arrays import FloatArray
 
 #: What a column of time stamps is called, in any case, with or without a unit: ``Time [ms]``.
 TIME_NAMES = ("time", "t", "timestamp", "stamp")

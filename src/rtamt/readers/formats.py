@@ -44,7 +44,7 @@ class Format:
 BAG = Format("ROS bag", (".bag", ".db3", ".mcap"), "rosbag:open_bag")
 
 FORMATS = (
-    Format("CSV", (".csv", ".tsv", ".txt"), "text:open_csv"),
+    Format("CSV", (".csv", ".tsv", ".txt"), "csv_source:open_csv"),
     Format("Parquet", (".parquet", ".pq"), "arrow:open_parquet"),
     Format("Arrow", (".arrow", ".feather", ".ipc"), "arrow:open_arrow"),
     Format("Excel", (".xlsx", ".xlsm"), "excel:open_excel", sheets=True),

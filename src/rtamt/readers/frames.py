@@ -10,14 +10,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rtamt.engine import dense_signals
-from rtamt.engine.signals import TIME
-from rtamt.engine.ticks import kind_of as kind_of_times
-from rtamt.engine.ticks import sequence_of
 from rtamt.errors import TraceError
-from rtamt.readers.clocks import looks_like_stamps
 from rtamt.readers.csv import split_unit
 from rtamt.readers.source import Field, Source, Table
+from rtamt.readers.timestamps import looks_like_stamps
+from rtamt.signals import dense_arrays
+from rtamt.signals.arrays import TIME
+from rtamt.signals.ticks import kind_of as kind_of_times
+from rtamt.signals.ticks import sequence_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -93,7 +93,7 @@ def _dict(data: Mapping[Any, Any]) -> Source:
     if TIME not in data and data and all(_is_dense(value) for value in data.values()):
         tables = []
         for name, samples in data.items():
-            times, values = dense_signals.split(samples, str(name))
+            times, values = dense_arrays.split(samples, str(name))
             columns = {TIME: _array(times, TIME), str(name): _array(values, str(name))}
             # As everywhere: integers of numpy are nanoseconds, other numbers seconds.
             in_ns = kind_of_times(sequence_of(times, TIME)) == "nanoseconds"

@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rtamt.engine.signals import is_number
 from rtamt.errors import TraceError
 from rtamt.extras import library
 from rtamt.readers.formats import METADATA
 from rtamt.readers.source import Field, Source, Table, opening
+from rtamt.signals.arrays import is_number
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence

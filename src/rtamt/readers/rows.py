@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rtamt.engine.signals import is_number
-from rtamt.readers.clocks import from_objects
 from rtamt.readers.frames import field_of
 from rtamt.readers.source import CHUNK, Field, Table
+from rtamt.readers.timestamps import from_objects
+from rtamt.signals.arrays import is_number
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence

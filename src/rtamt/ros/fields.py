@@ -5,8 +5,8 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING, Any
 
-from rtamt.engine.signals import is_number
 from rtamt.errors import TraceError, UsageError, did_you_mean, with_article
+from rtamt.signals.arrays import is_number
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -8,15 +8,15 @@ from typing import TYPE_CHECKING, Any
 from rtamt.errors import StlError, UsageError
 from rtamt.language.units import duration
 from rtamt.ros.fields import reader, stamp_of
+from rtamt.ros.output_group import DenseWatch, DiscreteWatch, Robustness, Verdict, together
 from rtamt.ros.report import Condition, Level, Notice
-from rtamt.ros.watch import DenseWatch, DiscreteWatch, Robustness, Verdict, together
 from rtamt.settings import positive_period, time_domain
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Container, Mapping, Sequence
 
     from rtamt.ros.binding import Binding
-    from rtamt.ros.watch import Record, Standing, Watch
+    from rtamt.ros.output_group import Record, Standing, Watch
     from rtamt.settings import Duration
 
 #: After how many silent periods a topic is stale, unless a time is set; in dense time, seconds.

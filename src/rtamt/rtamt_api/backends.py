@@ -4,15 +4,17 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from rtamt.engine import dense_evaluate, dense_reference, reference
-from rtamt.engine.compile import compile_program
-from rtamt.engine.core import core, core_monitor, culprit
+from rtamt.compiler.plan import compile_program
+from rtamt.engine import dense_evaluate
 from rtamt.engine.evaluate import Evaluator
+from rtamt.engine.native import core, core_monitor, culprit
 from rtamt.engine.python_backend import PythonMonitor, Refused
-from rtamt.engine.undefined import at_sample, undefined
 from rtamt.errors import UsageError
 from rtamt.language.formula import Const
+from rtamt.language.undefined_value import at_sample, undefined
 from rtamt.language.units import UNITS
+from rtamt.reference import dense as dense_reference
+from rtamt.reference import discrete as reference
 from rtamt.rewrite.desugar import desugar
 from rtamt.rtamt_api.options import Language
 
@@ -21,8 +23,8 @@ if TYPE_CHECKING:
     from fractions import Fraction
 
     from rtamt.engine.dense_evaluate import DenseRecording
-    from rtamt.engine.signals import FloatArray, Recording, Signal
     from rtamt.language.formula import Formula
+    from rtamt.signals.arrays import FloatArray, Recording, Signal
 
 
 def is_compiled() -> bool:

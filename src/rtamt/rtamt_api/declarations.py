@@ -11,7 +11,6 @@ from numbers import Real
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from rtamt.engine.signals import field
 from rtamt.errors import NameInFormulaError, StlError, UsageError, did_you_mean, with_article
 from rtamt.language.formula import Var, postorder, variables
 from rtamt.language.operators import STL, Language
@@ -20,6 +19,7 @@ from rtamt.language.specfile import TYPES, parse_document
 from rtamt.language.units import check_unit
 from rtamt.rtamt_api.associativity import warn_of_chains
 from rtamt.rtamt_api.failures import raises_rtamt
+from rtamt.signals.arrays import field
 
 if TYPE_CHECKING:
     import os

@@ -6,10 +6,9 @@ from copy import copy
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from rtamt.engine import dense_evaluate, signals
+from rtamt.engine import dense_evaluate
 from rtamt.engine.dense_monitor import DenseMonitor
 from rtamt.engine.online import Watched
-from rtamt.engine.ticks import NANOSECOND, TimeScale, all_integers
 from rtamt.errors import NameInFormulaError, StlError, TraceError, UsageError, shown
 from rtamt.language.formula import Var, postorder, variables
 from rtamt.language.printer import canonical
@@ -22,13 +21,15 @@ from rtamt.rtamt_api.failures import raises_rtamt
 from rtamt.rtamt_api.formulas import Formulas
 from rtamt.rtamt_api.online import OnlineSpecification, require_past
 from rtamt.rtamt_api.options import Language, Semantics, sampling
+from rtamt.signals import arrays
+from rtamt.signals.ticks import NANOSECOND, TimeScale, all_integers
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from rtamt.engine.dense_evaluate import DenseRecording
-    from rtamt.engine.signals import Signal
     from rtamt.language.formula import Formula
+    from rtamt.signals.arrays import Signal
 
     Samples = tuple[list[Any], list[Any]]  # times and values, as given
 
@@ -38,7 +39,7 @@ class DenseTimeSpecification(Formulas):
 
     @raises_rtamt
     def set_sampling_period(
-        self, sampling_period: float = 1, unit: str = "s", tolerance: float = signals.TOLERANCE
+        self, sampling_period: float = 1, unit: str = "s", tolerance: float = arrays.TOLERANCE
     ) -> None:
         """Change nothing: dense time has no sampling period. Programs for RTAMT set one all the same.
 
@@ -50,10 +51,10 @@ class DenseTimeSpecification(Formulas):
         check_dense(formula, text)
         check_bounds(formula, NANOSECOND, text, "resolution")
         for node in postorder(formula):
-            if isinstance(node, Var) and node.name == signals.TIME:
+            if isinstance(node, Var) and node.name == arrays.TIME:
                 # The engine's recordings keep their stamps under this name.
                 raise NameInFormulaError(
-                    f"'{signals.TIME}' means the time stamps; give the variable another name", text, node.span
+                    f"'{arrays.TIME}' means the time stamps; give the variable another name", text, node.span
                 )
 
     @property
@@ -69,7 +70,7 @@ class DenseTimeSpecification(Formulas):
                 continue
             times, values = given[head]
             if path:
-                values = [signals.field_of(value, head, path, i) for i, value in enumerate(values)]
+                values = [arrays.field_of(value, head, path, i) for i, value in enumerate(values)]
             columns[name] = times, values
         return columns
 
@@ -110,7 +111,7 @@ class StlDenseTimeOfflineSpecification(ExplainedSpecification, DenseTimeSpecific
         names = variables(formula)
         for name in names:
             if name not in given and head_of(name) not in given:
-                raise signals.missing_variable(name, tuple(given))
+                raise arrays.missing_variable(name, tuple(given))
         columns, scale = self._columns(given, self._inputs), self._scale
         recording, robustness = self._evaluation(formula, columns, scale)
         self._value_of = partial(self._points_over, columns, scale)
@@ -168,7 +169,7 @@ class StlDenseTimeOnlineSpecification(OnlineSpecification, DenseTimeSpecificatio
         given = _by_name(dataset)
         for name in given:
             if name not in self._reads and name not in self._types and name not in self._inputs:
-                raise signals.unknown_variable(name, tuple(self._reads))
+                raise arrays.unknown_variable(name, tuple(self._reads))
         columns = self._columns(given, monitor.input_names)
         signal = monitor.update_many(columns)
         self._whole = self._whole and all(all_integers(times) for times, _ in columns.values())

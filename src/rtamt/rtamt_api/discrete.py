@@ -10,8 +10,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rtamt.engine import signals
-from rtamt.engine.signals import TIME, Recording
 from rtamt.errors import StlError
 from rtamt.language.units import UNITS
 from rtamt.rewrite.check import check_bounds
@@ -20,6 +18,8 @@ from rtamt.rtamt_api.explained import ExplainedSpecification
 from rtamt.rtamt_api.failures import raises_rtamt
 from rtamt.rtamt_api.formulas import Formulas
 from rtamt.rtamt_api.options import sampling
+from rtamt.signals import arrays
+from rtamt.signals.arrays import TIME, Recording
 
 if TYPE_CHECKING:
     from rtamt.language.document import Document
@@ -35,14 +35,14 @@ class DiscreteTimeSpecification(Formulas):
     def __init__(self) -> None:
         super().__init__()
         self._period = Fraction(1)
-        self._tolerance = signals.TOLERANCE
+        self._tolerance = arrays.TOLERANCE
         self._violations = 0  # of the latest evaluation
 
     # ---- settings --------------------------------------------------------------------------------
 
     @raises_rtamt
     def set_sampling_period(
-        self, sampling_period: float = 1, unit: str = "s", tolerance: float = signals.TOLERANCE
+        self, sampling_period: float = 1, unit: str = "s", tolerance: float = arrays.TOLERANCE
     ) -> None:
         """Set the time between samples.
 
@@ -122,14 +122,14 @@ class StlDiscreteTimeOfflineSpecification(ExplainedSpecification, DiscreteTimeSp
         values: list[float] = signal(self._worth(part), trace).tolist()
         return values
 
-    def _trace(self, dataset: Any) -> tuple[signals.FloatArray, Recording]:
+    def _trace(self, dataset: Any) -> tuple[arrays.FloatArray, Recording]:
         """Return the stamps as given, and the trace in seconds, whatever the gaps between its samples."""
         keys = dataset if isinstance(dataset, Mapping) else getattr(dataset, "columns", ())
         columns = {key: dataset[key] for key in keys}
-        stamps = signals.stamps(columns[TIME]) if TIME in columns else None
+        stamps = arrays.stamps(columns[TIME]) if TIME in columns else None
         if stamps is not None:
             columns[TIME] = stamps * float(UNITS[self._unit])
-        trace = signals.trace(columns or dataset, self._inputs, self._period, tuple(columns), inf)
+        trace = arrays.trace(columns or dataset, self._inputs, self._period, tuple(columns), inf)
         if stamps is None:
-            raise signals.missing_variable(TIME, tuple(columns))
+            raise arrays.missing_variable(TIME, tuple(columns))
         return stamps, trace

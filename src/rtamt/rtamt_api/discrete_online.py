@@ -5,7 +5,6 @@ from __future__ import annotations
 from numbers import Real
 from typing import TYPE_CHECKING, Any
 
-from rtamt.engine import signals
 from rtamt.engine.monitor import refused_time, refused_values
 from rtamt.errors import RTAMTException, TraceError
 from rtamt.language.formula import Formula, Var
@@ -16,6 +15,7 @@ from rtamt.rtamt_api.discrete import DiscreteTimeSpecification, StlDiscreteTimeO
 from rtamt.rtamt_api.failures import raises_rtamt
 from rtamt.rtamt_api.online import OnlineSpecification, require_past
 from rtamt.rtamt_api.options import Language, Semantics
+from rtamt.signals import arrays
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping
@@ -152,7 +152,7 @@ class StlDiscreteTimeOnlineSpecification(OnlineSpecification, DiscreteTimeSpecif
         """Return the numbers of sample ``index``, by the names that the formulas read."""
         for name in given:
             if name not in self._reads and name not in self._types and name not in self._inputs:
-                raise signals.unknown_variable(name, tuple(self._reads))
+                raise arrays.unknown_variable(name, tuple(self._reads))
         numbers: dict[str, Any] = {}
         for head, names in self._reads.items():
             if head in given:
@@ -162,7 +162,7 @@ class StlDiscreteTimeOnlineSpecification(OnlineSpecification, DiscreteTimeSpecif
             else:
                 continue
             for name in names:
-                numbers[name] = signals.field_of(source, head, name.split(".")[1:], index)
+                numbers[name] = arrays.field_of(source, head, name.split(".")[1:], index)
         return numbers | {name: given[name] for name in self._inputs if name in given}
 
     def _came_from_outside(self, head: str) -> bool:

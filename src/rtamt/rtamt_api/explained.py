@@ -5,18 +5,18 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import UsageError
-from rtamt.rewrite import interface
+from rtamt.rewrite.semantics import lower, semantics_of
 from rtamt.rtamt_api.backends import is_compiled
 from rtamt.rtamt_api.failures import raises_rtamt
 from rtamt.rtamt_api.formulas import Formulas
 
 if TYPE_CHECKING:
     from rtamt.engine.dense_evaluate import DenseRecording
-    from rtamt.engine.signals import Recording
     from rtamt.explain.report import Explanation
     from rtamt.language.document import Document
     from rtamt.language.formula import Formula
-    from rtamt.rewrite.interface import Judge
+    from rtamt.rewrite.semantics import Judge
+    from rtamt.signals.arrays import Recording
 
 
 class ExplainedSpecification(Formulas):
@@ -32,7 +32,7 @@ class ExplainedSpecification(Formulas):
 
     def _remember(self, formula: Formula, recording: Recording | DenseRecording) -> None:
         """Keep what was evaluated, and under which semantics, until it is to be explained."""
-        self._evaluated = formula, recording, interface.semantics_of(self._semantics)
+        self._evaluated = formula, recording, semantics_of(self._semantics)
 
     @raises_rtamt
     def explain(self, at: Any = None) -> Explanation:
@@ -66,5 +66,5 @@ class ExplainedSpecification(Formulas):
             backend="cpp" if is_compiled() else "python",
             at=at,
             text=self._parsed_document.text,
-            semantics=lambda predicate: interface.lower(predicate, semantics, roles),
+            semantics=lambda predicate: lower(predicate, semantics, roles),
         )

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from rtamt.errors import UsageError, did_you_mean
 from rtamt.language.formula import Formula, Var, postorder, variables
 from rtamt.language.printer import canonical
-from rtamt.rewrite import interface
+from rtamt.rewrite.semantics import is_number, lower, semantics_of
 from rtamt.rtamt_api.declarations import Declarations
 from rtamt.rtamt_api.failures import raises_rtamt
 from rtamt.rtamt_api.options import Semantics
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from rtamt.language.document import Document
-    from rtamt.rewrite.interface import Judge
+    from rtamt.rewrite.semantics import Judge
 
 
 class Formulas(Declarations):
@@ -48,7 +48,7 @@ class Formulas(Declarations):
     @semantics.setter
     @raises_rtamt
     def semantics(self, semantics: Semantics | str | Judge) -> None:
-        interface.semantics_of(semantics)
+        semantics_of(semantics)
         self._semantics = semantics
         self._settings_changed()
 
@@ -79,14 +79,14 @@ class Formulas(Declarations):
 
     def _judged(self, formula: Formula) -> Formula:
         """Return the formula whose robustness is the value of ``formula`` under the semantics."""
-        return interface.lower(formula, interface.semantics_of(self._semantics), self.var_io_dict)
+        return lower(formula, semantics_of(self._semantics), self.var_io_dict)
 
     def _worth(self, part: Formula) -> Formula:
         """Return the formula whose robustness is the value of a part of the specification.
 
         What is read as a number has its ordinary value under every semantics.
         """
-        if part is not self._result and interface.is_number(part):
+        if part is not self._result and is_number(part):
             return part
         judged = self._judged(part)
         read_so = (node for formula in self._formulas.values() for node in postorder(self._judged(formula)))

@@ -5,7 +5,6 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
-from rtamt.engine import signals
 from rtamt.errors import RTAMTException, SpecificationError
 from rtamt.language.formula import Apply, Formula, postorder
 from rtamt.language.operators import Tense
@@ -13,6 +12,7 @@ from rtamt.rewrite.pastify import pastify
 from rtamt.rtamt_api.declarations import head_of
 from rtamt.rtamt_api.failures import raises_rtamt
 from rtamt.rtamt_api.formulas import Formulas
+from rtamt.signals import arrays
 
 if TYPE_CHECKING:
     from rtamt.language.document import Document
@@ -69,7 +69,7 @@ class OnlineSpecification(Formulas):
             self._objects[head] = robustness
             return robustness
         *path, last = field.split(".")
-        setattr(signals.field(self._objects[head], path), last, robustness)
+        setattr(arrays.field(self._objects[head], path), last, robustness)
         return self._objects[head]
 
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 from enum import Enum
 from typing import TYPE_CHECKING
 
-from rtamt.engine import signals
 from rtamt.errors import UsageError
 from rtamt.language.units import duration
+from rtamt.signals import arrays
 
 if TYPE_CHECKING:
     from fractions import Fraction
@@ -59,7 +59,7 @@ def sampling(period: float, unit: str, tolerance: float) -> tuple[Fraction, floa
     seconds = duration(period, unit)
     if seconds == 0:
         raise UsageError(f"the sampling period is {period} {unit}; it must be positive")
-    if not (signals.is_number(tolerance) and 0 <= tolerance <= 1):
+    if not (arrays.is_number(tolerance) and 0 <= tolerance <= 1):
         raise UsageError(
             f"the sampling tolerance is {tolerance!r}; it is a fraction of the period, from 0 to 1"
         )

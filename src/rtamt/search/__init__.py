@@ -12,9 +12,9 @@ True
 
 from rtamt.search.falsify import Falsification, falsify
 from rtamt.search.inputs import PiecewiseConstant, PiecewiseLinear, Pulse, Range, Sine, Step
+from rtamt.search.log import Evaluation
 from rtamt.search.optimizers import OPTIMIZERS
 from rtamt.search.problem import Problem
-from rtamt.search.record import Evaluation
 from rtamt.search.sensitivity import Sensitivity, sensitivity
 
 __all__ = [

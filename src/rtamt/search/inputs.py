@@ -23,8 +23,8 @@ from typing import TYPE_CHECKING, Any, Protocol, TypeAlias
 
 import numpy as np
 
-from rtamt.engine.signals import is_number
 from rtamt.errors import UsageError, shown, with_article
+from rtamt.signals.arrays import is_number
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping

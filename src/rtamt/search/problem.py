@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rtamt.engine.signals import TIME, is_number
 from rtamt.errors import StlError, UsageError, did_you_mean, shown
 from rtamt.search.inputs import Range
-from rtamt.search.outlook import Outlook
-from rtamt.search.record import Evaluation
+from rtamt.search.log import Evaluation
+from rtamt.search.robust_interval import Outlook
+from rtamt.signals.arrays import TIME, is_number
 
 if TYPE_CHECKING:
     from collections.abc import Callable

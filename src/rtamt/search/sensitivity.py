@@ -12,8 +12,8 @@ import numpy as np
 from rtamt.errors import UsageError, did_you_mean
 from rtamt.extras import library
 from rtamt.language.printer import to_text
-from rtamt.search.record import Evaluation, Record
-from rtamt.search.run import Enough, Runs, count
+from rtamt.search.executor import Enough, Runs, count
+from rtamt.search.log import Evaluation, Record
 
 if TYPE_CHECKING:
     import os

@@ -7,11 +7,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from hypothesis import assume
 
-from rtamt.engine import dense_evaluate, dense_reference
+from rtamt.engine import dense_evaluate
 from rtamt.engine.dense_monitor import DenseMonitor
 from rtamt.errors import EvaluationError
 from rtamt.language.formula import variables
 from rtamt.language.operators import Tense
+from rtamt.reference import dense as dense_reference
 from rtamt.testing.case import NAMES, ONE, Case, check_own_code
 from rtamt.testing.strategies import dense_chunkings, dense_traces
 

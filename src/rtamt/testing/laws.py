@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from hypothesis import assume
 
-from rtamt.engine import reference, signals
 from rtamt.engine.evaluate import Evaluator
 from rtamt.engine.monitor import Monitor
 from rtamt.errors import EvaluationError, SpecificationError
@@ -19,9 +18,11 @@ from rtamt.language.formula import Apply, Formula, Var, fold
 from rtamt.language.operators import STL, Language, Operator, Sort, Tense
 from rtamt.language.parser import parse_formula
 from rtamt.language.printer import to_text
+from rtamt.reference import discrete as reference
 from rtamt.rewrite.desugar import desugar
 from rtamt.rewrite.horizon import horizon
 from rtamt.rewrite.pastify import pastify
+from rtamt.signals import arrays
 from rtamt.testing.case import NAMES, ONE, Case, check_own_code, hold
 from rtamt.testing.dense_laws import DENSE_LAWS, has_dense_meaning
 from rtamt.testing.strategies import chunkings, traces
@@ -122,7 +123,7 @@ def _fast_is_the_definition(case: Case, draw: Callable[[Any], Any]) -> None:
     expected = _defined(formula, columns)
     got: Array | None
     try:
-        recording = signals.trace(columns, NAMES, ONE)
+        recording = arrays.trace(columns, NAMES, ONE)
         got = Evaluator((formula,), ONE)(recording)[0]
     except EvaluationError as error:
         check_own_code(error)

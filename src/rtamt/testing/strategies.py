@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from hypothesis import strategies as st
 
-from rtamt.engine import reference
 from rtamt.errors import EvaluationError
 from rtamt.language.formula import Apply, Const, Formula, Interval, Var
 from rtamt.language.operators import STL, Bounds, Language, Operator, Sort, Tense
+from rtamt.reference import discrete as reference
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

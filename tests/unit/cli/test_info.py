@@ -115,7 +115,7 @@ def test_a_formula_without_variables(run):
 @pytest.mark.parametrize("formula", ["x", "historically(x)", "x since[0:3] y", "always[0:100](x) or y"])
 def test_memory_is_that_of_the_core(run, formula):
     import rtamt
-    from rtamt.engine.compile import compile_program
+    from rtamt.compiler.plan import compile_program
     from rtamt.rewrite.desugar import desugar
 
     spec = rtamt.parse(formula, period=1)

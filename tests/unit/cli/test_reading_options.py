@@ -76,7 +76,7 @@ def test_a_nan_that_no_line_of_text_tells_is_mended_by_an_option(run, tmp_path):
 def test_a_nan_in_a_later_chunk_is_mended_by_the_same_option(run, tmp_path, monkeypatch):
     pyarrow = pytest.importorskip("pyarrow")
     parquet = pytest.importorskip("pyarrow.parquet")
-    monkeypatch.setattr("rtamt.cli.matrix.LARGE", 0)
+    monkeypatch.setattr("rtamt.cli.runner.LARGE", 0)
     monkeypatch.setattr("rtamt.readers.arrow.CHUNK", 2)
     values = [5.0, 5.0, 5.0, float("nan"), 1.0]
     parquet.write_table(pyarrow.table({"time": [0.0, 1, 2, 3, 4], "x": values}), tmp_path / "log.parquet")

@@ -6,7 +6,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rtamt.explain.cells import Cells, Steps, two_valued
+from rtamt.explain.instants import Cells, Steps, two_valued
 
 SETS = st.sets(st.integers(-12, 12))
 

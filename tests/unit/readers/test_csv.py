@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 import rtamt
 from rtamt.errors import TraceError
 from rtamt.readers import csv as csv_module
-from rtamt.readers import text as text_module
+from rtamt.readers import csv_source as text_module
 
 
 def read(path, names=None, *, time_column=None):

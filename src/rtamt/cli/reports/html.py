@@ -5,14 +5,14 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rtamt.cli.command import short
-from rtamt.cli.reports.words import moment
+from rtamt.cli.reports.messages import moment
 from rtamt.cli.terminal import printed
 from rtamt.report import Row, page
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from rtamt.cli.matrix import Outcome, Requirement
+    from rtamt.cli.runner import Outcome, Requirement
 
 
 def as_html(requirements: Sequence[Requirement], outcomes: Sequence[Outcome]) -> str:

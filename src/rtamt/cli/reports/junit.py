@@ -6,13 +6,13 @@ import re
 from typing import TYPE_CHECKING
 from xml.etree import ElementTree as ET
 
-from rtamt.cli.reports.words import sentence
+from rtamt.cli.reports.messages import sentence
 from rtamt.cli.terminal import printed
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from rtamt.cli.matrix import Outcome, Requirement
+    from rtamt.cli.runner import Outcome, Requirement
 
 #: Characters that XML cannot hold, not even escaped.
 _FORBIDDEN = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\ufffe\uffff]")

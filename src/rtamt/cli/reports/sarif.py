@@ -10,13 +10,13 @@ from urllib.parse import quote
 
 import rtamt
 from rtamt.cli.command import json_number
-from rtamt.cli.reports.words import sentence
+from rtamt.cli.reports.messages import sentence
 from rtamt.cli.terminal import printed
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from rtamt.cli.matrix import Outcome, Requirement
+    from rtamt.cli.runner import Outcome, Requirement
 
 _SCHEMA = "https://json.schemastore.org/sarif-2.1.0.json"
 

@@ -8,7 +8,7 @@ import time
 from typing import TYPE_CHECKING, Any
 
 from rtamt.ros.dds.participant import LEAST
-from rtamt.ros.outbox import DIAGNOSTICS, Outbox, diagnostic
+from rtamt.ros.publisher import DIAGNOSTICS, Outbox, diagnostic
 
 if TYPE_CHECKING:
     from rtamt.ros.binding import MessageType

@@ -1,0 +1,202 @@
+"""How commands read recordings: one set of options for all of them, and what is read for a requirement."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rtamt.cli.command import CommandError, add_stamp_options
+from rtamt.errors import TraceError, UsageError
+from rtamt.language.units import duration
+from rtamt.readers.assemble import trace_of
+from rtamt.readers.csv_cells import EXAMPLE, date_in
+from rtamt.readers.formats import is_bag
+from rtamt.readers.read import choice, opened
+from rtamt.ros.bags import columns_of
+from rtamt.signals.arrays import TIME, Recording
+
+if TYPE_CHECKING:
+    import argparse
+    from collections.abc import Collection, Mapping, Sequence
+
+    from rtamt.readers.assemble import Choice
+    from rtamt.results import Result
+    from rtamt.settings import Duration
+    from rtamt.signals.trace import Trace
+    from rtamt.specification import Specification
+
+
+@dataclass(frozen=True, slots=True)
+class Reading:
+    """How recordings are read: the options of ``rtamt.read``, and a clock chosen for all signals."""
+
+    time: str | None = None
+    names: Mapping[str, str] = field(default_factory=dict)
+    unit: str | None = None
+    sheet: str | None = None
+    query: str | None = None
+    skip_nan: Sequence[str] = ()
+    resample: str | None = None
+    how: str = "hold"
+    #: Never in chunks: somebody wants the whole signal.
+    whole: bool = False
+
+
+# ---- the options ---------------------------------------------------------------------------------
+
+
+def add_reading_options(parser: argparse.ArgumentParser) -> None:
+    """Add how recordings are read; see :func:`rtamt.read`."""
+    add_stamp_options(parser, "column")
+    parser.add_argument(
+        "--name",
+        metavar="NAME=COLUMN",
+        action="append",
+        default=[],
+        help="the column of a variable that is called otherwise; may be given again",
+    )
+    parser.add_argument("--sheet", metavar="NAME", help="of an Excel workbook with several")
+    parser.add_argument("--sql", metavar="URL", help="read a database, such as sqlite:///log.db")
+    parser.add_argument("--query", metavar="TEXT", help="what to read of it: its rows are samples")
+    parser.add_argument(
+        "--skip-nan",
+        metavar="NAME",
+        action="append",
+        default=[],
+        help="leave out the samples of a variable that are NaN, an error otherwise; may be given again",
+    )
+    parser.add_argument(
+        "--resample", metavar="DURATION", help="put all signals on one clock, a sample every so often"
+    )
+    parser.add_argument(
+        "--how",
+        default="hold",
+        metavar="{hold,linear}",
+        help="between two samples the last one holds, or a line (default: hold)",
+    )
+
+
+def add_instant_option(parser: argparse.ArgumentParser) -> None:
+    """Add the instant whose verdict is explained; see :func:`instant`."""
+    parser.add_argument(
+        "--at",
+        metavar="TIME",
+        help="the instant that is explained (default: the first): seconds, or with a unit, such as 500ms, "
+        "or a date, where the recording has dates",
+    )
+
+
+def reading_of(args: argparse.Namespace, read: Collection[str], *, whole: bool) -> Reading:
+    """Return what the options say. ``read``: the variables of the requirements; ``whole``: never in chunks."""
+    names = _names_of(args.name)
+    for name in names:
+        if name not in read:
+            raise CommandError(f"--name {name}={names[name]}: no formula reads '{name}'")
+    for name in args.skip_nan:
+        if name not in read:
+            raise CommandError(f"--skip-nan {name}: no formula reads '{name}'")
+    return Reading(
+        args.time_column,
+        names,
+        args.time_unit,
+        args.sheet,
+        args.query,
+        tuple(args.skip_nan),
+        args.resample,
+        args.how,
+        whole=whole,
+    )
+
+
+def _names_of(texts: Sequence[str]) -> dict[str, str]:
+    """Return variables and their columns from texts such as ``v=battery_status[1].voltage_v``."""
+    names = {}
+    for text in texts:
+        name, equals, column = text.partition("=")
+        if not (name.strip() and equals and column.strip()):
+            raise CommandError(f"--name is '{text}'; give a variable and its column, such as v=voltage")
+        names[name.strip()] = column.strip()
+    return names
+
+
+def recording(args: argparse.Namespace, source: str) -> Trace:
+    """Return all that is in a recording, read and put on one clock as the options say."""
+    with opened(source, args.sheet, args.query) as found:
+        units = None if args.time_unit is None else {TIME: args.time_unit}
+        wanted = choice(args.time_column, None, _names_of(args.name), units, args.skip_nan)
+        trace = trace_of(found, wanted)
+    return trace if args.resample is None else trace.resample(args.resample, args.how)
+
+
+# ---- for requirements ----------------------------------------------------------------------------
+
+
+def read_for(specs: Sequence[Specification], trace: str, reading: Reading) -> Trace:
+    """Read what some requirements read of a recording."""
+    with opened(trace, reading.sheet, reading.query) as source:
+        return trace_of(source, choice_for(specs, trace, reading))
+
+
+def choice_for(specs: Sequence[Specification], trace: str, reading: Reading) -> Choice:
+    """Return which columns of a recording some requirements read, and how."""
+    columns = dict.fromkeys(name for spec in specs for name in spec.input_names)
+    units = None if reading.unit is None else {TIME: reading.unit}
+    # In discrete time a gap is an error, unless a clock of its own for each signal is what is resampled.
+    gaps = specs[0].time == "dense" or clock_for(specs[0], trace, reading) is not None
+    names = dict(reading.names)
+    if is_bag(trace):
+        for spec in specs:
+            names = {**columns_of(spec), **names}
+    skipped = [name for name in reading.skip_nan if name in columns]
+    return replace(choice(reading.time, columns or None, names, units, skipped), gaps=gaps)
+
+
+def clock_for(spec: Specification, trace: str, reading: Reading) -> Duration | None:
+    """Return the period of the one clock that signals are put on; None where they stay as they are.
+
+    Discrete time samples a bag as a node samples topics: the latest message, every period.
+    """
+    if reading.resample is not None or spec.time == "dense" or not is_bag(trace):
+        return reading.resample
+    return spec.period or 1
+
+
+def how_to_mend(error: Exception, data: Trace | None, before: int = 0) -> str:
+    """Return what to add to an error about a NaN in what was read: the option that leaves it out, else nothing.
+
+    ``before``: the number of samples that were read before ``data``.
+    """
+    if data is None or not isinstance(error, TraceError) or error.variable not in data.names:
+        return ""
+    values = data[error.variable].values
+    index = -1 if error.index is None else error.index - before
+    is_nan = 0 <= index < len(values) and np.isnan(values[index])
+    return f" (--skip-nan {error.variable})" if is_nan else ""
+
+
+# ---- an instant ----------------------------------------------------------------------------------
+
+
+def instant(at: str | None, result: Result) -> Any:
+    """Return what ``--at`` says, as the recording tells time; None for its first instant."""
+    if at is None:
+        return None
+    trace = result.trace
+    kind = "seconds" if isinstance(trace, Recording) else trace.scale.kind
+    dated = kind == "datetimes" or (isinstance(trace, Recording) and trace.dated)
+    date = date_in(at)
+    if (date is not None) != dated:
+        has = f"dates: give one such as {EXAMPLE}" if dated else "seconds: give a number of them"
+        raise UsageError(f"--at is '{at}', but the recording tells time in {has}")
+    if date is not None:
+        return date
+    sign, text = (-1, at.strip()[1:]) if at.strip().startswith("-") else (1, at)
+    try:
+        seconds = sign * duration(text)
+    except UsageError:
+        raise UsageError(
+            f"--at is '{at}'; give seconds, a time with a unit such as 500ms, or a date such as {EXAMPLE}"
+        ) from None
+    return np.int64(round(seconds * 10**9)) if kind == "nanoseconds" else float(seconds)

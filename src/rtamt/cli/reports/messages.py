@@ -1,0 +1,24 @@
+"""What all reports say in the same words."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rtamt.cli.command import short
+
+if TYPE_CHECKING:
+    from rtamt.cli.runner import Outcome
+
+
+def moment(outcome: Outcome) -> str:
+    """Return when a requirement was first violated; "" where it was not."""
+    when = outcome.first_violation
+    return "" if when is None else when if isinstance(when, str) else f"{when:.12g} s"
+
+
+def sentence(outcome: Outcome) -> str:
+    """Return what came of one requirement over one recording, as a sentence."""
+    if outcome.error:
+        return outcome.error
+    told = f"{outcome.requirement} is {outcome.verdict} by {outcome.trace}: robustness {short(outcome.robustness)}"
+    return f"{told}, first violated at {moment(outcome)}" if moment(outcome) else told

@@ -1,0 +1,228 @@
+"""Every requirement over every recording: on all cores, each recording read once."""
+
+from __future__ import annotations
+
+import os
+import time
+from collections import Counter
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass, replace
+from multiprocessing import get_context
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rtamt.cli.command import NO_STAMPS
+from rtamt.cli.reading_options import choice_for, clock_for, how_to_mend, read_for
+from rtamt.errors import BoundError, StlError, TraceError
+from rtamt.readers.assemble import chunks_of
+from rtamt.readers.read import opened
+from rtamt.readers.sql import is_url, shown
+from rtamt.signals.arrays import Recording
+from rtamt.signals.ticks import date_of
+from rtamt.verdicts.first_violation import first_violation
+from rtamt.verdicts.streaming import check_stream, check_streamable
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+    from fractions import Fraction
+
+    from rtamt.cli.reading_options import Reading
+    from rtamt.engine.dense_evaluate import DenseRecording
+    from rtamt.results import Result
+    from rtamt.signals.trace import Trace
+    from rtamt.specification import Specification
+    from rtamt.verdicts.streaming import StreamResult
+
+#: Bytes of a file from which on it is read in chunks, where format and formula allow it.
+LARGE = 256 * 2**20
+#: Bytes of all files together from which on starting a process for each core pays.
+_WORTH_PROCESSES = 16 * 2**20
+
+
+@dataclass(frozen=True, slots=True)
+class Requirement:
+    """A specification, the file or text that it was given as, and what reports call it."""
+
+    spec: Specification
+    given: str
+    label: str
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """What came of one requirement over one recording, or the sentence that says why nothing did.
+
+    ``first_violation``: seconds, or a date; None where there is none. ``period``: None in dense time.
+    ``seconds``: how long it took. ``result`` stays in the process that made it.
+    """
+
+    requirement: str
+    trace: str
+    verdict: str  # satisfied, violated or error
+    robustness: float = float("nan")
+    first_violation: float | str | None = None
+    samples: int = 0
+    period: Fraction | None = None
+    error: str = ""
+    seconds: float = 0.0
+    result: Result | None = None
+
+
+def outcomes(
+    requirements: Sequence[Requirement], traces: Sequence[str], reading: Reading, jobs: int | None = None
+) -> Iterator[Outcome]:
+    """Yield what comes of every requirement over every recording, recording by recording, in order.
+
+    ``jobs``: processes; by default one for each core, where there is enough to do.
+    """
+    count = min(jobs or _processes(traces), len(traces))
+    if count <= 1 or reading.whole:
+        for trace in traces:
+            yield from evaluate(requirements, trace, reading)
+        return
+    # Reading a text file is Python's work, which threads could not share. Processes start afresh, so
+    # that nothing of this one (locks, threads of libraries) is copied into them.
+    with ProcessPoolExecutor(count, mp_context=get_context("spawn")) as pool:
+        work = [pool.submit(_apart, requirements, trace, reading) for trace in traces]
+        try:
+            for future in work:
+                yield from future.result()
+        finally:
+            pool.shutdown(wait=True, cancel_futures=True)
+
+
+def _apart(requirements: Sequence[Requirement], trace: str, reading: Reading) -> list[Outcome]:
+    """Return outcomes without what cannot leave a process."""
+    return [replace(outcome, result=None) for outcome in evaluate(requirements, trace, reading)]
+
+
+def _processes(traces: Sequence[str]) -> int:
+    sizes = (os.path.getsize(trace) for trace in traces if os.path.isfile(trace))
+    return (os.cpu_count() or 1) if sum(sizes) >= _WORTH_PROCESSES else 1
+
+
+# ---- one recording -------------------------------------------------------------------------------
+
+
+def evaluate(requirements: Sequence[Requirement], trace: str, reading: Reading) -> list[Outcome]:
+    """Check requirements over one recording, which is read once if that goes well."""
+    if _is_large(trace, reading):
+        return [_alone(requirement, trace, reading) for requirement in requirements]
+    try:
+        whole = read_for([requirement.spec for requirement in requirements], trace, reading)
+    except StlError:  # each reads what it needs, and says what is wrong with that
+        return [_check(requirement, trace, None, reading) for requirement in requirements]
+    return [_check(requirement, trace, whole, reading) for requirement in requirements]
+
+
+def _is_large(trace: str, reading: Reading) -> bool:
+    if reading.whole or reading.resample is not None:
+        return False
+    return is_url(trace) or (os.path.isfile(trace) and os.path.getsize(trace) >= LARGE)
+
+
+def _alone(requirement: Requirement, trace: str, reading: Reading) -> Outcome:
+    """Check in chunks if format and formula allow it, else read the recording whole."""
+    begin = time.perf_counter()
+    chunks: _Chunks | None = None
+    found: StreamResult | None = None
+    try:
+        check_streamable(requirement.spec)
+        with opened(trace, reading.sheet, reading.query) as source:
+            if all(table.chunks is not None for table in source.tables) and len(source.tables) == 1:
+                chunks = _Chunks(chunks_of(source, choice_for([requirement.spec], trace, reading)))
+                found = check_stream(requirement.spec, chunks)
+    except BoundError:
+        pass  # the formula needs the whole recording at once
+    except StlError as error:
+        # Whatever reads says where; whatever computes does not know.
+        place = "" if shown(trace) in str(error) else f"{shown(trace)}: "
+        mend = "" if chunks is None else how_to_mend(error, chunks.last, chunks.before(error))
+        return _failed(requirement, trace, f"{place}{error}{mend}", begin)
+    if chunks is None or found is None:
+        return _check(requirement, trace, None, reading)
+    return Outcome(
+        requirement.label,
+        shown(trace),
+        "satisfied" if found.satisfied else "violated",
+        found.robustness,
+        None if found.first_violation is None else _told(found.first_violation, chunks.dated),
+        found.samples,
+        found.period,
+        seconds=time.perf_counter() - begin,
+    )
+
+
+def _check(requirement: Requirement, trace: str, data: Trace | None, reading: Reading) -> Outcome:
+    """Check over a recording that is in memory, or read what the requirement needs of it."""
+    begin = time.perf_counter()
+    spec = requirement.spec
+    try:
+        data = data or read_for([spec], trace, reading)
+    except StlError as error:
+        return _failed(requirement, trace, str(error), begin)
+    try:
+        if spec.time == "dense" and data.start is None:
+            raise TraceError(NO_STAMPS)
+        clock = clock_for(spec, trace, reading)
+        if clock is not None:
+            data = data.resample(clock, reading.how)
+        result = spec.evaluate(data)
+        violated = first_violation(result)
+    except StlError as error:
+        return _failed(requirement, trace, f"{shown(trace)}: {error}{how_to_mend(error, data)}", begin)
+    recording = result.trace
+    return Outcome(
+        requirement.label,
+        shown(trace),
+        "satisfied" if result.satisfied else "violated",
+        result.robustness,
+        None if violated is None else _told(violated, isinstance(data.start, np.datetime64)),
+        _samples(recording),
+        recording.period if isinstance(recording, Recording) else None,
+        seconds=time.perf_counter() - begin,
+        result=result,
+    )
+
+
+def _failed(requirement: Requirement, trace: str, error: str, begin: float) -> Outcome:
+    return Outcome(requirement.label, shown(trace), "error", error=error, seconds=time.perf_counter() - begin)
+
+
+def _samples(recording: Recording | DenseRecording) -> int:
+    """Return the number of samples; in dense time that of the instants at which any variable has one."""
+    if isinstance(recording, Recording):
+        return len(recording)
+    return len(np.unique(np.concatenate([ticks for ticks, _ in recording.columns.values()])))
+
+
+def _told(moment: Any, dated: bool) -> float | str:
+    """Return a time for reports: a date where the recording has dates (discrete time counts seconds), else seconds."""
+    if dated and not isinstance(moment, np.datetime64):
+        moment = date_of(moment)
+    if isinstance(moment, np.datetime64):
+        return str(moment)
+    return moment / 1e9 if isinstance(moment, int) else float(moment)
+
+
+class _Chunks:
+    """Chunks, and what has to be known of them: whether their stamps are dates, how many samples there were."""
+
+    def __init__(self, chunks: Iterator[Trace]) -> None:
+        self._chunks = chunks
+        self._counts: Counter[str] = Counter()
+        self.dated = False
+        self.last: Trace | None = None
+
+    def __iter__(self) -> Iterator[Trace]:
+        for chunk in self._chunks:
+            if self.last is not None:
+                self._counts.update({name: len(self.last[name].values) for name in self.last})
+            self.last = chunk
+            self.dated = isinstance(chunk.start, np.datetime64)
+            yield chunk
+
+    def before(self, error: StlError) -> int:
+        """Return how many samples the variable that an error is about had before the last chunk."""
+        return self._counts[str(getattr(error, "variable", None))]

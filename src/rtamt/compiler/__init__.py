@@ -1,0 +1,1 @@
+"""Formula to program: instructions, delays, parameters, and the bytes that run without Python."""

@@ -1,0 +1,311 @@
+"""Core formula to instructions: value numbering, lags, and the delays that align operands.
+
+One function for each shape of kernel in the operator table, and a call for every operator that has
+none of them; no operator is named here. Time is counted in steps: samples in discrete time, ticks in
+dense time. The two differ only in how many steps a closed window has, and in how until over [a, b] is
+put together where a > 0.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from math import copysign, inf
+from types import MappingProxyType
+from typing import TYPE_CHECKING
+
+from rtamt.compiler.program import CallSite, Instruction, Program
+from rtamt.language.formula import Apply, Const, Formula, Var, postorder
+from rtamt.language.operators import Bounds, Pointwise, Shift, Since, Tense, Until, Window
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+    from fractions import Fraction
+
+_IDENTITY = {"max": -inf, "min": inf}
+
+
+class Lowering(ABC):
+    """The instructions so far; emitting one that is there already returns the old one."""
+
+    domain: str
+    #: The width of the window [0, 0].
+    point: int
+
+    def __init__(
+        self, period: Fraction, inputs: tuple[str, ...], clip: int | None, parameters: Mapping[str, float]
+    ) -> None:
+        self.period = period
+        self.inputs = inputs
+        self.clip = clip
+        self.parameters = parameters
+        self.instructions: list[Instruction] = []
+        self.origins: list[Formula | None] = []
+        self.index_of: dict[tuple[Instruction, float], int] = {}
+        self.value_of: dict[Formula, int] = {}
+        self.calls: dict[CallSite, int] = {}
+
+    def program(self, outputs: tuple[int, ...]) -> Program:
+        """Return the program; what no output needs stays, since it may fail and may be asked for."""
+        return Program(
+            tuple(self.instructions),
+            self.inputs,
+            outputs,
+            self.period,
+            self.value_of,
+            tuple(self.origins),
+            self.domain,
+            tuple(self.calls),
+        )
+
+    def lower(self, formula: Formula) -> int:
+        """Emit the instructions of a formula, operands first, and return the last one's index."""
+        for node in postorder(formula):
+            if node not in self.value_of:
+                self.value_of[node] = self._lower_node(node)
+        return self.value_of[formula]
+
+    def _lower_node(self, node: Formula) -> int:
+        if isinstance(node, Const):
+            return self.emit(Instruction("const", x=node.value), node)
+        if isinstance(node, Var) and node.name in self.parameters:
+            # Merged with no other constant: it may get a value of its own.
+            return self.append(Instruction("const", x=self.parameters[node.name]), node)
+        if isinstance(node, Var):
+            return self.emit(Instruction("input", n=self.inputs.index(node.name)), node)
+        assert isinstance(node, Apply)
+        args = self.align([self.value_of[arg] for arg in node.args])
+        kernel = node.op.kernel
+        if isinstance(kernel, Pointwise):
+            return self.pointwise(node, kernel, args)
+        if isinstance(kernel, Window):
+            return self.window(node, kernel, args[0])
+        if isinstance(kernel, Shift):
+            return self.shift_by_one(node, kernel, args[0])
+        if isinstance(kernel, Since):
+            return self.since(node, *args)
+        if isinstance(kernel, Until):
+            return self.until(node, *args)
+        return self.call(node, args)
+
+    # ---- emitting --------------------------------------------------------------------------------
+
+    def emit(self, instruction: Instruction, origin: Formula) -> int:
+        """Return the index of an instruction, which is added unless it is there already."""
+        key = (instruction, copysign(1.0, instruction.x))  # 0.0 == -0.0, but they are two constants
+        index = self.index_of.get(key)
+        if index is None:
+            index = self.index_of[key] = self.append(instruction, origin)
+        return index
+
+    def append(self, instruction: Instruction, origin: Formula) -> int:
+        """Return the index of a new instruction."""
+        self.instructions.append(instruction)
+        self.origins.append(origin)
+        return len(self.instructions) - 1
+
+    def lag(self, index: int) -> int:
+        """Return how many steps late an instruction is known."""
+        return self.instructions[index].lag
+
+    def is_const(self, index: int) -> bool:
+        """Tell whether an instruction is a constant, which has no time and needs no delay."""
+        return self.instructions[index].opcode == "const"
+
+    def align(self, indices: list[int]) -> list[int]:
+        """Delay operands until all have the lag of the latest; constants have none."""
+        lag = max((self.lag(i) for i in indices), default=0)
+        return [self.delayed(i, lag) for i in indices]
+
+    def delayed(self, index: int, lag: int) -> int:
+        """Return the same value known later: slots move, time does not."""
+        return index if self.is_const(index) else self.late(index, lag)
+
+    def late(self, index: int, lag: int) -> int:
+        """Return the same value known at ``lag``, a constant's too."""
+        behind = lag - self.lag(index)
+        if behind == 0:
+            return index
+        origin = self.origins[index]
+        assert origin is not None
+        return self.emit(Instruction("shift", index, n=behind, lag=lag), origin)
+
+    def moved(self, index: int, distance: int, fill: float, lag: int, origin: Formula) -> int:
+        """Return the operand ``distance`` samples behind, ``fill`` where there is none."""
+        return self.emit(Instruction("shift", index, n=distance, x=fill, lag=lag), origin)
+
+    def whole(self, bound: Fraction) -> int:
+        """Return a bound in steps."""
+        count = bound / self.period
+        assert count.denominator == 1, "bounds are checked before compilation"
+        return count.numerator
+
+    def steps(self, bound: Fraction) -> int:
+        """Return a bound in steps, cut to the length of the trace."""
+        count = self.whole(bound)
+        return count if self.clip is None else min(count, self.clip)
+
+    def bounds(self, node: Apply) -> tuple[int, int | None]:
+        """Return the interval of an operator in steps; no interval is [0, inf)."""
+        if node.interval is None:
+            return 0, None
+        begin, end = node.interval.begin, node.interval.end
+        first = self.steps(begin)
+        # The length is cut, not the end: precedes reads as far as the end, in a window of the length.
+        return first, None if end is None else first + self.steps(end - begin)
+
+    # ---- one function for each shape of kernel -----------------------------------------------------
+
+    def pointwise(self, node: Apply, kernel: Pointwise, args: list[int]) -> int:
+        """Lower an operator on values at one instant."""
+        lag = max(self.lag(i) for i in args)
+        a, b = (*args, None)[:2]
+        return self.emit(Instruction(kernel.opcode, a, b, lag=lag), node)
+
+    def window(self, node: Apply, kernel: Window, x: int) -> int:
+        """Lower the largest or smallest value in a window."""
+        begin, end = self.bounds(node)
+        fill = _IDENTITY[kernel.reduce]
+        lag = self.lag(x)
+        if node.op.tense is Tense.PAST:
+            if end is None:
+                x = self.emit(Instruction(f"run_{kernel.reduce}", x, lag=lag), node)
+            else:
+                x = self.slide(kernel.reduce, x, end - begin + self.point, lag, node)
+            return self.moved(x, begin, fill, lag, node) if begin else x
+        assert end is not None, "unbounded future is cut off before"
+        if end == 0:
+            return x
+        if begin == end:
+            return self.moved(x, 0, fill, lag + end, node)
+        return self.slide(kernel.reduce, x, end - begin + self.point, lag + end, node)
+
+    def slide(self, reduce: str, x: int, width: int, lag: int, origin: Formula) -> int:
+        """Return the extremum over the last ``width`` steps."""
+        if width == self.point:
+            return x
+        return self.emit(Instruction(f"slide_{reduce}", x, n=width, lag=lag), origin)
+
+    def slid(self, reduce: str, x: int, width: int, lag: int, origin: Formula) -> int:
+        """Return a window over an operand of since or until, delayed to their lag (a constant has its own)."""
+        return self.delayed(self.slide(reduce, x, width, self.lag(x), origin), lag)
+
+    def shift_by_one(self, node: Apply, kernel: Shift, x: int) -> int:
+        """Lower an operator that reads one sample away."""
+        if node.op.tense is Tense.PAST:
+            return self.moved(x, 1, kernel.fill, self.lag(x), node)
+        return self.moved(x, 0, kernel.fill, self.lag(x) + 1, node)
+
+    def since(self, node: Apply, hold: int, goal: int) -> int:
+        """φ since[a, b] ψ is once[a, b] ψ, φ on (t - a, t], and (φ since ψ) a ago: O(1) state besides windows."""
+        begin, end = self.bounds(node)
+        lag = max(self.lag(hold), self.lag(goal))
+        x = self.emit(Instruction("since", hold, goal, lag=lag), node)
+        if end is not None:
+            recent = self.slid("max", goal, end - begin + self.point, lag, node)
+            x = self.emit(Instruction("min", x, recent, lag=lag), node)
+        if begin == 0:
+            return x
+        x = self.moved(x, begin, -inf, lag, node)
+        held = self.slid("min", hold, begin, lag, node)
+        return self.emit(Instruction("min", x, held, lag=lag), node)
+
+    def until(self, node: Apply, hold: int, goal: int) -> int:
+        """φ until[a, b] ψ over the steps up to t + b; in the past tense (precedes) up to t."""
+        begin, end = self.bounds(node)
+        assert end is not None, "unbounded future is cut off before"
+        lag = max(self.lag(hold), self.lag(goal))
+        known = lag + end if node.op.tense is Tense.FUTURE else lag
+        return self.until_within(node, hold, goal, (begin, end), known)
+
+    def call(self, node: Apply, args: list[int]) -> int:
+        """Lower an operator that the core does not know: its kernel, or else its definition, is called."""
+        if not args:  # a constant says how many values are wanted, and when
+            args = [self.emit(Instruction("const"), node)]
+        begin = 0 if node.interval is None else self.whole(node.interval.begin)
+        end = self.end_of(node)
+        ahead = self.ahead(node, end)
+        site = CallSite(node, tuple(args), begin, end, ahead)
+        # Where the trace ends earlier than the operator reads, its value is known at the end.
+        lag = max(self.lag(i) for i in args) + (ahead if self.clip is None else min(ahead, self.clip))
+        number = self.calls.setdefault(site, len(self.calls))
+        return self.emit(Instruction("call", n=number, lag=lag), node)
+
+    def end_of(self, node: Apply) -> int | None:
+        """Return the upper bound of an operator's interval in steps, None where there is none."""
+        return None if node.interval is None or node.interval.end is None else self.whole(node.interval.end)
+
+    def ahead(self, node: Apply, end: int | None) -> int:
+        """Return how many steps ahead an operator reads, whose future is bounded."""
+        if node.op.tense is not Tense.FUTURE:
+            return 0
+        ahead = node.op.reach if node.op.bounds is Bounds.NONE else end
+        assert ahead is not None, "unbounded future is cut off before"
+        return ahead
+
+    @abstractmethod
+    def until_within(self, node: Apply, hold: int, goal: int, bounds: tuple[int, int], known: int) -> int:
+        """Return until over [begin, end] = ``bounds``, known at lag ``known``."""
+
+    def chain(self, node: Apply, hold: int, goal: int, width: int, known: int) -> int:
+        """Return until over a window that ends at the latest step, known at lag ``known``."""
+        if width == self.point:
+            lag = max(self.lag(hold), self.lag(goal))
+            return goal if known == lag else self.moved(goal, 0, -inf, known, node)
+        return self.emit(Instruction("until", hold, goal, n=width, lag=known), node)
+
+
+class DiscreteLowering(Lowering):
+    """Steps are samples; a closed window has one more of them than its length."""
+
+    domain = "discrete"
+    point = 1
+
+    @staticmethod
+    def until_just_before(period: Fraction) -> Fraction:
+        """Return how much shorter than a the closed window is that stands for [0, a)."""
+        return period
+
+    def until_within(self, node: Apply, hold: int, goal: int, bounds: tuple[int, int], known: int) -> int:
+        """φ on [t, t') is "φ on [j - a, j) for every j from t + a to t'".
+
+        So a window over [t + a, t + b] alone sees all of it, and no second delay line is needed.
+        """
+        begin, end = bounds
+        if begin:
+            lag = max(self.lag(hold), self.lag(goal))
+            before = self.late(self.slid("min", hold, begin, lag, node), lag)
+            hold = self.moved(before, 1, inf, lag, node)
+            goal = self.emit(Instruction("min", hold, goal, lag=lag), node)
+        return self.chain(node, hold, goal, end - begin + 1, known)
+
+
+class DenseLowering(Lowering):
+    """Steps are ticks; a closed window has its length."""
+
+    domain = "dense"
+    point = 0
+
+    @staticmethod
+    def until_just_before(period: Fraction) -> Fraction:
+        """Signals are right-continuous: [0, a] and [0, a) differ at lone instants only."""
+        return 0 * period
+
+    def until_within(self, node: Apply, hold: int, goal: int, bounds: tuple[int, int], known: int) -> int:
+        """φ until[a, b] ψ is φ on [t, t + a], and φ until[0, b - a] ψ from t + a on."""
+        begin, end = bounds
+        width = end - begin
+        if begin == 0:
+            return self.chain(node, hold, goal, width, known)
+        lag = max(self.lag(hold), self.lag(goal))
+        after = self.chain(node, hold, goal, width, known)
+        if node.op.tense is Tense.FUTURE:
+            first = self.emit(Instruction("slide_min", hold, n=begin, lag=self.lag(hold) + begin), node)
+            first = self.delayed(first, known)
+        else:
+            first = self.moved(self.slid("min", hold, begin, lag, node), width, inf, lag, node)
+        return self.emit(Instruction("min", after, first, lag=known), node)
+
+
+LOWERINGS: Mapping[str, type[DiscreteLowering] | type[DenseLowering]] = MappingProxyType(
+    {lowering.domain: lowering for lowering in (DiscreteLowering, DenseLowering)}
+)

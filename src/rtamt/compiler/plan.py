@@ -1,0 +1,188 @@
+"""Core formulas to a program (online) or a plan of programs (offline).
+
+Where an operator needs the whole future (offline only), the formula is cut: what lies below runs
+first over the whole trace, is scanned backwards, and enters the rest as one more input.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from typing import TYPE_CHECKING
+
+from rtamt.compiler.lower import LOWERINGS
+from rtamt.language.formula import Apply, Formula, Interval, Var, fold, variables
+from rtamt.language.operators import STL, Until, Window
+from rtamt.rewrite.check import reads_unbounded_future, unbounded_future
+from rtamt.rewrite.horizon import horizon
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from rtamt.compiler.program import Program
+
+
+#: A scan that the core does not know.
+DEFINED = "defined"
+
+
+@dataclass(frozen=True, slots=True)
+class Scan:
+    """A backward pass over outputs of a stage: its result is the input called ``name`` later on."""
+
+    name: str
+    kind: str  # run_max, run_min or until; DEFINED: the definition of what it stands for
+    outputs: tuple[int, ...]
+    meaning: Apply  # what the result stands for
+
+
+@dataclass(frozen=True, slots=True)
+class Stage:
+    """A program to run over the whole trace, and the scans over what it gives."""
+
+    program: Program
+    scans: tuple[Scan, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Plan:
+    """What an offline evaluation runs: the stages in order, then the program."""
+
+    stages: tuple[Stage, ...]
+    program: Program
+
+    def original(self, formula: Formula) -> Formula:
+        """Return a formula of this plan with the scans in it replaced by what they stand for: for messages."""
+        meanings: dict[str, Formula] = {}
+
+        def put_back(node: Formula, args: tuple[Formula, ...]) -> Formula:
+            if isinstance(node, Var):
+                return meanings.get(node.name, node)
+            return replace(node, args=args) if isinstance(node, Apply) else node
+
+        for stage in self.stages:
+            for scan in stage.scans:
+                meanings[scan.name] = fold(scan.meaning, put_back)
+        return fold(formula, put_back)
+
+
+def compile_program(
+    outputs: Sequence[Formula],
+    period: Fraction,
+    inputs: tuple[str, ...] | None = None,
+    clip: int | None = None,
+    domain: str = "discrete",
+    parameters: Mapping[str, float] | None = None,
+) -> Program:
+    """Compile core formulas (see ``desugar``) whose future is bounded into one program.
+
+    ``period`` is the sampling period, in dense time the length of a tick (seconds). ``inputs`` fixes
+    the order of the inputs; by default the variables in order of appearance. ``clip`` is the number
+    of samples of a finished trace: bounds beyond it are cut to it, which
+    changes no value and saves memory. ``parameters``: variables that are constants of their own,
+    merged with no other, and the values these begin with.
+
+    >>> from fractions import Fraction
+    >>> from rtamt.language.parser import parse_formula
+    >>> from rtamt.rewrite.desugar import desugar
+    >>> program = compile_program([desugar(parse_formula("always[0:2](x >= 3)"))], Fraction(1))
+    >>> program.inputs, program.lags
+    (('x',), (2,))
+    """
+    if inputs is None:
+        inputs = _read_by(outputs)
+    lowering = LOWERINGS[domain](period, inputs, clip, parameters or {})
+    indices = [lowering.lower(formula) for formula in outputs]
+    if clip is None:  # online: each output is known at its horizon, even where less would do
+        depths = (horizon(formula, period) for formula in outputs)
+        indices = [
+            index if depth is None else lowering.late(index, int(depth / period))
+            for index, depth in zip(indices, depths, strict=True)
+        ]
+    return lowering.program(tuple(indices))
+
+
+def compile_plan(
+    outputs: Sequence[Formula],
+    period: Fraction,
+    clip: int | None = None,
+    domain: str = "discrete",
+    inputs: tuple[str, ...] = (),
+) -> Plan:
+    """Compile core formulas for an offline evaluation; arguments as for :func:`compile_program`.
+
+    ``inputs``: those that are read besides what the formulas read.
+    """
+    stages: list[Stage] = []
+    formulas = tuple(outputs)
+    # Every stage reads every variable, so that all of them begin and end together.
+    names = _read_by(formulas, inputs)
+    while any(unbounded_future(formula) for formula in formulas):
+        formulas, stage = _cut(formulas, names, period, clip, domain, len(stages))
+        stages.append(stage)
+    program = compile_program(formulas, period, _read_by(formulas, names), clip, domain)
+    return Plan(tuple(stages), program)
+
+
+def _read_by(formulas: Sequence[Formula], names: tuple[str, ...] = ()) -> tuple[str, ...]:
+    """Return ``names`` and the variables of the formulas, each once."""
+    found = (name for formula in formulas for name in variables(formula))
+    return tuple(dict.fromkeys((*names, *found)))
+
+
+def _cut(
+    formulas: tuple[Formula, ...],
+    names: tuple[str, ...],
+    period: Fraction,
+    clip: int | None,
+    domain: str,
+    number: int,
+) -> tuple[tuple[Formula, ...], Stage]:
+    """Replace the innermost operators of unbounded future by inputs that a new stage computes."""
+    operands: dict[Formula, int] = {}
+    scans: dict[tuple[Formula | None, str, tuple[int, ...]], Scan] = {}
+    just_before = LOWERINGS[domain].until_just_before(period)
+
+    def cut(node: Formula, below: tuple[tuple[Formula, bool], ...]) -> tuple[Formula, bool]:
+        """Return the node rebuilt, and whether it or anything below it was unbounded."""
+        if not isinstance(node, Apply):
+            return node, False
+        rebuilt = replace(node, args=tuple(arg for arg, _ in below))
+        unbounded = reads_unbounded_future(node)
+        if any(was_unbounded for _, was_unbounded in below) or not unbounded:
+            return rebuilt, unbounded or any(was_unbounded for _, was_unbounded in below)
+        kind, outputs = _kind(node), tuple(operands.setdefault(arg, len(operands)) for arg in node.args)
+        defined = kind == DEFINED
+        meaning = node if defined else replace(node, interval=None)
+        key = (node if defined else None, kind, outputs)
+        scan = scans.setdefault(key, Scan(f"#{number}.{len(scans)}", kind, outputs, meaning))
+        result = Var(scan.name, node.span)
+        return result if defined else _after_scan(node, result, just_before), True
+
+    rest = tuple(fold(formula, cut)[0] for formula in formulas)
+    program = compile_program(tuple(operands), period, _read_by(tuple(operands), names), clip, domain)
+    return rest, Stage(program, tuple(scans.values()))
+
+
+def _kind(node: Apply) -> str:
+    """Return which pass from the end computes an operator of unbounded future."""
+    kernel = node.op.kernel
+    if isinstance(kernel, Window):
+        return f"run_{kernel.reduce}"
+    return "until" if isinstance(kernel, Until) else DEFINED
+
+
+def _after_scan(node: Apply, scan: Var, just_before: Fraction) -> Formula:
+    """Return what is left of an operator over [a, inf) once its backward pass from t on is known.
+
+    ``just_before`` is how much shorter than a the closed window is that stands for [0, a).
+    """
+    begin = node.interval.begin if node.interval is not None else Fraction(0)
+    if begin == 0:
+        return scan
+    at_begin = Interval(begin, begin)
+    if isinstance(node.op.kernel, Window):
+        return replace(node, args=(scan,), interval=at_begin)
+    # φ until[a, inf) ψ: φ on [t, t + a), and φ until ψ from t + a on.
+    before = STL["always"](node.args[0], interval=Interval(Fraction(0), begin - just_before))
+    return STL["and"](before, STL["eventually"](scan, interval=at_begin))

@@ -1,0 +1,230 @@
+"""A compiled formula: a flat list of instructions that every carrier of the engine runs.
+
+Slots and lags. At slot s (the s-th sample) an instruction with lag L gives its value at sample
+s - L; a future window [a, b] adds b to the lag, and operands are delayed until their lags agree.
+What lies outside the trace is *absent*: kernels skip it, which cuts windows at both ends. So one
+program serves offline and online alike, and nothing needs pastification.
+
+The bytes are those of core/program.hpp (documented there and in ``to_bytes``): header, records of
+40 bytes, outputs, a note, CRC-32. The note is empty in programs that stay in Python; in those that
+leave it (``carry.py``) it is their metadata (``metadata.py``).
+"""
+
+from __future__ import annotations
+
+import struct
+import zlib
+from dataclasses import dataclass, field
+from functools import cached_property
+from math import isnan
+from types import MappingProxyType
+from typing import TYPE_CHECKING
+
+from rtamt.compiler.metadata import Metadata, damaged
+from rtamt.errors import UsageError
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+    from fractions import Fraction
+
+    from rtamt.language.formula import Apply, Formula
+    from rtamt.language.operators import Operator
+
+#: In the order of the core's enumeration; a test compares the two.
+OPCODES = (
+    "input", "const",
+    "neg", "abs", "sqrt", "exp", "ln",
+    "add", "sub", "mul", "div", "pow", "log", "min", "max", "holds_gt", "holds_ge", "holds_eq",
+    "shift", "slide_max", "slide_min", "run_max", "run_min", "since", "until", "call",
+)  # fmt: skip
+
+#: Time domains, in the order of their codes.
+DOMAINS = ("discrete", "dense")
+
+NO_OPERAND = 0xFFFFFFFF
+_HEADER = struct.Struct("<8sHBBIIIII")
+_RECORD = struct.Struct("<B3xIIIqdq")
+#: What every program begins with.
+MAGIC = b"RTAMTPRG"
+_VERSION = 1
+_CHECKSUM = 4
+
+
+@dataclass(frozen=True, slots=True)
+class Instruction:
+    """One instruction: ``a`` and ``b`` are operands (indices of earlier instructions, or None).
+
+    ``n`` is a width or distance in samples (of ``input``: which input; of ``call``: which call), ``x`` a
+    constant or fill.
+    """
+
+    opcode: str
+    a: int | None = None
+    b: int | None = None
+    n: int = 0
+    x: float = 0.0
+    lag: int = 0
+
+    def describe(self, inputs: tuple[str, ...], calls: tuple[CallSite, ...] = ()) -> str:
+        """Return the instruction as one line of a listing."""
+        parts = [self.opcode]
+        if self.opcode == "call":
+            return calls[self.n].describe()
+        if self.opcode == "input":
+            parts.append(inputs[self.n])
+        elif self.opcode == "const":
+            parts.append(repr(self.x))
+        parts += [f"%{i}" for i in (self.a, self.b) if i is not None]
+        if self.opcode not in ("input", "const") and self.n:
+            parts.append(f"n={self.n}")
+        if self.opcode == "shift":
+            parts.append(f"fill={self.x!r}")
+        return " ".join(parts)
+
+
+@dataclass(frozen=True, slots=True)
+class CallSite:
+    """An operator that the core does not know, and the instructions that it reads.
+
+    It runs a kernel of the user's, or the definition where there is none. ``begin`` and ``end`` are its
+    interval in steps (samples or ticks), ``end=None`` where there is no upper bound; ``ahead`` is how
+    many steps ahead of the present one it reads.
+    """
+
+    node: Apply
+    operands: tuple[int, ...]
+    begin: int
+    end: int | None
+    ahead: int
+
+    @property
+    def op(self) -> Operator:
+        """The operator."""
+        return self.node.op
+
+    def describe(self) -> str:
+        """Return the call as one line of a listing."""
+        interval = ""
+        if self.node.interval is not None:
+            interval = f"[{self.begin}:{'inf' if self.end is None else self.end}]"
+        return " ".join([f"call {self.op.name}{interval}", *(f"%{i}" for i in self.operands)])
+
+
+@dataclass(frozen=True)
+class Program:
+    """Instructions in SSA form, equal ones merged.
+
+    ``period`` is the sampling period, in dense time the length of a tick (seconds). ``outputs`` are
+    indices of instructions; ``lags`` tells after how many samples or ticks each output is known.
+    ``value_of`` maps each core sub-formula to its instruction, ``origins`` the other way; what was
+    read from bytes has neither. ``metadata`` is what carriers need to know.
+    """
+
+    instructions: tuple[Instruction, ...]
+    inputs: tuple[str, ...]
+    outputs: tuple[int, ...]
+    period: Fraction
+    value_of: Mapping[Formula, int] = field(default_factory=lambda: MappingProxyType({}))
+    origins: tuple[Formula | None, ...] = ()
+    domain: str = "discrete"
+    calls: tuple[CallSite, ...] = ()
+    metadata: Metadata | None = None
+
+    @property
+    def lags(self) -> tuple[int, ...]:
+        """Samples (or ticks) after which each output's value at a sample is known."""
+        return tuple(self.instructions[i].lag for i in self.outputs)
+
+    def to_bytes(self) -> bytes:
+        """Serialise: what every carrier of the core runs.
+
+        Raises :class:`UsageError` where the program calls an operator that the core does not know.
+        """
+        if self.calls:
+            raise UsageError(
+                f"the program calls '{self.calls[0].op.name}', which the core does not know: bytes cannot carry "
+                f"an operator's own code; expand it into the operators of STL, or run the program in Python"
+            )
+        return self.code()
+
+    def code(self) -> bytes:
+        """Return what the core runs in this process, together with the calls."""
+        return self._code
+
+    @cached_property
+    def _code(self) -> bytes:
+        note = b"" if self.metadata is None else self.metadata.to_bytes(self.inputs, self.period)
+        domain = DOMAINS.index(self.domain)
+        counts = (len(self.instructions), len(self.inputs), len(self.outputs), len(note), 0)
+        parts = [_HEADER.pack(MAGIC, _VERSION, domain, 0, *counts)]
+        for ins in self.instructions:
+            a = NO_OPERAND if ins.a is None else ins.a
+            b = NO_OPERAND if ins.b is None else ins.b
+            parts.append(_RECORD.pack(OPCODES.index(ins.opcode), a, b, 0, ins.n, ins.x, ins.lag))
+        parts += [struct.pack(f"<{len(self.outputs)}I", *self.outputs), note]
+        body = b"".join(parts)
+        return body + struct.pack("<I", zlib.crc32(body))
+
+    @staticmethod
+    def from_bytes(code: bytes) -> Program:
+        """Read what ``to_bytes`` of a program with metadata wrote; raise :class:`UsageError` for anything else.
+
+        >>> import rtamt
+        >>> program = rtamt.parse("always[0:200ms](x >= 3)").compile(period="100ms")
+        >>> Program.from_bytes(program.to_bytes()).disassemble() == program.disassemble()
+        True
+        """
+        if len(code) < _HEADER.size + _CHECKSUM or not code.startswith(MAGIC):
+            raise damaged(f"it does not begin with '{MAGIC.decode()}'")
+        _, version, domain, _, size, inputs, outputs, length, _ = _HEADER.unpack_from(code)
+        if version != _VERSION:
+            raise damaged(f"its format has version {version}, and this is for version {_VERSION}")
+        expected = _HEADER.size + _RECORD.size * size + 4 * outputs + length + _CHECKSUM
+        if len(code) != expected:
+            raise damaged(f"it has {len(code)} bytes where its header promises {expected}")
+        body, (checksum,) = code[:-_CHECKSUM], struct.unpack("<I", code[-_CHECKSUM:])
+        if zlib.crc32(body) != checksum:
+            raise damaged("its checksum does not match, so it was damaged on the way")
+        if length == 0 or domain >= len(DOMAINS):
+            raise damaged("it has no metadata" if length == 0 else f"its time domain is {domain}")
+        records = _RECORD.iter_unpack(body[_HEADER.size : _HEADER.size + _RECORD.size * size])
+        instructions = tuple(_instruction(i, record, inputs) for i, record in enumerate(records))
+        end = len(body) - length
+        told = struct.unpack(f"<{outputs}I", body[end - 4 * outputs : end])
+        if any(place >= size for place in told):
+            raise damaged("it has an output that is no instruction")
+        metadata, names, period = Metadata.from_bytes(body[end:], inputs, outputs)
+        return Program(instructions, names, told, period, domain=DOMAINS[domain], metadata=metadata)
+
+    def disassemble(self) -> str:
+        """Return a listing: index, lag in samples, instruction.
+
+        >>> from fractions import Fraction
+        >>> from rtamt.compiler.plan import compile_program
+        >>> from rtamt.language.parser import parse_formula
+        >>> print(compile_program([parse_formula("always[0:2](x - 3)")], Fraction(1)).disassemble())
+        %0   lag 0    input x
+        %1   lag 0    const 3.0
+        %2   lag 0    sub %0 %1
+        %3   lag 2    slide_min %2 n=3  -> output
+        """
+        lines = []
+        for i, ins in enumerate(self.instructions):
+            mark = "  -> output" if i in self.outputs else ""
+            lines.append(f"%{i:<3} lag {ins.lag:<4} {ins.describe(self.inputs, self.calls)}{mark}")
+        return "\n".join(lines)
+
+
+def _instruction(index: int, record: tuple[int, int, int, int, int, float, int], inputs: int) -> Instruction:
+    code, a, b, _, n, x, lag = record
+    if code >= len(OPCODES):
+        raise damaged(f"instruction {index} has the unknown opcode {code}")
+    opcode = OPCODES[code]
+    if opcode == "call":
+        raise damaged(f"instruction {index} calls an operator that bytes cannot carry")
+    if any(operand >= index for operand in (a, b) if operand != NO_OPERAND):
+        raise damaged(f"instruction {index} ({opcode}) reads one that is not before it")
+    if (opcode == "input" and not 0 <= n < inputs) or isnan(x):
+        raise damaged(f"instruction {index} ({opcode}) holds a number that it cannot have")
+    first, second = (None if operand == NO_OPERAND else operand for operand in (a, b))
+    return Instruction(opcode, first, second, n, x, lag)

@@ -1,0 +1,119 @@
+"""A requirement to a program that can leave Python: both outputs, parameters, and all that it says of itself."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from types import MappingProxyType
+from typing import TYPE_CHECKING
+
+from rtamt.compiler.metadata import Metadata
+from rtamt.compiler.plan import compile_program
+from rtamt.errors import UsageError
+from rtamt.language.formula import Apply, Const, Formula, Var, fold, postorder, variables
+from rtamt.rewrite.check import check_bounds, check_dense, check_online
+from rtamt.rewrite.desugar import desugar
+from rtamt.rewrite.semantics import boolean
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+    from fractions import Fraction
+
+    from rtamt.compiler.program import Program
+
+#: What a carried program tells, in this order: ρ, and +inf or -inf as the formula holds or not.
+OUTPUTS = ("robustness", "verdict")
+
+#: Nodes of the largest formula that is written out; a message with a longer one would help nobody.
+_LARGEST = 200
+
+
+def carried_program(
+    formula: Formula,
+    *,
+    period: Fraction,
+    domain: str,
+    judged: Formula | None = None,
+    text: str | None = None,
+    name: str | None = None,
+) -> Program:
+    """Compile a requirement for carriers: outputs :data:`OUTPUTS`, its named constants as parameters.
+
+    ``period``: seconds of a step, as for ``compile_program``. ``judged``: the formula whose robustness is
+    told, where a semantics says so; the verdict is that of ``formula`` all the same. ``text``: what
+    errors point at. A constant that is also the bound of an interval decides how long windows are, and
+    is no parameter.
+
+    >>> from fractions import Fraction
+    >>> from rtamt.language.parser import parse_formula
+    >>> formula = parse_formula("always[0:2](x >= limit)", constants={"limit": 3})
+    >>> program = carried_program(formula, period=Fraction(1), domain="discrete")
+    >>> dict(program.metadata.parameters), program.instructions[1].x
+    ({'limit': (1,)}, 3.0)
+    """
+    if domain == "dense":
+        check_dense(formula, text)
+        check_bounds(formula, period, text, "resolution")
+    else:
+        check_bounds(formula, period, text)
+    check_online(formula, text)
+    inputs = variables(formula)
+    if domain == "dense" and not inputs:
+        raise UsageError("the formula reads no variable, so in dense time nothing says when to evaluate it")
+    structural = _bounds(formula)
+    values: dict[str, float] = {}
+    lowered = (desugar(judged or formula), desugar(boolean(formula)))
+    told = [_with_parameters(each, structural, values) for each in lowered]
+    program = compile_program(told, period, inputs, domain=domain, parameters=values)
+    places = {
+        node.name: (i,)
+        for i, node in enumerate(program.origins)
+        if isinstance(node, Var) and node.name in values
+    }
+    metadata = Metadata(
+        name or "",
+        str(formula) if _sizes((formula,))[formula] <= _LARGEST else text or "",
+        OUTPUTS,
+        MappingProxyType(places),
+        MappingProxyType(_meanings(program, told)),
+    )
+    return replace(program, metadata=metadata)
+
+
+def _bounds(formula: Formula) -> frozenset[str]:
+    """Return the names of the constants that bound an interval."""
+    intervals = [node.interval for node in postorder(formula) if isinstance(node, Apply) and node.interval]
+    return frozenset(name for interval in intervals for name in interval.constants)
+
+
+def _with_parameters(formula: Formula, structural: frozenset[str], values: dict[str, float]) -> Formula:
+    """Return the formula with a variable for every named constant, whose values are put into ``values``."""
+
+    def step(node: Formula, args: tuple[Formula, ...]) -> Formula:
+        if isinstance(node, Apply):
+            return replace(node, args=args)
+        if isinstance(node, Const) and node.name is not None and node.name not in structural:
+            values[node.name] = node.value
+            return Var(node.name, node.span)
+        return node
+
+    return fold(formula, step)
+
+
+def _meanings(program: Program, told: Iterable[Formula]) -> dict[int, str]:
+    """Return the formula of each instruction that computes something and is small enough to be shown."""
+    sizes = _sizes(told)
+    return {
+        i: str(formula)
+        for i, formula in enumerate(program.origins)
+        if isinstance(formula, Apply) and program.value_of[formula] == i and sizes[formula] <= _LARGEST
+    }
+
+
+def _sizes(formulas: Iterable[Formula]) -> dict[Formula, int]:
+    """Return how many nodes each sub-formula has when it is printed."""
+    sizes: dict[Formula, int] = {}
+    for formula in formulas:
+        for node in postorder(formula):
+            below = node.args if isinstance(node, Apply) else ()
+            sizes[node] = 1 + sum(sizes[arg] for arg in below)
+    return sizes

@@ -1,0 +1,106 @@
+"""The door to the compiled core: asked for when it is needed, with a clear answer where it is not built."""
+
+from __future__ import annotations
+
+import sys
+from functools import update_wrapper
+from typing import TYPE_CHECKING, Any, TypeVar
+
+from rtamt.engine.user_operators import calls_of
+from rtamt.errors import EvaluationError, UsageError
+from rtamt.language.formula import Apply
+from rtamt.rewrite.desugar import written
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Collection, Iterable
+    from types import ModuleType
+
+    from rtamt.compiler.program import Program
+    from rtamt.language.formula import Formula
+
+
+def core() -> ModuleType:
+    """Return the compiled core; raise :class:`UsageError` where it is not installed."""
+    loaded = sys.modules.get("rtamt.engine._core")
+    if loaded is not None:
+        return loaded
+    try:
+        from rtamt.engine import _core
+    except ImportError as error:
+        raise UsageError(
+            f"the compiled core cannot be loaded ({error}); install the package with a C++ compiler at hand, "
+            f"or use backend='python'"
+        ) from None
+    return _core
+
+
+Function = TypeVar("Function", bound="Callable[..., Any]")
+
+
+def compiled(kind: str) -> Callable[[Function], Function]:
+    """Return a decorator of a monitor's method that the compiled monitor in ``_backend`` takes over.
+
+    The function itself is called where that one refuses what it is given, and where it is not built.
+    ``kind``: which method of it, as the core calls it.
+    """
+
+    def decorate(function: Function) -> Function:
+        try:
+            from rtamt.engine import _core
+        except ImportError:
+            return function
+        return update_wrapper(_core.Method(function, kind), function)  # type: ignore[return-value]
+
+    return decorate
+
+
+def core_monitor(
+    program: Program, period: float, tolerance: float, strict: bool = True, ignored: Collection[str] = ()
+) -> Any:
+    """Return a compiled monitor of a program; raise :class:`UsageError` where memory does not suffice.
+
+    ``period`` in seconds; ``tolerance`` a fraction of it; a monitor that is not ``strict`` counts the
+    gaps that miss the period and takes the sample; samples of ``ignored`` variables are skipped.
+    """
+    _core = core()
+    code, calls = program.code(), calls_of(program)
+    try:
+        return _core.Monitor(code, list(program.inputs), period, tolerance, strict, frozenset(ignored), calls)
+    except RuntimeError as error:
+        raise not_made(program, error) from None
+    except MemoryError:
+        stamps = 8 * (max(program.lags) + 1)  # of the samples whose values are still to come
+        gibibytes = (_core.memory(code, calls) + stamps) / 2**30
+        raise UsageError(
+            f"the monitor needs {gibibytes:.3g} GiB of memory, which this machine does not give; "
+            f"shorten the longest bound or lengthen the period"
+        ) from None
+
+
+def not_made(program: Program, error: RuntimeError) -> UsageError:
+    """Return the error for what a compiled kernel said when it could not be made."""
+    names = dict.fromkeys(site.op.name for site in program.calls)
+    return UsageError(f"the kernel of '{' or '.join(names)}' cannot be made: {error}")
+
+
+def culprit(
+    error: Exception,
+    program: Program,
+    asked: Iterable[Formula],
+    original: Callable[[Formula], Formula] = lambda formula: formula,
+) -> Formula:
+    """Return where an operation made NaN, as it is written in the formulas that are ``asked``.
+
+    ``error``: the core's ``Undefined``. ``original``: of a formula of the program, what it stands for.
+    Raises what a user's own operator raised or said.
+    """
+    formula = program.origins[error.args[0]]
+    assert formula is not None
+    if error.__cause__ is not None:
+        raise error.__cause__
+    formula = written(original(formula), asked)
+    if len(error.args) == 3 and isinstance(formula, Apply):
+        raise EvaluationError(
+            f"the kernel of '{formula.op.name}' failed in '{formula}': {error.args[2]}; mend the kernel"
+        )
+    return formula

@@ -1,0 +1,104 @@
+"""Offline: what is asked of a finished recording, how that is read, and what answers."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from rtamt.engine import dense_evaluate
+from rtamt.engine.evaluate import Evaluator
+from rtamt.errors import BoundError
+from rtamt.reference import dense as dense_reference
+from rtamt.reference import discrete as reference
+from rtamt.rewrite.check import check_bounds
+from rtamt.signals import arrays
+from rtamt.signals.arrays import Recording, Signal
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Sequence
+    from fractions import Fraction
+
+    from rtamt.engine.dense_evaluate import DenseRecording
+    from rtamt.language.formula import Formula
+    from rtamt.rewrite.semantics import Judge
+
+
+@dataclass(frozen=True, slots=True)
+class Question:
+    """A formula whose predicates are judged already, and the clock by which recordings are read.
+
+    ``text``: what the formula was parsed from. ``step``: the sampling period in seconds (None: that of
+    the stamps), in dense time the length of a tick.
+    """
+
+    formula: Formula
+    text: str
+    time: str
+    step: Fraction | None
+    semantics: str | Judge
+
+    def record(
+        self, data: Any, names: Sequence[str], known: Collection[str], tolerance: float
+    ) -> Recording | DenseRecording:
+        """Normalise a finished recording of the variables ``names``; ``known``: others that may be there.
+
+        Raises :class:`TraceError`.
+        """
+        if self.time == "dense":
+            assert self.step is not None
+            return dense_evaluate.trace(data, names, self.step, known)
+        return arrays.trace(data, names, self.step, known, tolerance)
+
+    def check(self, recording: Recording) -> None:
+        """Raise :class:`BoundError` where an interval is no multiple of the recording's period."""
+        try:
+            check_bounds(self.formula, recording.period, self.text)
+        except BoundError as error:
+            if not recording.inferred:
+                raise
+            raise BoundError(
+                f"{error.message} (the period was taken from the time stamps; period= sets it)",
+                self.text,
+                error.span,
+            ) from None
+
+
+class Evaluators:
+    """What computes robustness signals on one back end; what it has compiled it keeps."""
+
+    def __init__(self, backend: str) -> None:
+        self._backend = backend
+        self._discrete: dict[Any, Evaluator] = {}
+        self._dense: dict[Any, dense_evaluate.Evaluator] = {}
+
+    def __call__(self, formulas: tuple[Formula, ...], recording: Recording | DenseRecording) -> list[Signal]:
+        """Return the robustness signal of each formula over a recording, all from one program."""
+        if isinstance(recording, Recording):
+            return self._samples(formulas, recording)
+        return self._events(formulas, recording)
+
+    def _samples(self, formulas: tuple[Formula, ...], recording: Recording) -> list[Signal]:
+        times, period = recording.times.view(), recording.period
+        times.flags.writeable = False  # all signals of a recording share its times
+        if self._backend == "python":
+            n, start = len(recording), float(times[0])
+            columns = [reference.evaluate(f, recording.columns, n, period, start) for f in formulas]
+        else:
+            key = (formulas, period.as_integer_ratio())  # fractions are slow to hash
+            evaluator = self._discrete.get(key)
+            if evaluator is None:
+                evaluator = self._discrete[key] = Evaluator(formulas, period)
+            columns = evaluator(recording)
+        return [Signal(times, values) for values in columns]
+
+    def _events(self, formulas: tuple[Formula, ...], recording: DenseRecording) -> list[Signal]:
+        tick, inputs = recording.scale.tick, tuple(recording.columns)
+        if self._backend == "python":
+            steps = [dense_reference.evaluate(f, recording.columns, tick) for f in formulas]
+            return [recording.signal(each.times, each.values) for each in steps]
+        key = (formulas, tick.as_integer_ratio(), inputs)
+        evaluator = self._dense.get(key)
+        if evaluator is None:
+            evaluator = dense_evaluate.Evaluator(formulas, tick, inputs)
+            self._dense[key] = evaluator
+        return [recording.signal(*events) for events in evaluator(recording)]

@@ -1,0 +1,246 @@
+"""What stands between the core and the operators that it does not know.
+
+A driver belongs to one call of a program. It makes an object of the user's class for each trace, hands
+it the operands, and checks what comes back: the core can trust a driver. A checkpoint is a deep copy of
+the object, so that a failed update leaves no trace in it either; a class that knows a cheaper way has a
+``__deepcopy__``.
+"""
+
+from __future__ import annotations
+
+import copy
+import ctypes
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rtamt.errors import EvaluationError, StlError, UsageError
+from rtamt.language.dense_definitions import QUARTERS, Steps
+from rtamt.language.operators import Blocks, Bounds, Compiled
+from rtamt.reference.definition_adapter import (
+    DefinedEvents,
+    DefinedSamples,
+    check_dense_meaning,
+    numbers_of,
+    raised,
+    signal_of,
+    values_of,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+    from fractions import Fraction
+
+    from numpy.typing import NDArray
+
+    from rtamt.compiler.program import CallSite, Program
+    from rtamt.language.formula import Apply
+    from rtamt.language.operators import Operator
+
+    Array = NDArray[np.float64]
+    Events = tuple[NDArray[np.int64], Array]
+
+
+def calls_of(program: Program) -> list[tuple[Any, int, int, float, tuple[int, ...]]]:
+    """Return what the core needs for the calls of a program: of each the kernel, interval, step and operands."""
+    return [
+        (
+            _kernel(site, program.domain),
+            site.begin,
+            -1 if site.end is None else site.end,
+            float(program.period),
+            site.operands,
+        )
+        for site in program.calls
+    ]
+
+
+def _kernel(site: CallSite, domain: str) -> Any:
+    """Return the capsule of a compiled kernel, or a function that makes a driver."""
+    kernel = site.op.kernel
+    if isinstance(kernel, Compiled):
+        name = kernel.discrete if domain == "discrete" else kernel.dense
+        if name is not None:
+            return _capsule(site.op, kernel.library, name)
+    blocks = None
+    if isinstance(kernel, Blocks):
+        blocks = kernel.discrete if domain == "discrete" else kernel.dense
+    if blocks is not None:
+        make = blocks if site.op.bounds is Bounds.NONE else partial(blocks, site.begin, site.end)
+    else:
+        defined = DefinedSamples if domain == "discrete" else DefinedEvents
+        if domain == "dense":
+            check_dense_meaning(site.op)
+        make = partial(defined, site.node, site.begin, site.end, site.ahead)
+    driver = SampleDriver if domain == "discrete" else EventDriver
+    return partial(driver, site.node, len(site.operands), make, site.ahead)
+
+
+def _capsule(op: Operator, library: str, name: str) -> Any:
+    """Load a shared library and return the address of one of its kernels."""
+    try:
+        function = getattr(ctypes.CDLL(str(library)), name)
+    except OSError as error:
+        raise UsageError(f"the kernel of '{op.name}' cannot be loaded: {error}") from error
+    except AttributeError as error:
+        raise UsageError(
+            f"the kernel of '{op.name}' cannot be loaded: '{library}' has no kernel '{name}'; "
+            f"name it there with RTAMT_KERNEL({name}, ...)"
+        ) from error
+    function.restype = ctypes.c_void_p
+    new = ctypes.pythonapi.PyCapsule_New
+    new.restype = ctypes.py_object
+    new.argtypes = (ctypes.c_void_p, ctypes.c_char_p, ctypes.c_void_p)
+    return new(function(), b"rtamt.kernel", None)
+
+
+class _Driver:
+    """What both time domains share: the user's object, its checkpoint, and what is said when it fails."""
+
+    def __init__(self, node: Apply, operands: int, make: Callable[[], Any], ahead: int) -> None:
+        self.operands = operands
+        self._node = node
+        self._make = make
+        self._ahead = ahead
+        self._begin()
+
+    def _begin(self) -> None:
+        self._fault: Exception | None = None
+        self._saved: tuple[Any, ...] | None = None
+        self._object = self._asked(self._make)
+
+    def reset(self) -> None:
+        """Begin a new trace. What goes wrong here and in a checkpoint is raised by the next call."""
+        try:
+            self._begin()
+        except StlError as error:
+            self._fault = error
+
+    def checkpoint(self) -> None:
+        """Remember the state."""
+        try:
+            self._saved = (self._asked(copy.deepcopy, self._object), self._progress())
+        except StlError as error:
+            self._fault = error
+
+    def rollback(self) -> None:
+        """Go back to the checkpoint."""
+        self._fault = None
+        if self._saved is not None:
+            self._object, progress = self._saved
+            self._saved = None
+            self._return_to(progress)
+
+    def _progress(self) -> Any:
+        raise NotImplementedError
+
+    def _return_to(self, progress: Any) -> None:
+        raise NotImplementedError
+
+    def _asked(self, function: Callable[..., Any], *args: Any, **more: Any) -> Any:
+        """Call the user's code; say which operator it was when that raises something."""
+        try:
+            with np.errstate(all="ignore"):  # NaN is found, and told, by the core
+                return function(*args, **more)
+        except StlError:
+            raise
+        except Exception as error:
+            raise raised(self._node, error) from error
+
+    def _wrong(self, sentence: str) -> EvaluationError:
+        return EvaluationError(f"the kernel of '{self._node.op.name}' {sentence}")
+
+
+class SampleDriver(_Driver):
+    """A call in discrete time."""
+
+    def _begin(self) -> None:
+        super()._begin()
+        self._return_to((0, 0, np.empty(0), False))
+
+    def _progress(self) -> Any:
+        return self._taken, self._given, self._waiting, self._ended
+
+    def _return_to(self, progress: Any) -> None:
+        self._taken, self._given, self._waiting, self._ended = progress
+
+    def run(self, operands: Sequence[Array], last: bool, due: int) -> Array:
+        """Take a block of each operand; return the next ``due`` values. ``last``: no more will come."""
+        if self._fault is not None:
+            raise self._fault
+        if len(operands[0]):
+            self._taken += len(operands[0])
+            self._add(self._asked(self._object.push, *operands), max(0, self._taken - self._ahead))
+        if last and not self._ended:
+            self._ended = True
+            if self._given < self._taken:
+                self._add(self._asked(self._object.finish), self._taken)
+        values, self._waiting = self._waiting[:due], self._waiting[due:]
+        return np.ascontiguousarray(values)
+
+    def _add(self, values: Any, known: int) -> None:
+        """Take over what the object gave; ``known`` values should have come by now."""
+        block = self._asked(numbers_of, self._node, values)
+        if block.shape != (known - self._given,):
+            raise self._wrong(
+                f"returned an array of shape {block.shape}, expected ({known - self._given},): after {self._taken} "
+                f"samples of its operands {known} values are known, and it has given {self._given}"
+            )
+        self._given = known
+        self._waiting = np.concatenate((self._waiting, block))
+
+
+class EventDriver(_Driver):
+    """A call in dense time; the core looks at what it gives."""
+
+    def _progress(self) -> Any:
+        return None
+
+    def _return_to(self, progress: Any) -> None:
+        pass
+
+    def advance(self, operands: Sequence[Events], _start: int, until: int, _due: int) -> Events:
+        """Take the events of each operand up to ``until``; return those that are known by then."""
+        if self._fault is not None:
+            raise self._fault
+        given = self._asked(self._object.push, *operands, until=until)
+        return self._asked(self._events, given)  # type: ignore[no-any-return]
+
+    def _events(self, given: Any) -> Events:
+        times, values = given
+        ticks, numbers = np.ascontiguousarray(times), np.ascontiguousarray(numbers_of(self._node, values))
+        if ticks.shape != numbers.shape or ticks.ndim != 1 or (len(ticks) and ticks.dtype.kind != "i"):
+            raise self._wrong(
+                f"returned times of shape {ticks.shape} ({ticks.dtype}) and values of shape {numbers.shape}, "
+                f"expected as many ticks (int64) as values"
+            )
+        return ticks.astype(np.int64), numbers
+
+
+# ---- unbounded future: the definition, once, over a whole trace ----------------------------------
+
+
+def defined_column(node: Apply, period: Fraction, operands: Sequence[Array]) -> Array:
+    """Return the values of an operator of unbounded future over whole columns."""
+    bounds = () if node.op.bounds is Bounds.NONE else (_begin(node, period), None)
+    with np.errstate(all="ignore"):
+        return values_of(node, operands, len(operands[0]), bounds, "sample")
+
+
+def defined_signal(node: Apply, tick: Fraction, operands: Sequence[Events]) -> Events:
+    """Return the values of an operator of unbounded future over whole step functions, in ticks."""
+    check_dense_meaning(node.op)
+    start = max(int(times[0]) for times, _ in operands)
+    signals = []
+    for times, values in operands:
+        at_start = int(np.searchsorted(times, start, side="right")) - 1
+        ticks = (start, *times[at_start + 1 :].tolist())
+        signals.append(Steps(tuple(t * QUARTERS for t in ticks), tuple(values[at_start:].tolist())))
+    with np.errstate(all="ignore"):
+        result = signal_of(node, tuple(signals), _begin(node, tick) * QUARTERS, None)
+    return np.array([t // QUARTERS for t in result.times], np.int64), np.array(result.values, float)
+
+
+def _begin(node: Apply, step: Fraction) -> int:
+    return 0 if node.interval is None else int(node.interval.begin / step)

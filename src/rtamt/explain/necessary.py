@@ -1,0 +1,114 @@
+"""Which intervals there is plainly no verdict without: so that few are left to be tried.
+
+Down the formula once more, as ``Demands`` goes, but over what the predicates are known to be on some
+intervals, and asking only for what nothing else can stand in for: the operand that alone has its truth,
+the only stretch in a window. Fewer intervals never offer more to choose from, so what is needed
+now is needed whatever else is taken away.
+"""
+
+from __future__ import annotations
+
+from bisect import bisect_left, bisect_right
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rtamt.explain.instants import NEVER, NONE, Cells
+from rtamt.explain.propagate import Asked, Demands
+from rtamt.language.formula import Var
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from rtamt.explain.structure import Place
+    from rtamt.language.formula import Apply, Formula
+
+
+class Needs(Demands):
+    """What a verdict needs of every place. ``leaves``: cells of intervals that cannot be left out."""
+
+    def given(self, support: Mapping[Place, Cells]) -> Needs:
+        """Take where each place has, by what is known, the truth that is asked of it."""
+        self._known = support
+        return self
+
+    def _support(self, node: Formula, sign: int) -> Cells:
+        return self._known[node, sign]
+
+    def _choose_operands(self, node: Apply, sign: int, cells: Cells) -> None:
+        shares = [self._having(arg, sign) for arg in node.args]
+        for arg, other in zip(node.args, reversed(shares), strict=True):
+            self._add(arg, sign, Asked(cells - other))
+
+    def _witnesses(self, node: Apply, reduce: str, sign: int, cells: Cells) -> Cells:
+        del reduce  # whichever it is
+        having = self._having(node.args[0], sign)
+        return _needed(node.args[0], only_stretches(cells, having, *self._offsets(node)), having)
+
+    def _until(
+        self, node: Apply, sign: int, cells: Cells, having: tuple[Cells, Cells], window: tuple[int, int]
+    ) -> tuple[Cells, Cells]:
+        hold, goal = having
+        first, last = window
+        if not self.truth(sign):
+            gaps = _needed(node.args[0], only_gaps(cells, hold, goal, first, last), hold)
+            return gaps, NONE if first else cells
+        # Where φ need not hold, t' is at once or not at all.
+        goals = _needed(node.args[1], only_goals(cells, hold, goal, first, last), goal)
+        return (cells, goals) if first else (cells - goal, goals | (cells - hold))
+
+
+def _needed(operand: Formula, found: Cells, having: Cells) -> Cells:
+    """Return the cells that are needed of an operand, given one cell of each stretch that is needed.
+
+    Of a predicate, the stretch is an interval, needed as a whole; else which of its cells are needed is
+    known only where it has but one.
+    """
+    if isinstance(operand, Var):
+        return found
+    single = having.ends - having.starts == 1
+    return found & Cells(having.starts[single], having.ends[single])
+
+
+def only_stretches(asked: Cells, having: Cells, before: int, after: int) -> Cells:
+    """Return a cell of each interval of ``having`` that some k of ``asked`` finds alone in [k + before, k + after]."""
+    far = np.array([4 * NEVER])
+    # From the first k that the interval before no longer serves to the last that the next does not yet.
+    first = np.maximum(having.starts - after, np.concatenate((-far, having.ends[:-1])) - before)
+    end = np.minimum(having.ends - before, np.concatenate((having.starts[1:], far)) - after)
+    k = np.searchsorted(asked.ends, first, side="right")
+    met = k < len(asked)
+    met[met] = asked.starts[k[met]] < end[met]
+    met &= first < end
+    return Cells(having.starts[met], having.starts[met] + 1)
+
+
+def only_goals(asked: Cells, holds: Cells, goals: Cells, first: int, last: int) -> Cells:
+    """Return a cell of each interval of ψ that alone makes φ until[first, last] ψ hold at some of ``asked``.
+
+    Looked for from the ends of each stretch of ``asked`` on which φ holds: there the choice is smallest.
+    """
+    starts, ends, gaps = goals.starts.tolist(), goals.ends.tolist(), holds.ends.tolist()
+    found = []
+    for begin, end in asked & holds:
+        gap = gaps[bisect_right(gaps, begin)]
+        for cell in {begin, end - 1}:
+            run = bisect_right(ends, cell + first)
+            if run == bisect_right(starts, min(cell + last, gap)) - 1:
+                found.append((starts[run], starts[run] + 1))
+    return Cells.of(found)
+
+
+def only_gaps(asked: Cells, gaps: Cells, goals: Cells, first: int, last: int) -> Cells:
+    """Return a cell of each interval in which φ fails that alone makes φ until[first, last] ψ fail, likewise."""
+    starts, ends = gaps.starts.tolist(), gaps.ends.tolist()
+    goal_starts, goal_ends = goals.starts.tolist(), goals.ends.tolist()
+    found = []
+    for begin, end in asked:
+        for cell in {begin, end - 1}:
+            goal = bisect_right(goal_ends, cell + first)
+            at = max(goal_starts[goal], cell + first) if goal < len(goal_ends) else 4 * NEVER
+            run = bisect_right(ends, cell)
+            if at <= cell + last and run == bisect_left(starts, at) - 1:
+                found.append((starts[run], starts[run] + 1))
+    return Cells.of(found)

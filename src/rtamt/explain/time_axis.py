@@ -1,0 +1,269 @@
+"""A recording in cells: formulas over it and over stand-ins for predicates, and times back and forth."""
+
+from __future__ import annotations
+
+import math
+from abc import ABC, abstractmethod
+from datetime import datetime
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rtamt.engine import dense_evaluate, evaluate
+from rtamt.engine.dense_evaluate import DenseRecording
+from rtamt.errors import StlError, UsageError, shown
+from rtamt.explain.instants import NEVER, Steps
+from rtamt.language.formula import Apply, postorder
+from rtamt.reference import dense as dense_reference
+from rtamt.reference import discrete as reference
+from rtamt.rewrite.desugar import desugar
+from rtamt.signals.arrays import TOLERANCE, Recording, is_number, stamps
+from rtamt.signals.ticks import kind_of
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+    from fractions import Fraction
+
+    from rtamt.language.formula import Formula
+    from rtamt.signals.dense_arrays import Samples
+
+    #: From a function of cells for each variable to one for each formula.
+    Runner = Callable[[Mapping[str, Steps]], list[Steps]]
+
+
+class Timeline(ABC):
+    """The cells of a recording: ``period`` is the seconds from one to the next, ``end`` how many there are.
+
+    Formulas go to the back end of the specification: the engine, or the definition.
+    """
+
+    period: Fraction
+    end: int
+
+    @abstractmethod
+    def measured(self, formulas: Sequence[Formula]) -> list[Steps]:
+        """Evaluate formulas over the recording."""
+
+    @abstractmethod
+    def runner(self, formulas: Sequence[Formula]) -> Runner:
+        """Prepare to evaluate core formulas (in cells) again and again, over other signals each time."""
+
+    @abstractmethod
+    def cell(self, at: Any) -> int:
+        """Return the cell of a time as the caller tells it; raise :class:`UsageError` outside the recording."""
+
+    @abstractmethod
+    def time(self, cell: int) -> Any:
+        """Return the time of a cell as the caller tells it; None where there is none so late."""
+
+    @abstractmethod
+    def show(self, cell: int) -> str:
+        """Return the time of a cell for a sentence."""
+
+    @property
+    @abstractmethod
+    def last(self) -> int:
+        """The last cell that was recorded."""
+
+    @abstractmethod
+    def closes(self, end: int, formula: Formula, at: int) -> bool:
+        """Tell whether an interval of cells up to ``end`` is better told by its last cell than by ``end``.
+
+        It is part of the answer to why the formula has its verdict at the cell ``at``.
+        """
+
+
+class DiscreteTimeline(Timeline):
+    """Cells are samples."""
+
+    def __init__(self, recording: Recording, backend: str) -> None:
+        self._recording = recording
+        self._backend = backend
+        self.period = recording.period
+        self.end = len(recording)
+
+    def measured(self, formulas: Sequence[Formula]) -> list[Steps]:
+        """See :class:`Timeline`."""
+        return self._evaluated([desugar(formula) for formula in formulas], self._recording)
+
+    def runner(self, formulas: Sequence[Formula]) -> Runner:
+        """See :class:`Timeline`."""
+        evaluator = None if self._backend == "python" else evaluate.Evaluator(formulas, self.period)
+
+        def run(signals: Mapping[str, Steps]) -> list[Steps]:
+            columns = {name: self._samples(steps) for name, steps in signals.items()}
+            recording = Recording(self._recording.times, columns, self.period)
+            if evaluator is None:
+                return self._evaluated(formulas, recording)
+            return [Steps.of_samples(values) for values in evaluator(recording)]
+
+        return run
+
+    def _evaluated(self, formulas: Sequence[Formula], recording: Recording) -> list[Steps]:
+        if self._backend == "python":
+            start = float(recording.times[0])
+            values = [
+                reference.evaluate(formula, recording.columns, self.end, self.period, start)
+                for formula in formulas
+            ]
+        else:
+            values = evaluate.Evaluator(formulas, self.period)(recording)
+        return [Steps.of_samples(samples) for samples in values]
+
+    def _samples(self, steps: Steps) -> np.ndarray[Any, Any]:
+        return np.repeat(steps.values, np.diff(steps.changes, append=self.end))
+
+    def cell(self, at: Any) -> int:
+        """See :class:`Timeline`."""
+        times = self._recording.times
+        seconds = (
+            stamps([at])[0] if self._recording.dated and isinstance(at, datetime | np.datetime64) else at
+        )
+        if is_number(seconds):
+            nearest = int(np.abs(times - float(seconds)).argmin())
+            if abs(float(times[nearest]) - float(seconds)) <= TOLERANCE * float(self.period):
+                return nearest
+        told = at if isinstance(at, np.datetime64) else shown(at)
+        raise UsageError(
+            f"there is no sample at {told}; the recording has {self.end}, "
+            f"from {self.show(0)} to {self.show(self.last)}"
+        )
+
+    def time(self, cell: int) -> Any:
+        """See :class:`Timeline`."""
+        return float(self._recording.times[cell])
+
+    def show(self, cell: int) -> str:
+        """See :class:`Timeline`."""
+        seconds = float(self._recording.times[cell])
+        if self._recording.dated:
+            return str(np.datetime64(round(seconds * 1e3), "ms"))
+        return f"{seconds:.15g} s"
+
+    @property
+    def last(self) -> int:
+        """See :class:`Timeline`."""
+        return self.end - 1
+
+    def closes(self, end: int, formula: Formula, at: int) -> bool:  # noqa: ARG002 - samples are all there is
+        """See :class:`Timeline`."""
+        return True
+
+
+class DenseTimeline(Timeline):
+    """Cells are ticks, from the recording's start on for ever: the last values hold."""
+
+    def __init__(self, recording: DenseRecording, backend: str) -> None:
+        self._recording = recording
+        self._backend = backend
+        self._start = recording.start
+        self.period = recording.scale.tick
+        self.end = NEVER
+        self._last = recording.end - self._start
+        self._grains: dict[Formula, int] = {}
+        if self._last >= NEVER // 2:
+            raise UsageError(
+                "the recording has too many ticks to be explained; choose a coarser resolution, such as "
+                "resolution='1us'"
+            )
+
+    def measured(self, formulas: Sequence[Formula]) -> list[Steps]:
+        """See :class:`Timeline`."""
+        found = self._evaluator([desugar(formula) for formula in formulas])(self._recording.columns)
+        return [Steps(ticks - self._start, values, NEVER) for ticks, values in found]
+
+    def runner(self, formulas: Sequence[Formula]) -> Runner:
+        """See :class:`Timeline`."""
+        evaluator = self._evaluator(formulas)
+
+        def run(signals: Mapping[str, Steps]) -> list[Steps]:
+            columns = {name: (steps.changes, steps.values) for name, steps in signals.items()}
+            return [Steps(ticks, values, NEVER) for ticks, values in evaluator(columns)]
+
+        return run
+
+    def _evaluator(self, formulas: Sequence[Formula]) -> Callable[[Mapping[str, Samples]], list[Samples]]:
+        """Return what evaluates formulas as far as anything can change, after the recording's end too."""
+        after = max(dense_evaluate.reach(formula, self.period) for formula in formulas)
+        compiled: dense_evaluate.Evaluator | None = None
+
+        def evaluated(columns: Mapping[str, Samples]) -> list[Samples]:
+            nonlocal compiled
+            recording = DenseRecording(_held(columns, after), self._recording.scale)
+            if self._backend == "python":
+                steps = (dense_reference.evaluate(f, recording.columns, self.period) for f in formulas)
+                return [(step.times, step.values) for step in steps]
+            if compiled is None:
+                compiled = dense_evaluate.Evaluator(formulas, self.period, tuple(columns))
+            return compiled(recording)
+
+        return evaluated
+
+    def cell(self, at: Any) -> int:
+        """See :class:`Timeline`."""
+        scale = self._recording.scale
+        try:
+            moments = [at] if scale.kind != "nanoseconds" else np.array([at])
+            kind = "seconds" if scale.kind == "units" else scale.kind
+            found = int(scale.ticks(moments, "at")[0]) - self._start if kind_of(moments) == kind else -1
+        except (StlError, TypeError, ValueError):
+            found = -1
+        if 0 <= found <= self._last:
+            return found
+        raise UsageError(
+            f"{shown(at)} is no instant of the recording, "
+            f"which lasts from {self.show(0)} to {self.show(self._last)}"
+        )
+
+    def time(self, cell: int) -> Any:
+        """See :class:`Timeline`."""
+        if cell >= NEVER // 2:
+            return None
+        time = self._recording.scale.times(np.array([cell + self._start], np.int64))[0]
+        return time.item() if self._recording.scale.kind in ("seconds", "nanoseconds") else time
+
+    def show(self, cell: int) -> str:
+        """See :class:`Timeline`."""
+        return self._recording.scale.show(cell + self._start)
+
+    @property
+    def last(self) -> int:
+        """See :class:`Timeline`."""
+        return self._last
+
+    def closes(self, end: int, formula: Formula, at: int) -> bool:
+        """See :class:`Timeline`.
+
+        [2 s, 5 s] and [2 s, 5 s + 1 tick) are the same ticks, as are [2 s, 5 s) and [2 s, 5 s - 1 tick]. What
+        is meant is the end on the grid that all samples and bounds, and the instant asked for, share.
+        """
+        grain = self._grains.get(formula)
+        if grain is None:
+            grain = self._grains[formula] = self._grain(formula)
+        grain = math.gcd(grain, at + self._start)
+        return (end + self._start) % grain != 0 == (end + self._start - 1) % grain
+
+    def _grain(self, formula: Formula) -> int:
+        """Return the ticks from line to line of the finest grid that holds all samples and bounds."""
+        grain = math.gcd(*(int(np.gcd.reduce(ticks)) for ticks, _ in self._recording.columns.values()))
+        for node in postorder(formula):
+            if isinstance(node, Apply) and node.interval is not None:
+                bounds = node.interval.begin, node.interval.end or 0
+                grain = math.gcd(grain, *(int(bound / self.period) for bound in bounds))
+        return grain or 1
+
+
+def timeline(recording: Recording | DenseRecording, backend: str) -> Timeline:
+    """Return the cells of a recording."""
+    if isinstance(recording, Recording):
+        return DiscreteTimeline(recording, backend)
+    return DenseTimeline(recording, backend)
+
+
+def _held(columns: Mapping[str, Samples], after: int) -> dict[str, Samples]:
+    """Return the columns with the last value of one of them held on after the end of all."""
+    end = max(int(ticks[-1]) for ticks, _ in columns.values()) + min(after, NEVER)
+    name, (ticks, values) = next(iter(columns.items()))
+    if end > int(ticks[-1]):
+        ticks, values = np.append(ticks, end), np.append(values, values[-1])
+    return {**columns, name: (ticks, values)}

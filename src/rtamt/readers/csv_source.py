@@ -1,0 +1,96 @@
+"""CSV files as a source of signals; ``csv.py`` reads what is in them."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from itertools import chain, islice
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rtamt.errors import TraceError
+from rtamt.readers.csv import BLOCK, Column, Header, blocks, plain, read_header, rows
+from rtamt.readers.csv_cells import DATE, LARGEST, Cells
+from rtamt.readers.frames import field_of
+from rtamt.readers.source import Field, Source, Table, opening
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from rtamt.readers.source import Raw
+
+#: Lines that are looked at to tell columns of numbers from columns of text.
+_SAMPLE = 100
+
+
+def open_csv(path: str) -> Source:
+    """Open a CSV file; columns whose first lines hold no number at all are text."""
+    with opening(path, "CSV"), open(path, encoding="utf-8-sig", newline="", errors="replace") as lines:
+        header, rest = read_header(lines, path)
+        sample = [row for _, row in islice(rows(rest, header, header.line), _SAMPLE)]
+    fields = [
+        field_of(column, _kind([row[i].strip() for row in sample if len(row) > i and row[i].strip()]))
+        for i, column in enumerate(header.names)
+    ]
+
+    def chunks(wanted: Sequence[Field]) -> Iterator[list[Raw]]:
+        try:
+            with opening(path, "CSV"), open(path, encoding="utf-8-sig", newline="") as lines:
+                _, rest = read_header(lines, path)
+                yield from _blocks(rest, header, wanted)
+        except UnicodeDecodeError:
+            raise TraceError(
+                f"'{path}' is not UTF-8 text; save it as CSV in UTF-8 (spreadsheets offer this under 'save as')"
+            ) from None
+
+    def load(wanted: Sequence[Field]) -> list[Raw]:
+        parts = list(chunks(wanted))
+        return [_joined([part[i] for part in parts]) for i in range(len(wanted))]
+
+    return Source(path, (Table(tuple(fields), load, chunks),))
+
+
+def _blocks(lines: Iterator[str], header: Header, wanted: Sequence[Field]) -> Iterator[list[Raw]]:
+    """Yield columns block by block: by numpy as long as lines are plain numbers, cell by cell from there on."""
+    columns = [Column(f.column, header.names.index(f.column), f.skip_nan) for f in wanted]
+    line = header.line
+    while block := list(islice(lines, BLOCK)):
+        values = plain(block, header, columns)
+        if values is None or np.abs(values).max(initial=0) >= LARGEST:
+            break
+        yield [_whole(column) for column in values]
+        line += len(block)
+    # What was a number so far stays one.
+    dated = False if line > header.line else None
+    cells = [Cells(header, field.column, dated, skip_nan=field.skip_nan) for field in wanted]
+    for several in blocks(chain(block, lines), replace(header, line=line)):
+        numbers = [number for number, _ in several]
+        for column, place in zip(cells, columns, strict=True):
+            column.extend([row[place.position] for _, row in several], numbers)
+        yield [column.take() for column in cells]
+
+
+def _whole(column: Raw) -> Raw:
+    """Return a column of integers as int64: stamps are exact then, and told apart by their size."""
+    return column.astype(np.int64) if (np.isfinite(column) & (column == np.rint(column))).all() else column
+
+
+def _joined(parts: Sequence[Raw]) -> Raw:
+    if any(isinstance(part, np.ma.MaskedArray) for part in parts):
+        joined: Raw = np.ma.concatenate(parts)  # type: ignore[no-untyped-call]
+        return joined
+    return np.concatenate(parts) if parts else np.empty(0)
+
+
+def _kind(cells: Sequence[str]) -> str:
+    if cells and all(DATE.fullmatch(cell) for cell in cells):
+        return "time"
+    return "text" if cells and not any(map(_is_number, cells)) else "number"
+
+
+def _is_number(cell: str) -> bool:
+    try:
+        float(cell.replace(",", "."))
+    except ValueError:
+        return False
+    return True

@@ -1,0 +1,154 @@
+"""``rtamt.read``: one way to read a recording, whatever it is kept in."""
+
+from __future__ import annotations
+
+import os
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any
+
+from rtamt.errors import UsageError
+from rtamt.readers import frames
+from rtamt.readers.assemble import Choice, chunks_of, trace_of
+from rtamt.readers.formats import FORMATS, format_of
+from rtamt.readers.sql import is_url, open_sql
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Mapping
+
+    from rtamt.readers.source import Source
+    from rtamt.signals.trace import Trace
+
+
+def read(
+    source: Any,
+    *,
+    time: str | None = None,
+    columns: Iterable[str] | None = None,
+    names: Mapping[str, str] | None = None,
+    units: Mapping[str, str] | None = None,
+    sheet: str | None = None,
+    query: str | None = None,
+    skip_nan: Iterable[str] = (),
+) -> Trace:
+    r"""Read a recording; ``Specification.evaluate`` and ``update_many`` take what comes out.
+
+    ``source``: a file, whose suffix tells its format (CSV, Parquet, Arrow, Excel, PX4 ULog, MDF, ROS bag); the
+    address of a database (``sqlite:///log.db``, ``postgresql://user@host/name``), with a ``query`` whose
+    rows are samples; a dict, a pandas, polars, xarray or arrow object, or a structured numpy array.
+    ``columns``: the signals that are wanted (default: all that are numbers). ``names``: for signals that
+    are to be called otherwise than their columns, from the name to the column:
+    ``{"v": "battery_status[1].voltage_v"}``. ``time``: the column of time stamps, ``""`` for none; by
+    default the one called time, t, timestamp, stamp or datetime, perhaps with a unit (``Time [ms]``,
+    ``time_ms``), else the one column of dates. ``units``: from column to unit, where the source does
+    not say it; ``"time"`` stands for the column of time stamps, which otherwise are seconds, or, where
+    they are integers too large for that, ms, us or ns since 1970. ``sheet``: of an Excel workbook that
+    has several.
+
+    A value that is missing (an empty cell, null, pandas' NaN) is no sample: the signal then has a
+    clock of its own. Any other NaN stays, and an evaluation that reads it is an error; for the signals
+    in ``skip_nan`` it is a missing value, too. What was guessed or left out is in ``Trace.notes``, and
+    printed with it.
+
+    Raises :class:`TraceError` where the data is wrong or columns cannot be told apart, and
+    :class:`UsageError` where a library is missing: ``pip install 'rtamt[data]'``.
+
+    >>> import pathlib, tempfile
+    >>> import rtamt
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     path = pathlib.Path(folder, "log.csv")
+    ...     _ = path.write_text("t [ms],speed [m/s],note\n0,5,go\n100,4,stop\n")
+    ...     trace = rtamt.read(path)
+    >>> trace["speed"]
+    Signal(times=array([0. , 0.1]), values=array([5., 4.]))
+    >>> trace.channel("speed").unit, trace.notes
+    ('m/s', ("time is 't [ms]', by its name", 'left out, not numbers: note'))
+    >>> import numpy as np
+    >>> rtamt.read({"time": [0, 1, 2], "v": np.array([5, np.nan, 4])}, skip_nan=["v"])
+    Trace of a dict: 1 signal, 0 s to 2 s
+      left out, NaN: 1 sample of v, the first at 1 s
+      v  2 samples, 0 s to 2 s
+    """
+    with opened(source, sheet, query) as found:
+        return trace_of(found, choice(time, columns, names, units, skip_nan))
+
+
+def scan(
+    source: Any,
+    *,
+    time: str | None = None,
+    columns: Iterable[str] | None = None,
+    names: Mapping[str, str] | None = None,
+    units: Mapping[str, str] | None = None,
+    sheet: str | None = None,
+    query: str | None = None,
+    skip_nan: Iterable[str] = (),
+) -> Iterator[Trace]:
+    r"""Read a recording in chunks, in memory that does not grow with its length; arguments as for :func:`read`.
+
+    For :func:`rtamt.check_stream` and ``update_many``. CSV, Parquet, Arrow and Excel files and SQL queries
+    can be read in chunks; what the first chunk tells of the time stamps holds for all. Give
+    ``columns=spec.input_names``, so that only what a formula reads is read.
+
+    >>> import pathlib, tempfile
+    >>> import rtamt
+    >>> spec = rtamt.parse("always(speed <= 30)")
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     path = pathlib.Path(folder, "log.csv")
+    ...     _ = path.write_text("t,speed\n0,5\n1,31\n2,4\n")
+    ...     result = rtamt.check_stream(spec, rtamt.scan(path, columns=spec.input_names))
+    >>> result.robustness, result.first_violation
+    (-1.0, 1.0)
+    """
+    with opened(source, sheet, query) as found:
+        if any(table.chunks is None for table in found.tables) or len(found.tables) != 1:
+            raise UsageError(f"{found.name} cannot be read in chunks; read it whole with rtamt.read")
+        yield from chunks_of(found, choice(time, columns, names, units, skip_nan))
+
+
+def choice(
+    time: str | None,
+    columns: Iterable[str] | None,
+    names: Mapping[str, str] | None,
+    units: Mapping[str, str] | None,
+    skip_nan: Iterable[str] = (),
+) -> Choice:
+    """Return the arguments of :func:`read` as one record."""
+    for argument, given in (("columns", columns), ("skip_nan", skip_nan)):
+        if isinstance(given, str):
+            raise UsageError(f"{argument} is the text '{given}'; give a list of names, such as ['{given}']")
+    return Choice(
+        time,
+        None if columns is None else tuple(columns),
+        dict(names or {}),
+        dict(units or {}),
+        tuple(skip_nan),
+    )
+
+
+@contextmanager
+def opened(source: Any, sheet: str | None = None, query: str | None = None) -> Iterator[Source]:
+    """Open whatever can be read, and close it at the end."""
+    found = _open(source, sheet, query)
+    try:
+        yield found
+    finally:
+        if found.close is not None:
+            found.close()
+
+
+def _open(source: Any, sheet: str | None, query: str | None) -> Source:
+    if isinstance(source, str) and is_url(source):
+        return open_sql(source, query)
+    if query is not None:
+        raise UsageError("a query is for a database, whose address looks like sqlite:///log.db")
+    if isinstance(source, (str, os.PathLike)):
+        path = os.fspath(source)
+        return format_of(path).open(path, sheet)
+    found = frames.source_of(source)
+    if found is None:
+        kinds = ", ".join(known.name for known in FORMATS)
+        raise UsageError(
+            f"cannot read data of type {type(source).__name__}: give a file ({kinds}), the address of a "
+            f"database, or {', '.join(frames.known_kinds())}"
+        )
+    return found

@@ -1,0 +1,264 @@
+"""Outputs that are watched together: their pastified formulas, robustness and truth, over either kind of time."""
+
+from __future__ import annotations
+
+from collections import deque
+from fractions import Fraction
+from typing import TYPE_CHECKING, NamedTuple, TypeAlias
+
+import numpy as np
+
+from rtamt.engine.dense_monitor import DenseMonitor
+from rtamt.engine.monitor import Monitor
+from rtamt.engine.online import Watched
+from rtamt.errors import SpecificationError
+from rtamt.language.formula import Apply, Const, postorder, variables
+from rtamt.language.operators import STL
+from rtamt.language.records import Pointwise
+from rtamt.rewrite.horizon import horizon
+from rtamt.signals.ticks import NANOSECOND
+
+if TYPE_CHECKING:
+    from collections.abc import Container, Mapping, Sequence
+
+    from rtamt.language.formula import Formula
+    from rtamt.ros.binding import Output
+
+
+class Robustness(NamedTuple):
+    """How robust an output's pastified formula was at ``stamp`` (nanoseconds)."""
+
+    output: Output
+    stamp: int
+    value: float
+
+
+class Verdict(NamedTuple):
+    """Whether an output's formula held at ``stamp - horizon``.
+
+    ``stamp``: nanoseconds. ``horizon``: seconds. ``satisfied`` is None while that instant lies before
+    the first sample.
+    """
+
+    output: Output
+    stamp: int
+    horizon: float
+    satisfied: bool | None
+
+
+#: Messages that are kept while another topic is silent.
+HELD = 1000
+
+Record: TypeAlias = Robustness | Verdict
+
+
+class Standing:
+    """One output, and how it stood at the last :meth:`Watch.look`: ``latest`` robustness, whether it was ``satisfied``.
+
+    ``horizon``: seconds. ``lag``: the same in samples, in dense time in nanoseconds.
+    """
+
+    __slots__ = ("horizon", "lag", "latest", "output", "satisfied", "topic", "verdicts")
+
+    def __init__(self, output: Output, period: Fraction | None) -> None:
+        depth = horizon(output.specification.formula, period or Fraction(1))
+        assert depth is not None, "unbounded future was refused"
+        self.output = output
+        self.topic = output.topic
+        self.verdicts = output.verdicts
+        self.horizon = float(depth)
+        self.lag = int(depth / (period or NANOSECOND))
+        self.forget()
+
+    def forget(self) -> None:
+        """Be as before the first sample."""
+        self.latest: float | None = None
+        self.satisfied: bool | None = None
+
+
+class Watch:
+    """Outputs that read the same numbers, of either kind of time: one program, and each sub-formula once in it.
+
+    ``outputs``: as :func:`together` puts them. ``topic_of``: from the name of a number to its topic.
+    """
+
+    _monitor: Monitor | DenseMonitor
+
+    def __init__(
+        self, outputs: Sequence[Output], topic_of: Mapping[str, str], period: Fraction | None
+    ) -> None:
+        self.names = variables(outputs[0].specification.formula)
+        self.topics = frozenset(topic_of[name] for name in self.names)
+        self.formulas = tuple(_watched(output, period) for output in outputs)
+        self.standings = tuple(Standing(output, period) for output in outputs)
+        #: Why the last sample could not be used.
+        self.fault: str | None = None
+
+    @property
+    def samples(self) -> int:
+        """How many samples, in dense time numbers, were taken since the beginning or the last reset."""
+        return self._monitor.samples
+
+    def reset(self) -> None:
+        """Forget all samples."""
+        self._monitor.reset()
+        for standing in self.standings:
+            standing.forget()
+
+
+def together(outputs: Sequence[Output]) -> list[list[Output]]:
+    """Return the outputs in groups that one program may watch.
+
+    Those of a group read the same numbers, so that they begin and end together. An output with a sample
+    that may have no value, such as the logarithm of -1, is alone: the others are to go on.
+    """
+    groups: dict[object, list[Output]] = {}
+    for output in outputs:
+        formula = output.specification.formula
+        key = frozenset(variables(formula)) if _always_has_a_value(formula) else output.name
+        groups.setdefault(key, []).append(output)
+    return list(groups.values())
+
+
+def _always_has_a_value(formula: Formula) -> bool:
+    for node in postorder(formula):
+        if not isinstance(node, Apply):
+            continue
+        partial = isinstance(node.op.kernel, Pointwise) and node.op.kernel.partial
+        if partial or STL.get(node.op.name) is not node.op:
+            return False
+        # A predicate is a difference, and inf - inf is no number.
+        if node.op.truth is not None and not any(isinstance(arg, Const) for arg in node.args):
+            return False
+    return True
+
+
+def _watched(output: Output, period: Fraction | None) -> tuple[Watched, Watched]:
+    """Return robustness and truth by formulas of past operators alone, equal one horizon later."""
+    spec = output.specification
+    try:
+        past = spec.pastified(period)
+    except SpecificationError as error:
+        raise type(error)(f"'{output.name}': {error.message}", error.text, error.span) from None
+    return (
+        Watched(output.name, spec.judged(past), spec.text),
+        Watched(f"truth of {output.name}", spec.judged(past, "boolean"), spec.text),
+    )
+
+
+class DiscreteWatch(Watch):
+    """Samples one period apart."""
+
+    def __init__(self, outputs: Sequence[Output], topic_of: Mapping[str, str], period: Fraction) -> None:
+        super().__init__(outputs, topic_of, period)
+        first, *_ = every = [watched for pair in self.formulas for watched in pair]
+        backend = outputs[0].specification.backend
+        self._monitor: Monitor = Monitor(
+            first.formula, text=first.text, period=period, backend=backend, watch=every
+        )
+
+    def take(
+        self, stamp: int, values: Mapping[str, float], wanted: Container[str] | None = None
+    ) -> list[Record]:
+        """Take one sample, return records for the topics that are wanted (None: all).
+
+        Raises :class:`StlError` where it cannot be used.
+        """
+        monitor = self._monitor
+        monitor.step(*[values[name] for name in monitor.input_names])
+        records: list[Record] = []
+        for standing, (robustness, truth) in zip(self.standings, self.formulas, strict=True):
+            if wanted is None or standing.topic in wanted:
+                records.append(Robustness(standing.output, stamp, self._value(robustness)))
+            if wanted is None or standing.verdicts in wanted:
+                records.append(Verdict(standing.output, stamp, standing.horizon, self._held(standing, truth)))
+        return records
+
+    def _value(self, watched: Watched) -> float:
+        value = self._monitor[watched.name]
+        assert isinstance(value, float), "a formula of the past is known at once"
+        return value
+
+    def _held(self, standing: Standing, truth: Watched) -> bool | None:
+        return self._value(truth) > 0 if self._monitor.samples > standing.lag else None
+
+    def look(self) -> None:
+        """Bring the standings up to date."""
+        if not self._monitor.samples:
+            return
+        for standing, (robustness, truth) in zip(self.standings, self.formulas, strict=True):
+            standing.latest = self._value(robustness)
+            standing.satisfied = self._held(standing, truth)
+
+
+class DenseWatch(Watch):
+    """Samples at the times in the messages' headers, each topic on its own clock."""
+
+    def __init__(self, outputs: Sequence[Output], topic_of: Mapping[str, str]) -> None:
+        super().__init__(outputs, topic_of, None)
+        first, *_ = every = [watched for pair in self.formulas for watched in pair]
+        backend = outputs[0].specification.backend
+        # A tick is a nanosecond, so that what comes out needs no conversion.
+        self._monitor: DenseMonitor = DenseMonitor(
+            first.formula, text=first.text, resolution=NANOSECOND, backend=backend, watch=every
+        )
+        self._start: int | None = None
+        self._held: deque[tuple[int, dict[str, float]]] = deque(maxlen=HELD)
+        #: What became known last, of the result and then of each watched formula.
+        self._points: list[list[tuple[int, float]]] = []
+
+    def hold(self, stamp: int, values: Mapping[str, float]) -> None:
+        """Keep a message while another topic has nothing to say, of many the latest: the trace begins when all do."""
+        self._held.append((stamp, self._mine(values)))
+
+    def take(
+        self, stamp: int, values: Mapping[str, float], wanted: Container[str] | None = None
+    ) -> list[Record]:
+        """Take the numbers of one message, return records for the topics that are wanted (None: all).
+
+        Raises :class:`StlError` where they cannot be used.
+        """
+        records: list[Record] = []
+        while self._held:
+            before, held = self._held.popleft()
+            records += self._update(before, held, wanted)
+        return records + self._update(stamp, self._mine(values), wanted)
+
+    def _mine(self, values: Mapping[str, float]) -> dict[str, float]:
+        return {name: values[name] for name in self.names if name in values}
+
+    def _update(self, stamp: int, values: dict[str, float], wanted: Container[str] | None) -> list[Record]:
+        # An integer of numpy means nanoseconds. All outputs are known up to the same instant.
+        if not len(self._monitor.update(np.int64(stamp), **values)):
+            return []
+        self._points = points = self._monitor.points()
+        if self._start is None:
+            self._start = points[1][0][0]  # the first place is of what update() returned
+        records: list[Record] = []
+        for standing, told, truths in zip(self.standings, points[1::2], points[2::2], strict=True):
+            output = standing.output
+            if wanted is None or standing.topic in wanted:
+                records += [Robustness(output, at, value) for at, value in told]
+            if wanted is None or standing.verdicts in wanted:
+                depth = standing.horizon
+                records += [Verdict(output, at, depth, self._judge(standing, at, v)) for at, v in truths]
+        return records
+
+    def _judge(self, standing: Standing, at: int, truth: float) -> bool | None:
+        assert self._start is not None
+        return truth > 0 if at >= self._start + standing.lag else None
+
+    def look(self) -> None:
+        """Bring the standings up to date."""
+        for standing, told, truths in zip(
+            self.standings, self._points[1::2], self._points[2::2], strict=False
+        ):
+            standing.latest = told[-1][1]
+            standing.satisfied = self._judge(standing, *truths[-1])
+
+    def reset(self) -> None:
+        """Forget all samples."""
+        super().reset()
+        self._held.clear()
+        self._points = []
+        self._start = None

@@ -1,0 +1,93 @@
+"""Records and conditions to messages, whatever made the classes: rospy, rclpy, or the definitions alone."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from rtamt.ros.binding import MessageType
+from rtamt.ros.fields import write
+from rtamt.ros.messages import SATISFIED, UNKNOWN, VIOLATED
+from rtamt.ros.output_group import Robustness
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    from rtamt.ros.binding import Binding
+    from rtamt.ros.output_group import Record
+    from rtamt.ros.report import Condition, Level
+
+VERDICT = MessageType("rtamt_msgs.msg", "Verdict")
+DIAGNOSTICS = "/diagnostics"
+_VERDICTS = {None: UNKNOWN, True: SATISFIED, False: VIOLATED}
+
+
+class Outbox:
+    """Makes the messages that a node publishes.
+
+    ``load``: from a type to its class, which can be called without arguments. ``stamp``: from
+    nanoseconds to what a header's stamp is. ``level``: what a status has for a level.
+    """
+
+    def __init__(
+        self,
+        binding: Binding,
+        load: Callable[[MessageType], Any],
+        stamp: Callable[[int], Any],
+        level: Callable[[Level], Any] = int,
+    ) -> None:
+        self.classes = binding.check(load)
+        self._verdict = load(VERDICT)
+        self._stamp = stamp
+        self._level = level
+        self._load = load
+        #: From every topic of robustness and verdicts to its class.
+        self.topics: Mapping[str, Any] = {
+            topic: cls
+            for output in binding.outputs
+            for topic, cls in (
+                (output.topic, self.classes[output.type]),
+                (output.verdicts, self._verdict),
+            )
+        }
+
+    def topic(self, record: Record) -> str:
+        """Return the topic that a record goes to."""
+        return record.output.topic if isinstance(record, Robustness) else record.output.verdicts
+
+    def message(self, record: Record) -> Any:
+        """Return the message of a record, its header stamped."""
+        if isinstance(record, Robustness):
+            message = self.classes[record.output.type]()
+            write(message, record.output.path, record.value)
+            if not hasattr(message, "header"):
+                return message
+        else:
+            message = self._verdict()
+            message.name, message.horizon = record.output.name, record.horizon
+            message.verdict = _VERDICTS[record.satisfied]
+        message.header.stamp = self._stamp(record.stamp)
+        return message
+
+    def diagnostics(self, conditions: list[Condition], node: str, now: int) -> Any:
+        """Return the ``DiagnosticArray`` of a node's conditions."""
+        array = self._load(diagnostic("DiagnosticArray"))()
+        array.header.stamp = self._stamp(now)
+        array.status = [self._status(condition, node) for condition in conditions]
+        return array
+
+    def _status(self, condition: Condition, node: str) -> Any:
+        status = self._load(diagnostic("DiagnosticStatus"))()
+        status.level = self._level(condition.level)
+        status.name, status.message, status.hardware_id = condition.name, condition.message, node
+        status.values = [self._pair(key, value) for key, value in condition.values]
+        return status
+
+    def _pair(self, key: str, value: str) -> Any:
+        pair = self._load(diagnostic("KeyValue"))()
+        pair.key, pair.value = key, value
+        return pair
+
+
+def diagnostic(name: str) -> MessageType:
+    """Return a type of ``diagnostic_msgs``."""
+    return MessageType("diagnostic_msgs.msg", name)

@@ -1,0 +1,1 @@
+"""Traces per time domain: what the caller has, as float64 arrays, ticks and timestamps."""

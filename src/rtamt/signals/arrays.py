@@ -1,0 +1,457 @@
+"""Whatever the caller has (lists, arrays, frames, objects with fields) to float64 arrays: once, at the edge."""
+
+from __future__ import annotations
+
+import dataclasses
+from abc import ABC, abstractmethod
+from collections.abc import Mapping
+from dataclasses import dataclass
+from datetime import datetime
+from fractions import Fraction
+from functools import reduce
+from math import isnan
+from numbers import Real
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rtamt.errors import TraceError, UsageError, did_you_mean, shown, with_article
+from rtamt.language.units import format_duration
+from rtamt.signals.datetimes import nanoseconds_of
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Sequence
+
+    from numpy.typing import NDArray
+
+    FloatArray = NDArray[np.float64]
+
+#: The key under which a trace holds its time stamps.
+TIME = "time"
+
+#: How far, as a fraction of the period, the gap between two samples may be from the period.
+TOLERANCE = 0.1
+
+
+class Clocked(ABC):
+    """Data that knows its clocks: see ``trace.py``."""
+
+    __slots__ = ()
+
+    @property
+    @abstractmethod
+    def start(self) -> Any:
+        """The earliest time of any signal; None without time stamps."""
+
+    @property
+    @abstractmethod
+    def units(self) -> Mapping[str, str]:
+        """The units of the signals whose source tells them."""
+
+    @abstractmethod
+    def on_one_clock(self, names: Collection[str]) -> Mapping[str, Any]:
+        """Return n values for each name, and ``"time"`` in seconds where there are stamps."""
+
+    @abstractmethod
+    def on_own_clocks(self, names: Collection[str]) -> Mapping[str, tuple[Any, Any]]:
+        """Return times and values for each name."""
+
+
+class Signal:
+    """Values over time: ``times`` in seconds, ``values``; float64 arrays of the same length.
+
+    In dense time a point for every change and one at the end; times come as the caller gave them.
+    The times of a discrete recording are shared by its signals and cannot be written.
+
+    >>> import rtamt
+    >>> signal = rtamt.parse("x >= 3").evaluate({"time": [0, 1, 2], "x": [5, 1, 4]}).signal
+    >>> len(signal), signal.times[signal.values < 0]
+    (3, array([1.]))
+    """
+
+    __slots__ = ("_times", "_values")
+
+    def __init__(self, times: NDArray[Any], values: FloatArray) -> None:
+        self._times = times
+        self._values = values
+
+    @property
+    def times(self) -> NDArray[Any]:
+        """When: seconds, or in dense time what the caller tells time in."""
+        return self._times
+
+    @property
+    def values(self) -> FloatArray:
+        """What: one value for each time."""
+        return self._values
+
+    def points(self) -> list[tuple[Any, float]]:
+        """Return (time, value) pairs of Python's own numbers: the cheapest way to read what an update told.
+
+        >>> import rtamt
+        >>> monitor = rtamt.parse("historically[0:1](x >= 3)").monitor(time="dense")
+        >>> monitor.update(0.5, x=5.0).points()
+        [(0.5, 2.0)]
+        """
+        times = self.times.tolist() if self.times.dtype.kind in "fi" else self.times
+        return list(zip(times, self.values.tolist(), strict=True))
+
+    def __len__(self) -> int:
+        return len(self.times)
+
+    def __repr__(self) -> str:
+        return f"Signal(times={self.times!r}, values={self.values!r})"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Recording:
+    """A finished recording in discrete time: one column of ``len(times)`` samples for each variable."""
+
+    times: FloatArray
+    columns: Mapping[str, FloatArray]
+    period: Fraction
+    #: Whether the period was taken from the time stamps.
+    inferred: bool = False
+    #: Whether the time stamps were dates; ``times`` are seconds since 1970 then.
+    dated: bool = False
+    #: The units of the variables whose source tells them.
+    units: Mapping[str, str] = dataclasses.field(default_factory=dict)
+
+    def __len__(self) -> int:
+        return len(self.times)
+
+
+def trace(
+    data: Any,
+    names: Sequence[str],
+    period: Fraction | None,
+    known: Collection[str] = (),
+    tolerance: float = TOLERANCE,
+) -> Recording:
+    """Normalise a finished recording; the caller's data is never changed.
+
+    ``data``: a mapping, or anything with columns (a pandas or polars frame), from variable to n
+    numbers; ``"time"`` (n stamps, seconds or datetimes) is optional. ``names`` are the variables the
+    formula reads, ``known`` others that may be there. Without a ``period`` (seconds) it is taken
+    from the stamps. Raises :class:`TraceError`.
+    """
+    check_tolerance(tolerance)
+    times, columns, n = columns_of(data, names, known)
+    if n == 0:
+        raise TraceError("the trace is empty: give at least one sample")
+    inferred = False
+    if times is None:
+        period = period or Fraction(1)
+        times = np.arange(n, dtype=np.float64)
+        if period != 1:
+            times *= float(period)
+    else:
+        check_increasing(times)
+        inferred = period is None
+        period = period or infer_period(times)
+        check_regular(times, period, tolerance)
+    for name, column in columns.items():
+        check_numbers(name, column, times)
+    return Recording(times, columns, period, inferred, _dated(data), units_of(data))
+
+
+def units_of(data: Any) -> Mapping[str, str]:
+    """Return the units of the variables, where the data tells them."""
+    return data.units if isinstance(data, Clocked) else {}
+
+
+def _dated(data: Any) -> bool:
+    """Tell whether the time stamps of a recording are dates."""
+    if data.__class__ is dict and TIME not in data:
+        return False
+    if isinstance(data, Clocked):
+        return isinstance(data.start, np.datetime64)
+    first = next(iter(data[TIME]), None) if TIME in _keys(data) else None
+    return isinstance(first, datetime | np.datetime64)
+
+
+def columns_of(
+    data: Any, names: Sequence[str], known: Collection[str] = ()
+) -> tuple[FloatArray | None, dict[str, FloatArray], int]:
+    """Return the time stamps (None if there are none), a column for each name, and their common length."""
+    if data.__class__ is not dict and isinstance(data, Clocked):
+        data = data.on_one_clock(names)
+    keys = _keys(data)
+    if is_mapping(data):
+        refuse_unknown(keys, names, known)
+    columns = {name: _column(data, keys, name) for name in names}
+    times = stamps(data[TIME]) if TIME in keys else None
+    return times, columns, _common_length(columns, times, data, keys)
+
+
+def is_mapping(data: Any) -> bool:
+    """Tell whether data is a mapping; a dict is one at once, others cost a microsecond to find out."""
+    return data.__class__ is dict or isinstance(data, Mapping)
+
+
+def array(values: Any, name: str, first: int = 0) -> FloatArray:
+    """Return ``values`` as a contiguous one-dimensional float64 array.
+
+    ``first`` is the index of ``values[0]`` in the recording, for messages. Always a copy:
+    sub-formulas are evaluated when they are asked for, whatever the caller has done to the data
+    by then.
+    """
+    if values.__class__ is np.ndarray and values.dtype == np.float64 and values.ndim == 1:
+        # The most usual, for which the rest would cost more than the evaluation.
+        return np.array(values, dtype=np.float64)
+    try:
+        if isinstance(values, np.ma.MaskedArray) and values.mask.any():
+            values = np.ma.filled(values.astype(np.float64), np.nan)  # a masked value is a missing one
+        raw = np.asarray(values)
+        # numpy would read the text "1.5" as a number and None as NaN; both are more likely mistakes.
+        numeric = raw.dtype.kind in "fiub" or (raw.dtype.kind == "O" and all(map(is_number, raw.flat)))
+        if raw.ndim == 0 or not numeric:
+            raise _not_numbers(values, name, first)
+        result = np.array(raw, dtype=np.float64, order="C")
+    except (TypeError, ValueError):
+        raise _not_numbers(values, name, first) from None
+    if raw.ndim != 1:
+        raise TraceError(
+            f"'{name}' has {raw.ndim} dimensions, expected 1: give one number a sample", variable=name
+        )
+    return result
+
+
+def is_number(value: Any) -> bool:
+    """Tell whether a value is a real number that a double can hold: Python's, numpy's, or any other."""
+    if value.__class__ is float:
+        return True
+    if not isinstance(value, (Real, np.bool_)):
+        return False
+    try:
+        float(value)
+    except OverflowError:
+        return False
+    return True
+
+
+def stamps(values: Any) -> FloatArray:
+    """Return time stamps as seconds: numbers are seconds, datetimes count from 1970."""
+    raw = np.asarray(values)
+    if raw.dtype.kind == "O" and any(isinstance(value, datetime) for value in raw.flat):
+        raw = _since_1970(raw)
+    if raw.dtype.kind in "mM":
+        missing = np.isnat(raw)
+        nanoseconds = raw.astype(f"{raw.dtype.kind}8[ns]").astype(np.int64)
+        raw = np.where(missing, np.nan, nanoseconds / 1e9)
+    return array(raw, TIME)
+
+
+def _since_1970(raw: NDArray[Any]) -> FloatArray:
+    """Return datetimes as seconds; those without a time zone as they stand, as in dense time."""
+    zones: dict[bool, int] = {}
+    seconds = np.full(raw.size, np.nan)
+    for i, value in enumerate(raw.flat):
+        if not isinstance(value, datetime):
+            raise TraceError(
+                f"'{TIME}' is {shown(value)} at sample {i}, expected a datetime like the others",
+                variable=TIME,
+                index=i,
+            )
+        moment = nanoseconds_of(value)
+        if moment is not None:
+            zones.setdefault(value.tzinfo is not None, i)
+            seconds[i] = moment / 1e9
+    if len(zones) > 1:
+        raise TraceError(
+            f"'{TIME}' has a time zone at sample {zones[True]} and none at sample {zones[False]}: "
+            f"use one way for all",
+            variable=TIME,
+            index=max(zones.values()),
+        )
+    return seconds
+
+
+def check_numbers(name: str, column: FloatArray, times: FloatArray, first: int = 0) -> None:
+    """Raise :class:`TraceError` at the first NaN; ``first`` is the index of ``column[0]`` in the recording."""
+    if len(column) and isnan(np.minimum.reduce(column)):  # the least of numbers and a NaN is NaN
+        i = int(np.isnan(column).argmax())
+        raise nan_error(name, first + i, float(times[i]))
+
+
+def nan_error(name: str, index: int, time: float) -> TraceError:
+    """Return the error for a NaN in the data."""
+    return TraceError(
+        f"'{name}' is NaN at sample {index}, time {time:.15g} s: fill the gap or leave the sample out",
+        variable=name,
+        index=index,
+        time=time,
+    )
+
+
+def check_increasing(times: FloatArray, before: float | None = None, first: int = 0) -> None:
+    """Raise :class:`TraceError` unless times are finite and increase strictly, also from ``before`` on.
+
+    ``first`` is the index of ``times[0]`` in the whole recording, for the message.
+    """
+    finite = np.isfinite(times)
+    if not finite.all():
+        i = int((~finite).argmax())
+        raise TraceError(
+            f"time is {times[i]} at sample {first + i}: give a finite number of seconds",
+            variable=TIME,
+            index=first + i,
+        )
+    if before is not None and len(times) and times[0] <= before:
+        raise not_increasing(first, float(times[0]), before)
+    steps = np.diff(times)
+    if (steps <= 0).any():
+        i = int((steps <= 0).argmax()) + 1
+        raise not_increasing(first + i, float(times[i]), float(times[i - 1]))
+
+
+def not_increasing(index: int, time: float, before: float) -> TraceError:
+    """Return the error for a stamp that is not later than the one before."""
+    return TraceError(
+        f"time does not increase at sample {index}: {time:.15g} s comes after {before:.15g} s; "
+        f"sort the samples and drop repeated stamps",
+        variable=TIME,
+        index=index,
+        time=time,
+    )
+
+
+def infer_period(times: FloatArray) -> Fraction:
+    """Return the median gap, as the shortest decimal that it cannot be told from; 1 s for one sample.
+
+    Stamps that count from 1970 are doubles of some 0.2 µs precision, which the gaps inherit.
+    """
+    if len(times) < 2:
+        return Fraction(1)
+    gap = float(np.median(np.diff(times)))
+    blur = max(1e-6 * gap, 2 * float(np.spacing(np.abs(times).max())))
+    for digits in range(1, 17):
+        short = float(f"{gap:.{digits}g}")
+        if abs(short - gap) <= blur:
+            return Fraction(repr(short))
+    return Fraction(repr(gap))
+
+
+def check_tolerance(tolerance: Any) -> None:
+    """Raise :class:`UsageError` unless ``tolerance`` is a fraction of the period, 0 or more."""
+    if not is_number(tolerance) or not tolerance >= 0:
+        raise UsageError(f"the tolerance is {shown(tolerance)}; give a fraction of the period, 0 or more")
+
+
+def check_regular(
+    times: FloatArray,
+    period: Fraction,
+    tolerance: float = TOLERANCE,
+    before: float | None = None,
+    first: int = 0,
+) -> None:
+    """Raise :class:`TraceError` where the gap to the sample before is not one period (within tolerance)."""
+    whole = times if before is None else np.concatenate(([before], times))
+    step = float(period)
+    off = np.abs(np.diff(whole) - step) > tolerance * step
+    if off.any():
+        i = int(off.argmax()) + 1
+        index = first + i - (0 if before is None else 1)
+        raise irregular(index, float(whole[i]), float(whole[i - 1]), period, tolerance)
+
+
+def irregular(index: int, time: float, before: float, period: Fraction, tolerance: float) -> TraceError:
+    """Return the error for a sample that is not one period after the one before."""
+    return TraceError(
+        f"sample {index} at {time:.15g} s is {time - before:g} s after the one before, expected "
+        f"{format_duration(period)} (within {tolerance:.0%}): give the right period, or resample the trace",
+        variable=TIME,
+        index=index,
+        time=time,
+    )
+
+
+def unknown_variable(name: str, names: Collection[str]) -> TraceError:
+    """Return the error for a variable that the formula does not read."""
+    reads = ", ".join(names) or "no variable"
+    return TraceError(
+        f"unknown variable '{name}' in the data; the formula reads {reads}{did_you_mean(name, names)}",
+        variable=name,
+    )
+
+
+def missing_variable(name: str, keys: Collection[str]) -> TraceError:
+    """Return the error for a variable that the formula reads and the data lacks."""
+    has = ", ".join(str(key) for key in keys) or "nothing"
+    return TraceError(f"the data has no '{name}'; it has {has}{did_you_mean(name, keys)}", variable=name)
+
+
+def field(value: Any, path: Sequence[str]) -> Any:
+    """Follow a path of fields into an object."""
+    return reduce(getattr, path, value)
+
+
+def _keys(data: Any) -> list[str]:
+    if is_mapping(data):
+        return list(data)
+    columns = getattr(data, "columns", None)
+    if columns is None:
+        raise TraceError(
+            f"expected a mapping from variable to values, such as {{'time': [...], 'x': [...]}}, "
+            f"got {type(data).__name__}"
+        )
+    return list(columns)
+
+
+def refuse_unknown(keys: Sequence[str], names: Sequence[str], known: Collection[str]) -> None:
+    """Raise :class:`TraceError` at a key that is neither read, nor known, nor the time."""
+    for key in keys:
+        if key in names or key == TIME or key in known:
+            continue
+        if key not in {name.split(".")[0] for name in names}:
+            raise unknown_variable(str(key), names)
+
+
+def _column(data: Any, keys: Sequence[str], name: str) -> FloatArray:
+    if name in keys:
+        return array(data[name], name)
+    head, *path = name.split(".")
+    if path and head in keys:
+        return array([field_of(value, head, path, i) for i, value in enumerate(data[head])], name)
+    raise missing_variable(name, [key for key in keys if key != TIME])
+
+
+def field_of(value: Any, head: str, path: Sequence[str], index: int) -> Any:
+    """Follow a path of fields (``req.value``) into the object that a variable holds at a sample."""
+    try:
+        return field(value, path)
+    except AttributeError:
+        raise TraceError(
+            f"'{head}' has no field '{'.'.join(path)}' at sample {index}: it is {with_article(type(value).__name__)}",
+            variable=head,
+            index=index,
+        ) from None
+
+
+def _common_length(
+    columns: Mapping[str, FloatArray], times: FloatArray | None, data: Any, keys: Sequence[str]
+) -> int:
+    lengths = {name: len(column) for name, column in columns.items()}
+    if times is not None:
+        lengths = {TIME: len(times), **lengths}
+    if not lengths:  # a formula without variables still needs instants
+        lengths = {key: len(data[key]) for key in keys}
+    if len(set(lengths.values())) > 1:
+        (a, n), (b, m) = next(
+            ((a, n), (b, m)) for a, n in lengths.items() for b, m in lengths.items() if n != m
+        )
+        raise TraceError(f"'{a}' has {n} and '{b}' has {m} samples: give one value of each at every sample")
+    return next(iter(lengths.values()), 0)
+
+
+def _not_numbers(values: Any, name: str, first: int) -> TraceError:
+    try:
+        items = enumerate(values, first)
+    except TypeError:
+        return TraceError(f"'{name}' is {shown(values)}, expected a sequence of numbers", variable=name)
+    for i, value in items:
+        if not is_number(value):
+            return TraceError(
+                f"'{name}' is {shown(value)} at sample {i}, expected a number", variable=name, index=i
+            )
+    return TraceError(f"'{name}' cannot be read as a sequence of numbers", variable=name)

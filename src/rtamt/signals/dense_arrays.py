@@ -1,0 +1,171 @@
+"""Dense time at the edge: whatever the caller has becomes int64 ticks and float64 values, once."""
+
+from __future__ import annotations
+
+import struct
+from math import isnan
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rtamt.errors import TraceError
+from rtamt.language.units import format_duration
+from rtamt.signals import arrays
+from rtamt.signals.arrays import Signal
+from rtamt.signals.ticks import sequence_of
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Sequence
+
+    from numpy.typing import NDArray
+
+    from rtamt.signals.arrays import FloatArray
+    from rtamt.signals.ticks import TickArray, TimeScale
+
+    Samples = tuple[TickArray, FloatArray]
+
+
+_ONE = struct.Struct("=qd").unpack
+
+
+class TickSignal(Signal):
+    """A signal whose arrays are made when they are asked for: most online updates tell a point or none.
+
+    Made by the compiled monitor, which sets ``_events``: the ticks, int64, then the values, float64.
+    """
+
+    __slots__ = ("_events", "_scale")
+
+    _events: bytes
+    _scale: TimeScale
+
+    def __init__(self, scale: TimeScale, ticks: TickArray, values: FloatArray) -> None:
+        self._scale = scale
+        self._events = ticks.tobytes() + values.tobytes()
+
+    def __len__(self) -> int:
+        return len(self._events) // 16
+
+    def points(self) -> list[tuple[Any, float]]:
+        """Return (time, value) pairs; of a single one, as most updates tell, without an array in between."""
+        rate = self._scale.rate
+        if rate is None or len(self._events) != 16:
+            return super().points()
+        tick, value = _ONE(self._events)
+        return [(tick / rate, value)]
+
+    @property
+    def times(self) -> NDArray[Any]:
+        """Times as the caller tells them."""
+        if not hasattr(self, "_times"):
+            ticks = np.frombuffer(self._events, np.int64, len(self._events) // 16)
+            self._times = self._scale.times(ticks)
+        return self._times
+
+    @property
+    def values(self) -> FloatArray:
+        """Robustness at these times."""
+        if not hasattr(self, "_values"):
+            half = len(self._events) // 2
+            self._values = np.frombuffer(self._events, np.float64, half // 8, half).copy()
+        return self._values
+
+
+def split(samples: Any, name: str) -> tuple[Any, Any]:
+    """Return the times and the values of one variable.
+
+    A tuple is (times, values); a list or an array of two columns holds [time, value] pairs.
+    """
+    if isinstance(samples, tuple) and len(samples) == 2:
+        return samples
+    if isinstance(samples, np.ndarray) and samples.ndim == 2 and samples.shape[1] == 2:
+        return samples[:, 0], samples[:, 1]
+    try:
+        pairs = [(time, value) for time, value in samples]
+    except (TypeError, ValueError):
+        raise TraceError(
+            f"'{name}' is no dense signal: give (times, values), or a list of [time, value] pairs",
+            variable=name,
+        ) from None
+    return [time for time, _ in pairs], [value for _, value in pairs]
+
+
+def columns_of(data: Any, names: Sequence[str], known: Collection[str] = ()) -> dict[str, tuple[Any, Any]]:
+    """Return times (an array or a list) and values (as given) of each variable that is in the data.
+
+    With a key ``"time"`` all variables share its stamps, unless the formula reads a variable of that
+    name. A variable with fields (``req.value``) may be
+    given as ``req``, whose values are objects that have them.
+    """
+    if data.__class__ is not dict and isinstance(data, arrays.Clocked):
+        data = data.on_own_clocks(names)
+    if not arrays.is_mapping(data):
+        if not hasattr(data, "columns"):
+            raise TraceError(
+                "expected a mapping from variable to (times, values), such as {'x': ([0.0, 1.5], [3, 4])}, "
+                f"got {type(data).__name__}"
+            )
+        data = {name: data[name] for name in (*names, arrays.TIME) if name in data.columns}
+    arrays.refuse_unknown(list(data), names, known)
+    stamped = arrays.TIME in data and arrays.TIME not in names
+    shared = sequence_of(data[arrays.TIME], arrays.TIME) if stamped else None
+    columns = {}
+    for name in names:
+        head, *path = (name,) if name in data else name.split(".")
+        if head not in data:
+            continue
+        times, values = (shared, data[head]) if shared is not None else split(data[head], head)
+        if path:
+            values = [arrays.field_of(value, head, path, i) for i, value in enumerate(values)]
+        columns[name] = sequence_of(times, name) if shared is None else times, values
+    return columns
+
+
+def samples_of(
+    column: tuple[Any, Any], name: str, scale: TimeScale, first: int = 0, last: int | None = None
+) -> Samples:
+    """Return one variable's samples as ticks and values, checked.
+
+    ``last`` is the variable's last tick so far and ``first`` how many samples it has had. Raises
+    :class:`TraceError` for lengths that differ, times that do not increase, NaN.
+    """
+    times, raw = column
+    values = arrays.array(raw, name, first)
+    ticks = scale.ticks(times, name, first)
+    if len(ticks) != len(values):
+        raise TraceError(
+            f"'{name}' has {len(ticks)} times but {len(values)} values: give one of each for every sample",
+            variable=name,
+        )
+    before = ticks[:-1] if last is None else np.concatenate(([last], ticks[:-1]))
+    after = ticks[1:] if last is None else ticks
+    rising = after > before
+    if not np.logical_and.reduce(rising):
+        i = int(rising.argmin())
+        raise not_increasing(name, first + i + (last is None), int(after[i]), int(before[i]), scale)
+    if len(values) and isnan(np.minimum.reduce(values)):  # the least of numbers and a NaN is NaN
+        i = int(np.isnan(values).argmax())
+        raise TraceError(
+            f"'{name}' is NaN at sample {first + i}, time {scale.show(int(ticks[i]))}: "
+            f"fill the gap or leave the sample out",
+            variable=name,
+            index=first + i,
+        )
+    return ticks, values
+
+
+def not_increasing(name: str, index: int, time: int, before: int, scale: TimeScale) -> TraceError:
+    """Return the error for a sample that is not later than the variable's last."""
+    if time == before:
+        return TraceError(
+            f"'{name}' has two samples at {scale.show(time)} (sample {index} and the one before, with ticks of "
+            f"{format_duration(scale.tick)}): keep one of them",
+            variable=name,
+            index=index,
+        )
+    return TraceError(
+        f"the time of '{name}' does not increase at sample {index}: {scale.show(time)} comes after "
+        f"{scale.show(before)}; sort the samples",
+        variable=name,
+        index=index,
+    )

@@ -1,0 +1,353 @@
+"""What was recorded: named signals, each on its own clock, before anything is evaluated.
+
+::
+
+    Trace                    what users read from files and frames
+      └── Channel            one signal: its times, its values, its unit
+    Recording                one clock, a period      (signals.py)           discrete time evaluates this
+    DenseRecording           integer ticks            (dense_evaluate.py)    dense time evaluates this
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rtamt.errors import TraceError, UsageError, did_you_mean
+from rtamt.language.units import duration
+from rtamt.signals.arrays import TIME, Clocked, Signal
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Iterator, Mapping, Sequence
+
+    from numpy.typing import NDArray
+
+    from rtamt.signals.arrays import FloatArray
+
+    Times = NDArray[Any]
+
+#: Ways of filling in what lies between two samples.
+HOW = ("hold", "linear")
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Channel:
+    """One signal of a trace.
+
+    ``times``: n strictly increasing stamps, float64 seconds, int64 nanoseconds or datetime64[ns];
+    None where the source has none. ``values``: n numbers, float64. ``unit``: of the values, as the
+    source writes it. ``column``: what the source calls the signal.
+    """
+
+    times: Times | None
+    values: FloatArray
+    unit: str = ""
+    column: str = ""
+
+
+class Trace(Clocked):
+    """Named signals of one recording, each with its own times and values; cannot be changed.
+
+    Made by :func:`rtamt.read`; ``Specification.evaluate`` and the monitors' ``update_many`` take it.
+    Dense time reads every variable on its own clock. Discrete time needs one clock for all of them:
+    the source's, or one that is chosen openly with :meth:`resample` or :meth:`hold`.
+
+    ``print(trace)`` tells what was found, and what was guessed.
+
+    >>> import rtamt
+    >>> trace = rtamt.read({"req": ([0.0, 2.5], [5, 0]), "gnt": ([0.0, 1.0, 4.0], [0, 4, 0])})
+    >>> trace
+    Trace of a dict: 2 signals, 0 s to 4 s
+      req  2 samples, 0 s to 2.5 s
+      gnt  3 samples, 0 s to 4 s
+    >>> rtamt.parse("eventually[0:2](gnt >= 3)").evaluate(trace, time="dense").robustness
+    1.0
+    """
+
+    __slots__ = ("_channels", "_notes", "_origin", "_source")
+
+    def __init__(
+        self,
+        channels: Mapping[str, Channel],
+        *,
+        source: str = "data",
+        notes: Sequence[str] = (),
+        origin: np.datetime64 | None = None,
+    ) -> None:
+        self._channels = dict(channels)
+        self._source = source
+        self._notes = tuple(notes)
+        self._origin = origin
+
+    # ---- what is in it ---------------------------------------------------------------------------
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The names of the signals, in the order of the source."""
+        return tuple(self._channels)
+
+    @property
+    def source(self) -> str:
+        """Where it was read from."""
+        return self._source
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What was guessed or left out while reading, a sentence each."""
+        return self._notes
+
+    @property
+    def origin(self) -> np.datetime64 | None:
+        """The date and time (UTC) of time 0, where the source tells it."""
+        return self._origin
+
+    @property
+    def start(self) -> Any:
+        """The earliest time of any signal; None without time stamps."""
+        return min((c.times[0] for c in self._timed()), default=None)
+
+    @property
+    def end(self) -> Any:
+        """The latest time of any signal; None without time stamps."""
+        return max((c.times[-1] for c in self._timed()), default=None)
+
+    @property
+    def units(self) -> dict[str, str]:
+        """The units of the signals whose source tells them.
+
+        >>> import rtamt
+        >>> rtamt.read({"time": [0, 1], "speed [m/s]": [5, 4], "gear": [1, 1]}).units
+        {'speed': 'm/s'}
+        """
+        return {name: channel.unit for name, channel in self._channels.items() if channel.unit}
+
+    def channel(self, name: str) -> Channel:
+        """Return one signal with its unit; raise :class:`TraceError` where there is none of that name."""
+        if name not in self._channels:
+            shown = list(self._channels)[:12]
+            more = len(self._channels) - len(shown)
+            listing = ", ".join(shown) + (f" and {more} more" if more else "")
+            hint = did_you_mean(name, self._channels)
+            raise TraceError(
+                f"{self._source} has no '{name}', only {listing or 'nothing'}{hint}", variable=name
+            )
+        return self._channels[name]
+
+    def __getitem__(self, name: str) -> Signal:
+        """Return times and values of one signal."""
+        channel = self.channel(name)
+        times = np.arange(len(channel.values)) if channel.times is None else channel.times
+        return Signal(times, channel.values)
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._channels)
+
+    def rename(self, names: Mapping[str, str]) -> Trace:
+        """Return the trace with signals under other names: ``names`` maps new to present ones.
+
+        >>> import rtamt
+        >>> rtamt.read({"battery_status[1].voltage_v": [12.1]}).rename({"v": "battery_status[1].voltage_v"}).names
+        ('v',)
+        """
+        for old in names.values():
+            self.channel(old)
+        new = {old: name for name, old in names.items()}
+        renamed = {new.get(name, name): channel for name, channel in self._channels.items()}
+        if len(renamed) < len(self._channels):
+            twice = next(name for name in names if name in self._channels and name not in names.values())
+            raise UsageError(f"{self._source} has a '{twice}' already; choose another name")
+        return self._with(renamed)
+
+    # ---- for the engine --------------------------------------------------------------------------
+
+    def on_one_clock(self, names: Collection[str]) -> dict[str, Any]:
+        """Return what discrete time reads: n values for each name, and ``"time"`` in seconds.
+
+        Raises :class:`TraceError` where the signals do not share a clock.
+        """
+        channels = {name: self.channel(name) for name in names if name != TIME}
+        clocks = channels or self._channels
+        self._check_one_clock(clocks)
+        result: dict[str, Any] = {name: channel.values for name, channel in channels.items()}
+        times = next((channel.times for channel in clocks.values()), None)
+        if times is not None:
+            return {TIME: in_seconds(times), **result}
+        return result or {name: channel.values for name, channel in self._channels.items()}
+
+    def on_own_clocks(self, names: Collection[str]) -> dict[str, tuple[Times, FloatArray]]:
+        """Return what dense time reads: (times, values) for each name."""
+        result = {}
+        for name in names:
+            channel = self.channel(name)
+            if channel.times is None:
+                raise TraceError(
+                    f"{self._source} has no time stamps, which dense time needs: "
+                    f"name their column with time=, or on the command line --time-column",
+                    variable=name,
+                )
+            result[name] = (channel.times, channel.values)
+        return result
+
+    # ---- one clock, chosen openly ----------------------------------------------------------------
+
+    def resample(self, period: str | float | Fraction, how: str = "hold") -> Trace:
+        """Return all signals on one clock: a sample every ``period`` from the first instant at which all have one.
+
+        ``how``: ``"hold"``, the last value before or at an instant (what dense time means; up to the
+        latest last sample), or ``"linear"``, on the line between the two samples around it (up to the
+        earliest last sample). ``period``: seconds, or text such as ``"10ms"``.
+
+        >>> import rtamt
+        >>> trace = rtamt.read({"x": ([0.0, 1.0], [0, 10]), "y": ([0.0, 0.6, 1.0], [1, 2, 3])})
+        >>> trace.resample("500ms")["x"].values, trace.resample("500ms", how="linear")["x"].values
+        (array([ 0.,  0., 10.]), array([ 0.,  5., 10.]))
+        """
+        if how not in HOW:
+            raise UsageError(
+                f"cannot resample by '{how}'{did_you_mean(how, HOW)}; choose from {', '.join(HOW)}"
+            )
+        step = duration(period)
+        if step <= 0:
+            raise UsageError(f"the sampling period is {period!r}; it must be positive")
+        timed = self._all_timed()
+        start = max(_exact(times[0]) for times in timed)
+        last = (max if how == "hold" else min)(_exact(times[-1]) for times in timed)
+        if last < start:
+            raise TraceError("the signals have no instant in common")
+        grid = _grid(start, step, int((last - start) / step) + 1, timed[0].dtype)
+        return self._at(grid, how)
+
+    def hold(self) -> Trace:
+        """Return all signals at the stamps of every one, each holding its last value; from the latest first stamp on.
+
+        >>> import rtamt
+        >>> trace = rtamt.read({"x": ([0.0, 1.0], [0, 10]), "y": ([0.0, 0.5, 1.0], [1, 2, 3])})
+        >>> trace.hold()["x"]
+        Signal(times=array([0. , 0.5, 1. ]), values=array([ 0.,  0., 10.]))
+        """
+        timed = self._all_timed()
+        grid = np.unique(np.concatenate(timed))
+        return self._at(grid[grid >= max(times[0] for times in timed)], "hold")
+
+    def _at(self, grid: Times, how: str) -> Trace:
+        channels = {}
+        for name, channel in self._channels.items():
+            assert channel.times is not None
+            if how == "hold":
+                values = channel.values[np.searchsorted(channel.times, grid, side="right") - 1]
+            else:
+                # Differences first: stamps of 10^18 ns do not fit into a double, their distances do.
+                zero = channel.times[0]
+                values = np.interp(_plain(grid - zero), _plain(channel.times - zero), channel.values)
+            channels[name] = replace(channel, times=grid, values=values)
+        return self._with(channels)
+
+    # ---- inside ----------------------------------------------------------------------------------
+
+    def _with(self, channels: Mapping[str, Channel]) -> Trace:
+        return Trace(channels, source=self._source, notes=self._notes, origin=self._origin)
+
+    def _timed(self) -> list[Any]:
+        return [c for c in self._channels.values() if c.times is not None and len(c.times)]
+
+    def _all_timed(self) -> list[Times]:
+        if not self._channels:
+            raise TraceError(f"{self._source} has no signals")
+        for name, channel in self._channels.items():
+            if channel.times is None:
+                raise TraceError(f"'{name}' has no time stamps, so that it cannot be put on another clock")
+            if not len(channel.times):
+                raise TraceError(f"'{name}' has no samples: give at least one", variable=name)
+        return [channel.times for channel in self._channels.values() if channel.times is not None]
+
+    def _check_one_clock(self, channels: Mapping[str, Channel]) -> None:
+        first, *others = channels.items()
+        for other in others:
+            mine, its = first[1].times, other[1].times
+            if mine is its or (mine is not None and its is not None and np.array_equal(mine, its)):
+                continue
+            if mine is None and its is None and len(first[1].values) == len(other[1].values):
+                continue
+            raise TraceError(
+                f"'{first[0]}' and '{other[0]}' are on different clocks "
+                f"({_extent(first[1])}; {_extent(other[1])}): evaluate in dense time, or put them on one clock "
+                f"with trace.resample(period=...) or trace.hold(), on the command line with --resample PERIOD",
+                variable=other[0],
+            )
+
+    def __repr__(self) -> str:
+        count = len(self._channels)
+        extent = "" if self.start is None else f", {show_time(self.start)} to {show_time(self.end)}"
+        lines = [f"Trace of {self._source}: {count} signal{'s' * (count != 1)}{extent}"]
+        if self._origin is not None:
+            lines.append(f"  time 0 is {self._origin} UTC")
+        lines += [f"  {note}" for note in self._notes]
+        rows = [
+            (
+                name + (f" [{c.unit}]" if c.unit else ""),
+                _extent(c) + (f"  ({c.column})" if c.column not in ("", name, f"{name} [{c.unit}]") else ""),
+            )
+            for name, c in self._channels.items()
+        ]
+        width = max((len(label) for label, _ in rows), default=0)
+        return "\n".join(lines + [f"  {label:<{width}}  {rest}" for label, rest in rows])
+
+
+def in_seconds(times: Times) -> FloatArray:
+    """Return times as float64 seconds; datetimes count from 1970."""
+    if times.dtype.kind == "M":
+        times = times.astype("datetime64[ns]").astype(np.int64)
+    return times / 1e9 if times.dtype.kind in "iu" else np.asarray(times, dtype=np.float64)
+
+
+def show_time(time: Any) -> str:
+    """Return one time for people: seconds, nanoseconds or a date.
+
+    >>> show_time(np.float64(2.5)), show_time(np.int64(7))
+    ('2.5 s', '7 ns')
+    """
+    if isinstance(time, np.datetime64):
+        return str(time).rstrip("0").rstrip(".") if "." in str(time) else str(time)
+    return f"{time} ns" if isinstance(time, np.integer) else f"{time:.12g} s"
+
+
+def _extent(channel: Channel) -> str:
+    count = len(channel.values)
+    text = f"{count:,} sample{'s' * (count != 1)}"
+    if channel.times is None or not count:
+        return text
+    return f"{text}, {show_time(channel.times[0])} to {show_time(channel.times[-1])}"
+
+
+def _exact(time: Any) -> Fraction:
+    """Return a time in seconds: a float means the shortest decimal that prints it."""
+    if isinstance(time, np.datetime64):
+        return Fraction(int(time.astype("datetime64[ns]").astype(np.int64)), 10**9)
+    return Fraction(int(time), 10**9) if isinstance(time, np.integer) else Fraction(repr(float(time)))
+
+
+def _grid(start: Fraction, step: Fraction, count: int, dtype: np.dtype[Any]) -> Times:
+    """Return ``count`` stamps, each rounded once, in the kind of ``dtype``."""
+    if dtype.kind == "f":
+        scale = step.denominator * start.denominator
+        zero, gap = int(start * scale), int(step * scale)
+        if max(abs(zero), abs(zero + gap * count), scale) < 2**53:
+            return (zero + gap * np.arange(count)) / scale
+        return np.array([float(start + i * step) for i in range(count)])
+    first, each = start * 10**9, step * 10**9
+    if each.denominator != 1:
+        raise UsageError(
+            f"the period {step} s is no whole number of nanoseconds, in which the stamps are counted"
+        )
+    stamps = int(first) + int(each) * np.arange(count, dtype=np.int64)
+    return stamps.astype("datetime64[ns]") if dtype.kind == "M" else stamps
+
+
+def _plain(gaps: Times) -> FloatArray:
+    return (gaps.astype(np.int64) if gaps.dtype.kind == "m" else gaps).astype(np.float64)
+
+
+__all__ = ["HOW", "Channel", "Trace", "in_seconds", "show_time"]

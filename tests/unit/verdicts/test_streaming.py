@@ -1,0 +1,193 @@
+"""Checks in chunks, and first violations: the same numbers as of the whole recording."""
+
+import sqlite3
+from contextlib import closing
+from datetime import datetime, timedelta, timezone
+
+import numpy as np
+import pyarrow as pa
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from pyarrow import feather, parquet
+
+import rtamt
+from rtamt.language.operators import STL
+from rtamt.readers import arrow, csv, rows
+from rtamt.readers import csv_source as text_module
+from rtamt.verdicts.first_violation import first_violation
+from tests import strategies
+
+
+def same(streamed, result):
+    assert streamed.robustness == result.robustness
+    assert streamed.satisfied == result.satisfied
+    assert streamed.first_violation == first_violation(result)
+
+
+@pytest.mark.parametrize(
+    ("text", "violated"),
+    [
+        ("always(x >= 3)", 2),
+        ("always[3:4](x >= 3)", 4),
+        ("always[0:1](x >= 3)", None),
+        ("eventually(x >= 9)", 0),
+        ("eventually(x >= 7)", None),
+        ("x >= 3 and always[3:inf](x >= 3)", 4),
+        ("always(x >= 2) and always(x <= 6)", 3),
+        ("x >= 3 -> always(x >= 3)", 0),
+        ("always(x >= 3 -> eventually[0:1](x >= 7))", 0),
+        ("always(once[2:2](x >= 3))", 0),
+        ("x >= 5.5", 0),
+    ],
+)
+def test_first_violation_and_values_by_hand(text, violated):
+    data = {"time": [0, 1, 2, 3, 4], "x": [5, 6, 2.5, 7, 1]}
+    result = rtamt.parse(text).evaluate(data)
+    if text == "always(x >= 2) and always(x <= 6)":
+        assert result.robustness == -1
+    assert first_violation(result) == violated
+    chunks = [{name: column[i : i + 2] for name, column in data.items()} for i in (0, 2, 4)]
+    same(rtamt.check_stream(rtamt.parse(text), chunks), result)
+
+
+def test_dense_first_violation_is_in_the_times_of_the_recording():
+    ns = np.array([10**18, 10**18 + 5, 10**18 + 9])
+    for times, expected in (
+        ([0.0, 0.5, 0.9], 0.5),
+        (ns, 10**18 + 5),
+        (ns.astype("M8[ns]"), ns[1:2].astype("M8[ns]")[0]),
+    ):
+        result = rtamt.parse("always(x >= 3)").evaluate({"x": (times, [5, 2, 1])}, time="dense")
+        assert first_violation(result) == expected
+    result = rtamt.parse("always[0.2:0.3](x >= 3)").evaluate(
+        {"x": ([1.0, 1.1, 1.9], [5, 2, 1])}, time="dense"
+    )
+    assert first_violation(result) == 1.2
+
+
+def test_a_window_that_fails_after_the_last_sample():
+    spec = rtamt.parse("always(once[0:5](x >= 3))")
+    data = {"x": ([0.0, 1.0], [5, 2])}
+    result = spec.evaluate(data, time="dense")
+    assert (result.satisfied, first_violation(result)) == (False, 6)
+    same(rtamt.check_stream(spec, [data], time="dense"), result)
+
+
+def test_the_minimum_over_time():
+    spec = rtamt.parse("always[0:1](x >= 3)")
+    chunks = [{"time": [0, 1], "x": [5, 6]}, {"time": [2, 3], "x": [1, 8]}]
+    streamed = rtamt.check_stream(spec, chunks)
+    assert (streamed.robustness, streamed.minimum, streamed.samples, streamed.period) == (2, -2, 4, 1)
+    assert rtamt.check_stream(rtamt.parse("always(x >= 3)"), chunks).minimum is None
+
+
+@settings(max_examples=60)
+@given(st.data())
+def test_law_chunks_give_what_the_whole_gives(data):
+    formula = data.draw(strategies.formulas(max_depth=3))
+    always = data.draw(st.sampled_from((STL["always"], STL["eventually"], lambda f: f)))
+    trace = data.draw(strategies.traces(max_size=12))
+    n = len(trace["x"])
+    text = f"always(x == x) and ({always(formula)})"
+    spec = rtamt.parse(text, period=1)
+    columns = {
+        "time": np.arange(n, dtype=float),
+        **{name: trace[name] for name in ("x", "y") if name in spec.input_names},
+    }
+    try:
+        result = spec.evaluate(columns)
+    except rtamt.EvaluationError:
+        return
+    sizes = data.draw(strategies.chunkings(n))
+    ends = np.cumsum(sizes)
+    chunks = [{k: v[e - s : e] for k, v in columns.items()} for s, e in zip(sizes, ends, strict=True)]
+    streamed = rtamt.check_stream(spec, chunks)
+    same(streamed, result)
+
+
+@settings(max_examples=60)
+@given(st.data())
+def test_law_dense_chunks_give_what_the_whole_gives(data):
+    formula = data.draw(strategies.formulas(max_depth=3, discrete=False, arithmetic=False))
+    always = data.draw(st.sampled_from((STL["always"], STL["eventually"], lambda f: f)))
+    trace = data.draw(strategies.dense_traces())
+    spec = rtamt.parse(f"always(x == x) and ({always(formula)})", time="dense", resolution=1)
+    used = {name: trace[name] for name in spec.input_names}
+    in_seconds = {name: (times.astype(float), values) for name, (times, values) in used.items()}
+    try:
+        result = spec.evaluate(in_seconds)
+    except rtamt.TraceError:
+        return
+    chunks = data.draw(strategies.dense_chunkings(used))
+    seconds = [{k: (t.astype(float), v) for k, (t, v) in chunk.items()} for chunk in chunks]
+    same(rtamt.check_stream(spec, seconds), result)
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        (
+            "always(eventually(x))",
+            "'eventually' without an upper bound stands below another operator here, so that the recording cannot "
+            "be checked in chunks; give it a bound, such as eventually[0:10], or read the recording whole\n"
+            "  line 1, column 8:\n"
+            "    always(eventually(x))\n"
+            "           ^^^^^^^^^^^^^",
+        ),
+        ("true", "the formula reads no variable, so that there is nothing to check in chunks"),
+        ("x", "the trace is empty: give at least one sample"),
+    ],
+)
+def test_messages(text, message):
+    with pytest.raises(rtamt.StlError) as error:
+        rtamt.check_stream(rtamt.parse(text), [])
+    assert str(error.value) == message
+
+
+def test_files_and_queries_in_chunks(tmp_path, monkeypatch):
+    monkeypatch.setattr(arrow, "CHUNK", 10)
+    monkeypatch.setattr(rows, "CHUNK", 7)
+    table = pa.table({"t_ms": np.arange(95) * 100, "x": np.cos(np.arange(95)), "note": ["a"] * 95})
+    parquet.write_table(table, tmp_path / "log.parquet", row_group_size=33)
+    feather.write_feather(table, str(tmp_path / "log.feather"))
+    monkeypatch.setattr(csv, "BLOCK", 9)
+    monkeypatch.setattr(text_module, "BLOCK", 9)
+    lines = [f"{100 * i},{float(np.cos(i))!r},a" for i in range(95)]
+    (tmp_path / "log.csv").write_text("t_ms,x,note\n" + "\n".join(lines))
+    with closing(sqlite3.connect(tmp_path / "log.db")) as database:
+        database.execute("create table log (t_ms integer, x real)")
+        database.executemany(
+            "insert into log values (?, ?)", [(100 * i, float(np.cos(i))) for i in range(95)]
+        )
+        database.commit()
+    spec = rtamt.parse("always(x >= 0 -> eventually[0:500ms](x <= 0))")
+    whole = spec.evaluate(rtamt.read(table))
+    for source, options in [
+        (tmp_path / "log.csv", {}),
+        (tmp_path / "log.parquet", {}),
+        (tmp_path / "log.feather", {}),
+        (f"sqlite:///{tmp_path}/log.db", {"query": "select t_ms, x from log order by t_ms"}),
+    ]:
+        chunks = list(rtamt.scan(source, columns=["x"], **options))
+        assert len(chunks) >= 10
+        streamed = rtamt.check_stream(spec, chunks)
+        same(streamed, whole)
+        assert streamed.samples == 95
+
+
+def test_what_cannot_be_read_in_chunks():
+    with pytest.raises(
+        rtamt.UsageError, match=r"^a dict cannot be read in chunks; read it whole with rtamt.read$"
+    ):
+        next(rtamt.scan({"x": [1]}))
+
+
+def test_datetimes_with_a_time_zone_in_chunks():
+    zone = timezone(timedelta(hours=9))
+    moments = [datetime(2024, 5, 1, 19, 0, second, tzinfo=zone) for second in range(4)]
+    spec = rtamt.parse("always(x >= 3)", time="dense")
+    chunks = [{"x": (moments[:2], [5, 4])}, {"x": (moments[2:], [1, 0])}]
+    streamed = rtamt.check_stream(spec, chunks)
+    same(streamed, spec.evaluate({"x": (moments, [5, 4, 1, 0])}))
+    assert str(streamed.first_violation).startswith("2024-05-01T10:00:02")
