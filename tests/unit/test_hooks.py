@@ -58,22 +58,83 @@ def test_the_action_says_what_the_command_says(tmp_path, inputs, code):
     }.items():
         (tmp_path / path).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / path).write_text(text, encoding="utf-8")
+    done = run_action(tmp_path, inputs)
+    assert done.returncode == code, done.stdout + done.stderr
+    assert (tmp_path / "rtamt-report.xml").exists() == (
+        bool(inputs.get("traces")) and "none" not in str(inputs)
+    )
+
+
+#: A file of this name beside a module ``evil`` ran that module: argparse took it for an option.
+LIKE_AN_OPTION = "--language=evil:x"
+
+
+@pytest.fixture
+def evil(tmp_path):
+    """Make a folder in which a module leaves a mark when it is imported; return the mark."""
+    (tmp_path / "evil.py").write_text("open('mark', 'w').close()\n", encoding="utf-8")
+    (tmp_path / f"{LIKE_AN_OPTION}.stl").write_text("always(x >= 3)", encoding="utf-8")
+    (tmp_path / f"{LIKE_AN_OPTION}.csv").write_text("time,x\n0,4\n1,5\n", encoding="utf-8")
+    return tmp_path / "mark"
+
+
+def run_action(folder, inputs):
+    """Run the last step of the action as GitHub runs one with ``shell: bash``."""
     step = ACTION["runs"]["steps"][-1]
     values = {name: inputs.get(name, about["default"]) for name, about in ACTION["inputs"].items()}
     environment = {
         key: re.sub(r"\$\{\{ inputs\.([\w-]+) \}\}", lambda match: values[match[1]], value)
         for key, value in step["env"].items()
     }
-    path = os.pathsep.join([str(Path(sys.executable).parent), os.environ["PATH"]])
-    # As GitHub runs a step with `shell: bash`.
-    done = subprocess.run(
-        ["bash", "--noprofile", "--norc", "-eo", "pipefail", "-c", step["run"]],
-        cwd=tmp_path, env={**os.environ, **environment, "PATH": path}, capture_output=True, text=True, check=False,
-    )  # fmt: skip
-    assert done.returncode == code, done.stdout + done.stderr
-    assert (tmp_path / "rtamt-report.xml").exists() == (
-        bool(inputs.get("traces")) and "none" not in str(inputs)
+    return run_in(
+        folder, ["bash", "--noprofile", "--norc", "-eo", "pipefail", "-c", step["run"]], **environment
     )
+
+
+def run_in(folder, command, **environment):
+    path = os.pathsep.join([str(Path(sys.executable).parent), os.environ["PATH"]])
+    return subprocess.run(
+        command, cwd=folder, env={**os.environ, **environment, "PATH": path},
+        capture_output=True, text=True, check=False,
+    )  # fmt: skip
+
+
+def test_a_file_called_like_an_option_ran_code_in_the_hook_for_pre_commit(tmp_path, evil):
+    (hook,) = yaml.safe_load((ROOT / ".pre-commit-hooks.yaml").read_text(encoding="utf-8"))
+    done = run_in(tmp_path, [*shlex.split(hook["entry"]), f"{LIKE_AN_OPTION}.stl"])
+    assert (done.returncode, done.stdout + done.stderr, evil.exists()) == (0, "", False)
+
+
+@pytest.mark.parametrize("traces", ["", "*.csv"])
+def test_a_file_called_like_an_option_ran_code_in_the_action(tmp_path, evil, traces):
+    done = run_action(tmp_path, {"traces": traces, "options": "--period 1 --color never"})
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert ("satisfied" in done.stdout) is bool(traces)
+    assert not evil.exists()
+
+
+def test_options_of_the_action_are_words_and_no_patterns(tmp_path):
+    (tmp_path / "a.stl").write_text("v >= 3", encoding="utf-8")
+    (tmp_path / "a.csv").write_text("time,volts[0]\n0,4\n1,5\n", encoding="utf-8")
+    done = run_action(tmp_path, {"traces": "a.csv", "options": "--name v=volts[0]\n--period 1"})
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
+@pytest.mark.parametrize("command", ["check", "explain", "plot", "report", "info", "lint", "compile", "fmu"])
+def test_no_command_takes_what_follows_two_dashes_for_an_option(tmp_path, monkeypatch, capsys, evil, command):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.syspath_prepend(str(tmp_path))
+    suffix = {"plot": ".png", "report": ".html", "fmu": ".fmu", "compile": ".rtamt"}.get(command)
+    options = [] if suffix is None else ["-o", f"out{suffix}"]
+    options += ["--period", "1"]
+    traces = [f"{LIKE_AN_OPTION}.csv"] * (command in ("check", "explain", "plot", "report"))
+    spec = tmp_path / f"{LIKE_AN_OPTION}.stl"
+    if command in ("compile", "fmu"):
+        spec.write_text("historically(x >= 3)", encoding="utf-8")
+    # Options may also follow the specification, and an option's own value may stand just before the dashes.
+    for arguments in ([*options, "--", spec.name, *traces], ["./" + spec.name, *options, "--", *traces]):
+        assert main([command, *arguments]) == 0, capsys.readouterr().err
+    assert not evil.exists()
 
 
 def test_the_action_installs_an_extra_that_exists():

@@ -95,9 +95,7 @@ def _dispatch(argv: list[str]) -> int:
     if command is None:
         hint = did_you_mean(name, COMMANDS)
         raise UsageError(f"there is no command '{name}', only {', '.join(COMMANDS)}{hint}")
-    parser = parser_of(command)
-    # Options may stand anywhere, between traces too; but intermixed parsing does not know "--".
-    return command.run(parser.parse_args(rest) if "--" in rest else parser.parse_intermixed_args(rest))
+    return command.run(parser_of(command).read(rest))
 
 
 def parser_of(command: Command) -> Parser:

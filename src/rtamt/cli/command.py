@@ -23,7 +23,7 @@ from rtamt.rewrite.semantics import SEMANTICS
 from rtamt.texts import load, parse
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
 
     from rtamt.settings import Settings
     from rtamt.specification import Specification
@@ -34,6 +34,8 @@ NO_STAMPS = "dense time needs a column of time stamps: call it 'time', or name i
 INTERRUPTED, BROKEN_PIPE = 130, 141  # what a shell reports for a program ended by these signals
 
 _SPECIFICATION_SUFFIXES = (".stl",)
+#: Before an argument that is no option whatever it looks like; no argument of a process can have it.
+_NAME = "\0"
 _LIKE_A_PATH = re.compile(r"[\w.~:\\/-]*[\\/][\w.~:\\/-]*")
 
 
@@ -60,7 +62,21 @@ class Parser(argparse.ArgumentParser):
 
     def error(self, message: str) -> NoReturn:
         """Raise :class:`UsageError`, with the way to the help."""
-        raise UsageError(f"{message}; see '{self.prog} --help'")
+        raise UsageError(f"{message.replace(_NAME, '')}; see '{self.prog} --help'")
+
+    def read(self, argv: Sequence[str]) -> argparse.Namespace:
+        """Parse arguments: options may stand anywhere before "--", and nothing after it is an option."""
+        # Intermixed parsing of Python 3.10 and 3.11 does not know "--", so that what follows it is marked.
+        end = argv.index("--") if "--" in argv else len(argv)
+        marked = [*argv[:end], *(f"{_NAME}{text}" for text in argv[end + 1 :])]
+        found = self.parse_intermixed_args(marked)
+        return argparse.Namespace(**{name: _unmarked(value) for name, value in vars(found).items()})
+
+
+def _unmarked(value: Any) -> Any:
+    if isinstance(value, list):
+        return [_unmarked(item) for item in value]
+    return value.removeprefix(_NAME) if isinstance(value, str) else value
 
 
 class CommandError(StlError):
