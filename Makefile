@@ -77,10 +77,10 @@ costs: $(VENV)/.core $(VENV)/.extras ## what a sample costs us, beside the figur
 	$(RUN) benchmarks/stream.py
 
 peers: $(VENV)/.made ## install the tools that we are compared with, each into an environment of its own
-	$(RUN) benchmarks/peers/peers.py
+	$(RUN) conformance/peers/peers.py
 
-conformance: $(VENV)/.core peers ## ask every peer the conformance corpus: benchmarks/CONFORMANCE.md
-	$(RUN) benchmarks/conformance.py
+conformance: $(VENV)/.core peers ## ask every peer the conformance corpus: conformance/RESULTS.md
+	$(RUN) conformance/table.py
 
 soak: $(VENV)/.core ## watch 10^8 samples and hours of dense stamps: memory flat, every value that of offline
 	$(RUN) benchmarks/soak.py

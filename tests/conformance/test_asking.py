@@ -7,11 +7,11 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from conformance import cases
 
 import rtamt
-from tests.conformance import cases
 
-PEERS = Path(__file__).parents[2] / "benchmarks" / "peers"
+PEERS = Path(__file__).parents[2] / "conformance" / "peers"
 sys.path.insert(0, str(PEERS))
 
 import asking  # noqa: E402 - found by the line above

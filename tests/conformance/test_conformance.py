@@ -8,19 +8,19 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
+from conformance import cases
+from conformance.generate import ALONE, data_of, ticks_of
 
 import rtamt
 from rtamt.language import parser
 from rtamt.language.formula import Apply, Const, Formula, Interval, Var, postorder
 from rtamt.language.operators import STL, Fixity
-from tests.conformance import cases
-from tests.conformance.generate import ALONE, data_of, ticks_of
 from tests.oracle import meaning
 
 if TYPE_CHECKING:
     from fractions import Fraction
 
-    from tests.conformance.cases import Case
+    from conformance.cases import Case
 
 # As many parts as keep a failure close to its case and the suite quick to start.
 PARTS = 8
@@ -229,7 +229,7 @@ def test_bounds_of_a_tree_are_in_steps_and_named_parts_stand_where_they_are_used
     }
 
 
-README = (Path(__file__).parent / "README.md").read_text(encoding="utf-8")
+README = (Path(__file__).parents[2] / "conformance" / "README.md").read_text(encoding="utf-8")
 
 
 def test_the_readme_has_the_grammar_of_the_parser() -> None:

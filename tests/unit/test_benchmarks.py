@@ -12,7 +12,8 @@ import pytest
 import rtamt
 
 FOLDER = Path(__file__).parents[2] / "benchmarks"
-sys.path[:0] = [str(FOLDER), str(FOLDER / "peers")]
+PEERS = FOLDER.parent / "conformance" / "peers"
+sys.path[:0] = [str(FOLDER), str(PEERS)]
 
 import summary  # noqa: E402 - found by the line above
 import timescales  # noqa: E402
@@ -74,7 +75,7 @@ def test_a_tool_that_is_asked_how_long_it_takes_answers_in_seconds_a_sample():
         "mode": "online",
         "workload": {"kind": "normal", "names": ["a"], "n": 300, "warm": 10, "limit": 0.1, "patience": 5},
     }
-    command = [sys.executable, str(FOLDER / "peers" / "ask_this.py")]
+    command = [sys.executable, str(PEERS / "ask_this.py")]
     said = subprocess.run(
         command, input=json.dumps(question) + "\n", check=True, capture_output=True, text=True, timeout=60
     )

@@ -30,8 +30,8 @@ INCLUDED = {
     "README.md": "index.md",
     "CHANGELOG.md": "changelog.md",
     "CONTRIBUTING.md": "contributing.md",
-    "benchmarks/CONFORMANCE.md": "explanation/conformance.md",
-    "tests/conformance/README.md": "reference/conformance-corpus.md",
+    "conformance/RESULTS.md": "explanation/conformance.md",
+    "conformance/README.md": "reference/conformance-corpus.md",
 }
 
 #: The sections, in the order in which they are read. Each holds the pages of its folder, the first ones named.

@@ -9,9 +9,9 @@ import csv
 from math import inf
 from pathlib import Path
 
-from tests.conformance.cases import SEMANTICS, Case
+from conformance.cases import SEMANTICS, Case
 
-_FIGURE_4 = Path(__file__).parents[2] / "examples" / "request_grant"
+_FIGURE_4 = Path(__file__).parents[1] / "examples" / "request_grant"
 
 X5 = {"x": [5.0, 4.0, 3.0, 9.0]}
 XY = {"x": [9.0, 2.0, 8.0], "y": [5.0, 1.0, 0.0]}

@@ -1,4 +1,4 @@
-"""Writes the corpus: `python -m tests.conformance.generate`, the same files from the same seed.
+"""Writes the corpus: `python -m conformance.generate`, the same files from the same seed.
 
 Formulas come from the table of operators, so that a new operator has cases by itself; each operator
 first alone over plain predicates, then nested at random. The answers come from the definition, the
@@ -18,13 +18,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 import rtamt
+from conformance import cases, corners
+from conformance.cases import SEMANTICS, Case
+from conformance.trees import in_steps, tree
 from rtamt.errors import EvaluationError
 from rtamt.language.formula import Apply, Const, Formula, Interval, Var, postorder, variables
 from rtamt.language.operators import STL
 from rtamt.language.records import Bounds, Operator, Sort
-from tests.conformance import cases, corners
-from tests.conformance.cases import SEMANTICS, Case
-from tests.conformance.trees import in_steps, tree
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -52,12 +52,15 @@ class Drawing:
         self.connectives = [op for op in self.formulas if Sort.FORMULA in op.operands]
 
     def chance(self, one_in: int) -> bool:
+        """Return true once in ``one_in`` draws."""
         return self.random.randrange(one_in) == 0
 
     def half(self) -> float:
+        """Draw a multiple of 1/2 between -3 and 3."""
         return self.random.randint(-6, 6) / 2
 
     def number(self, depth: int) -> Formula:
+        """Draw an arithmetic expression of at most this depth."""
         if depth == 0 or self.chance(2):
             return Const(self.half()) if self.chance(3) else Var(self.random.choice("xy"))
         op = self.random.choice(self.numbers)
@@ -69,6 +72,7 @@ class Drawing:
         return op(Var(self.random.choice("xy")), Const(self.half()))
 
     def interval(self, op: Operator) -> Interval | None:
+        """Draw the interval of an operator; None where it takes none, or none is drawn."""
         if op.bounds is Bounds.NONE or (op.bounds is Bounds.OPTIONAL and self.chance(5)):
             return None
         begin = self.random.choice((0, 0, 0, 1, 2, 3))
@@ -87,6 +91,7 @@ class Drawing:
         return made if op.operands else STL["or"](made, self.plain())
 
     def nested(self, depth: int) -> Formula:
+        """Draw a formula of at most this depth."""
         if depth == 0 or self.chance(8):
             if self.chance(2):
                 return self.plain()
@@ -99,6 +104,7 @@ class Drawing:
         return op(*operands, interval=self.interval(op))
 
     def signals(self, names: tuple[str, ...]) -> dict[str, list[Any]]:
+        """Draw a trace: values in discrete time, [time, value] pairs in dense time."""
         palettes = {name: [self.half() for _ in range(self.random.randint(1, 5))] for name in names}
         if self.chance(12):
             palettes[self.random.choice(names)].append(self.random.choice(_AWKWARD))

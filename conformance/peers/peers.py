@@ -1,4 +1,4 @@
-"""Whom we are compared with, and an environment for each: `python benchmarks/peers/peers.py` makes them.
+"""Whom we are compared with, and an environment for each: `python conformance/peers/peers.py` makes them.
 
 Each is installed from PyPI into build/peers/<name>, a virtual environment of its own. One that cannot be
 installed is reported by whoever wanted to ask it, and does not stop the others.

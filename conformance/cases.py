@@ -9,7 +9,7 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
-FOLDER = Path(__file__).parent
+FOLDER = Path(__file__).parent / "corpus"
 FILES = ("corners.jsonl", "discrete.jsonl", "dense.jsonl")
 
 SEMANTICS = (

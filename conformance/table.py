@@ -1,4 +1,4 @@
-"""The table of truth: the conformance corpus through every peer, into benchmarks/CONFORMANCE.md.
+"""The table of truth: the conformance corpus through every peer, into conformance/RESULTS.md.
 
 A peer is asked only what it claims (its adapter's table of operators and modes), and by its own declared
 conventions: where these differ, the expected answer is that of the formula which says in our language
@@ -26,14 +26,14 @@ sys.path[:0] = [str(Path(__file__).parents[1]), str(Path(__file__).parent / "pee
 from asking import Asked, Question, Talk, ask, question_of  # noqa: E402 - found by the line above
 from peers import HERE, PEERS  # noqa: E402
 from shrinking import shrunk  # noqa: E402
-from tests.conformance import cases  # noqa: E402
 
+from conformance import cases  # noqa: E402
 from rtamt.language.operators import STL  # noqa: E402
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-OUT = Path(__file__).parent / "CONFORMANCE.md"
+OUT = Path(__file__).parent / "RESULTS.md"
 SHRINK = 150  # questions that one counterexample may take
 
 
@@ -132,7 +132,7 @@ def report(rows: list[Row], absent: list[tuple[str, str]], examples: list[str], 
         "# Who agrees with the definition",
         "",
         f"Made by `make conformance` on {dt.datetime.now(tz=dt.timezone.utc):%Y-%m-%d}, {system}, from the "
-        f"{cases_count} robustness cases of [the corpus](../tests/conformance/README.md).",
+        f"{cases_count} robustness cases of [the corpus](README.md).",
         "",
         (__doc__ or "").split("\n\n", 1)[1].strip(),
         "",

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
-from tests.conformance.trees import in_steps, tree
+from conformance.trees import in_steps, tree
 
 import rtamt
 from rtamt.errors import EvaluationError
@@ -21,7 +21,7 @@ from rtamt.language.records import Bounds, Tense
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from tests.conformance.cases import Case
+    from conformance.cases import Case
 
 PATIENCE = 20.0  # seconds for an answer
 CLOSE = 1e-9  # relative; a tool may round where the definition does not
