@@ -28,6 +28,11 @@ class FloatStamped:
     header: Header = field(default_factory=Header)
     value: float = 0.0
 
+    @classmethod
+    def get_fields_and_field_types(cls) -> dict[str, str]:
+        """Return what makes this a message class for the imports of listing 8."""
+        return {"header": "std_msgs/Header", "value": "double"}
+
 
 class World:
     """A double of rospy: a clock, topics, and a loop that ends when the traces do."""

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import importlib
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
-from rtamt.errors import UsageError, did_you_mean, with_article
+from rtamt.errors import UsageError, with_article
+from rtamt.extras import message_class
 from rtamt.language.formula import variables
 from rtamt.ros.fields import Path, check_path, path_of
 
@@ -31,18 +31,8 @@ class MessageType:
         return f"{self.module.split('.')[0]}/{self.name}"
 
     def load(self) -> type:
-        """Import the class; raise :class:`UsageError` where it cannot be."""
-        try:
-            module = importlib.import_module(self.module)
-        except ImportError as error:
-            raise UsageError(
-                f"the message module '{self.module}' cannot be imported: {error}; "
-                f"is the workspace built, and its setup file sourced?"
-            ) from error
-        if not hasattr(module, self.name):
-            raise UsageError(f"'{self.module}' has no '{self.name}'{did_you_mean(self.name, vars(module))}")
-        found: type = getattr(module, self.name)
-        return found
+        """Import the class; raise :class:`UsageError` where it is none of a message."""
+        return message_class(self.module, self.name)
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,7 +11,8 @@ from rtamt.signals.arrays import is_number
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-_STEP = re.compile(r"([A-Za-z_]\w*)((?:\[\d+\])*)")
+#: Fields of messages begin with a letter; what begins with an underscore is Python's own.
+_STEP = re.compile(r"([A-Za-z]\w*)((?:\[\d+\])*)")
 _INDEX = re.compile(r"\[(\d+)\]")
 
 #: How a field is reached: names of attributes, and places in arrays.

@@ -6,12 +6,14 @@ import builtins
 import copy
 import importlib
 import math
+import sys
 from abc import ABC, abstractmethod
 from numbers import Real
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import NameInFormulaError, StlError, UsageError, did_you_mean, with_article
+from rtamt.extras import message_class
 from rtamt.language.formula import Var, postorder, variables
 from rtamt.language.operators import STL, Language
 from rtamt.language.parser import parse_formula
@@ -54,6 +56,8 @@ class Declarations(ABC):
         self.var_topic_dict: dict[str, str] = {}
         #: From the name of a declared variable to its side of the interface, ``'input'`` or ``'output'``.
         self.var_io_dict: dict[str, str] = {}
+        #: What code imported, which its text may therefore import as well: (module, name).
+        self._trusted: set[tuple[str, str]] = set()
         self._unit = "s"
         self._sub_specs: list[str] = []
         self._types: dict[str, str] = {}
@@ -128,7 +132,11 @@ class Declarations(ABC):
 
     @raises_rtamt
     def import_module(self, from_name: str, module_name: str) -> None:
-        """Import a message class: as Python's ``from from_name import module_name`` does."""
+        """Import a class for variables: as Python's ``from from_name import module_name`` does.
+
+        Imports in :attr:`spec` are text, which somebody else may have written: they import classes of message
+        packages (``std_msgs.msg``) only, and what this method has imported before.
+        """
         try:
             module = importlib.import_module(from_name)
         except ImportError as error:
@@ -138,6 +146,7 @@ class Declarations(ABC):
                 f"the module '{from_name}' has no '{module_name}'{did_you_mean(module_name, vars(module))}"
             )
         self.modules[module_name] = module
+        self._trusted.add((from_name, module_name))
 
     @raises_rtamt
     def add_sub_spec(self, sub_spec: str) -> None:
@@ -268,13 +277,25 @@ class Declarations(ABC):
         if document.name is not None:
             self.name = document.name
         for imported in document.imports:
-            self.import_module(imported.module, imported.name)
+            self._import_as_text(imported.module, imported.name)
         for declaration in document.declarations:
             if declaration.kind == "var":
                 self.declare_var(declaration.name, declaration.type)
                 self.var_io_dict[declaration.name] = declaration.role or "output"
         for name, topic in document.topics.items():
             self.set_var_topic(name, topic)
+
+    def _import_as_text(self, module: str, name: str) -> None:
+        """Import what the text names, if it is a message class or code has imported it before."""
+        if (module, name) in self._trusted:
+            return
+        try:
+            message_class(module, name)
+        except UsageError as error:
+            raise UsageError(
+                f"{error} (import_module('{module}', '{name}') before parse() imports any class)"
+            ) from error.__cause__
+        self.modules[name] = sys.modules[module]
 
     def _check_objects(self, document: Document) -> None:
         """Make sure that the numbers that are read of declared objects, and written into one, are there."""
@@ -300,6 +321,8 @@ class Declarations(ABC):
         head, *path = name.split(".")
         held, kind = self._objects[head], self._types.get(head, "number")
         try:
+            if any(step.startswith("__") for step in path):  # Python's own, such as __class__
+                raise AttributeError
             value = field(held, path)
         except AttributeError:
             missing = ".".join(path)

@@ -40,12 +40,18 @@ class Message:
     label: str = ""
     inner: Inner = field(default_factory=Inner)
 
+    @classmethod
+    def get_fields_and_field_types(cls):
+        """Return the types of the fields, as classes of messages do."""
+        return {"value": "double", "label": "string", "inner": "some_msgs/Inner"}
+
 
 @pytest.fixture(autouse=True)
 def messages(monkeypatch):
     module = ModuleType("some_msgs")
     module.Message = Message
     monkeypatch.setitem(sys.modules, "some_msgs", module)
+    monkeypatch.setitem(sys.modules, "some_msgs.msg", module)
 
 
 def declared(text, names="x y", cls=rtamt.StlDiscreteTimeSpecification, **constants):
@@ -149,13 +155,13 @@ def test_names_before_and_after_parse():
 def test_a_text_declares_what_calls_would(tmp_path):
     path = tmp_path / "s.stl"
     path.write_text(
-        "specification named\nfrom some_msgs import Message\n"
+        "specification named\nfrom some_msgs.msg import Message\n"
         "input Message req\nconst float c = 2\n@ topic(req, in/req)\nreq.value >= c\n"
     )
     spec = rtamt.StlDiscreteTimeSpecification()
     spec.spec = spec.get_spec_from_file(str(path))
     spec.parse()
-    assert (spec.name, spec.modules) == ("named", {"Message": sys.modules["some_msgs"]})
+    assert (spec.name, spec.modules) == ("named", {"Message": sys.modules["some_msgs.msg"]})
     assert spec.var_topic_dict["req"] == "in/req"
     assert spec.update(0, [("req", Message(5.0))]) == 3.0
 

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import UsageError, did_you_mean
-from rtamt.extras import library
+from rtamt.extras import library, message_package
 from rtamt.ros.messages import DEFINITIONS
 
 if TYPE_CHECKING:
@@ -47,7 +47,7 @@ class Types:
 
     def load(self, kind: MessageType) -> Any:
         """Return the class of a type as a specification imports it: ``from nav_msgs.msg import Odometry``."""
-        return self.named(f"{kind.module.replace('.', '/')}/{kind.name}")
+        return self.named(f"{message_package(kind.module, kind.name)}/msg/{kind.name}")
 
     def named(self, name: str) -> Any:
         """Return the class of a type by its full name, ``nav_msgs/msg/Odometry``; call it for a message of zeros."""
