@@ -57,7 +57,8 @@ no sample where its cell is empty. A NaN is an error, unless --skip-nan says tha
 either. With --time dense -o writes the robustness where it changes, and at the end.
 
 In a bag the annotations of SPEC say which topics are read ('@ topic(req, rtamt/req)'). In discrete time
-it is sampled as a node would: the latest message, every --period (default: 1 s). With -o out.mcap the bag
+it is sampled as a node would: the latest message, every --period, which may be left out where all of
+these topics have the same stamps one period apart: then each message is a sample. With -o out.mcap the bag
 is written again, with the topics of robustness and verdicts that SPEC names. Every assertion that a
 node would publish is judged, each in a row of its own; of any other SPEC the last assertion.
 

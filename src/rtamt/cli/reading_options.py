@@ -15,7 +15,7 @@ from rtamt.readers.csv_cells import EXAMPLE, date_in
 from rtamt.readers.formats import is_bag
 from rtamt.readers.read import choice, opened
 from rtamt.ros.bags import columns_of
-from rtamt.signals.arrays import TIME, Recording
+from rtamt.signals.arrays import TIME, Recording, check_regular, infer_period, stamps
 
 if TYPE_CHECKING:
     import argparse
@@ -23,7 +23,6 @@ if TYPE_CHECKING:
 
     from rtamt.readers.assemble import Choice
     from rtamt.results import Result
-    from rtamt.settings import Duration
     from rtamt.signals.trace import Trace
     from rtamt.specification import Specification
 
@@ -143,8 +142,8 @@ def choice_for(specs: Sequence[Specification], trace: str, reading: Reading) -> 
     """Return which columns of a recording some requirements read, and how."""
     columns = dict.fromkeys(name for spec in specs for name in spec.input_names)
     units = None if reading.unit is None else {TIME: reading.unit}
-    # In discrete time a gap is an error, unless a clock of its own for each signal is what is resampled.
-    gaps = specs[0].time == "dense" or clock_for(specs[0], trace, reading) is not None
+    # In discrete time a gap is an error, unless each signal has a clock of its own, or is resampled.
+    gaps = specs[0].time == "dense" or is_bag(trace) or reading.resample is not None
     names = dict(reading.names)
     if is_bag(trace):
         for spec in specs:
@@ -153,14 +152,29 @@ def choice_for(specs: Sequence[Specification], trace: str, reading: Reading) -> 
     return replace(choice(reading.time, columns or None, names, units, skipped), gaps=gaps)
 
 
-def clock_for(spec: Specification, trace: str, reading: Reading) -> Duration | None:
-    """Return the period of the one clock that signals are put on; None where they stay as they are.
+def on_clock(data: Trace, spec: Specification, trace: str, reading: Reading) -> Trace:
+    """Return what a requirement reads of a recording, on the clock that the options choose.
 
-    Discrete time samples a bag as a node samples topics: the latest message, every period.
+    Which other requirements were read with it makes no difference. Discrete time samples a bag as a node
+    samples topics, the latest message every period; without a period only where the messages are samples.
     """
-    if reading.resample is not None or spec.time == "dense" or not is_bag(trace):
-        return reading.resample
-    return spec.period or 1
+    bag = spec.time == "discrete" and is_bag(trace)
+    period = spec.period if bag and reading.resample is None else reading.resample
+    if period is None and not bag:
+        return data
+    mine = data.select(set(spec.input_names) & set(data.names)) if spec.input_names else data
+    if period is not None:
+        return mine.resample(period, reading.how)
+    try:
+        times = stamps(mine.on_one_clock(mine.names)[TIME])
+        check_regular(times, infer_period(times))
+    except TraceError as error:
+        raise TraceError(
+            "the messages of this bag are not samples one period apart: choose a sampling period, such as "
+            "--period 100ms, or use --time dense, which reads every message at its own time",
+            variable=error.variable,
+        ) from None
+    return mine
 
 
 def how_to_mend(error: Exception, data: Trace | None, before: int = 0) -> str:

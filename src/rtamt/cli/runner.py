@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rtamt.cli.command import NO_STAMPS
-from rtamt.cli.reading_options import choice_for, clock_for, how_to_mend, read_for
+from rtamt.cli.reading_options import choice_for, how_to_mend, on_clock, read_for
 from rtamt.errors import BoundError, StlError, TraceError
 from rtamt.readers.assemble import chunks_of
 from rtamt.readers.read import opened
@@ -165,9 +165,7 @@ def _check(requirement: Requirement, trace: str, data: Trace | None, reading: Re
     try:
         if spec.time == "dense" and data.start is None:
             raise TraceError(NO_STAMPS)
-        clock = clock_for(spec, trace, reading)
-        if clock is not None:
-            data = data.resample(clock, reading.how)
+        data = on_clock(data, spec, trace, reading)
         result = spec.evaluate(data)
         violated = first_violation(result)
     except StlError as error:

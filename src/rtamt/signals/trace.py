@@ -161,6 +161,17 @@ class Trace(Clocked):
             raise UsageError(f"{self._source} has a '{twice}' already; choose another name")
         return self._with(renamed)
 
+    def select(self, names: Collection[str]) -> Trace:
+        """Return the trace with some of its signals alone, in its own order.
+
+        >>> import rtamt
+        >>> rtamt.read({"x": [1, 2], "y": [3, 4]}).select(["y"]).names
+        ('y',)
+        """
+        for name in names:
+            self.channel(name)
+        return self._with({name: channel for name, channel in self._channels.items() if name in names})
+
     # ---- for the engine --------------------------------------------------------------------------
 
     def on_one_clock(self, names: Collection[str]) -> dict[str, Any]:

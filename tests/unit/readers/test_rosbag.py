@@ -50,13 +50,86 @@ def test_rtamt_check_reads_the_topics_that_the_specification_names(drive, capsys
     assert '"robustness": -2.0' in capsys.readouterr().out
 
 
-def test_discrete_time_samples_a_bag_as_a_node_does_every_second_unless_told(drive, capsys, tmp_path):
-    assert main(["check", str(LISTING_8), str(drive), "--quiet", "-o", str(tmp_path / "rob.csv")]) == 1
+def test_discrete_time_samples_a_bag_as_a_node_does_every_period(drive, capsys, tmp_path):
+    arguments = ["check", str(LISTING_8), str(drive), "--quiet", "-o", str(tmp_path / "rob.csv")]
+    assert main([*arguments, "--period", "1"]) == 1
     with open(tmp_path / "rob.csv", encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
     assert float(rows[0]["time"]) == START + 0.5  # when both topics have spoken
     assert len(rows) == 20
     capsys.readouterr()
+
+
+@pytest.fixture
+def spike(tmp_path):
+    """A bag in which x is -1 for 50 ms, between two messages that are 1 s apart, and y comes every second."""
+    with Bag(tmp_path, "mcap") as bag:
+        for i in range(5):
+            bag.plain("/y", START + i, 1.0)
+            bag.plain("/x", START + i, 1.0)
+            if i == 2:
+                bag.plain("/x", START + i + 0.5, -1.0)
+                bag.plain("/x", START + i + 0.55, 1.0)
+    return bag.path
+
+
+NO_PERIOD = (
+    "the messages of this bag are not samples one period apart: choose a sampling period, such as --period 100ms, "
+    "or use --time dense, which reads every message at its own time"
+)
+
+
+@pytest.mark.parametrize("formula", ['always("/x.data" >= 0)', 'always("/x.data" >= 0 and "/y.data" >= 0)'])
+@pytest.mark.parametrize("command", ["check", "explain", "report", "plot"])
+def test_a_spike_of_50_ms_was_missed_by_a_bag_sampled_at_1_hz(spike, tmp_path, capsys, command, formula):
+    out = {"report": ["-o", str(tmp_path / "o.html")], "plot": ["-o", str(tmp_path / "o.png")]}.get(
+        command, []
+    )
+    assert main([command, formula, str(spike), *out]) == 2
+    assert capsys.readouterr().err == f"rtamt: {spike}: {NO_PERIOD}\n"
+    violated = 0 if command == "plot" else 1
+    for chosen in (["--period", "50ms"], ["--time", "dense"], ["--resample", "50ms"]):
+        assert main([command, formula, str(spike), *out, *chosen]) == violated
+    capsys.readouterr()
+
+
+def test_topics_with_the_same_regular_stamps_imply_their_period_and_every_message_is_a_sample(
+    spike, tmp_path, capsys
+):
+    assert main(["check", 'always("/y.data" >= 0)', str(spike), "--json"]) == 0
+    row = json.loads(capsys.readouterr().out)
+    assert (row["samples"], row["period"]) == (5, 1)
+    with Bag(tmp_path / "both", "sqlite3") as bag:
+        for i in range(50):
+            for topic in ("/x", "/y"):
+                bag.stamped(
+                    topic, START + i / 20 + (0.004 if i % 3 else 0), -1.0 if (topic, i) == ("/x", 31) else 1.0
+                )
+    assert main(["check", 'always("/x.value" >= 0 and "/y.value" >= 0)', str(bag.path), "--json"]) == 1
+    row = json.loads(capsys.readouterr().out)
+    assert (row["samples"], row["period"]) == (50, 0.05)
+    assert row["first_violation"] == pytest.approx(START + 31 / 20 + 0.004)
+
+
+def test_the_samples_of_a_requirement_depended_on_the_requirements_beside_it(tmp_path, capsys):
+    """The first sample lay at the latest first message of any requirement's topics."""
+    (tmp_path / "early.stl").write_text('"/early.data" >= 0')
+    (tmp_path / "late.stl").write_text('"/late.data" >= 0')
+    with Bag(tmp_path, "mcap") as bag:
+        for i in range(10):
+            bag.plain("/early", START + i, float(i))
+            bag.plain("/late", START + 5.25 + i, float(i))
+    specs = [str(tmp_path / name) for name in ("early.stl", "late.stl")]
+
+    def rows(*given):
+        assert main(["check", *given, str(bag.path), "--period", "1", "--json"]) == 0
+        return [json.loads(line) for line in capsys.readouterr().out.splitlines()]
+
+    def told(row):
+        return row["robustness"], row["samples"]
+
+    assert [told(row) for row in rows(*specs)] == [told(row) for spec in specs for row in rows(spec)]
+    assert [told(row) for row in rows(*specs)] == [(0, 10), (0, 10)]
 
 
 def test_the_bag_is_written_again_with_topics_of_robustness_and_verdicts(drive, tmp_path):
@@ -83,8 +156,8 @@ def test_the_bag_is_written_again_with_topics_of_robustness_and_verdicts(drive, 
 
 def test_a_recorded_robustness_topic_stays_and_the_offline_one_lies_beside_it(drive, tmp_path):
     once, twice = tmp_path / "once.mcap", tmp_path / "twice.mcap"
-    main(["check", str(LISTING_8), str(drive), "--quiet", "-o", str(once)])
-    main(["check", str(LISTING_8), str(once), "--quiet", "-o", str(twice)])
+    main(["check", str(LISTING_8), str(drive), "--quiet", "-o", str(once), "--period", "1"])
+    main(["check", str(LISTING_8), str(once), "--quiet", "-o", str(twice), "--period", "1"])
     topics = {name.split(".")[0] for name in rtamt.read(twice).names}
     assert {"/rtamt/rob", "/rtamt/rob/offline", "/rtamt/rob/verdict"} <= topics
 
@@ -139,7 +212,7 @@ def test_the_folder_that_ros2_records_is_a_bag_compressed_or_not(tmp_path, kind,
             bag.stamped("/rtamt/req", START + i, 5.0 if i in {2, 9} else 0.0)
             bag.stamped("/rtamt/gnt", START + i, 4.0 if i == 5 else 0.0)
     folder, out = bag.path.parent, tmp_path / "out.mcap"
-    assert main(["check", str(LISTING_8), str(folder), "--quiet", "-o", str(out)]) == 1
+    assert main(["check", str(LISTING_8), str(folder), "--quiet", "-o", str(out), "--period", "1"]) == 1
     capsys.readouterr()
     assert main(["info", str(folder)]) == 0
     assert "/rtamt/gnt.value" in capsys.readouterr().out
@@ -197,7 +270,12 @@ def test_every_published_assertion_is_judged_not_the_last_alone(drive, tmp_path,
         b.value = always(req.value <= 100)
     """)
     junit, rob, out = tmp_path / "junit.xml", tmp_path / "rob.csv", tmp_path / "out.mcap"
-    assert main(["check", str(spec), str(drive), "--json", "--junit", str(junit), "-o", str(rob)]) == 1
+    assert (
+        main(
+            ["check", str(spec), str(drive), "--json", "--junit", str(junit), "-o", str(rob), "--period", "1"]
+        )
+        == 1
+    )
     rows = [json.loads(line) for line in capsys.readouterr().out.splitlines()]
     assert [(row["requirement"], row["satisfied"]) for row in rows] == [
         ("two: a.value", False),
@@ -209,7 +287,7 @@ def test_every_published_assertion_is_judged_not_the_last_alone(drive, tmp_path,
     assert [float(first[name]) for name in ("a.value", "b.value")] == [row["robustness"] for row in rows]
     assert main(["check", str(spec), str(drive), "--quiet", "--time", "dense", "-o", str(rob)]) == 1
     assert rtamt.read(rob)["b.value"].values[0] == rows[1]["robustness"]
-    assert main(["check", str(spec), str(drive), "--quiet", "-o", str(out)]) == 1
+    assert main(["check", str(spec), str(drive), "--quiet", "-o", str(out), "--period", "1"]) == 1
     assert {"/rtamt/a.value", "/rtamt/b.value"} <= set(rtamt.read(out).names)
 
 
