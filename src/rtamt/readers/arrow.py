@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rtamt.readers.frames import field_of
-from rtamt.readers.source import CHUNK, Field, Source, Table, library, opening
+from rtamt.readers.source import CHUNK, Field, Source, Table, library
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
@@ -16,24 +16,17 @@ if TYPE_CHECKING:
     from rtamt.readers.source import Raw
 
 
-# What pyarrow lets through of a damaged file: texts that are not UTF-8, columns that are not there.
-_OTHERS = (ValueError, LookupError)
-
-
 def open_parquet(path: str) -> Source:
     """Open a Parquet file; its row groups are read one after another where chunks are asked for."""
     parquet, arrow = library("pyarrow.parquet", "Parquet"), library("pyarrow", "Parquet")
-    with opening(path, "Parquet", arrow.ArrowException, *_OTHERS):
-        file = parquet.ParquetFile(path)
-        fields = _fields(file.schema_arrow.empty_table().flatten().schema, arrow)
+    file = parquet.ParquetFile(path)
+    fields = _fields(file.schema_arrow.empty_table().flatten().schema, arrow)
 
     def load(wanted: Sequence[Field]) -> list[Raw]:
-        with opening(path, "Parquet", arrow.ArrowException, *_OTHERS):
-            return _raws(file.read(columns=_columns(wanted)).flatten(), wanted)
+        return _raws(file.read(columns=_columns(wanted)).flatten(), wanted)
 
     def chunks(wanted: Sequence[Field]) -> Iterator[list[Raw]]:
-        with opening(path, "Parquet", arrow.ArrowException, *_OTHERS):
-            yield from _of_batches(file.iter_batches(CHUNK, columns=_columns(wanted)), wanted, arrow)
+        yield from _of_batches(file.iter_batches(CHUNK, columns=_columns(wanted)), wanted, arrow)
 
     return Source(path, (Table(fields, load, chunks),), close=file.close)
 
@@ -41,24 +34,21 @@ def open_parquet(path: str) -> Source:
 def open_arrow(path: str) -> Source:
     """Open an Arrow file (Feather is one), or a stream that was written into a file."""
     arrow, ipc = library("pyarrow", "Arrow files"), library("pyarrow.ipc", "Arrow files")
-    with opening(path, "an Arrow file", arrow.ArrowException, *_OTHERS):
-        file = arrow.memory_map(path)
-        try:
-            reader = ipc.open_file(file)
-            batches: Iterable[Any] = (reader.get_batch(i) for i in range(reader.num_record_batches))
-        except arrow.ArrowInvalid:
-            file.seek(0)
-            batches = reader = ipc.open_stream(file)
-        fields = _fields(reader.schema.empty_table().flatten().schema, arrow)
+    file = arrow.memory_map(path)
+    try:
+        reader = ipc.open_file(file)
+        batches: Iterable[Any] = (reader.get_batch(i) for i in range(reader.num_record_batches))
+    except arrow.ArrowInvalid:
+        file.seek(0)
+        batches = reader = ipc.open_stream(file)
+    fields = _fields(reader.schema.empty_table().flatten().schema, arrow)
 
     def chunks(wanted: Sequence[Field]) -> Iterator[list[Raw]]:
-        with opening(path, "an Arrow file", arrow.ArrowException, *_OTHERS):
-            yield from _of_batches(batches, wanted, arrow)
+        yield from _of_batches(batches, wanted, arrow)
 
     def load(wanted: Sequence[Field]) -> list[Raw]:
-        with opening(path, "an Arrow file", arrow.ArrowException, *_OTHERS):
-            whole = arrow.Table.from_batches(list(batches), schema=reader.schema)
-            return _raws(whole.flatten(), wanted)
+        whole = arrow.Table.from_batches(list(batches), schema=reader.schema)
+        return _raws(whole.flatten(), wanted)
 
     return Source(path, (Table(fields, load, chunks),), close=file.close)
 

@@ -12,7 +12,7 @@ from rtamt.errors import TraceError
 from rtamt.readers.csv import BLOCK, Column, Header, blocks, plain, read_header, rows
 from rtamt.readers.csv_cells import DATE, LARGEST, Cells
 from rtamt.readers.frames import field_of
-from rtamt.readers.source import Field, Source, Table, opening
+from rtamt.readers.source import Field, Source, Table
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -25,7 +25,7 @@ _SAMPLE = 100
 
 def open_csv(path: str) -> Source:
     """Open a CSV file; columns whose first lines hold no number at all are text."""
-    with opening(path, "CSV"), open(path, encoding="utf-8-sig", newline="", errors="replace") as lines:
+    with open(path, encoding="utf-8-sig", newline="", errors="replace") as lines:
         header, rest = read_header(lines, path)
         sample = [row for _, row in islice(rows(rest, header, header.line), _SAMPLE)]
     fields = [
@@ -35,7 +35,7 @@ def open_csv(path: str) -> Source:
 
     def chunks(wanted: Sequence[Field]) -> Iterator[list[Raw]]:
         try:
-            with opening(path, "CSV"), open(path, encoding="utf-8-sig", newline="") as lines:
+            with open(path, encoding="utf-8-sig", newline="") as lines:
                 _, rest = read_header(lines, path)
                 yield from _blocks(rest, header, wanted)
         except UnicodeDecodeError:

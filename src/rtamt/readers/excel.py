@@ -2,44 +2,38 @@
 
 from __future__ import annotations
 
-import zlib
 from contextlib import ExitStack
 from itertools import chain
 from typing import TYPE_CHECKING, Any
-from zipfile import BadZipFile
+from zipfile import ZipFile
 
 from rtamt.errors import TraceError, did_you_mean
 from rtamt.readers.rows import table_of_rows
-from rtamt.readers.source import Source, library, opening
+from rtamt.readers.source import Source, library
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
 
-# What openpyxl lets through of a damaged workbook, when it is opened and when its rows are read.
-_DAMAGE = (
-    BadZipFile,
-    zlib.error,
-    SyntaxError,
-    LookupError,
-    ValueError,
-    TypeError,
-    AttributeError,
-    EOFError,
-    RuntimeError,
-)
+#: Bytes of a workbook's parts, unpacked: a few MB of a zip file can expand to any number of GB.
+MOST_BYTES = 2**30
+#: Rows that Excel can hold.
+MOST_ROWS = 2**20
+#: Cells up to the last one of each row: a lone cell far to the right stands for thousands of empty ones.
+MOST_CELLS = 2**28
 
 
 def open_excel(path: str, sheet: str | None = None) -> Source:
     """Open a workbook. ``sheet``: by default the one sheet that has something in it."""
     openpyxl = library("openpyxl", "Excel")
-    exceptions = library("openpyxl.utils.exceptions", "Excel")
     with ExitStack() as stack:
-        with opening(path, "Excel", exceptions.InvalidFileException, *_DAMAGE):
-            file = stack.enter_context(open(path, "rb"))
-            book = openpyxl.load_workbook(file, read_only=True, data_only=True)
+        file = stack.enter_context(open(path, "rb"))
+        _check_size(path, file)
+        book = openpyxl.load_workbook(file, read_only=True, data_only=True)
         stack.callback(book.close)
         found = {page.title: page for page in book.worksheets}
+        for page in book.worksheets:
+            page.reset_dimensions()  # what the file claims them to be, not what they are
         name = _choose(path, found, sheet)
         rows = _filled(found[name], path)
         header = next(rows, None)
@@ -54,6 +48,17 @@ def open_excel(path: str, sheet: str | None = None) -> Source:
         return Source(path, (table_of_rows(columns, rows),), notes=notes, close=stack.pop_all().close)
 
 
+def _check_size(path: str, file: Any) -> None:
+    with ZipFile(file) as archive:
+        size = sum(part.file_size for part in archive.infolist())
+    if size > MOST_BYTES:
+        raise TraceError(
+            f"{path} unpacks to {size / 2**20:,.1f} MiB, more than the {MOST_BYTES // 2**20:,} MiB that are read of "
+            f"a workbook: save its sheets as CSV, or split it"
+        )
+    file.seek(0)
+
+
 def _choose(path: str, found: dict[str, Any], sheet: str | None) -> str:
     if sheet is not None:
         if sheet not in found:
@@ -66,16 +71,24 @@ def _choose(path: str, found: dict[str, Any], sheet: str | None) -> str:
         raise TraceError(
             f"{path} has several sheets: {', '.join(full)}; choose one with sheet=, or on the command line --sheet"
         )
+    if not found:
+        raise TraceError(f"{path} has no sheet of cells")
     return full[0] if full else next(iter(found))
 
 
 def _filled(page: Any, path: str) -> Iterator[Sequence[Any]]:
     """Yield the rows that have a value in them, all as long as the first one."""
-    width = None
-    with opening(path, "Excel", *_DAMAGE):
-        for row in page.iter_rows(values_only=True):
-            if all(cell is None for cell in row):
-                continue
-            if width is None:
-                width = max(i for i, cell in enumerate(row) if cell is not None) + 1
-            yield tuple(chain(row, [None] * (width - len(row))))[:width]
+    width, cells = None, 0
+    for number, whole in enumerate(page.iter_rows(values_only=True), 1):
+        cells += len(whole)
+        if number > MOST_ROWS or cells > MOST_CELLS:
+            raise TraceError(
+                f"the sheet '{page.title}' of {path} reaches beyond {MOST_ROWS:,} rows or {MOST_CELLS:,} cells, "
+                f"empty ones included: delete what is far from the table, or save the sheet as CSV"
+            )
+        row = whole[:width]
+        if row.count(None) == len(row):
+            continue
+        if width is None:
+            width = max(i for i, cell in enumerate(row) if cell is not None) + 1
+        yield tuple(chain(row, [None] * (width - len(row))))[:width]

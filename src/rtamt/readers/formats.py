@@ -5,9 +5,11 @@ from __future__ import annotations
 import importlib
 import os
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING
 
 from rtamt.errors import TraceError, UsageError, did_you_mean
+from rtamt.readers.source import guarded, opening
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -29,14 +31,15 @@ class Format:
     sheets: bool = False
 
     def open(self, path: str, sheet: str | None = None) -> Source:
-        """Open a file of this kind."""
+        """Open a file of this kind. Whatever its library raises, now or when the samples are read, is a sentence."""
         module, function = self.opener.split(":")
         opener: Callable[..., Source] = getattr(importlib.import_module(f"rtamt.readers.{module}"), function)
-        if self.sheets:
-            return opener(path, sheet)
-        if sheet is not None:
+        if sheet is not None and not self.sheets:
             raise UsageError(f"'{path}' is {self.name}, which has no sheets; leave the sheet out")
-        return opener(path)
+        guard = partial(opening, path, self.name)
+        with guard():
+            source = opener(path, sheet) if self.sheets else opener(path)
+        return guarded(source, guard)
 
 
 #: A bag has a table for each topic; a specification's annotations say which topics it reads. ROS 2 records

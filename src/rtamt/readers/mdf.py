@@ -2,19 +2,40 @@
 
 from __future__ import annotations
 
+import ast
+import logging
 from collections import Counter
+from contextlib import ExitStack, contextmanager
 from datetime import timezone
+from traceback import walk_tb
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rtamt.readers.source import Field, Source, Table, library, opening
+from rtamt.errors import TraceError
+from rtamt.readers.source import Field, Source, Table, damage, library, printable
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-    from contextlib import AbstractContextManager
+    from collections.abc import Iterator, Sequence
 
     from rtamt.readers.source import Raw
+
+
+#: Types of channels of MDF 4 that have no bytes in the records: virtual masters and data.
+_VIRTUAL = (3, 6)
+_VARIABLE_LENGTH = 1
+#: The flag of a channel of MDF 4 that has a bit of its own in each record, which marks invalid samples.
+_HAS_FLAG = 2
+#: Types of data that are no numbers: texts, bytes, MIME, dates as bytes. Their lengths lie anywhere in the file.
+_NO_NUMBERS = range(6, 15)
+
+
+#: Of formulas of conversions: what they are made of, and the functions that they may call.
+_ARITHMETIC = (ast.BinOp, ast.UnaryOp, ast.Compare, ast.Name, ast.Load, ast.operator, ast.unaryop, ast.cmpop)
+_FUNCTIONS = frozenset(
+    "abs sqrt exp expm1 log log10 log1p floor ceil sin cos tan sinh cosh tanh arcsin arccos arctan arctan2 "
+    "arcsinh arccosh arctanh where".split()
+)
 
 
 def open_mdf(path: str) -> Source:
@@ -23,16 +44,25 @@ def open_mdf(path: str) -> Source:
     Channels whose values are texts for numbers (modes, states) are read as the numbers.
     """
     asammdf = library("asammdf", "MDF")
-    with _reading(path):
-        file = asammdf.MDF(path)
+    with _complaints() as complaints:
+        try:
+            file = asammdf.MDF(path)
+        except Exception as error:
+            _abandon(error)
+            raise
+    with ExitStack() as stack:
+        stack.callback(file.close)
+        for number, group in enumerate(file.groups):
+            _check_group(path, number, group)
+        stack.pop_all()
     counts = Counter(channel.name for group in file.groups for channel in group.channels)
-    tables = tuple(_table(file, path, number, counts) for number in range(len(file.groups)))
+    tables = tuple(_table(file, number, counts) for number in range(len(file.groups)))
     start = file.start_time
     origin = np.datetime64(start.astimezone(timezone.utc).replace(tzinfo=None), "ns")
-    return Source(path, tables, origin=origin, close=file.close)
+    return Source(path, tables, origin=origin, notes=damage(complaints), close=file.close)
 
 
-def _table(file: Any, path: str, number: int, counts: Counter[str]) -> Table:
+def _table(file: Any, number: int, counts: Counter[str]) -> Table:
     group = file.groups[number]
     master = file.masters_db.get(number)
     prefix = getattr(group.channel_group, "acq_name", "") or f"group{number}"
@@ -40,27 +70,117 @@ def _table(file: Any, path: str, number: int, counts: Counter[str]) -> Table:
     fields, clock = [], None
     for index, channel in enumerate(group.channels):
         name = channel.name if counts[channel.name] == 1 else f"{prefix}.{channel.name}"
-        field = Field(name, name, _unit(channel), "")
+        kind = "text" if _is_text(channel) else ""
+        field = Field(name, name, _unit(channel), kind)
         if index == master:
             clock = field = Field(name, name, "s", "number")
         places[name] = index
         fields.append(field)
 
     def load(wanted: Sequence[Field]) -> list[Raw]:
-        with _reading(path):
-            return [
-                np.asarray(file.get_master(number))
-                if field == clock
-                else _samples(file, number, places[field.column])
-                for field in wanted
-            ]
+        for field in wanted:
+            if field.kind == "text":
+                raise TraceError(f"the channel '{field.column}' holds texts or bytes, expected numbers")
+        return [
+            np.asarray(file.get_master(number))
+            if field == clock
+            else _samples(file, number, places[field.column])
+            for field in wanted
+        ]
 
     return Table(tuple(fields), load, clock=clock)
 
 
-def _reading(path: str) -> AbstractContextManager[None]:
-    # At a damaged block asammdf raises whatever comes first, here and when samples are read.
-    return opening(path, "MDF", Exception)
+@contextmanager
+def _complaints() -> Iterator[list[str]]:
+    """Collect what asammdf would print to stderr of a damaged file: it leaves out the rest of it, and goes on."""
+    complaints: list[str] = []
+
+    class Collector(logging.Handler):
+        def emit(self, record: logging.LogRecord) -> None:
+            complaints.append(record.getMessage())
+
+    logger = logging.getLogger("asammdf")
+    handlers, logger.handlers, logger.propagate = logger.handlers, [Collector()], False
+    try:
+        yield complaints
+    finally:
+        logger.handlers, logger.propagate = handlers, True
+
+
+def _abandon(error: Exception) -> None:
+    """Close what asammdf could not open: it would do so when it is deleted, fail, and print that to stderr."""
+    for frame, _ in walk_tb(error.__traceback__):
+        half: Any = frame.f_locals.get("self")
+        if getattr(half, "_closed", True) is False and hasattr(half, "_tempfile"):
+            half._closed = True
+            half._tempfile.close()
+
+
+def _check_group(path: str, number: int, group: Any) -> None:
+    """Raise :class:`TraceError` at what asammdf would do whatever it leads to.
+
+    It reads a channel that lies outside its records wherever that is in memory, and evaluates any formula.
+    """
+    size = group.channel_group.samples_byte_nr
+    flags = 8 * getattr(group.channel_group, "invalidation_bytes_nr", 0)
+    for channel in group.channels:
+        if hasattr(channel, "byte_offset"):  # MDF 4; before, a channel begins at a bit
+            end = 8 * channel.byte_offset + channel.bit_offset + channel.bit_count
+            flag = channel.pos_invalidation_bit if channel.flags & _HAS_FLAG else -1
+        else:
+            end = 8 * channel.additional_byte_offset + channel.start_offset + channel.bit_count
+            flag = -1
+        problem = ""
+        if getattr(channel, "channel_type", 0) not in _VIRTUAL and (end > 8 * size or flag >= flags):
+            problem = f"lies outside its records of {size} bytes"
+        for formula in _formulas(channel.conversion):
+            if not is_arithmetic(formula):
+                problem = f"has a conversion that is no arithmetic, '{printable(formula)}'"
+        if problem:
+            raise TraceError(
+                f"'{path}' cannot be read as MDF: the channel '{printable(channel.name)}' of group {number} "
+                f"{problem}; the file is damaged: copy or export it again"
+            )
+
+
+def _formulas(conversion: Any) -> Iterator[str]:
+    """Yield the texts of formulas in a conversion, and in those that it refers to."""
+    if isinstance(getattr(conversion, "formula", None), str) and conversion.formula:
+        yield conversion.formula
+    for block in (getattr(conversion, "referenced_blocks", None) or {}).values():
+        yield from _formulas(block)
+
+
+def is_arithmetic(formula: str) -> bool:
+    """Tell whether the text of a conversion is arithmetic, without powers of constants, which have no end.
+
+    asammdf runs it: by numexpr, and what that refuses as Python by sympy, where that is installed.
+
+    >>> is_arithmetic("2*X1**2 + sin(X)"), is_arithmetic("9**9**9 * X"), is_arithmetic("exit(X)")
+    (True, False, False)
+    """
+    try:
+        tree = ast.parse(formula.strip(), mode="eval").body
+    except (SyntaxError, ValueError, MemoryError, RecursionError):
+        return False
+    return all(map(_is_arithmetic, ast.walk(tree)))
+
+
+def _is_arithmetic(node: ast.AST) -> bool:
+    if isinstance(node, ast.Constant):
+        return type(node.value) in (int, float)
+    if isinstance(node, ast.Call):
+        return isinstance(node.func, ast.Name) and node.func.id in _FUNCTIONS and not node.keywords
+    if isinstance(node, ast.BinOp) and isinstance(node.op, (ast.Pow, ast.LShift)):
+        return any(isinstance(part, ast.Name) for part in ast.walk(node.left))
+    return isinstance(node, _ARITHMETIC)
+
+
+def _is_text(channel: Any) -> bool:
+    return hasattr(channel, "byte_offset") and (
+        channel.data_type in _NO_NUMBERS or channel.channel_type == _VARIABLE_LENGTH
+    )
 
 
 def _unit(channel: Any) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from contextlib import ExitStack
 from itertools import groupby
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -11,8 +12,8 @@ import numpy as np
 
 from rtamt.errors import TraceError
 from rtamt.extras import library
-from rtamt.readers.formats import METADATA
-from rtamt.readers.source import Field, Source, Table, opening
+from rtamt.readers.formats import BAG, METADATA
+from rtamt.readers.source import Field, Source, Table, opening, reason
 from rtamt.signals.arrays import is_number
 
 if TYPE_CHECKING:
@@ -34,10 +35,16 @@ def open_bag(path: str) -> Source:
     message of the topic holds. The time of a message is the stamp in its header, in nanoseconds; where
     there is none, or it was left at 0, the time at which it was recorded.
     """
-    reader = open_reader(path)
-    ordered = sorted(reader.connections, key=lambda connection: connection.topic)
-    tables = [_table(reader, topic, list(group)) for topic, group in groupby(ordered, lambda c: c.topic)]
-    return Source(path, tuple(table for table in tables if table is not None), close=reader.close)
+    with ExitStack() as stack:
+        reader = open_reader(path)
+        stack.callback(reader.close)
+        # A damaged database may hold anything where a name was.
+        ordered = sorted(reader.connections, key=lambda connection: str(connection.topic))
+        tables = [
+            _table(reader, topic, list(group)) for topic, group in groupby(ordered, lambda c: str(c.topic))
+        ]
+        found = tuple(table for table in tables if table is not None)
+        return Source(path, found, close=stack.pop_all().close)
 
 
 def open_reader(path: str) -> Any:
@@ -46,12 +53,16 @@ def open_reader(path: str) -> Any:
     typesys = library("rosbags.typesys", "reading ROS bags", "ros")
     # ROS 2's sqlite3 files came without definitions of their messages until 2023.
     known = typesys.get_typestore(typesys.Stores.ROS2_HUMBLE)
-    # What is no bag fails in ways of its own: a struct is cut, a text cannot be decoded.
-    broken = (highlevel.AnyReaderError, ValueError, KeyError, IndexError, TypeError, AssertionError)
-    with opening(path, "a ROS bag", *broken):
+    with opening(path, BAG.name):
         reader = highlevel.AnyReader([_existing(path)], default_typestore=known)
         reader.open()
     return reader
+
+
+def messages(reader: Any, connections: Sequence[Any] = ()) -> Iterator[tuple[Any, int, bytes]]:
+    """Yield connections, times of recording and messages as bytes; raise :class:`TraceError` where a bag is damaged."""
+    with opening(str(reader.paths[0]), BAG.name):
+        yield from reader.messages(connections=connections)
 
 
 def _existing(path: str) -> Path:
@@ -70,7 +81,7 @@ def _existing(path: str) -> Path:
 def _table(reader: Any, topic: str, connections: list[Any]) -> Table | None:
     """Return the table of a topic; None where it has no message."""
     kinds = {connection.msgtype for connection in connections}
-    first = next(reader.messages(connections=connections), None)
+    first = next(messages(reader, connections), None)
     if first is None:
         return None
     if len(kinds) > 1:
@@ -83,7 +94,7 @@ def _table(reader: Any, topic: str, connections: list[Any]) -> Table | None:
         paths = [steps[field.column] for field in wanted if field != clock]
         stamps: list[int] = []
         rows: list[list[Any]] = []
-        for known, recorded, data in reader.messages(connections=connections):
+        for known, recorded, data in messages(reader, connections):
             message = _message(reader, known, data)
             stamp = _stamp(message) or recorded
             if stamps and stamp <= stamps[-1]:
@@ -120,17 +131,16 @@ def _columns(wanted: Sequence[Field], clock: Field, stamps: list[int], rows: lis
 
 def _message(reader: Any, connection: Any, raw: Any) -> Any:
     """Return a message of a bag; raise :class:`TraceError` where it is none of its type."""
-    highlevel = library("rosbags.highlevel", "reading ROS bags", "ros")
     try:
         return reader.deserialize(raw, connection.msgtype)
-    except highlevel.AnyReaderError as error:
+    except Exception as error:  # code that rosbags makes of the definition: whatever goes wrong first
         path = reader.paths[0]
         # Only the folder says that each message is compressed.
         part = path.is_file() and (path.parent / METADATA).is_file()
         hint = f"; the file is a part of a bag: give its folder, '{path.parent}'" if part else ""
         raise TraceError(
-            f"a message on {connection.topic} cannot be read as {connection.msgtype}: {str(error).rstrip('.')}{hint}"
-        ) from None
+            f"a message on {connection.topic} cannot be read as {connection.msgtype}: {reason(error)}{hint}"
+        ) from error
 
 
 def _numbers(message: Any, before: Steps = ()) -> Iterator[Steps]:

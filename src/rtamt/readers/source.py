@@ -9,15 +9,18 @@
 
 from __future__ import annotations
 
+import errno
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from traceback import walk_tb
 from typing import TYPE_CHECKING, Any
 
 from rtamt import extras
-from rtamt.errors import TraceError
+from rtamt.errors import StlError, TraceError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Sequence
+    from collections.abc import Callable, Iterable, Iterator, Sequence
+    from contextlib import AbstractContextManager
 
     import numpy as np
     from numpy.typing import NDArray
@@ -77,20 +80,96 @@ def library(module: str, what: str) -> Any:
     return extras.library(module, f"reading {what}", "data")
 
 
-@contextmanager
-def opening(path: str, what: str, *failures: type[Exception]) -> Iterator[None]:
-    """Turn what goes wrong while a file is read into one sentence.
+# ---- what goes wrong in a library ----------------------------------------------------------------
 
-    ``what``: the format. ``failures``: what its library raises at a file that is not of that format.
+#: What a library asks of the operating system only where numbers in the file are wrong.
+_WRONG_NUMBERS = (None, errno.EINVAL, errno.EOVERFLOW, errno.EFBIG)
+#: What our own code raises by mistake only, never at the contents of a file.
+_BUGS = (AssertionError, AttributeError, NameError, NotImplementedError, TypeError)
+#: Characters of a library's own message that are shown.
+_SHOWN = 200
+
+
+@contextmanager
+def opening(path: str, what: str) -> Iterator[None]:
+    """Turn whatever a format library raises at a file into one sentence. ``what``: the format.
+
+    Our own errors pass, and so do our own bugs: they are no damage of the file.
     """
     try:
         yield
-    except FileNotFoundError:
-        raise TraceError(f"there is no file '{path}'") from None
+    except StlError:
+        raise
+    except FileNotFoundError as error:
+        raise TraceError(f"there is no file '{error.filename or path}'") from None
     except IsADirectoryError:
         raise TraceError(f"'{path}' is a directory, expected a file") from None
-    except failures as error:
-        reason = " ".join(str(error).split()) or type(error).__name__
-        raise TraceError(f"'{path}' cannot be read as {what}: {reason}") from None
-    except OSError as error:
-        raise TraceError(f"cannot read '{path}': {error.strerror or error}") from None
+    except Exception as error:
+        if isinstance(error, OSError) and error.errno not in _WRONG_NUMBERS:
+            raise TraceError(f"cannot read '{path}': {error.strerror or error}") from None
+        if isinstance(error, _BUGS) and raised_by_us(error):
+            raise
+        raise TraceError(
+            f"'{path}' cannot be read as {what}: {reason(error)}; "
+            f"the file is damaged, incomplete or of another kind: copy or export it again"
+        ) from error
+
+
+def guarded(source: Source, guard: Callable[[], AbstractContextManager[None]]) -> Source:
+    """Return a source that reads its tables under ``guard``: libraries read most of a file only then."""
+    return replace(source, tables=tuple(_guarded(table, guard) for table in source.tables))
+
+
+def _guarded(table: Table, guard: Callable[[], AbstractContextManager[None]]) -> Table:
+    chunked = table.chunks
+
+    def load(wanted: Sequence[Field]) -> list[Raw]:
+        with guard():
+            return table.load(wanted)
+
+    def chunks(wanted: Sequence[Field]) -> Iterator[list[Raw]]:
+        assert chunked is not None
+        with guard():
+            yield from chunked(wanted)
+
+    return replace(table, load=load, chunks=None if chunked is None else chunks)
+
+
+def raised_by_us(error: BaseException) -> bool:
+    """Tell whether an exception was raised by code of this package, and not in a library that it called."""
+    name = ""
+    for frame, _ in walk_tb(error.__traceback__):
+        name = frame.f_globals.get("__name__", "")
+    return name.partition(".")[0] == "rtamt"
+
+
+def reason(error: BaseException) -> str:
+    r"""Return what a library raised as part of a sentence: one line without control characters, never pages.
+
+    >>> reason(ValueError("bad\n\x1bblock.")), reason(KeyError(17)), reason(MemoryError())
+    ('bad \\x1bblock', 'unexpected contents (KeyError: 17)', 'it needs more memory than there is')
+    """
+    if isinstance(error, MemoryError):
+        return "it needs more memory than there is"
+    if isinstance(error, RecursionError):
+        return "it is nested too deeply"
+    said = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
+    line = printable(" ".join(said.split()).rstrip("."))
+    if " " in line:
+        return line
+    return f"unexpected contents ({type(error).__name__}{': ' if line else ''}{line})"
+
+
+def printable(text: str) -> str:
+    """Return a text as a message shows it: control characters as Python writes them, and never pages of it."""
+    text = "".join(c if c.isprintable() else ascii(c)[1:-1] for c in text[: _SHOWN + 1])
+    return text if len(text) <= _SHOWN else f"{text[:_SHOWN]}..."
+
+
+def damage(complaints: Iterable[str], until: str = "") -> tuple[str, ...]:
+    """Return a note on a file that was read as far as possible: the first thing its library complained about."""
+    lines = list(dict.fromkeys(line.strip() for line in complaints if line.strip()))
+    if not lines:
+        return ()
+    more = f" (and {len(lines) - 1} more)" if len(lines) > 1 else ""
+    return (f"the file is damaged, read {until}as far as possible: {printable(lines[0])}{more}",)

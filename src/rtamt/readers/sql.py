@@ -3,11 +3,16 @@
 from __future__ import annotations
 
 import re
-from contextlib import ExitStack
+from contextlib import ExitStack, contextmanager
+from functools import partial
+from typing import TYPE_CHECKING
 
 from rtamt.errors import TraceError, UsageError
 from rtamt.readers.rows import table_of_rows
-from rtamt.readers.source import CHUNK, Source, library
+from rtamt.readers.source import CHUNK, Source, guarded, library, opening, printable
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
 
 _URL = re.compile(r"[a-z][a-z0-9+]*://", re.IGNORECASE)
 #: The driver that our extra brings; the one that SQLAlchemy tries first is another.
@@ -25,20 +30,38 @@ def is_url(text: str) -> bool:
 
 def open_sql(url: str, query: str | None) -> Source:
     """Run a query; the server sends its rows as they are read, wherever it can."""
-    sqlalchemy = library("sqlalchemy", "databases")
-    exceptions = library("sqlalchemy.exc", "databases")
     if query is None:
         raise UsageError(
             f"'{shown(url)}' is a database: say what to read with query=, or on the command line --query"
         )
+    guard = partial(_reading, url)
+    with guard():
+        source = _open(url, query)
+    return guarded(source, guard)
+
+
+def _open(url: str, query: str) -> Source:
+    sqlalchemy = library("sqlalchemy", "databases")
     with ExitStack() as stack:
+        engine = sqlalchemy.create_engine(_POSTGRESQL.sub("postgresql+psycopg://", url, count=1))
+        stack.callback(engine.dispose)
+        connection = stack.enter_context(engine.connect())
+        streaming = connection.execution_options(stream_results=True, yield_per=CHUNK)
+        # What looks like a parameter (:name) is part of the query: nobody gives values for it.
+        result = streaming.execute(sqlalchemy.text(query.replace(":", r"\:")))
+        if not result.returns_rows:
+            raise TraceError(f"the query on '{shown(url)}' returns no rows; give a SELECT")
+        columns = list(result.keys())
+        return Source(shown(url), (table_of_rows(columns, result),), close=stack.pop_all().close)
+
+
+@contextmanager
+def _reading(url: str) -> Iterator[None]:
+    """Turn what goes wrong in a database into one sentence."""
+    exceptions = library("sqlalchemy.exc", "databases")
+    with opening(shown(url), "a database"):
         try:
-            engine = sqlalchemy.create_engine(_POSTGRESQL.sub("postgresql+psycopg://", url, count=1))
-            stack.callback(engine.dispose)
-            connection = stack.enter_context(engine.connect())
-            streaming = connection.execution_options(stream_results=True, yield_per=CHUNK)
-            # What looks like a parameter (:name) is part of the query: nobody gives values for it.
-            result = streaming.execute(sqlalchemy.text(query.replace(":", r"\:")))
+            yield
         except exceptions.NoSuchModuleError as error:
             raise UsageError(f"there is no driver for '{shown(url)}': {_first_line(error)}") from None
         except ModuleNotFoundError as error:
@@ -47,10 +70,6 @@ def open_sql(url: str, query: str | None) -> Source:
             ) from None
         except exceptions.SQLAlchemyError as error:
             raise TraceError(f"cannot read from '{shown(url)}': {_first_line(error)}") from None
-        if not result.returns_rows:
-            raise TraceError(f"the query on '{shown(url)}' returns no rows; give a SELECT")
-        columns = list(result.keys())
-        return Source(shown(url), (table_of_rows(columns, result),), close=stack.pop_all().close)
 
 
 def shown(url: str) -> str:
@@ -60,4 +79,4 @@ def shown(url: str) -> str:
 
 def _first_line(error: Exception) -> str:
     original = getattr(error, "orig", None) or error
-    return str(original).strip().split("\n")[0]
+    return printable(str(original).strip().split("\n")[0])

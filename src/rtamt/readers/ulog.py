@@ -2,21 +2,28 @@
 
 from __future__ import annotations
 
-import struct
 from contextlib import redirect_stdout
 from io import StringIO
+from os import fstat
 from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import TraceError
-from rtamt.readers.source import Field, Source, Table, library, opening
+from rtamt.readers.source import Field, Source, Table, damage, library
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
+    from typing import BinaryIO
 
     from rtamt.readers.source import Raw
 
 #: The field of every topic that says when it was logged: microseconds since the autopilot's start.
 _CLOCK = "timestamp"
+
+
+#: Bytes of the header of a message: its size and its type.
+_HEADER = 3
+#: How many times the size of a file is read of it at most.
+_AGAIN = 16
 
 
 def open_ulog(path: str) -> Source:
@@ -26,20 +33,43 @@ def open_ulog(path: str) -> Source:
     ``topic.field[0]``. Names with brackets need another one to be used in formulas: ``names=``.
     """
     core = library("pyulog.core", "PX4 flight logs")
-    exceptions = library("pyulog.exceptions", "PX4 flight logs")
-    # What is no ULog fails in ways of its own: a struct is cut, a text cannot be decoded.
-    broken = (exceptions.ULogException, struct.error, ValueError, KeyError, IndexError, TypeError)
-    # It prints what is damaged, where the robustness of a command line goes.
+    # pyulog prints what is damaged, where the robustness of a command line goes.
     said = StringIO()
-    with opening(path, "a PX4 flight log", *broken), open(path, "rb") as file, redirect_stdout(said):
+    with open(path, "rb") as opened, redirect_stdout(said):
+        file = _Watched(opened)
         log = core.ULog(file)
+    notes = _damage(log, said.getvalue(), file)
     topics = sorted(log.data_list, key=lambda topic: (topic.name, topic.multi_id))
+    if notes and not topics:
+        raise TraceError(f"'{path}' cannot be read as PX4 ULog: {notes[0]}, and no sample comes before that")
     for topic in topics:
         if _CLOCK not in topic.data:
             raise TraceError(
-                f"'{path}' cannot be read as a PX4 flight log: the topic '{topic.name}' has no field '{_CLOCK}'"
+                f"'{path}' cannot be read as PX4 ULog: the topic '{topic.name}' has no field '{_CLOCK}'"
             )
-    return Source(path, tuple(map(_table, topics)), notes=(*_dropouts(log), *_damage(said.getvalue())))
+    return Source(path, tuple(map(_table, topics)), notes=(*_dropouts(log), *notes))
+
+
+class _Watched:
+    """A file that notes whether it ends in the middle of a message, and that is not read for ever.
+
+    Where it finds damage, pyulog goes back and reads on one byte later: for ever if that is near the end.
+    """
+
+    def __init__(self, file: BinaryIO) -> None:
+        self.cut = False
+        self._file = file
+        self._left = _AGAIN * fstat(file.fileno()).st_size + 2**20
+        self.seek, self.tell, self.close = file.seek, file.tell, file.close
+
+    def read(self, size: int) -> bytes:
+        data = self._file.read(size)
+        # At the end of a whole file the three bytes of a further header are asked for, and none is there.
+        self.cut |= len(data) < size and (len(data) > 0 or size != _HEADER)
+        self._left -= size
+        if self._left < 0:
+            raise TraceError(f"'{self._file.name}' cannot be read as PX4 ULog: too much of it is damaged")
+        return data
 
 
 def _table(topic: Any) -> Table:
@@ -61,9 +91,9 @@ def _dropouts(log: Any) -> tuple[str, ...]:
     return (f"{len(log.dropouts)} dropouts of the logger, {lost:g} s in all: nothing was recorded in them",)
 
 
-def _damage(said: str) -> tuple[str, ...]:
-    lines = list(dict.fromkeys(line.strip() for line in said.splitlines() if line.strip()))
-    if not lines:
-        return ()
-    more = f" (and {len(lines) - 1} more)" if len(lines) > 1 else ""
-    return (f"pyulog says: {lines[0]}{more}",)
+def _damage(log: Any, said: str, file: _Watched) -> tuple[str, ...]:
+    until = f"up to {log.last_timestamp / 1e6:.9g} s"
+    complaints = said.splitlines() or ["messages were skipped"] * log.file_corruption
+    if file.cut and not complaints:
+        return (f"the file ends in the middle of a message: read {until}",)
+    return damage(complaints, f"{until}, ")

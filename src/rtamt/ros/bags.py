@@ -12,7 +12,9 @@ import numpy as np
 
 from rtamt.errors import TraceError, UsageError
 from rtamt.extras import library
-from rtamt.readers.rosbag import open_reader
+from rtamt.readers.formats import BAG
+from rtamt.readers.rosbag import messages, open_reader
+from rtamt.readers.source import opening
 from rtamt.ros.messages import DEFINITIONS, FLOAT_STAMPED, SATISFIED, VERDICT, VIOLATED
 
 if TYPE_CHECKING:
@@ -102,8 +104,9 @@ def _copy(reader: Any, writer: Any, store: Any) -> None:
         key = known.topic, known.msgtype
         if key not in connections:
             connections[key] = writer.add_connection(known.topic, known.msgtype, typestore=store)
-    for known, recorded, raw in reader.messages():
-        data = raw if reader.is2 else store.ros1_to_cdr(raw, known.msgtype)
+    for known, recorded, raw in messages(reader):
+        with opening(str(reader.paths[0]), BAG.name):
+            data = raw if reader.is2 else store.ros1_to_cdr(raw, known.msgtype)
         writer.write(connections[known.topic, known.msgtype], recorded, data)
 
 

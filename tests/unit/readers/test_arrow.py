@@ -64,7 +64,7 @@ def test_dates_of_nanoseconds(tmp_path):
     [
         ("a.parquet", None, "there is no file '{path}'"),
         ("a.parquet", b"PAR1 nonsense", "'{path}' cannot be read as Parquet: "),
-        ("a.arrow", b"nonsense", "'{path}' cannot be read as an Arrow file: "),
+        ("a.arrow", b"nonsense", "'{path}' cannot be read as Arrow: "),
         (
             "a.parket",
             b"",

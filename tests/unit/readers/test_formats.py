@@ -3,6 +3,7 @@
 import datetime as dt
 import os
 import struct
+import zipfile
 from pathlib import Path
 
 import asammdf
@@ -11,6 +12,9 @@ import openpyxl
 import pytest
 
 import rtamt
+from rtamt.readers import excel
+
+AGAIN = "; the file is damaged, incomplete or of another kind: copy or export it again"
 
 # ---- Excel ---------------------------------------------------------------------------------------
 
@@ -42,6 +46,49 @@ def test_excel_dates_and_sheets(tmp_path):
     assert trace.notes == ("sheet 'log'", "time is 'when', the one column of dates")
     path = workbook(tmp_path / "b.xlsx", first=[["x"], [1]], second=[["x"], [2]])
     assert rtamt.read(path, sheet="second")["x"].values.tolist() == [2]
+
+
+def test_a_lone_cell_at_the_far_end_of_a_sheet_takes_no_17_billion_steps(tmp_path):
+    book = openpyxl.Workbook()
+    for row in (["t", "x"], [0, 5], [1, 6]):
+        book.active.append(row)
+    book.active["XFD1048576"] = 1
+    path = tmp_path / "a.xlsx"
+    book.save(path)
+    assert rtamt.read(path)["x"].values.tolist() == [5, 6]
+
+
+def packed(path, old, new):
+    """Write a workbook anew with other bytes in its sheet."""
+    with zipfile.ZipFile(path) as archive:
+        parts = {name: archive.read(name) for name in archive.namelist()}
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
+        for name, data in parts.items():
+            archive.writestr(name, data.replace(old, new) if "sheet1" in name else data)
+
+
+def test_a_sheet_that_claims_rows_beyond_those_of_excel_is_refused(tmp_path):
+    path = workbook(tmp_path / "a.xlsx", log=[["t", "x"], [0, 5], [1, 6]])
+    packed(path, b'r="3"', b'r="99999999999"')
+    with pytest.raises(rtamt.TraceError) as error:
+        rtamt.read(path)
+    assert str(error.value) == (
+        f"the sheet 'log' of {path} reaches beyond 1,048,576 rows or 268,435,456 cells, empty ones included: "
+        "delete what is far from the table, or save the sheet as CSV"
+    )
+
+
+def test_a_small_workbook_that_unpacks_to_more_than_the_limit_is_refused(tmp_path, monkeypatch):
+    path = workbook(tmp_path / "a.xlsx", log=[["t", "x"], [0, 5]])
+    packed(path, b"<sheetData>", b"<sheetData>" + b" " * 2**22)
+    assert path.stat().st_size < 20_000
+    monkeypatch.setattr(excel, "MOST_BYTES", 2**21)
+    with pytest.raises(rtamt.TraceError) as error:
+        rtamt.read(path)
+    assert str(error.value) == (
+        f"{path} unpacks to 4.0 MiB, more than the 2 MiB that are read of a workbook: "
+        "save its sheets as CSV, or split it"
+    )
 
 
 # ---- PX4 ULog ------------------------------------------------------------------------------------
@@ -127,6 +174,30 @@ def test_mdf(tmp_path):
     assert [rtamt.read(path)[name].values.tolist() for name in both] == [[7, 8], [9, 10]]
 
 
+def test_a_measurement_whose_conversion_is_python_code_is_refused_before_asammdf_runs_it(tmp_path):
+    path = tmp_path / "drive.mf4"
+    gone = tmp_path / "gone"
+    for formula, problem in (
+        (f"open('{gone}', 'w')", "has a conversion that is no arithmetic"),
+        ("9**9**9**9", "has a conversion that is no arithmetic"),
+        ("2*X + 1", None),
+    ):
+        with asammdf.MDF(version="4.10") as file:
+            ticks = np.arange(2.0)
+            file.append([asammdf.Signal(ticks, ticks, name="x", conversion={"formula": formula})])
+            file.save(path, overwrite=True)
+        if problem is None:
+            assert rtamt.read(path)["x"].values.tolist() == [1, 3]
+            continue
+        with pytest.raises(rtamt.TraceError) as error:
+            rtamt.read(path)
+        assert str(error.value) == (
+            f"'{path}' cannot be read as MDF: the channel 'x' of group 0 {problem}, '{formula}'; "
+            "the file is damaged: copy or export it again"
+        )
+    assert not gone.exists()
+
+
 # ---- messages ------------------------------------------------------------------------------------
 
 
@@ -142,9 +213,10 @@ def test_mdf(tmp_path):
          "{path}: expected a row of column names, such as time, x; the first row is (0, 1)"),
         ("a.xlsx", lambda p: workbook(p, a=[["t", "x"], [0, "?"]]), {"columns": ["x"]},
          "'x' of {path} is '?' at sample 0, expected a number"),
-        ("a.xlsx", lambda p: p.write_bytes(b"no"), {}, "'{path}' cannot be read as Excel: File is not a zip file"),
+        ("a.xlsx", lambda p: p.write_bytes(b"no"), {},
+         "'{path}' cannot be read as Excel: File is not a zip file" + AGAIN),
         ("a.ulg", lambda p: p.write_bytes(b"no"), {},
-         "'{path}' cannot be read as a PX4 flight log: Invalid file format (Header too short)"),
+         "'{path}' cannot be read as PX4 ULog: Invalid file format (Header too short)" + AGAIN),
         ("a.ulg", lambda _: None, {}, "there is no file '{path}'"),
         ("a.ulg", lambda p: ulog(p, []), {"columns": ["x"]}, "{path} has no column 'x', only nothing"),
         ("a.csv", lambda p: p.write_text("x\n1\n"), {"sheet": "b"},
@@ -180,7 +252,7 @@ def test_what_asammdf_raises_at_damaged_blocks_is_told(tmp_path, monkeypatch, wh
     monkeypatch.setattr(asammdf.MDF, where, damaged, raising=where == "__init__")
     with pytest.raises(rtamt.TraceError) as error:
         rtamt.read(path)
-    assert str(error.value) == f"'{path}' cannot be read as MDF: seek out of range"
+    assert str(error.value) == f"'{path}' cannot be read as MDF: seek out of range{AGAIN}"
 
 
 def test_a_topic_of_a_flight_log_without_its_clock_is_refused_and_not_a_key_error(tmp_path):
@@ -189,7 +261,7 @@ def test_a_topic_of_a_flight_log_without_its_clock_is_refused_and_not_a_key_erro
     with pytest.raises(rtamt.TraceError) as error:
         rtamt.read(path)
     assert str(error.value) == (
-        f"'{path}' cannot be read as a PX4 flight log: the topic 'battery' has no field 'timestamp'"
+        f"'{path}' cannot be read as PX4 ULog: the topic 'battery' has no field 'timestamp'"
     )
 
 
@@ -200,7 +272,37 @@ def test_what_pyulog_prints_of_a_damaged_flight_log_is_a_note_and_not_among_the_
     trace = rtamt.read(path)
     assert trace["battery.x"].values.tolist() == [12.5]
     assert trace.notes == (
-        "pyulog says: Warning: no subscription found for message id 9. "
+        "the file is damaged, read up to 1 s, as far as possible: Warning: no subscription found for message id 9. "
         "Continuing, but file is most likely corrupt",
     )
     assert capsys.readouterr().out == ""
+
+
+def test_a_flight_log_that_was_cut_off_is_read_so_far_with_a_note(tmp_path, capsys):
+    rows = [(1_000_000 * i, float(i)) for i in range(20)]
+    whole = ulog(tmp_path / "whole.ulg", [("battery", 0, "float x", rows)]).read_bytes()
+    message = 3 + 2 + 8 + 4
+    path = tmp_path / "cut.ulg"
+    for missing in range(1, message):
+        path.write_bytes(whole[:-missing])
+        trace = rtamt.read(path)
+        assert trace["battery.x"].values.tolist() == [float(i) for i in range(19)]
+        assert trace.notes == ("the file ends in the middle of a message: read up to 18 s",)
+    path.write_bytes(whole[:-message])  # a whole file with a sample less
+    assert rtamt.read(path).notes == ()
+    path.write_bytes(whole[: -20 * message - 1])
+    with pytest.raises(rtamt.TraceError) as error:
+        rtamt.read(path)
+    assert str(error.value) == (
+        f"'{path}' cannot be read as PX4 ULog: the file ends in the middle of a message: read up to 0 s, "
+        "and no sample comes before that"
+    )
+    assert capsys.readouterr().out == ""
+
+
+def test_pyulog_does_not_read_the_damaged_end_of_a_flight_log_for_ever(tmp_path):
+    path = ulog(tmp_path / "a.ulg", [("battery", 0, "float x", [(1_000_000, 12.5)])])
+    path.write_bytes(path.read_bytes()[:16] + struct.pack("<HB", 11, 0) + bytes(10))
+    with pytest.raises(rtamt.TraceError) as error:
+        rtamt.read(path)
+    assert str(error.value) == f"'{path}' cannot be read as PX4 ULog: too much of it is damaged"

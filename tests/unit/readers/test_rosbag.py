@@ -201,7 +201,7 @@ def test_what_is_no_bag_is_refused_with_a_sentence(tmp_path, name):
     path.write_bytes(b"time,x\n0,1\n")
     with pytest.raises(TraceError) as caught:
         rtamt.read(path)
-    assert str(caught.value).startswith(f"'{path}' cannot be read as a ROS bag: ")
+    assert str(caught.value).startswith(f"'{path}' cannot be read as ROS bag: ")
 
 
 @pytest.mark.parametrize("packed", [None, "FILE", "MESSAGE"])
