@@ -4,15 +4,19 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import EvaluationError, UsageError, did_you_mean
 from rtamt.language.formula import variables
+from rtamt.language.grammar import is_number
 from rtamt.rewrite.check import check_bounds, check_dense
-from rtamt.rewrite.semantics import boolean, is_number, no_verdict
+from rtamt.rewrite.semantics import boolean, no_verdict
 from rtamt.signals.arrays import Recording, Signal
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from matplotlib.figure import Figure
 
     from rtamt.engine.dense_evaluate import DenseRecording
@@ -40,6 +44,33 @@ class Result:
     def __repr__(self) -> str:
         of = self.specification.name or self.specification.formula
         return f"<result of {of}: robustness {self.robustness} at {self.signal.times[0]}>"
+
+    @cached_property
+    def requirements(self) -> Mapping[str, Result]:
+        """What the evaluation gives for each requirement, by name, in the order of the text.
+
+        All are read over the same trace, so that the robustness of the result is the minimum of theirs, at
+        every instant, and it is satisfied where all of them are.
+
+        >>> import rtamt
+        >>> spec = rtamt.parse("require low: always(x <= 3); require high: always(x >= 1)")
+        >>> result = spec.evaluate({"x": [1, 2, 5]})
+        >>> {name: part.robustness for name, part in result.requirements.items()}
+        {'low': -2.0, 'high': 0.0}
+        >>> result.robustness, result.requirements["high"].satisfied
+        (-2.0, True)
+        """
+        specs = self.specification.requirements
+        if len(specs) == 1:
+            return MappingProxyType(dict.fromkeys(specs, self))
+        formulas = tuple(spec.judged(spec.formula, self.semantics) for spec in specs.values())
+        signals = self.specification.signals_of(formulas, self.trace)
+        return MappingProxyType(
+            {
+                name: Result(spec, self.trace, signal, self.semantics)
+                for (name, spec), signal in zip(specs.items(), signals, strict=True)
+            }
+        )
 
     @property
     def robustness(self) -> float:

@@ -1,10 +1,11 @@
-"""The modern face: a requirement that can be evaluated, monitored, printed and rewritten."""
+"""The modern face: requirements that can be evaluated, monitored, printed and rewritten."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property, partial
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Literal, overload
 
 from rtamt.compiler import standalone
@@ -13,6 +14,7 @@ from rtamt.engine.monitor import Monitor
 from rtamt.engine.offline import Evaluators, Question
 from rtamt.engine.online import Watched
 from rtamt.language.formula import Formula, variables
+from rtamt.language.grammar import is_number
 from rtamt.language.operators import STL, Language
 from rtamt.language.parser import parse_formula
 from rtamt.language.printer import to_text
@@ -21,7 +23,7 @@ from rtamt.results import Result
 from rtamt.rewrite.check import check_bounds, check_dense
 from rtamt.rewrite.horizon import horizon
 from rtamt.rewrite.pastify import pastify
-from rtamt.rewrite.semantics import is_number, lower, semantics_of
+from rtamt.rewrite.semantics import lower, semantics_of
 from rtamt.settings import names_of, positive_period, time_domain
 from rtamt.signals import arrays
 from rtamt.signals.arrays import Recording
@@ -40,7 +42,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Specification:
-    """A requirement: one formula, with the names, types and sub-formulas of its document.
+    """One requirement or several, with the names, types and sub-formulas of their document.
 
     Made by :func:`parse` and :func:`load`; immutable, so that it can be shared and reused.
 
@@ -65,8 +67,37 @@ class Specification:
 
     @property
     def formula(self) -> Formula:
-        """The formula of the last assertion."""
+        """The formula of the requirement; of several their conjunction, whose robustness is the minimum."""
         return self.document.formula
+
+    @cached_property
+    def requirements(self) -> Mapping[str, Specification]:
+        """Every requirement by name, in the order of the text, each as a specification of its own.
+
+        The requirements are the formulas after ``require``; in a text without any, the formulas (not
+        numbers) that no other one uses. One that has no name is ``requirement_2``, if it is the second.
+
+        >>> import rtamt
+        >>> spec = rtamt.parse('''
+        ...     near = distance <= 30
+        ...     require REQ-7 "brakes in time" severity warning: always(near -> eventually[0:1](brake >= 1))
+        ...     require REQ-8: always(distance >= 2)''')
+        >>> spec.requirements["REQ-8"]
+        <specification REQ-8: always(distance >= 2)>
+        >>> [(requirement.name, requirement.severity) for requirement in spec.document.requirements]
+        [('REQ-7', 'warning'), ('REQ-8', 'error')]
+        """
+        known = self.document.requirements
+        if len(known) == 1:
+            return MappingProxyType({known[0].name: self})
+        return MappingProxyType({requirement.name: self.select(requirement.name) for requirement in known})
+
+    def select(self, name: str) -> Specification:
+        """Return the specification of one requirement or named sub-specification alone.
+
+        Raises :class:`UsageError` where there is none of this name.
+        """
+        return replace(self, document=self.document.select(name))
 
     @property
     def text(self) -> str:
@@ -75,12 +106,12 @@ class Specification:
 
     @property
     def name(self) -> str | None:
-        """The name after ``specification``, if there is one."""
-        return self.document.name
+        """The name of a requirement of several; else the one after ``specification``, if there is one."""
+        return self.document.selected or self.document.name
 
     @cached_property
     def input_names(self) -> tuple[str, ...]:
-        """The variables that the formula reads, in order of appearance."""
+        """The variables that the formula reads, of several requirements those of all, in order of appearance."""
         return variables(self.formula)
 
     @property
@@ -301,19 +332,23 @@ class Specification:
 
     def signal_of(self, formula: Formula, trace: Recording | DenseRecording) -> Signal:
         """Return the robustness signal of any formula over a normalised recording."""
-        return self._evaluators((formula,), trace)[0]
+        return self.signals_of((formula,), trace)[0]
+
+    def signals_of(self, formulas: tuple[Formula, ...], trace: Recording | DenseRecording) -> list[Signal]:
+        """Return the robustness signals of formulas over a normalised recording, all from one program."""
+        return self._evaluators(formulas, trace)
 
     def named(self, name: str) -> Formula:
-        """Return a named sub-specification, or the formula of any other text, parsed as part of this one.
+        """Return a named sub-specification or requirement, or the formula of any other text, read in its place.
 
         >>> import rtamt
         >>> spec = rtamt.parse("asked = req >= 3; always(asked -> gnt >= 3)")
         >>> print(spec.named("asked"), "|", spec.named("once asked"))
         req >= 3 | once(req >= 3)
         """
-        for assertion in self.document.assertions:
-            if assertion.name is not None and assertion.name == name:
-                return assertion.formula
+        known = self._known(name)
+        if known is not None:
+            return known
         return parse_formula(
             name,
             language=self.language,
@@ -327,8 +362,14 @@ class Specification:
         formula = self.named(name)
         if not is_number(formula):
             formula = self.judged(formula, self._semantics(semantics))
-        named = any(assertion.name == name for assertion in self.document.assertions)
-        return Watched(name, formula, self.text if named else name)
+        return Watched(name, formula, name if self._known(name) is None else self.text)
+
+    def _known(self, name: str) -> Formula | None:
+        """Return a named sub-specification, or the requirement of this name where no variable has it."""
+        definition = self.document.definitions.get(name)
+        if definition is not None or name in self.input_names:
+            return definition
+        return next((known.formula for known in self.document.requirements if known.name == name), None)
 
     @cached_property
     def _lowered(self) -> dict[tuple[Formula, str], Formula]:
@@ -372,12 +413,14 @@ class Specification:
         given = {name: v for name, v in self.document.constants.items() if name not in declared}
         names = ("period", "unit", "backend", "language", "time", "resolution", "semantics")
         settings = {name: getattr(self, name) for name in names}
-        return _again, (self.text, given, {**settings, "roles": dict(self.roles)})
+        return _again, (self.text, given, {**settings, "roles": dict(self.roles)}, self.document.selected)
 
     def __str__(self) -> str:
         return to_text(self.formula, self.language)
 
 
-def _again(text: str, constants: Mapping[str, float], settings: dict[str, Any]) -> Specification:
+def _again(
+    text: str, constants: Mapping[str, float], settings: dict[str, Any], selected: str | None
+) -> Specification:
     document = parse_document(text, language=settings["language"], unit=settings["unit"], constants=constants)
-    return Specification(document, **settings)
+    return Specification(document if selected is None else document.select(selected), **settings)

@@ -30,6 +30,12 @@ FORMULAS = [
     ("x !y", "  ^", ParseError, "expected an operator between 'x' and '!'"),
     ("x, y", " ^", ParseError, "expected an operator or the end, got ','"),
     ("x >= 1;", "      ^", ParseError, "expected an operator or the end, got ';'"),
+    (
+        "gap => 5",
+        "    ^^",
+        ParseError,
+        "'=>' is no operator; write '->' for an implication, '>=' for at least",
+    ),
     ("x = 3", "  ^", ParseError, "'=' gives a name to a formula; to compare write '=='"),
     (
         "x[0]",

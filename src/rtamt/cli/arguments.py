@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 from argparse import Namespace
+from collections import Counter
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rtamt.cli.command import CommandError, read_specification
 from rtamt.cli.reading_options import reading_of
 from rtamt.cli.runner import Requirement, evaluate
-from rtamt.errors import UsageError
-from rtamt.ros.binding import bind
 
 if TYPE_CHECKING:
+    from rtamt.language.document import Requirement as Written
     from rtamt.results import Result
     from rtamt.specification import Specification
 
@@ -23,43 +23,42 @@ def variables_of(requirements: list[Requirement]) -> set[str]:
 
 
 def requirements_and_traces(args: Namespace, command: str) -> tuple[list[Requirement], list[str]]:
-    """Return the requirements and the traces; what ends in ``.stl`` after SPEC is a requirement, too."""
+    """Return the specifications and the traces; what ends in ``.stl`` after SPEC is a specification, too.
+
+    A requirement is called by its ID (what stands after ``require``) where no other one has it.
+    """
     given, traces = _split(args, command)
     specs = [read_specification(Namespace(**{**vars(args), "spec": text}), args.time) for text in given]
-    names = [spec.name for spec in specs]
-    requirements = [
-        Requirement(spec, text, spec.name if spec.name and names.count(spec.name) == 1 else text)
+    names = Counter(spec.name for spec in specs)
+    called = [
+        spec.name if spec.name and names[spec.name] == 1 else text
         for spec, text in zip(specs, given, strict=True)
     ]
-    return requirements, traces
+    ids = Counter(known.name for spec in specs for known in spec.document.requirements if known.explicit)
+    taken = ids + Counter(called)
+    return [_rows(*each, taken) for each in zip(specs, given, called, strict=True)], traces
 
 
-def judged(requirements: list[Requirement]) -> list[Requirement]:
-    """Return a requirement for every assertion that a node would publish; other specifications as they are.
+def _rows(spec: Specification, text: str, label: str, taken: Counter[str]) -> Requirement:
+    """Return a specification with a row for each of its requirements; ``taken``: labels and how often each is used."""
 
-    The last assertion is judged in any case.
-    """
-    return [one for requirement in requirements for one in _published(requirement)]
+    def label_of(known: Written) -> str:
+        if known.explicit:
+            return known.name if taken[known.name] == 1 else f"{label}: {known.name}"
+        return label if len(several) == 1 else f"{label}: {known.name}"
 
-
-def _published(requirement: Requirement) -> list[Requirement]:
-    spec = requirement.spec
-    try:
-        specs = [output.specification for output in bind(spec).outputs]
-    except UsageError:  # it was not written for nodes
-        return [requirement]
-    if len(specs[-1].document.assertions) < len(spec.document.assertions):
-        specs.append(spec)
-    if len(specs) == 1:
-        return [requirement]
-    return [
-        replace(requirement, spec=one, label=f"{requirement.label}: {assertion_of(one)}") for one in specs
-    ]
+    several = spec.document.requirements
+    if len(several) == 1:
+        return Requirement(spec, text, label_of(several[0]))
+    alone = zip(spec.requirements.values(), several, strict=True)
+    return Requirement(
+        spec, text, label, tuple(Requirement(one, text, label_of(known)) for one, known in alone)
+    )
 
 
-def assertion_of(spec: Specification) -> str:
-    """Return the name of the assertion that is judged; "robustness" for one without."""
-    return spec.document.assertions[-1].name or "robustness"
+def judged(given: list[Requirement]) -> list[Requirement]:
+    """Return every requirement of every specification: what has a row of its own."""
+    return [row for requirement in given for row in requirement.rows or (requirement,)]
 
 
 def _split(args: Namespace, command: str) -> tuple[list[str], list[str]]:
@@ -78,14 +77,14 @@ def _split(args: Namespace, command: str) -> tuple[list[str], list[str]]:
 
 
 def result_of_one(args: Namespace, command: str) -> tuple[str, Result]:
-    """Evaluate one requirement over one recording; return what the recording is called, and the result."""
+    """Evaluate one specification over one recording; return what the recording is called, and the result."""
     requirements, traces = requirements_and_traces(args, command)
     if len(requirements) > 1 or len(traces) > 1:
         more = traces[1] if len(traces) > 1 else requirements[1].given
         raise CommandError(f"'rtamt {command}' takes one specification and one trace; leave out '{more}'")
     (requirement,), (trace,) = requirements, traces
     reading = reading_of(args, requirement.spec.input_names, whole=True)
-    (outcome,) = evaluate([requirement], trace, reading)
+    (outcome,) = evaluate([replace(requirement, rows=())], trace, reading)
     if outcome.result is None:
         raise CommandError(outcome.error)
     return outcome.trace, outcome.result

@@ -11,10 +11,10 @@ from rtamt.errors import UsageError
 from rtamt.readers.formats import is_bag
 from rtamt.rewrite.semantics import boolean
 from rtamt.ros.bags import Finding, write_mcap
-from rtamt.ros.binding import bind
+from rtamt.ros.binding import bind, topic_of
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Sequence
 
     from rtamt.cli.reading_options import Reading
     from rtamt.cli.runner import Requirement
@@ -24,24 +24,29 @@ if TYPE_CHECKING:
 TOPIC = "rtamt/robustness"
 
 
-def write_bag(requirement: Requirement, trace: str, reading: Reading, result: Result, path: str) -> None:
-    """Write a recording with what was found out about it; ``result``: of the requirement itself."""
+def write_bag(
+    requirement: Requirement, trace: str, reading: Reading, results: Sequence[Result], path: str
+) -> None:
+    """Write a recording with what was found out about it; ``results``: of each requirement in it."""
     if not is_bag(trace):
         raise CommandError(
             f"'{trace}' is no bag, so that there are no topics to write to '{path}'; write .csv"
         )
-    write_mcap(trace, path, _findings(requirement, trace, reading, result))
+    write_mcap(trace, path, _findings(requirement, trace, reading, results))
 
 
-def _findings(requirement: Requirement, trace: str, reading: Reading, result: Result) -> Iterator[Finding]:
-    """Yield what came of every assertion that has a topic, else of the requirement."""
+def _findings(
+    requirement: Requirement, trace: str, reading: Reading, results: Sequence[Result]
+) -> Iterator[Finding]:
+    """Yield what came of every assertion that a node would publish, else of every requirement."""
     try:
         outputs = bind(requirement.spec).outputs
     except UsageError:  # it was not written for nodes: a formula over columns
-        yield _finding(requirement.label, TOPIC, result)
+        for row, result in zip(requirement.rows or (requirement,), results, strict=True):
+            yield _finding(row.label, topic_of(row.written.name) if requirement.rows else TOPIC, result)
         return
     for output in outputs:
-        alone = replace(requirement, spec=output.specification)
+        alone = replace(requirement, spec=output.specification, rows=())
         (outcome,) = evaluate([alone], trace, reading)
         if outcome.result is None:
             raise CommandError(outcome.error)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rtamt.cli.arguments import assertion_of, judged, requirements_and_traces, variables_of
+from rtamt.cli.arguments import judged, requirements_and_traces, variables_of
 from rtamt.cli.bag import write_bag
 from rtamt.cli.command import (
     ERROR,
@@ -59,18 +59,20 @@ either. With --time dense -o writes the robustness where it changes, and at the 
 In a bag the annotations of SPEC say which topics are read ('@ topic(req, rtamt/req)'). In discrete time
 it is sampled as a node would: the latest message, every --period, which may be left out where all of
 these topics have the same stamps one period apart: then each message is a sample. With -o out.mcap the bag
-is written again, with the topics of robustness and verdicts that SPEC names. Every assertion that a
-node would publish is judged, each in a row of its own; of any other SPEC the last assertion.
+is written again, with the topics of robustness and verdicts that SPEC names.
+
+Each requirement has a row of its own: the formulas after 'require ID "text" severity WORD:' in SPEC, and
+without any of these the formulas that no other one uses.
 
 Large files are read in chunks, in memory that does not grow with them, where the future of the formula
 is bounded (but for always and eventually at its top). Many files are read on all cores.
 
 --json prints one object a line: {"requirement", "trace", "satisfied", "robustness", "first_violation",
-"samples", "period"}, or {"requirement", "trace", "error"}. The first violation of 'always f' is the first
-instant at which f does not hold, of a conjunction the first of its parts, of anything else the first
-instant of the trace: seconds, or a date where the trace has dates; null where there is none. The period
-of dense time is null. JSON has no infinities: they are the strings "inf" and "-inf". The reports for
---junit and --sarif say the same.
+"samples", "period"}, of what was written with 'require' also "description" and "severity", or
+{"requirement", "trace", "error"}. The first violation of 'always f' is the first instant at which f does
+not hold, of a conjunction the first of its parts, of anything else the first instant of the trace: seconds,
+or a date where the trace has dates; null where there is none. The period of dense time is null. JSON has
+no infinities: they are the strings "inf" and "-inf". The reports for --junit and --sarif say the same.
 
 examples:
   rtamt check examples/request_grant/spec.stl examples/request_grant/*.csv
@@ -120,30 +122,33 @@ def run(args: argparse.Namespace) -> int:
     given, traces = requirements_and_traces(args, "check")
     _check_output(args.output, given, traces)
     requirements = judged(given)
+    rows = {requirement.label: requirement for requirement in requirements}
     pairs = len(requirements) * len(traces)
     if args.jobs is not None and args.jobs < 1:
         raise CommandError(f"--jobs is {args.jobs}; give a number of processes, 1 or more")
     reading = reading_of(args, variables_of(requirements), whole=args.output is not None)
     found: list[Outcome] = []
+    told = {""}  # several requirements may have one reason
     with Progress() as progress:
         progress.show(f"0/{pairs}")
-        for outcome in outcomes(requirements, traces, reading, args.jobs):
+        for outcome in outcomes(given, traces, reading, args.jobs):
             found.append(outcome)
-            if outcome.error:
+            if outcome.error not in told:
+                told.add(outcome.error)
                 progress.clear()
                 complain(outcome.error)
             if args.json and not args.quiet:
                 progress.clear()
-                print(_as_json(outcome), flush=True)
+                print(_as_json(outcome, rows[outcome.requirement]), flush=True)
             progress.bar(len(found), pairs, outcome.trace)
     if not args.json and not args.quiet and any(not outcome.error for outcome in found):
         print(_as_table(requirements, found, color))
     results = [outcome.result for outcome in found if outcome.result is not None]
     if args.output is not None and len(results) == len(found):
         if args.output.lower().endswith(".mcap"):
-            write_bag(given[0], traces[0], reading, results[-1], args.output)
+            write_bag(given[0], traces[0], reading, results, args.output)
         else:
-            _write(results, args.output)
+            _write(requirements, results, args.output)
     for kind in REPORTS:
         if getattr(args, kind) is not None:
             write_report(kind, getattr(args, kind), requirements, found)
@@ -165,8 +170,10 @@ def _check_output(output: str | None, given: Sequence[Requirement], traces: Sequ
         raise CommandError(f"--output takes the robustness of one trace, got {what}")
 
 
-def _as_json(outcome: Outcome) -> str:
+def _as_json(outcome: Outcome, requirement: Requirement) -> str:
     row: dict[str, Any] = {"requirement": outcome.requirement, "trace": outcome.trace}
+    written = requirement.written
+    more = {"description": written.description, "severity": written.severity} if written.explicit else {}
     if outcome.error:
         return json.dumps({**row, "error": outcome.error})
     return json.dumps(
@@ -177,6 +184,7 @@ def _as_json(outcome: Outcome) -> str:
             "first_violation": outcome.first_violation,
             "samples": outcome.samples,
             "period": None if outcome.period is None else float(outcome.period),
+            **more,
         }
     )
 
@@ -203,11 +211,11 @@ def _as_table(requirements: Sequence[Requirement], found: Sequence[Outcome], col
     return text
 
 
-def _write(results: Sequence[Result], path: str) -> None:
+def _write(requirements: Sequence[Requirement], results: Sequence[Result], path: str) -> None:
     """Write a column of robustness for each result; a cell is empty where one has no sample."""
-    names = (
-        ["robustness"] if len(results) == 1 else [assertion_of(result.specification) for result in results]
-    )
+    names = [requirement.written.name for requirement in requirements]
+    if len(names) == 1:
+        names = ["robustness"]
     times = np.unique(np.concatenate([result.signal.times for result in results]))
     rows = zip(map(stamp_text, times), *(_cells(result.signal, times) for result in results), strict=True)
     try:

@@ -35,6 +35,7 @@ SPEC and TRACE are as for 'rtamt check', and so is how a trace is read. A predic
 it was worth: above 0 it held, below 0 it failed.
 
 --json prints one object: {"trace", "formula", "time", "satisfied", "robustness", "critical", "implicant"}.
+For SPEC with several requirements it prints one a line, with the key "requirement" before the others.
 An interval of the implicant that never ends has the end null; its end belongs to it if "closed".
 JSON has no infinities: they are the strings "inf" and "-inf".
 
@@ -62,15 +63,25 @@ def run(args: argparse.Namespace) -> int:
         progress.show("evaluating")
         trace, result = result_of_one(args, "explain")
         try:
-            explanation = result.explain(instant(args.at, result))
+            at = instant(args.at, result)
+            explanations = {name: part.explain(at) for name, part in result.requirements.items()}
         except StlError as error:
             raise CommandError(f"{trace}: {error}") from error
-    print(_as_json(trace, explanation) if args.json else explanation)
-    return OK if explanation.satisfied else VIOLATED
+    alone = len(explanations) == 1
+    if args.json:
+        for name, explanation in explanations.items():
+            print(_as_json({} if alone else {"requirement": name}, trace, explanation))
+    else:
+        texts = (
+            f"{explanation}" if alone else f"{name}: {explanation}"
+            for name, explanation in explanations.items()
+        )
+        print("\n\n".join(texts))
+    return OK if all(explanation.satisfied for explanation in explanations.values()) else VIOLATED
 
 
-def _as_json(trace: str, explanation: Explanation) -> str:
-    return json.dumps({"trace": trace, **explanation.to_dict()}, default=str)  # dates are texts
+def _as_json(of: dict[str, str], trace: str, explanation: Explanation) -> str:
+    return json.dumps({**of, "trace": trace, **explanation.to_dict()}, default=str)  # dates are texts
 
 
 COMMAND = Command("explain", "tell which instants of which signals decide the verdict", configure, run)

@@ -66,7 +66,7 @@ def run(args: argparse.Namespace) -> int:
     codes = []
     pairs = len(requirements) * len(traces)
     with Progress() as progress:
-        for outcome in outcomes(requirements, traces, reading):
+        for outcome in outcomes(given, traces, reading):
             progress.bar(len(rows), pairs, outcome.trace)
             told = row(outcome)
             if outcome.result is None:

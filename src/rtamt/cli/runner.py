@@ -29,6 +29,7 @@ if TYPE_CHECKING:
 
     from rtamt.cli.reading_options import Reading
     from rtamt.engine.dense_evaluate import DenseRecording
+    from rtamt.language.document import Requirement as Written
     from rtamt.results import Result
     from rtamt.signals.trace import Trace
     from rtamt.specification import Specification
@@ -42,11 +43,20 @@ _WORTH_PROCESSES = 16 * 2**20
 
 @dataclass(frozen=True, slots=True)
 class Requirement:
-    """A specification, the file or text that it was given as, and what reports call it."""
+    """A specification, the file or text that it was given as, and what reports call it.
+
+    ``rows``: where there are several requirements in it, each alone.
+    """
 
     spec: Specification
     given: str
     label: str
+    rows: tuple[Requirement, ...] = ()
+
+    @property
+    def written(self) -> Written:
+        """A single requirement as it stands in the specification: its name, its description, its severity."""
+        return self.spec.document.requirements[0]
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,14 +116,15 @@ def _processes(traces: Sequence[str]) -> int:
 
 
 def evaluate(requirements: Sequence[Requirement], trace: str, reading: Reading) -> list[Outcome]:
-    """Check requirements over one recording, which is read once if that goes well."""
+    """Check requirements over one recording, which is read once if that goes well; an outcome for each row."""
     if _is_large(trace, reading):
-        return [_alone(requirement, trace, reading) for requirement in requirements]
+        return [o for requirement in requirements for o in _in_chunks(requirement, trace, reading)]
+    whole: Trace | None
     try:
         whole = read_for([requirement.spec for requirement in requirements], trace, reading)
     except StlError:  # each reads what it needs, and says what is wrong with that
-        return [_check(requirement, trace, None, reading) for requirement in requirements]
-    return [_check(requirement, trace, whole, reading) for requirement in requirements]
+        whole = None
+    return [o for requirement in requirements for o in _check(requirement, trace, whole, reading)]
 
 
 def _is_large(trace: str, reading: Reading) -> bool:
@@ -122,7 +133,7 @@ def _is_large(trace: str, reading: Reading) -> bool:
     return is_url(trace) or (os.path.isfile(trace) and os.path.getsize(trace) >= LARGE)
 
 
-def _alone(requirement: Requirement, trace: str, reading: Reading) -> Outcome:
+def _in_chunks(requirement: Requirement, trace: str, reading: Reading) -> list[Outcome]:
     """Check in chunks if format and formula allow it, else read the recording whole."""
     begin = time.perf_counter()
     chunks: _Chunks | None = None
@@ -136,47 +147,71 @@ def _alone(requirement: Requirement, trace: str, reading: Reading) -> Outcome:
     except BoundError:
         pass  # the formula needs the whole recording at once
     except StlError as error:
+        if requirement.rows:
+            return [o for row in requirement.rows for o in _in_chunks(row, trace, reading)]
         # Whatever reads says where; whatever computes does not know.
         place = "" if shown(trace) in str(error) else f"{shown(trace)}: "
         mend = "" if chunks is None else how_to_mend(error, chunks.last, chunks.before(error))
-        return _failed(requirement, trace, f"{place}{error}{mend}", begin)
+        return [_failed(requirement, trace, f"{place}{error}{mend}", begin)]
     if chunks is None or found is None:
         return _check(requirement, trace, None, reading)
-    return Outcome(
-        requirement.label,
-        shown(trace),
-        "satisfied" if found.satisfied else "violated",
-        found.robustness,
-        None if found.first_violation is None else _told(found.first_violation, chunks.dated),
-        found.samples,
-        found.period,
-        seconds=time.perf_counter() - begin,
-    )
+    rows = requirement.rows or (requirement,)
+    seconds = (time.perf_counter() - begin) / len(rows)
+    return [
+        Outcome(
+            row.label,
+            shown(trace),
+            "satisfied" if part.satisfied else "violated",
+            part.robustness,
+            None if part.first_violation is None else _told(part.first_violation, chunks.dated),
+            part.samples,
+            part.period,
+            seconds=seconds,
+        )
+        for row, part in zip(rows, found.requirements.values(), strict=True)
+    ]
 
 
-def _check(requirement: Requirement, trace: str, data: Trace | None, reading: Reading) -> Outcome:
-    """Check over a recording that is in memory, or read what the requirement needs of it."""
+def _check(requirement: Requirement, trace: str, data: Trace | None, reading: Reading) -> list[Outcome]:
+    """Check over a recording that is in memory, or read what the requirement needs of it.
+
+    Several requirements share one evaluation; where there is none, each is checked alone.
+    """
     begin = time.perf_counter()
-    spec = requirement.spec
+    spec, whole = requirement.spec, data
     try:
-        data = data or read_for([spec], trace, reading)
-    except StlError as error:
-        return _failed(requirement, trace, str(error), begin)
-    try:
-        if spec.time == "dense" and data.start is None:
+        place = ""
+        whole = whole or read_for([spec], trace, reading)
+        place = f"{shown(trace)}: "
+        if spec.time == "dense" and whole.start is None:
             raise TraceError(NO_STAMPS)
-        data = on_clock(data, spec, trace, reading)
-        result = spec.evaluate(data)
-        violated = first_violation(result)
+        whole = on_clock(whole, spec, trace, reading)
+        result = spec.evaluate(whole)
+        parts = result.requirements.values() if requirement.rows else [result]
     except StlError as error:
-        return _failed(requirement, trace, f"{shown(trace)}: {error}{how_to_mend(error, data)}", begin)
+        if requirement.rows:
+            return [o for row in requirement.rows for o in _check(row, trace, data, reading)]
+        return [_failed(requirement, trace, f"{place}{error}{how_to_mend(error, whole)}", begin)]
+    found = []
+    for row, part in zip(requirement.rows or (requirement,), parts, strict=True):
+        found.append(_outcome(row, trace, part, isinstance(whole.start, np.datetime64), begin))
+        begin = time.perf_counter()
+    return found
+
+
+def _outcome(requirement: Requirement, trace: str, result: Result, dated: bool, begin: float) -> Outcome:
+    """Return what an evaluation says of one requirement; ``dated``: whether the recording has dates."""
+    try:
+        satisfied, violated = result.satisfied, first_violation(result)
+    except StlError as error:
+        return _failed(requirement, trace, f"{shown(trace)}: {error}", begin)
     recording = result.trace
     return Outcome(
         requirement.label,
         shown(trace),
-        "satisfied" if result.satisfied else "violated",
+        "satisfied" if satisfied else "violated",
         result.robustness,
-        None if violated is None else _told(violated, isinstance(data.start, np.datetime64)),
+        None if violated is None else _told(violated, dated),
         _samples(recording),
         recording.period if isinstance(recording, Recording) else None,
         seconds=time.perf_counter() - begin,

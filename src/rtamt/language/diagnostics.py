@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rtamt.errors import did_you_mean
-from rtamt.language.lexer import is_word
+from rtamt.language.lexer import NO_ARROW, is_word
 from rtamt.language.operators import Fixity
 
 if TYPE_CHECKING:
@@ -37,6 +37,8 @@ def no_operator(language: Language, tokens: Tokens, at: int, expected: str = "th
     bad = _bad_character(token)
     if bad is not None:
         return bad
+    if token.text == NO_ARROW:
+        return f"'{NO_ARROW}' is no operator; write '->' for an implication, '>=' for at least", token.span
     if token.text == "=":
         return "'=' gives a name to a formula; to compare write '=='", token.span
     if token.text in (")", "]"):

@@ -2,14 +2,22 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from functools import cached_property, reduce
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias
+
+from rtamt.errors import UsageError, did_you_mean
+from rtamt.language.operators import STL
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from rtamt.language.formula import Formula, Span
+
+#: How serious a violation is, by the words of SARIF.
+Severity: TypeAlias = Literal["error", "warning", "note"]
+SEVERITIES: tuple[Severity, ...] = ("error", "warning", "note")
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,12 +49,31 @@ class Assertion:
     span: Span | None = field(default=None, compare=False, repr=False)
 
 
+@dataclass(frozen=True, slots=True)
+class Requirement:
+    """A formula that must hold, and what reports call it.
+
+    ``name``: the word after ``require``; else the name of the assertion; else ``requirement_2`` for the
+    second requirement of the text. ``description`` and ``severity``: as written after ``require``.
+    ``explicit``: whether it was written with ``require``.
+    """
+
+    name: str
+    formula: Formula
+    description: str = ""
+    severity: Severity = "error"
+    explicit: bool = False
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
 @dataclass(frozen=True)
 class Document:
     """What a specification text says."""
 
     text: str
     assertions: tuple[Assertion, ...]
+    #: What must hold. Where no assertion is a formula, the last one, a number.
+    requirements: tuple[Requirement, ...]
     name: str | None = None
     imports: tuple[Import, ...] = ()
     declarations: tuple[Declaration, ...] = ()
@@ -58,6 +85,8 @@ class Document:
     definitions: Mapping[str, Formula] = field(default_factory=lambda: MappingProxyType({}))
     #: Every variable declared, here or for :func:`parse_document`; if there is none, all names are free.
     variables: tuple[str, ...] = ()
+    #: The name of the assertion or requirement that :meth:`select` has chosen.
+    selected: str | None = None
 
     def __hash__(self) -> int:
         return hash(self.text)
@@ -70,7 +99,21 @@ class Document:
         for name, value in state.items():
             object.__setattr__(self, name, MappingProxyType(value) if isinstance(value, dict) else value)
 
-    @property
+    @cached_property
     def formula(self) -> Formula:
-        """The formula of the last assertion: what the document requires."""
-        return self.assertions[-1].formula
+        """What the document requires: the conjunction of the requirements, a single one as it is."""
+        return reduce(STL["and"], (requirement.formula for requirement in self.requirements))
+
+    def select(self, name: str) -> Document:
+        """Return the same document with one requirement only: the one of this name, else the assertion.
+
+        Raises :class:`UsageError` where there is none.
+        """
+        named = {a.name: Requirement(a.name, a.formula, span=a.span) for a in self.assertions if a.name}
+        named.update((requirement.name, requirement) for requirement in self.requirements)
+        if name not in named:
+            raise UsageError(
+                f"there is no requirement '{name}'{did_you_mean(name, named)}; requirements are "
+                f"{', '.join(requirement.name for requirement in self.requirements)}"
+            )
+        return replace(self, requirements=(named[name],), selected=name)

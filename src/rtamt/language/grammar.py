@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from rtamt.language.formula import Apply
 from rtamt.language.operators import Fixity, Sort
 
 if TYPE_CHECKING:
+    from rtamt.language.formula import Formula
     from rtamt.language.operators import Language, Operator
 
 #: How many formulas may stand inside one another in a text. Chains such as ``a and b and c`` are flat.
@@ -34,6 +36,11 @@ def is_predicate(op: Operator) -> bool:
     (True, False, False)
     """
     return op.result is Sort.FORMULA and Sort.NUMBER in op.operands and is_infix(op)
+
+
+def is_number(formula: Formula) -> bool:
+    """Tell whether a formula is a number by itself: a variable, a constant or arithmetic."""
+    return not isinstance(formula, Apply) or formula.op.result is Sort.NUMBER
 
 
 def passes_on(op: Operator) -> bool:

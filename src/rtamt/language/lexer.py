@@ -6,7 +6,7 @@ kind       text
 number     ``3``, ``0.5``, ``.5``, ``1e-3``, ``1_000``
 name       ``req``, ``req.value``, ``always``: which of them are operators is the parser's to say
 quoted     ``"engine speed"``: always a name; ``""`` inside stands for one double quote
-symbol     the operators that are no words, longest first, and ``( ) [ ] , : ; = @``
+symbol     the operators that are no words, longest first, and ``( ) [ ] , : ; = @ =>``
 unclosed   the opening of a comment or quoted name that has no end
 unknown    any other character
 end        after the last token
@@ -27,7 +27,10 @@ if TYPE_CHECKING:
 
     from rtamt.language.operators import Language
 
-PUNCTUATION = "( ) [ ] , : ; = @".split()
+#: No operator, but one token: ``gap => 5`` names nothing, and what was meant by it is unknown.
+NO_ARROW = "=>"
+
+PUNCTUATION = [*"( ) [ ] , : ; = @".split(), NO_ARROW]
 
 _WORD = r"[^\W\d][\w$]*|\$[\w$]*"
 _DIGITS = r"[0-9]+(?:_+[0-9]+)*"

@@ -195,7 +195,7 @@ STL: Language = Language.of((
            dual="or", definition=d.and_, kernel=Pointwise("min")),
     _infix("or", "or | ||", 30, "At least one: the larger value.", "x >= 3 or y >= 3", latex=r"{0} \vee {1}",
            dual="and", definition=d.or_, kernel=Pointwise("max")),
-    _infix("implies", "-> implies =>", 20, "If the first then the second: max(-a, b).", "x >= 3 -> y >= 3",
+    _infix("implies", "-> implies", 20, "If the first then the second: max(-a, b).", "x >= 3 -> y >= 3",
            latex=r"{0} \to {1}", fixity=Fixity.RIGHT,
            definition=d.implies, expansion=lambda a, b, _i: STL["or"](STL["not"](a), b)),
     _infix("iff", "<-> iff", 15, "Both or neither: (a -> b) and (b -> a).", "x >= 3 <-> y >= 3",

@@ -45,6 +45,8 @@ class FormulaParser:
         self.scope = scope
         self.tokens = tokenize(text, language)
         self.index = 0
+        #: The names of the definitions that were read so far.
+        self.used: set[str] = set()
         self._depth = 0
         self._sign = sign(language)
 
@@ -264,6 +266,7 @@ class FormulaParser:
             raise self.error(scope.pending[name], span, NameInFormulaError)
         definition = scope.definitions.get(name)
         if definition is not None:
+            self.used.add(name)
             return definition
         value = scope.constants.get(name)
         if value is not None:

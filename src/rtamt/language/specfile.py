@@ -3,16 +3,23 @@
 ::
 
     document    = [ "specification" , word ] , { import } , { declaration | annotation } ,
-                  assertion , { separator , assertion } , [ ";" ]
-    separator   = ";" | after a named assertion, as in RTAMT's files: the end of the line
+                  statement , { separator , statement } , [ ";" ]
+    separator   = ";" | after a named assertion or a requirement, as in RTAMT's files: the end of the line
+    statement   = assertion | requirement
     import      = "from" , module , "import" , word , [ ";" ]
     declaration = ( [ "input" | "output" ] , type , name | "const" , type , name , "=" , value ) , [ ";" ]
     annotation  = "@" , "topic" , "(" , name , "," , topic , ")" , [ ";" ]
     assertion   = [ name , "=" ] , expression
+    requirement = "require" , id , [ '"' , characters , '"' ] ,
+                  [ "severity" , ( "error" | "warning" | "note" ) ] , ":" , expression
+    id          = letters, digits, "_", "-" and ".", such as REQ-12.a | '"' , characters , '"'
     type        = "float" | "int" | "long" | "complex" | "bool" | imported class
     value       = [ "-" ] , number | "-inf" | "inf"
 
 None of these words is reserved: ``input >= 3`` is a formula over a variable called input.
+
+The requirements are the formulas after ``require``; in a text without any, the formulas (not numbers)
+that no other assertion reads; where there is none of these either, the last assertion.
 """
 
 from __future__ import annotations
@@ -22,14 +29,14 @@ from math import inf
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Literal
 
-from rtamt.errors import NameInFormulaError, ParseError, did_you_mean
+from rtamt.errors import NameInFormulaError, did_you_mean
 from rtamt.language import diagnostics
 from rtamt.language.document import Assertion, Declaration, Document, Import
 from rtamt.language.formula import Formula, Span
 from rtamt.language.grammar import INFINITY
 from rtamt.language.lexer import Token, unquoted
 from rtamt.language.operators import STL, Fixity, Language
-from rtamt.language.parser import FormulaParser
+from rtamt.language.requirements import RequirementParser
 from rtamt.language.scope import Scope
 
 if TYPE_CHECKING:
@@ -73,15 +80,13 @@ def _name_of(token: Token) -> str:
     return unquoted(token.text) if token.kind == "quoted" else token.text
 
 
-class _DocumentParser(FormulaParser):
+class _DocumentParser(RequirementParser):
     """The productions of a document, above those of a formula."""
 
     def __init__(self, text: str, language: Language, unit: str, scope: Scope) -> None:
         super().__init__(text, language, unit, scope)
         self._constants = dict(scope.constants)
-        self._definitions = dict(scope.definitions)
         self._given = tuple(scope.variables or ())
-        self._imports: list[Import] = []
         self._declarations: dict[str, Declaration] = {}
         self._topics: dict[str, str] = {}
 
@@ -98,6 +103,7 @@ class _DocumentParser(FormulaParser):
         return Document(
             self.text,
             assertions,
+            self._requirements(assertions),
             name,
             tuple(self._imports),
             tuple(self._declarations.values()),
@@ -234,22 +240,31 @@ class _DocumentParser(FormulaParser):
         pending = self._names_to_come()
         found: list[Assertion] = []
         while self.token.kind != "end":
-            if found and (self.token.text == "@" or self._declares()):
+            required = self._requires()
+            if found and not required and (self.token.text == "@" or self._declares()):
                 raise self.error(
                     "declarations and annotations stand before the first formula", self.token.span
                 )
-            start, token, name = self.token.start, self.token, self._assertion_name()
-            if name is not None:
-                self._check_new(name, token)
-                pending[name] = f"'{name}' is used in its own definition"
             self.scope = Scope(self._constants, self._definitions, variables or None, pending)
-            formula = self.formula()
-            found.append(Assertion(name, formula, Span(start, self.tokens[self.index - 1].end)))
-            if name is not None:
-                del pending[name]
-                self._definitions[name] = formula
-            # Of two formulas without names the first would go unread: there the semicolon must be meant.
-            if self.token.kind != "end" and not (self.accept(";") or (name and self._begins_a_line())):
+            name: str | None
+            if required:
+                self._requirement()
+                known = self._explicit[-1]
+                name = known.name
+                found.append(Assertion(name, known.formula, known.span))
+            else:
+                start, token, name = self.token.start, self.token, self._assertion_name()
+                if name is not None:
+                    self._check_new(name, token)
+                    pending[name] = f"'{name}' is used in its own definition"
+                formula = self.formula()
+                found.append(Assertion(name, formula, Span(start, self.tokens[self.index - 1].end)))
+                if name is not None:
+                    del pending[name]
+                    self._definitions[name] = formula
+            # A formula without a name may go on in the next line: there the semicolon must be written.
+            ended = self._begins_a_line() and (name or self._requires())
+            if self.token.kind != "end" and not (self.accept(";") or ended):
                 raise self._not_finished()
             while self.accept(";"):
                 pass
@@ -281,7 +296,7 @@ class _DocumentParser(FormulaParser):
         return {n: f"'{n}' is only defined further down; move its definition up" for n in names}
 
     def _check_new(self, name: str, token: Token) -> None:
-        if name in self._definitions:
+        if name in self._definitions or any(known.name == name for known in self._explicit):
             raise self.error(f"'{name}' is defined twice", token.span)
         if name in self._constants:
             raise self.error(f"'{name}' is a constant already", token.span)
@@ -293,19 +308,8 @@ class _DocumentParser(FormulaParser):
 
     # ---- looking ahead ---------------------------------------------------------------------------
 
-    def _word(self, word: str) -> bool:
-        return self.token.kind == "name" and self.token.text == word
-
     def _types(self) -> tuple[str, ...]:
         return (*TYPES, *(known.name for known in self._imports))
-
-    def _at(self, ahead: int) -> Token:
-        return self.tokens[min(self.index + ahead, len(self.tokens) - 1)]
-
-    def _plain_name(self, ahead: int) -> bool:
-        """Tell whether a name that cannot be an infix operator stands that far ahead."""
-        token = self._at(ahead)
-        return token.kind in ("name", "quoted") and self.language.infix(token.text) is None
 
     def _plain_type(self, ahead: int) -> bool:
         """Tell whether a type and a name stand that far ahead; the name may be ``S``, the type may not."""
@@ -315,7 +319,7 @@ class _DocumentParser(FormulaParser):
     def _declares(self) -> bool:
         """Tell whether a declaration stands here, be its type known or not."""
         first = self.token
-        if first.kind != "name":
+        if first.kind != "name" or self._requires():
             return False
         if (first.text in _ROLES or first.text == "const") and self._plain_type(1):
             return True
@@ -350,6 +354,3 @@ class _DocumentParser(FormulaParser):
         op = self.language.opening(token.text)
         if op is not None and op.fixity is Fixity.ATOM:
             raise self.error(f"'{token.text}' is a word of the language and cannot be a name", token.span)
-
-    def _expected(self, what: str) -> SpecificationError:
-        return self.error(f"expected {what}, got {self.token}", self.token.span, ParseError)

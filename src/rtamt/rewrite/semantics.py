@@ -21,6 +21,7 @@ from typing import TypeAlias
 
 from rtamt.errors import EvaluationError, StlError, UsageError, did_you_mean, shown
 from rtamt.language.formula import Apply, Const, Formula, fold, variables
+from rtamt.language.grammar import is_number
 from rtamt.language.operators import STL, Sort, holds
 from rtamt.rewrite.desugar import rebuilt, spelled_out
 
@@ -163,11 +164,6 @@ def boolean(formula: Formula) -> Formula:
 def no_verdict(error: EvaluationError) -> EvaluationError:
     """Return the error for a formula that has robustness but no truth: an operator may make NaN of infinities."""
     return EvaluationError(f"there is no verdict, for which true counts as +inf and false as -inf: {error}")
-
-
-def is_number(formula: Formula) -> bool:
-    """Tell whether a formula is a number by itself: a variable, a constant or arithmetic."""
-    return not isinstance(formula, Apply) or formula.op.result is Sort.NUMBER
 
 
 def is_predicate(formula: Formula) -> bool:

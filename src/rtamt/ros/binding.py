@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+import re
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import UsageError, with_article
 from rtamt.extras import message_class
 from rtamt.language.formula import variables
+from rtamt.language.grammar import is_number
 from rtamt.ros.fields import Path, check_path, path_of
 
 if TYPE_CHECKING:
@@ -35,6 +37,10 @@ class MessageType:
         return message_class(self.module, self.name)
 
 
+#: The message of a requirement that names none.
+NUMBER = MessageType("rtamt_msgs.msg", "FloatStamped")
+
+
 @dataclass(frozen=True, slots=True)
 class Input:
     """A variable that messages fill: ``fields`` are the numbers that formulas read of it, by full name."""
@@ -47,15 +53,25 @@ class Input:
 
 @dataclass(frozen=True, slots=True)
 class Output:
-    """An assertion whose robustness is published: ``path`` leads to the number in the message."""
+    """A requirement or assertion whose robustness is published: ``field`` is the number in the message."""
 
     name: str
-    variable: str
+    #: The variable that holds the message, and the field: ``rob.value``.
+    field: str
     topic: str
     type: MessageType
-    path: Path
-    #: The assertion as a specification of its own.
+    #: The requirement as a specification of its own.
     specification: Specification
+
+    @property
+    def variable(self) -> str:
+        """What holds the message."""
+        return self.field.split(".", maxsplit=1)[0]
+
+    @property
+    def path(self) -> Path:
+        """What leads to the number in the message."""
+        return path_of(self.field)
 
     @property
     def verdicts(self) -> str:
@@ -83,16 +99,16 @@ class Binding:
             for name in known.fields:
                 check_path(name, classes[known.type](), known.type.ros)
         for output in self.outputs:
-            check_path(output.name, classes[output.type](), output.type.ros)
+            check_path(output.field, classes[output.type](), output.type.ros)
         return classes
 
 
 def bind(spec: Specification) -> Binding:
     """Return the topics, types and fields that a specification names.
 
-    Every assertion whose name is a field of a declared variable is published on that variable's topic;
-    other named assertions are sub-formulas. A variable without an annotation is on ``rtamt/<name>``.
-    Source: the paper's listing 8.
+    Every assertion whose name is a field of a declared variable is published on that variable's topic. A
+    variable without an annotation is on ``rtamt/<name>``, and so is a requirement of any other name: as
+    ``rtamt_msgs/FloatStamped``. Other assertions are sub-formulas. Source: the paper's listing 8.
 
     Raises :class:`UsageError` where a variable is no message, or nothing is to be published.
 
@@ -128,20 +144,33 @@ def _types(document: Document) -> dict[str, MessageType]:
 def _outputs(spec: Specification, types: Mapping[str, MessageType]) -> list[Output]:
     document = spec.document
     found = []
-    for index, assertion in enumerate(document.assertions):
+    required = {requirement.span: requirement.name for requirement in document.requirements}
+    for assertion in document.assertions:
         variable = (assertion.name or "").split(".")[0]
-        if assertion.name is None or variable not in types:
-            continue
-        path = path_of(assertion.name)
-        if not path:
-            raise UsageError(
-                f"'{variable}' is {with_article(types[variable].name)} and no number; "
-                f"say which field is the robustness, such as {variable}.value = ..."
-            )
-        alone = replace(spec, document=replace(document, assertions=document.assertions[: index + 1]))
-        topic = _topic(document, variable)
-        found.append(Output(assertion.name, variable, topic, types[variable], path, alone))
+        if assertion.name is not None and variable in types:
+            if not path_of(assertion.name):
+                raise UsageError(
+                    f"'{variable}' is {with_article(types[variable].name)} and no number; "
+                    f"say which field is the robustness, such as {variable}.value = ..."
+                )
+            topic, alone = _topic(document, variable), spec.select(assertion.name)
+            found.append(Output(assertion.name, assertion.name, topic, types[variable], alone))
+        elif assertion.span in required and not is_number(assertion.formula):
+            name = required[assertion.span]
+            topic = topic_of(name)
+            field = f"{topic.rpartition('/')[2]}.value"
+            found.append(Output(name, field, topic, NUMBER, spec.select(name)))
     return found
+
+
+def topic_of(requirement: str) -> str:
+    """Return the topic of a requirement that is no field of a declared message.
+
+    >>> topic_of("REQ-12.a"), topic_of("2nd")
+    ('rtamt/REQ_12_a', 'rtamt/_2nd')
+    """
+    clean = re.sub(r"\W", "_", requirement, flags=re.ASCII)
+    return f"rtamt/_{clean}" if clean[:1].isdigit() else f"rtamt/{clean}"
 
 
 def _inputs(formulas: list[Formula], document: Document, types: Mapping[str, MessageType]) -> list[Input]:
@@ -199,4 +228,4 @@ def _check_topics(inputs: tuple[Input, ...], outputs: tuple[Output, ...]) -> Non
             )
 
 
-__all__ = ["Binding", "Input", "MessageType", "Output", "bind"]
+__all__ = ["Binding", "Input", "MessageType", "Output", "bind", "topic_of"]

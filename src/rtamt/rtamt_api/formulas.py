@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import UsageError, did_you_mean
 from rtamt.language.formula import Formula, Var, postorder, variables
+from rtamt.language.grammar import is_number
 from rtamt.language.printer import canonical
-from rtamt.rewrite.semantics import is_number, lower, semantics_of
+from rtamt.rewrite.semantics import lower, semantics_of
 from rtamt.rtamt_api.declarations import Declarations
 from rtamt.rtamt_api.failures import raises_rtamt
 from rtamt.rtamt_api.options import Semantics

@@ -46,7 +46,7 @@ def first_violation(result: Result) -> Any:
     unit = recording.period if isinstance(recording, Recording) else recording.scale.tick
     trackers = [Tracker(leaf, unit, not isinstance(recording, Recording)) for leaf in anchored.leaves]
     for tracker in trackers:
-        formula = together(tracker.leaf.formula, spec.input_names)
+        formula = together(tracker.leaf.formula, tuple(recording.columns))
         if isinstance(recording, Recording):
             signal = spec.signal_of(formula, recording)
             tracker.take(np.arange(len(signal)), signal)
@@ -59,6 +59,8 @@ def first_violation(result: Result) -> Any:
 
 def together(formula: Formula, names: Sequence[str]) -> Formula:
     """Return a formula with the same values that reads all the names: so several formulas begin and end together."""
+    if not names:
+        return formula
     everything: Formula = Var(names[0])
     for name in names[1:]:
         everything = STL["and"](everything, Var(name))

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from datetime import timezone
 from fractions import Fraction
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -26,9 +27,10 @@ from rtamt.verdicts.decompose import Leaf, anchor, check_in_chunks
 from rtamt.verdicts.first_violation import Tracker, ticks_of, together, value_of, violation_of
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable
+    from collections.abc import Callable, Iterable, Mapping
 
     from rtamt.language.formula import Formula
+    from rtamt.rewrite.semantics import Judge
     from rtamt.settings import Duration, Semantics
     from rtamt.specification import Specification
     from rtamt.verdicts.first_violation import Positions
@@ -42,7 +44,7 @@ class StreamResult:
     semantics). ``first_violation``: when it is first violated, see :func:`rtamt.first_violation`; None
     where it holds. ``minimum``: the smallest ρ at any instant; None where the future is unbounded and
     chunks do not tell. ``samples``: rows in all chunks. ``period``: seconds from one sample to the
-    next; None in dense time.
+    next; None in dense time. ``requirements``: the same for each requirement, by name.
     """
 
     robustness: float
@@ -51,6 +53,7 @@ class StreamResult:
     minimum: float | None
     samples: int
     period: Fraction | None
+    requirements: Mapping[str, StreamResult] = field(default_factory=lambda: MappingProxyType({}))
 
 
 def check_stream(
@@ -86,25 +89,68 @@ def check_stream(
 
 def check_streamable(spec: Specification) -> None:
     """Raise :class:`BoundError` where a formula needs the whole recording at once."""
-    check_in_chunks(anchor(spec.judged(spec.formula)), spec.text)
+    for alone in spec.requirements.values():
+        check_in_chunks(anchor(alone.judged(alone.formula)), alone.text)
 
 
-class _Stream(ABC):
-    """A formula over chunks: a monitor for each leaf of it, a tracker for what comes of each."""
+class _Judged:
+    """One requirement over chunks: the leaves of its robustness and of its truth, and what becomes of them."""
 
-    def __init__(self, spec: Specification, semantics: Semantics | None) -> None:
-        if not spec.input_names:
-            raise UsageError("the formula reads no variable, so that there is nothing to check in chunks")
-        formula = spec.judged(spec.formula, None if semantics is None else semantics_of(semantics))
+    def __init__(self, spec: Specification, semantics: str | Judge | None) -> None:
+        formula = spec.judged(spec.formula, semantics)
         self.spec = spec
-        self.declared = tuple(declaration.name for declaration in spec.document.declarations)
         self._robust = anchor(formula)
         check_in_chunks(self._robust, spec.text)
         self._boolean = anchor(spec.judged(spec.formula, "boolean"))
         # The whole formula last, for its minimum, where it can be known online.
         whole = [] if horizon(formula) is None else [Leaf(formula, "min", end=None)]
-        self._leaves = [*self._robust.leaves, *self._boolean.leaves, *whole]
+        self.leaves = [*self._robust.leaves, *self._boolean.leaves, *whole]
         self._trackers: list[Tracker] = []
+
+    def begin(self, unit: Fraction, dense: bool) -> None:
+        """Make the trackers, once the length of a period or tick (``unit``, seconds) is known."""
+        self._trackers = [Tracker(leaf, unit, dense) for leaf in self.leaves]
+
+    def take(self, formula: Formula, positions: Positions, signal: Signal, last: int | None) -> None:
+        """Take what became known of a leaf's formula; ``last``: the last position that the minimum is about."""
+        judged = len(self._robust.leaves) + len(self._boolean.leaves)
+        for i, (leaf, tracker) in enumerate(zip(self.leaves, self._trackers, strict=True)):
+            if leaf.formula != formula:
+                continue
+            if i == judged and last is not None:
+                inside = positions <= last
+                tracker.take(positions[inside], Signal(signal.times[inside], signal.values[inside]))
+            else:
+                tracker.take(positions, signal)
+
+    def result(self, first: Any, samples: int, period: Fraction | None) -> StreamResult:
+        """Return what came of all chunks; ``first``: the first time of the recording."""
+        for tracker in self._trackers:
+            tracker.finish()
+        n = len(self._robust.leaves)
+        robust, boolean = self._trackers[:n], self._trackers[n : n + len(self._boolean.leaves)]
+        whole = self._trackers[n + len(boolean) :]
+        satisfied = value_of(self.spec, self._boolean.skeleton, boolean) > 0
+        return StreamResult(
+            value_of(self.spec, self._robust.skeleton, robust),
+            satisfied,
+            None if satisfied else violation_of(self.spec, self._boolean, boolean, first),
+            whole[0].value if whole else None,
+            samples,
+            period,
+        )
+
+
+class _Stream(ABC):
+    """Requirements over chunks: a monitor for each leaf of any of them."""
+
+    def __init__(self, spec: Specification, semantics: Semantics | None) -> None:
+        if not spec.input_names:
+            raise UsageError("the formula reads no variable, so that there is nothing to check in chunks")
+        chosen = None if semantics is None else semantics_of(semantics)
+        self.spec = spec
+        self.declared = tuple(declaration.name for declaration in spec.document.declarations)
+        self._judged = {name: _Judged(alone, chosen) for name, alone in spec.requirements.items()}
         self.monitors: dict[Formula, Any] = {}
         self.samples = 0
         #: The first time of the recording.
@@ -120,41 +166,34 @@ class _Stream(ABC):
 
     def begin(self, unit: Fraction, make: Callable[[Formula], Any], dense: bool) -> None:
         """Make monitors and trackers, once the length of a period or tick (``unit``, seconds) is known."""
-        self._trackers = [Tracker(leaf, unit, dense) for leaf in self._leaves]
-        for formula in dict.fromkeys(leaf.formula for leaf in self._leaves):
+        for judged in self._judged.values():
+            judged.begin(unit, dense)
+        for formula in dict.fromkeys(leaf.formula for each in self._judged.values() for leaf in each.leaves):
             self.monitors[formula] = make(together(formula, self.spec.input_names))
 
     def told(self, formula: Formula, positions: Positions, signal: Signal, last: int | None = None) -> None:
         """Hand on what a monitor told; ``last``: the last position that the minimum is about."""
         if len(signal) and self.first is None:
             self.first = signal.times[0]
-        judged = len(self._robust.leaves) + len(self._boolean.leaves)
-        for i, (leaf, tracker) in enumerate(zip(self._leaves, self._trackers, strict=True)):
-            if leaf.formula != formula:
-                continue
-            if i == judged and last is not None:
-                inside = positions <= last
-                tracker.take(positions[inside], Signal(signal.times[inside], signal.values[inside]))
-            else:
-                tracker.take(positions, signal)
+        for judged in self._judged.values():
+            judged.take(formula, positions, signal, last)
 
     def result(self, period: Fraction | None) -> StreamResult:
         """Return what came of all chunks."""
         if self.first is None:
             raise TraceError("the trace is empty: give at least one sample")
-        for tracker in self._trackers:
-            tracker.finish()
-        n = len(self._robust.leaves)
-        robust, boolean = self._trackers[:n], self._trackers[n : n + len(self._boolean.leaves)]
-        whole = self._trackers[n + len(boolean) :]
-        satisfied = value_of(self.spec, self._boolean.skeleton, boolean) > 0
+        found = {name: each.result(self.first, self.samples, period) for name, each in self._judged.items()}
+        results = tuple(found.values())
+        violations = [each.first_violation for each in results if not each.satisfied]
+        minima = [each.minimum for each in results]
         return StreamResult(
-            value_of(self.spec, self._robust.skeleton, robust),
-            satisfied,
-            None if satisfied else violation_of(self.spec, self._boolean, boolean, self.first),
-            whole[0].value if whole else None,
+            min(each.robustness for each in results),
+            not violations,
+            min(violations, default=None),
+            None if None in minima else min(minimum for minimum in minima if minimum is not None),
             self.samples,
             period,
+            MappingProxyType(found),
         )
 
 

@@ -58,7 +58,7 @@ def test_text_that_is_printed_as_it_was_written(text):
         ("x until[0ms:0ms] y", "x until[0:0ms] y"),
         ("x until[.25, 2.50] y", "x until[0.25:2.5] y"),
         ("always x >= 1", "always(x >= 1)"),
-        ("x > 1 => y !== 2 || z", "x > 1 -> y != 2 or z"),
+        ("x > 1 -> y !== 2 || z", "x > 1 -> y != 2 or z"),
     ],
 )
 def test_what_is_printed_for_other_spellings(text, printed):
@@ -113,7 +113,7 @@ def test_what_is_no_formula():
         ("a !== 2", "(a)!=(2.0)"),
         ("a and b", "(a)and(b)"),
         ("a | b", "(a)or(b)"),
-        ("a => b", "(a)->(b)"),
+        ("a implies b", "(a)->(b)"),
         ("a iff b", "(a)<->(b)"),
         ("a xor b", "(a)xor(b)"),
         ("!a", "not(a)"),

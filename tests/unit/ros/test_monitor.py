@@ -305,7 +305,7 @@ def test_unbounded_future_is_refused_with_the_place():
     ("text", "sentence"),
     [
         (
-            "input float x; x >= 3",
+            "input float x; x + 3",
             "the specification publishes nothing: give the requirement the name of a field of a declared message, "
             "such as rob.value = always(...)",
         ),

@@ -21,8 +21,13 @@ def as_html(requirements: Sequence[Requirement], outcomes: Sequence[Outcome]) ->
 
 
 def formulas(requirements: Sequence[Requirement]) -> Mapping[str, str]:
-    """Return the text of every requirement's formula."""
-    return {requirement.label: printed(requirement.spec.formula) for requirement in requirements}
+    """Return the text of every requirement's formula, with its description before it."""
+    return {
+        requirement.label: ": ".join(
+            filter(None, (requirement.written.description, printed(requirement.spec.formula)))
+        )
+        for requirement in requirements
+    }
 
 
 def row(outcome: Outcome) -> Row:

@@ -34,7 +34,9 @@ def as_junit(requirements: Sequence[Requirement], outcomes: Sequence[Outcome]) -
             )
             if outcome.verdict != "satisfied":
                 kind = "failure" if outcome.verdict == "violated" else "error"
-                problem = ET.SubElement(case, kind, type=outcome.verdict, message=_text(sentence(outcome)))
+                problem = ET.SubElement(
+                    case, kind, type=outcome.verdict, message=_text(sentence(outcome, requirement))
+                )
                 problem.text = _text(printed(requirement.spec.formula))
     ET.indent(root)
     return f'<?xml version="1.0" encoding="UTF-8"?>\n{ET.tostring(root, encoding="unicode")}\n'

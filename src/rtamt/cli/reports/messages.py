@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from rtamt.cli.command import short
 
 if TYPE_CHECKING:
-    from rtamt.cli.runner import Outcome
+    from rtamt.cli.runner import Outcome, Requirement
 
 
 def moment(outcome: Outcome) -> str:
@@ -16,9 +16,11 @@ def moment(outcome: Outcome) -> str:
     return "" if when is None else when if isinstance(when, str) else f"{when:.12g} s"
 
 
-def sentence(outcome: Outcome) -> str:
+def sentence(outcome: Outcome, requirement: Requirement) -> str:
     """Return what came of one requirement over one recording, as a sentence."""
     if outcome.error:
         return outcome.error
-    told = f"{outcome.requirement} is {outcome.verdict} by {outcome.trace}: robustness {short(outcome.robustness)}"
+    description = requirement.written.description
+    name = f"{outcome.requirement} ({description})" if description else outcome.requirement
+    told = f"{name} is {outcome.verdict} by {outcome.trace}: robustness {short(outcome.robustness)}"
     return f"{told}, first violated at {moment(outcome)}" if moment(outcome) else told

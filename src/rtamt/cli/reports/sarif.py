@@ -23,10 +23,7 @@ _SCHEMA = "https://json.schemastore.org/sarif-2.1.0.json"
 
 def as_sarif(requirements: Sequence[Requirement], outcomes: Sequence[Outcome]) -> str:
     """Return the report: a violation is a failed result, what could not be evaluated a notification."""
-    rules = [
-        {"id": requirement.label, "shortDescription": {"text": printed(requirement.spec.formula)}}
-        for requirement in requirements
-    ]
+    rules = [_rule(requirement) for requirement in requirements]
     numbers = {requirement.label: i for i, requirement in enumerate(requirements)}
     errors = [outcome for outcome in outcomes if outcome.error]
     run = {
@@ -37,7 +34,7 @@ def as_sarif(requirements: Sequence[Requirement], outcomes: Sequence[Outcome]) -
                 "toolExecutionNotifications": [
                     {
                         "level": "error",
-                        "message": {"text": sentence(outcome)},
+                        "message": {"text": outcome.error},
                         "associatedRule": {"id": outcome.requirement, "index": numbers[outcome.requirement]},
                         "locations": [_location(outcome.trace)],
                     }
@@ -54,14 +51,20 @@ def as_sarif(requirements: Sequence[Requirement], outcomes: Sequence[Outcome]) -
     return json.dumps({"$schema": _SCHEMA, "version": "2.1.0", "runs": [run]}, indent=2) + "\n"
 
 
+def _rule(requirement: Requirement) -> dict[str, Any]:
+    formula, description = printed(requirement.spec.formula), requirement.written.description
+    rule = {"id": requirement.label, "shortDescription": {"text": description or formula}}
+    return {**rule, "fullDescription": {"text": formula}} if description else rule
+
+
 def _result(outcome: Outcome, number: int, requirements: Sequence[Requirement]) -> dict[str, Any]:
     violated = outcome.verdict == "violated"
     result = {
         "ruleId": outcome.requirement,
         "ruleIndex": number,
         "kind": "fail" if violated else "pass",
-        "level": "error" if violated else "none",
-        "message": {"text": sentence(outcome)},
+        "level": requirements[number].written.severity if violated else "none",
+        "message": {"text": sentence(outcome, requirements[number])},
         "locations": [_location(outcome.trace)],
         "properties": {
             "robustness": json_number(outcome.robustness),

@@ -1,0 +1,124 @@
+"""Requirements in a specification text: ``require ID ["text"] [severity WORD]: formula``, and what else must hold."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING
+
+from rtamt.errors import ParseError
+from rtamt.language.document import SEVERITIES, Requirement
+from rtamt.language.formula import Span
+from rtamt.language.grammar import is_number
+from rtamt.language.lexer import unquoted
+from rtamt.language.parser import FormulaParser
+
+if TYPE_CHECKING:
+    from rtamt.errors import SpecificationError
+    from rtamt.language.document import Assertion, Import, Severity
+    from rtamt.language.lexer import Token
+    from rtamt.language.operators import Language
+    from rtamt.language.scope import Scope
+
+#: The name of a requirement that needs no quotes.
+_ID = re.compile(r"\w(?:[\w.-]*\w)?")
+
+
+class RequirementParser(FormulaParser):
+    """The productions of a requirement, above those of a formula."""
+
+    def __init__(self, text: str, language: Language, unit: str, scope: Scope) -> None:
+        super().__init__(text, language, unit, scope)
+        self._imports: list[Import] = []
+        self._definitions = dict(scope.definitions)
+        self._explicit: list[Requirement] = []
+
+    def _requirement(self) -> None:
+        """``requirement = "require" , id , [ text ] , [ "severity" , word ] , ":" , expression``."""
+        start = self.next().start
+        span, name = self._id_span(), self._id()
+        if name in self._definitions or any(known.name == name for known in self._explicit):
+            raise self.error(f"'{name}' is the name of another requirement or definition", span)
+        description = unquoted(self.next().text) if self.token.kind == "quoted" else ""
+        severity: Severity = "error"
+        if self._word("severity"):
+            self.next()
+            chosen = next((known for known in SEVERITIES if known == self.token.text), None)
+            if chosen is None:
+                raise self._expected(f"a severity ({', '.join(SEVERITIES)})")
+            severity = chosen
+            self.next()
+        if not self.accept(":"):
+            raise self._expected(f"':' after 'require {name}'")
+        formula = self.formula()
+        whole = Span(start, self.tokens[self.index - 1].end)
+        if is_number(formula):
+            raise self.error(
+                f"'{name}' requires a number, which neither holds nor fails; compare it, such as x >= 0",
+                formula.span or whole,
+            )
+        self._explicit.append(Requirement(name, formula, description, severity, True, whole))
+
+    def _id_span(self) -> Span:
+        """Return where the name of a requirement stands."""
+        if self.token.kind == "quoted":
+            return self.token.span
+        match = _ID.match(self.text, self.token.start)
+        if match is None:
+            raise self._expected("the name of a requirement, such as REQ-12")
+        return Span(match.start(), match.end())
+
+    def _id(self) -> str:
+        """``id``: a word that may have dashes and dots, or anything in double quotes."""
+        if self.token.kind == "quoted":
+            return unquoted(self.next().text)
+        span = self._id_span()
+        while self.token.kind != "end" and self.token.end <= span.end:
+            self.next()
+        return self.text[span.start : span.end]
+
+    def _requirements(self, assertions: tuple[Assertion, ...]) -> tuple[Requirement, ...]:
+        """Return what must hold, in the order of the text."""
+        if self._explicit:
+            return tuple(self._explicit)
+        unused = [a for a in assertions if not is_number(a.formula) and a.name not in self.used]
+        taken = {assertion.name for assertion in assertions}
+        found = []
+        for number, assertion in enumerate(unused or assertions[-1:], 1):
+            name = assertion.name or f"requirement_{number}"
+            while assertion.name is None and name in taken:
+                name += "_"
+            found.append(Requirement(name, assertion.formula, span=assertion.span))
+        return tuple(found)
+
+    # ---- looking ahead ---------------------------------------------------------------------------
+
+    def _requires(self) -> bool:
+        """Tell whether a requirement stands here: ``require`` where a variable of this name could not."""
+        if not self._word("require") or any(known.name == "require" for known in self._imports):
+            return False
+        if self._plain_name(1) or self._at(1).kind == "number":
+            return self._at(2).text != "="  # a declaration whose type is missing
+        # An infix operator such as S may be the name, if what follows is none of its operands.
+        name = _ID.match(self.text, self._at(1).start)
+        if name is None or self._at(1).kind != "name":
+            return False
+        ahead = next(k for k in range(2, len(self.tokens)) if self._at(k).start >= name.end())
+        ahead += self._at(ahead).kind == "quoted"
+        ahead += 2 * (self._at(ahead).text == "severity")
+        return self._at(ahead).text == ":"
+
+    def _word(self, word: str) -> bool:
+        return self.token.kind == "name" and self.token.text == word
+
+    def _at(self, ahead: int) -> Token:
+        return self.tokens[min(self.index + ahead, len(self.tokens) - 1)]
+
+    def _plain_name(self, ahead: int) -> bool:
+        """Tell whether a name that cannot be an infix operator stands that far ahead."""
+        token = self._at(ahead)
+        return token.kind in ("name", "quoted") and self.language.infix(token.text) is None
+
+    # ---- errors ----------------------------------------------------------------------------------
+
+    def _expected(self, what: str) -> SpecificationError:
+        return self.error(f"expected {what}, got {self.token}", self.token.span, ParseError)

@@ -1,0 +1,166 @@
+"""Several requirements in a text: their minimum is the robustness of all, their conjunction the verdict."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+from conformance.cases import FILES, read
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+
+import rtamt
+from rtamt.errors import EvaluationError
+from rtamt.language.formula import Apply, Formula, Var, fold
+from rtamt.language.grammar import is_number
+from rtamt.language.parser import parse_formula
+from rtamt.language.specfile import parse_document
+from rtamt.verdicts.first_violation import first_violation
+from tests.strategies import chunkings, dense_traces, formulas, traces
+
+DECLARED = "float x  float y  "
+
+
+@st.composite
+def several(draw: st.DrawFn, **more: Any) -> tuple[str, list[Formula]]:
+    """Draw a text of two to four requirements, and their formulas."""
+    drawn = draw(st.lists(formulas(max_depth=3, **more), min_size=2, max_size=4))
+    written = [f"({formula}) >= 0" if is_number(formula) else str(formula) for formula in drawn]
+    explicit = draw(st.booleans())
+    parts = [f"require R-{i}: {text}" if explicit else text for i, text in enumerate(written)]
+    return DECLARED + "; ".join(parts), [parse_formula(text) for text in written]
+
+
+def value_at(signal: Any, times: Any) -> Any:
+    return signal.values[np.searchsorted(signal.times, times, side="right") - 1]
+
+
+def minimum(signals: list[Any], times: Any) -> Any:
+    return np.minimum.reduce([value_at(signal, times) for signal in signals])
+
+
+@settings(max_examples=40)
+@given(several(unbounded_future=True), traces(), st.sampled_from(("cpp", "python")))
+def test_discrete_evaluation(drawn: tuple[str, list[Formula]], columns: dict[str, Any], backend: str) -> None:
+    text, alone = drawn
+    spec = rtamt.parse(text, backend=backend)
+    assume(spec.input_names)
+    assert [part.formula for part in spec.requirements.values()] == alone
+    try:
+        result = spec.evaluate(columns)
+        parts = list(result.requirements.values())
+        singly = [rtamt.parse(f"{DECLARED}{formula}", backend=backend).evaluate(columns) for formula in alone]
+    except EvaluationError:
+        return
+    np.testing.assert_array_equal(
+        result.signal.values, minimum([part.signal for part in parts], result.signal.times)
+    )
+    for part, single in zip(parts, singly, strict=True):
+        np.testing.assert_array_equal(part.signal.values, single.signal.values)
+        assert (part.satisfied, first_violation(part)) == (single.satisfied, first_violation(single))
+    assert result.robustness == min(part.robustness for part in parts)
+    assert result.satisfied is all(part.satisfied for part in parts)
+    when = [first_violation(part) for part in parts if not part.satisfied]
+    assert first_violation(result) == min(when, default=None)
+
+
+@settings(max_examples=40)
+@given(several(discrete=False, unbounded_future=True), dense_traces(), st.sampled_from(("cpp", "python")))
+def test_dense_evaluation(drawn: tuple[str, list[Formula]], trace: Any, backend: str) -> None:
+    spec = rtamt.parse(drawn[0], backend=backend, time="dense", resolution=1)
+    assume(spec.input_names)
+    try:
+        result = spec.evaluate(
+            {name: (times.astype(float), values) for name, (times, values) in trace.items()}
+        )
+        parts = list(result.requirements.values())
+        satisfied = [part.satisfied for part in parts]
+    except EvaluationError:
+        return
+    times = np.unique(np.concatenate([part.signal.times for part in (result, *parts)]))
+    np.testing.assert_array_equal(
+        value_at(result.signal, times), minimum([part.signal for part in parts], times)
+    )
+    assert {part.signal.times[0] for part in parts} == {result.signal.times[0]}
+    assert (result.robustness, result.satisfied) == (min(part.robustness for part in parts), all(satisfied))
+    when = [first_violation(part) for part in parts if not part.satisfied]
+    assert first_violation(result) == min(when, default=None)
+
+
+@settings(max_examples=40)
+@given(several(), traces(), st.sampled_from(("standard", "boolean")))
+def test_monitor(drawn: tuple[str, list[Formula]], columns: dict[str, Any], semantics: str) -> None:
+    spec = rtamt.parse(drawn[0])
+    names = list(spec.requirements)
+    data = {name: columns[name] for name in spec.input_names}
+    assume(data)
+    monitor = spec.monitor(watch=names, semantics=semantics)
+    overall, each = [], {name: [] for name in names}
+    try:
+        for i in range(len(columns["x"])):
+            known = monitor.update(float(i), **{name: float(column[i]) for name, column in data.items()})
+            overall += [] if known is None else [known]
+            for name in names:
+                value = monitor[name]
+                each[name] += [] if value is None else [value]
+        overall += monitor.finish().values.tolist()
+        for name in names:
+            each[name] += monitor[name].values.tolist()
+    except EvaluationError:
+        return
+    np.testing.assert_array_equal(overall, np.minimum.reduce([each[name] for name in names]))
+
+
+@settings(max_examples=30)
+@given(st.data(), st.booleans())
+def test_chunks(data: st.DataObject, dense: bool) -> None:
+    text, _ = data.draw(several(discrete=not dense))
+    spec = rtamt.parse(text, **({"time": "dense", "resolution": 1} if dense else {}))
+    columns = data.draw(traces())
+    n = len(columns["x"])
+    assume(spec.input_names)
+    whole = {"time": np.arange(n, dtype=float), **columns}
+    ends = np.cumsum(data.draw(chunkings(n)))
+    chunks = [
+        {k: v[a:b] for k, v in whole.items()} for a, b in zip([0, *ends[:-1]], ends, strict=True) if b > a
+    ]
+    try:
+        if dense:
+            chunks = [{k: (c["time"], v) for k, v in c.items() if k != "time"} for c in chunks]
+            result = spec.evaluate({k: (whole["time"], v) for k, v in columns.items()})
+        else:
+            result = spec.evaluate(whole)
+        found = rtamt.check_stream(spec, chunks, **({} if dense else {"period": 1}))
+        parts = {
+            name: (p.robustness, p.satisfied, first_violation(p)) for name, p in result.requirements.items()
+        }
+    except EvaluationError:
+        return
+    assert (found.robustness, found.satisfied) == (result.robustness, result.satisfied)
+    assert found.first_violation == first_violation(result)
+    told = {name: (p.robustness, p.satisfied, p.first_violation) for name, p in found.requirements.items()}
+    assert told == parts
+    assert found.minimum == min(part.minimum for part in found.requirements.values())
+
+
+CORPUS = sorted({case.formula for name in FILES for case in read(name)})
+
+
+@pytest.mark.parametrize("word", ["require", "severity"])
+def test_the_corpus_with_a_word_of_requirements_as_a_variable_means_what_it_meant(word: str) -> None:
+    for text in CORPUS:
+        renamed = re.sub(r"\bx\b", word, text)
+        before = parse_document(text).formula
+        assert parse_document(renamed).formula == fold(
+            before,
+            lambda node, args: (
+                Var(word)
+                if node == Var("x")
+                else replace(node, args=args)
+                if isinstance(node, Apply)
+                else node
+            ),
+        )
