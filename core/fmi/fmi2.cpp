@@ -76,24 +76,24 @@ constexpr const char* never_pending = "A step of this unit is never pending.";
 
 // ---- life ---------------------------------------------------------------------------------------
 
-RTAMT_FMI_EXPORT const char* fmi2GetTypesPlatform() {
+RTAMT_FMI2_EXPORT const char* fmi2GetTypesPlatform() {
     return "default";
 }
 
-RTAMT_FMI_EXPORT const char* fmi2GetVersion() {
+RTAMT_FMI2_EXPORT const char* fmi2GetVersion() {
     return "2.0";
 }
 
-RTAMT_FMI_EXPORT fmi2Status fmi2SetDebugLogging(fmi2Component /*instance*/, fmi2Boolean /*on*/,
-                                                std::size_t /*count*/,
-                                                const fmi2String /*categories*/[]) {
+RTAMT_FMI2_EXPORT fmi2Status fmi2SetDebugLogging(fmi2Component /*instance*/, fmi2Boolean /*on*/,
+                                                 std::size_t /*count*/,
+                                                 const fmi2String /*categories*/[]) {
     return fmi2OK; // what is said is always said: there is nothing but refusals and errors
 }
 
-RTAMT_FMI_EXPORT fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid,
-                                               fmi2String resources,
-                                               const fmi2CallbackFunctions* callbacks,
-                                               fmi2Boolean /*visible*/, fmi2Boolean /*logging*/) {
+RTAMT_FMI2_EXPORT fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid,
+                                                fmi2String resources,
+                                                const fmi2CallbackFunctions* callbacks,
+                                                fmi2Boolean /*visible*/, fmi2Boolean /*logging*/) {
     if (callbacks == nullptr) return nullptr;
     Instance* instance = nullptr;
     (void)attempt(
@@ -115,94 +115,94 @@ RTAMT_FMI_EXPORT fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, f
     return instance;
 }
 
-RTAMT_FMI_EXPORT void fmi2FreeInstance(fmi2Component instance) {
+RTAMT_FMI2_EXPORT void fmi2FreeInstance(fmi2Component instance) {
     delete static_cast<Instance*>(instance);
 }
 
-RTAMT_FMI_EXPORT fmi2Status fmi2SetupExperiment(fmi2Component instance,
-                                                fmi2Boolean /*tolerance_defined*/,
-                                                fmi2Real /*tolerance*/, fmi2Real start,
-                                                fmi2Boolean /*stop_defined*/, fmi2Real /*stop*/) {
+RTAMT_FMI2_EXPORT fmi2Status fmi2SetupExperiment(fmi2Component instance,
+                                                 fmi2Boolean /*tolerance_defined*/,
+                                                 fmi2Real /*tolerance*/, fmi2Real start,
+                                                 fmi2Boolean /*stop_defined*/, fmi2Real /*stop*/) {
     return with(instance, fmi2Error, [&](Component& component) { component.begin(start); });
 }
 
-RTAMT_FMI_EXPORT fmi2Status fmi2EnterInitializationMode(fmi2Component instance) {
+RTAMT_FMI2_EXPORT fmi2Status fmi2EnterInitializationMode(fmi2Component instance) {
     return with(instance, fmi2Error, [](Component&) {});
 }
 
-RTAMT_FMI_EXPORT fmi2Status fmi2ExitInitializationMode(fmi2Component instance) {
+RTAMT_FMI2_EXPORT fmi2Status fmi2ExitInitializationMode(fmi2Component instance) {
     return with(instance, fmi2Error, [](Component& component) { component.settle(); });
 }
 
-RTAMT_FMI_EXPORT fmi2Status fmi2Terminate(fmi2Component instance) {
+RTAMT_FMI2_EXPORT fmi2Status fmi2Terminate(fmi2Component instance) {
     return with(instance, fmi2Error, [](Component& component) { component.terminate(); });
 }
 
-RTAMT_FMI_EXPORT fmi2Status fmi2Reset(fmi2Component instance) {
+RTAMT_FMI2_EXPORT fmi2Status fmi2Reset(fmi2Component instance) {
     return with(instance, fmi2Error, [](Component& component) { component.reset(); });
 }
 
 // ---- variables ----------------------------------------------------------------------------------
 
-RTAMT_FMI_EXPORT fmi2Status fmi2GetReal(fmi2Component instance,
-                                        const fmi2ValueReference references[], std::size_t count,
-                                        fmi2Real values[]) {
+RTAMT_FMI2_EXPORT fmi2Status fmi2GetReal(fmi2Component instance,
+                                         const fmi2ValueReference references[], std::size_t count,
+                                         fmi2Real values[]) {
     return with(instance, fmi2Error, [&](Component& component) {
         for (std::size_t i = 0; i < count; ++i)
             values[i] = component.real(references[i]);
     });
 }
 
-RTAMT_FMI_EXPORT fmi2Status fmi2GetInteger(fmi2Component instance,
-                                           const fmi2ValueReference references[], std::size_t count,
-                                           fmi2Integer values[]) {
+RTAMT_FMI2_EXPORT fmi2Status fmi2GetInteger(fmi2Component instance,
+                                            const fmi2ValueReference references[],
+                                            std::size_t count, fmi2Integer values[]) {
     return with(instance, fmi2Error, [&](Component& component) {
         for (std::size_t i = 0; i < count; ++i)
             values[i] = component.integer(references[i]);
     });
 }
 
-RTAMT_FMI_EXPORT fmi2Status fmi2GetBoolean(fmi2Component instance,
-                                           const fmi2ValueReference references[], std::size_t count,
-                                           fmi2Boolean values[]) {
+RTAMT_FMI2_EXPORT fmi2Status fmi2GetBoolean(fmi2Component instance,
+                                            const fmi2ValueReference references[],
+                                            std::size_t count, fmi2Boolean values[]) {
     return with(instance, fmi2Error, [&](Component& component) {
         for (std::size_t i = 0; i < count; ++i)
             values[i] = component.boolean(references[i]) ? 1 : 0;
     });
 }
 
-RTAMT_FMI_EXPORT fmi2Status fmi2GetString(fmi2Component instance, const fmi2ValueReference[],
-                                          std::size_t count, fmi2String[]) {
+RTAMT_FMI2_EXPORT fmi2Status fmi2GetString(fmi2Component instance, const fmi2ValueReference[],
+                                           std::size_t count, fmi2String[]) {
     return count == 0 ? fmi2OK : refuse(instance, no_strings);
 }
 
-RTAMT_FMI_EXPORT fmi2Status fmi2SetReal(fmi2Component instance,
-                                        const fmi2ValueReference references[], std::size_t count,
-                                        const fmi2Real values[]) {
+RTAMT_FMI2_EXPORT fmi2Status fmi2SetReal(fmi2Component instance,
+                                         const fmi2ValueReference references[], std::size_t count,
+                                         const fmi2Real values[]) {
     return with(instance, fmi2Discard, [&](Component& component) {
         for (std::size_t i = 0; i < count; ++i)
             component.set_real(references[i], values[i]);
     });
 }
 
-RTAMT_FMI_EXPORT fmi2Status fmi2SetInteger(fmi2Component instance, const fmi2ValueReference[],
-                                           std::size_t count, const fmi2Integer[]) {
+RTAMT_FMI2_EXPORT fmi2Status fmi2SetInteger(fmi2Component instance, const fmi2ValueReference[],
+                                            std::size_t count, const fmi2Integer[]) {
     return count == 0 ? fmi2OK : refuse(instance, only_reals_are_set);
 }
 
-RTAMT_FMI_EXPORT fmi2Status fmi2SetBoolean(fmi2Component instance, const fmi2ValueReference[],
-                                           std::size_t count, const fmi2Boolean[]) {
+RTAMT_FMI2_EXPORT fmi2Status fmi2SetBoolean(fmi2Component instance, const fmi2ValueReference[],
+                                            std::size_t count, const fmi2Boolean[]) {
     return count == 0 ? fmi2OK : refuse(instance, only_reals_are_set);
 }
 
-RTAMT_FMI_EXPORT fmi2Status fmi2SetString(fmi2Component instance, const fmi2ValueReference[],
-                                          std::size_t count, const fmi2String[]) {
+RTAMT_FMI2_EXPORT fmi2Status fmi2SetString(fmi2Component instance, const fmi2ValueReference[],
+                                           std::size_t count, const fmi2String[]) {
     return count == 0 ? fmi2OK : refuse(instance, only_reals_are_set);
 }
 
 // ---- state --------------------------------------------------------------------------------------
 
-RTAMT_FMI_EXPORT fmi2Status fmi2GetFMUstate(fmi2Component instance, fmi2FMUstate* state) {
+RTAMT_FMI2_EXPORT fmi2Status fmi2GetFMUstate(fmi2Component instance, fmi2FMUstate* state) {
     return with(instance, fmi2Error, [&](Component& component) {
         auto saved = std::make_unique<State>(component.save());
         if (*state == nullptr) {
@@ -213,35 +213,35 @@ RTAMT_FMI_EXPORT fmi2Status fmi2GetFMUstate(fmi2Component instance, fmi2FMUstate
     });
 }
 
-RTAMT_FMI_EXPORT fmi2Status fmi2SetFMUstate(fmi2Component instance, fmi2FMUstate state) {
+RTAMT_FMI2_EXPORT fmi2Status fmi2SetFMUstate(fmi2Component instance, fmi2FMUstate state) {
     return with(instance, fmi2Error, [&](Component& component) {
         component.restore(*static_cast<const State*>(state));
     });
 }
 
-RTAMT_FMI_EXPORT fmi2Status fmi2FreeFMUstate(fmi2Component /*instance*/, fmi2FMUstate* state) {
+RTAMT_FMI2_EXPORT fmi2Status fmi2FreeFMUstate(fmi2Component /*instance*/, fmi2FMUstate* state) {
     if (state == nullptr) return fmi2OK;
     delete static_cast<State*>(*state);
     *state = nullptr;
     return fmi2OK;
 }
 
-RTAMT_FMI_EXPORT fmi2Status fmi2SerializedFMUstateSize(fmi2Component /*instance*/,
-                                                       fmi2FMUstate state, std::size_t* size) {
+RTAMT_FMI2_EXPORT fmi2Status fmi2SerializedFMUstateSize(fmi2Component /*instance*/,
+                                                        fmi2FMUstate state, std::size_t* size) {
     *size = static_cast<const State*>(state)->size();
     return fmi2OK;
 }
 
-RTAMT_FMI_EXPORT fmi2Status fmi2SerializeFMUstate(fmi2Component instance, fmi2FMUstate state,
-                                                  fmi2Byte bytes[], std::size_t size) {
+RTAMT_FMI2_EXPORT fmi2Status fmi2SerializeFMUstate(fmi2Component instance, fmi2FMUstate state,
+                                                   fmi2Byte bytes[], std::size_t size) {
     const State& saved = *static_cast<const State*>(state);
     if (size < saved.size()) return refuse(instance, "The state needs more bytes than there are.");
     std::memcpy(bytes, saved.data(), saved.size());
     return fmi2OK;
 }
 
-RTAMT_FMI_EXPORT fmi2Status fmi2DeSerializeFMUstate(fmi2Component instance, const fmi2Byte bytes[],
-                                                    std::size_t size, fmi2FMUstate* state) {
+RTAMT_FMI2_EXPORT fmi2Status fmi2DeSerializeFMUstate(fmi2Component instance, const fmi2Byte bytes[],
+                                                     std::size_t size, fmi2FMUstate* state) {
     return with(instance, fmi2Error, [&](Component&) {
         const std::span<const fmi2Byte> read(bytes, size);
         *state = new State(read.begin(), read.end()); // looked at when it is set
@@ -250,61 +250,61 @@ RTAMT_FMI_EXPORT fmi2Status fmi2DeSerializeFMUstate(fmi2Component instance, cons
 
 // ---- steps --------------------------------------------------------------------------------------
 
-RTAMT_FMI_EXPORT fmi2Status fmi2DoStep(fmi2Component instance, fmi2Real time, fmi2Real length,
-                                       fmi2Boolean /*no_return*/) {
+RTAMT_FMI2_EXPORT fmi2Status fmi2DoStep(fmi2Component instance, fmi2Real time, fmi2Real length,
+                                        fmi2Boolean /*no_return*/) {
     return with(instance, fmi2Discard,
                 [&](Component& component) { component.advance(time, length); });
 }
 
-RTAMT_FMI_EXPORT fmi2Status fmi2CancelStep(fmi2Component instance) {
+RTAMT_FMI2_EXPORT fmi2Status fmi2CancelStep(fmi2Component instance) {
     return refuse(instance, never_pending);
 }
 
-RTAMT_FMI_EXPORT fmi2Status fmi2GetStatus(fmi2Component /*instance*/, fmi2StatusKind /*kind*/,
-                                          fmi2Status* /*value*/) {
+RTAMT_FMI2_EXPORT fmi2Status fmi2GetStatus(fmi2Component /*instance*/, fmi2StatusKind /*kind*/,
+                                           fmi2Status* /*value*/) {
     return fmi2Discard;
 }
 
-RTAMT_FMI_EXPORT fmi2Status fmi2GetRealStatus(fmi2Component instance, fmi2StatusKind kind,
-                                              fmi2Real* value) {
+RTAMT_FMI2_EXPORT fmi2Status fmi2GetRealStatus(fmi2Component instance, fmi2StatusKind kind,
+                                               fmi2Real* value) {
     if (kind != fmi2LastSuccessfulTime) return fmi2Discard;
     return with(instance, fmi2Error, [&](Component& component) { *value = component.reached(); });
 }
 
-RTAMT_FMI_EXPORT fmi2Status fmi2GetIntegerStatus(fmi2Component /*instance*/,
-                                                 fmi2StatusKind /*kind*/, fmi2Integer* /*value*/) {
+RTAMT_FMI2_EXPORT fmi2Status fmi2GetIntegerStatus(fmi2Component /*instance*/,
+                                                  fmi2StatusKind /*kind*/, fmi2Integer* /*value*/) {
     return fmi2Discard;
 }
 
-RTAMT_FMI_EXPORT fmi2Status fmi2GetBooleanStatus(fmi2Component /*instance*/, fmi2StatusKind kind,
-                                                 fmi2Boolean* value) {
+RTAMT_FMI2_EXPORT fmi2Status fmi2GetBooleanStatus(fmi2Component /*instance*/, fmi2StatusKind kind,
+                                                  fmi2Boolean* value) {
     if (kind != fmi2Terminated) return fmi2Discard;
     *value = 0; // a monitor never ends the simulation by itself
     return fmi2OK;
 }
 
-RTAMT_FMI_EXPORT fmi2Status fmi2GetStringStatus(fmi2Component instance, fmi2StatusKind /*kind*/,
-                                                fmi2String* /*value*/) {
+RTAMT_FMI2_EXPORT fmi2Status fmi2GetStringStatus(fmi2Component instance, fmi2StatusKind /*kind*/,
+                                                 fmi2String* /*value*/) {
     return refuse(instance, never_pending);
 }
 
 // ---- what the unit does not offer ---------------------------------------------------------------
 
-RTAMT_FMI_EXPORT fmi2Status fmi2GetDirectionalDerivative(fmi2Component instance,
-                                                         const fmi2ValueReference[], std::size_t,
-                                                         const fmi2ValueReference[], std::size_t,
-                                                         const fmi2Real[], fmi2Real[]) {
+RTAMT_FMI2_EXPORT fmi2Status fmi2GetDirectionalDerivative(fmi2Component instance,
+                                                          const fmi2ValueReference[], std::size_t,
+                                                          const fmi2ValueReference[], std::size_t,
+                                                          const fmi2Real[], fmi2Real[]) {
     return refuse(instance, no_derivatives);
 }
 
-RTAMT_FMI_EXPORT fmi2Status fmi2SetRealInputDerivatives(fmi2Component instance,
-                                                        const fmi2ValueReference[], std::size_t,
-                                                        const fmi2Integer[], const fmi2Real[]) {
+RTAMT_FMI2_EXPORT fmi2Status fmi2SetRealInputDerivatives(fmi2Component instance,
+                                                         const fmi2ValueReference[], std::size_t,
+                                                         const fmi2Integer[], const fmi2Real[]) {
     return refuse(instance, no_derivatives);
 }
 
-RTAMT_FMI_EXPORT fmi2Status fmi2GetRealOutputDerivatives(fmi2Component instance,
-                                                         const fmi2ValueReference[], std::size_t,
-                                                         const fmi2Integer[], fmi2Real[]) {
+RTAMT_FMI2_EXPORT fmi2Status fmi2GetRealOutputDerivatives(fmi2Component instance,
+                                                          const fmi2ValueReference[], std::size_t,
+                                                          const fmi2Integer[], fmi2Real[]) {
     return refuse(instance, no_derivatives);
 }

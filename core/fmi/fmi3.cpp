@@ -5,7 +5,6 @@
 
 #include "attempt.hpp"
 #include "component.hpp"
-#include "fmi2.hpp"
 #include "instance3.hpp"
 
 #include <cstdint>
@@ -50,17 +49,17 @@ void require(bool equal) {
 
 // ---- life ---------------------------------------------------------------------------------------
 
-RTAMT_FMI_EXPORT const char* fmi3GetVersion() {
+RTAMT_FMI3_EXPORT const char* fmi3GetVersion() {
     return "3.0";
 }
 
-RTAMT_FMI_EXPORT fmi3Status fmi3SetDebugLogging(fmi3Instance /*instance*/, fmi3Boolean /*on*/,
-                                                std::size_t /*count*/,
-                                                const fmi3String /*categories*/[]) {
+RTAMT_FMI3_EXPORT fmi3Status fmi3SetDebugLogging(fmi3Instance /*instance*/, fmi3Boolean /*on*/,
+                                                 std::size_t /*count*/,
+                                                 const fmi3String /*categories*/[]) {
     return fmi3OK; // what is said is always said: there is nothing but refusals and errors
 }
 
-RTAMT_FMI_EXPORT fmi3Instance fmi3InstantiateCoSimulation(
+RTAMT_FMI3_EXPORT fmi3Instance fmi3InstantiateCoSimulation(
     fmi3String /*name*/, fmi3String token, fmi3String resources, fmi3Boolean /*visible*/,
     fmi3Boolean /*logging*/, fmi3Boolean /*event_mode*/, fmi3Boolean /*early_return*/,
     const fmi3ValueReference /*intermediate*/[], std::size_t /*count*/,
@@ -80,33 +79,34 @@ RTAMT_FMI_EXPORT fmi3Instance fmi3InstantiateCoSimulation(
     return instance;
 }
 
-RTAMT_FMI_EXPORT void fmi3FreeInstance(fmi3Instance instance) {
+RTAMT_FMI3_EXPORT void fmi3FreeInstance(fmi3Instance instance) {
     delete static_cast<Instance3*>(instance);
 }
 
-RTAMT_FMI_EXPORT fmi3Status fmi3EnterInitializationMode(
+RTAMT_FMI3_EXPORT fmi3Status fmi3EnterInitializationMode(
     fmi3Instance instance, fmi3Boolean /*tolerance_defined*/, fmi3Float64 /*tolerance*/,
     fmi3Float64 start, fmi3Boolean /*stop_defined*/, fmi3Float64 /*stop*/) {
     return with(instance, fmi3Error, [&](Component& component) { component.begin(start); });
 }
 
-RTAMT_FMI_EXPORT fmi3Status fmi3ExitInitializationMode(fmi3Instance instance) {
+RTAMT_FMI3_EXPORT fmi3Status fmi3ExitInitializationMode(fmi3Instance instance) {
     return with(instance, fmi3Error, [](Component& component) { component.settle(); });
 }
 
-RTAMT_FMI_EXPORT fmi3Status fmi3Terminate(fmi3Instance instance) {
+RTAMT_FMI3_EXPORT fmi3Status fmi3Terminate(fmi3Instance instance) {
     return with(instance, fmi3Error, [](Component& component) { component.terminate(); });
 }
 
-RTAMT_FMI_EXPORT fmi3Status fmi3Reset(fmi3Instance instance) {
+RTAMT_FMI3_EXPORT fmi3Status fmi3Reset(fmi3Instance instance) {
     return with(instance, fmi3Error, [](Component& component) { component.reset(); });
 }
 
 // ---- variables ----------------------------------------------------------------------------------
 
-RTAMT_FMI_EXPORT fmi3Status fmi3GetFloat64(fmi3Instance instance,
-                                           const fmi3ValueReference references[], std::size_t count,
-                                           fmi3Float64 values[], std::size_t room) {
+RTAMT_FMI3_EXPORT fmi3Status fmi3GetFloat64(fmi3Instance instance,
+                                            const fmi3ValueReference references[],
+                                            std::size_t count, fmi3Float64 values[],
+                                            std::size_t room) {
     return with(instance, fmi3Error, [&](Component& component) {
         require(count == room);
         for (std::size_t i = 0; i < count; ++i)
@@ -114,9 +114,9 @@ RTAMT_FMI_EXPORT fmi3Status fmi3GetFloat64(fmi3Instance instance,
     });
 }
 
-RTAMT_FMI_EXPORT fmi3Status fmi3GetInt32(fmi3Instance instance,
-                                         const fmi3ValueReference references[], std::size_t count,
-                                         fmi3Int32 values[], std::size_t room) {
+RTAMT_FMI3_EXPORT fmi3Status fmi3GetInt32(fmi3Instance instance,
+                                          const fmi3ValueReference references[], std::size_t count,
+                                          fmi3Int32 values[], std::size_t room) {
     return with(instance, fmi3Error, [&](Component& component) {
         require(count == room);
         for (std::size_t i = 0; i < count; ++i)
@@ -124,9 +124,10 @@ RTAMT_FMI_EXPORT fmi3Status fmi3GetInt32(fmi3Instance instance,
     });
 }
 
-RTAMT_FMI_EXPORT fmi3Status fmi3GetBoolean(fmi3Instance instance,
-                                           const fmi3ValueReference references[], std::size_t count,
-                                           fmi3Boolean values[], std::size_t room) {
+RTAMT_FMI3_EXPORT fmi3Status fmi3GetBoolean(fmi3Instance instance,
+                                            const fmi3ValueReference references[],
+                                            std::size_t count, fmi3Boolean values[],
+                                            std::size_t room) {
     return with(instance, fmi3Error, [&](Component& component) {
         require(count == room);
         for (std::size_t i = 0; i < count; ++i)
@@ -134,9 +135,10 @@ RTAMT_FMI_EXPORT fmi3Status fmi3GetBoolean(fmi3Instance instance,
     });
 }
 
-RTAMT_FMI_EXPORT fmi3Status fmi3SetFloat64(fmi3Instance instance,
-                                           const fmi3ValueReference references[], std::size_t count,
-                                           const fmi3Float64 values[], std::size_t room) {
+RTAMT_FMI3_EXPORT fmi3Status fmi3SetFloat64(fmi3Instance instance,
+                                            const fmi3ValueReference references[],
+                                            std::size_t count, const fmi3Float64 values[],
+                                            std::size_t room) {
     return with(instance, fmi3Discard, [&](Component& component) {
         require(count == room);
         for (std::size_t i = 0; i < count; ++i)
@@ -146,7 +148,7 @@ RTAMT_FMI_EXPORT fmi3Status fmi3SetFloat64(fmi3Instance instance,
 
 // ---- state --------------------------------------------------------------------------------------
 
-RTAMT_FMI_EXPORT fmi3Status fmi3GetFMUState(fmi3Instance instance, fmi3FMUState* state) {
+RTAMT_FMI3_EXPORT fmi3Status fmi3GetFMUState(fmi3Instance instance, fmi3FMUState* state) {
     return with(instance, fmi3Error, [&](Component& component) {
         auto saved = std::make_unique<State>(component.save());
         if (*state == nullptr) {
@@ -157,35 +159,35 @@ RTAMT_FMI_EXPORT fmi3Status fmi3GetFMUState(fmi3Instance instance, fmi3FMUState*
     });
 }
 
-RTAMT_FMI_EXPORT fmi3Status fmi3SetFMUState(fmi3Instance instance, fmi3FMUState state) {
+RTAMT_FMI3_EXPORT fmi3Status fmi3SetFMUState(fmi3Instance instance, fmi3FMUState state) {
     return with(instance, fmi3Error, [&](Component& component) {
         component.restore(*static_cast<const State*>(state));
     });
 }
 
-RTAMT_FMI_EXPORT fmi3Status fmi3FreeFMUState(fmi3Instance /*instance*/, fmi3FMUState* state) {
+RTAMT_FMI3_EXPORT fmi3Status fmi3FreeFMUState(fmi3Instance /*instance*/, fmi3FMUState* state) {
     if (state == nullptr) return fmi3OK;
     delete static_cast<State*>(*state);
     *state = nullptr;
     return fmi3OK;
 }
 
-RTAMT_FMI_EXPORT fmi3Status fmi3SerializedFMUStateSize(fmi3Instance /*instance*/,
-                                                       fmi3FMUState state, std::size_t* size) {
+RTAMT_FMI3_EXPORT fmi3Status fmi3SerializedFMUStateSize(fmi3Instance /*instance*/,
+                                                        fmi3FMUState state, std::size_t* size) {
     *size = static_cast<const State*>(state)->size();
     return fmi3OK;
 }
 
-RTAMT_FMI_EXPORT fmi3Status fmi3SerializeFMUState(fmi3Instance instance, fmi3FMUState state,
-                                                  fmi3Byte bytes[], std::size_t size) {
+RTAMT_FMI3_EXPORT fmi3Status fmi3SerializeFMUState(fmi3Instance instance, fmi3FMUState state,
+                                                   fmi3Byte bytes[], std::size_t size) {
     const State& saved = *static_cast<const State*>(state);
     if (size < saved.size()) return refuse(instance, "The state needs more bytes than there are.");
     std::memcpy(bytes, saved.data(), saved.size());
     return fmi3OK;
 }
 
-RTAMT_FMI_EXPORT fmi3Status fmi3DeserializeFMUState(fmi3Instance instance, const fmi3Byte bytes[],
-                                                    std::size_t size, fmi3FMUState* state) {
+RTAMT_FMI3_EXPORT fmi3Status fmi3DeserializeFMUState(fmi3Instance instance, const fmi3Byte bytes[],
+                                                     std::size_t size, fmi3FMUState* state) {
     return with(instance, fmi3Error, [&](Component&) {
         const std::span<const fmi3Byte> read(bytes, size);
         *state = new State(read.begin(), read.end()); // looked at when it is set
@@ -194,14 +196,14 @@ RTAMT_FMI_EXPORT fmi3Status fmi3DeserializeFMUState(fmi3Instance instance, const
 
 // ---- steps --------------------------------------------------------------------------------------
 
-RTAMT_FMI_EXPORT fmi3Status fmi3EnterStepMode(fmi3Instance instance) {
+RTAMT_FMI3_EXPORT fmi3Status fmi3EnterStepMode(fmi3Instance instance) {
     return with(instance, fmi3Error, [](Component&) {});
 }
 
-RTAMT_FMI_EXPORT fmi3Status fmi3DoStep(fmi3Instance instance, fmi3Float64 time, fmi3Float64 length,
-                                       fmi3Boolean /*no_state_before*/, fmi3Boolean* event,
-                                       fmi3Boolean* terminate, fmi3Boolean* early,
-                                       fmi3Float64* reached) {
+RTAMT_FMI3_EXPORT fmi3Status fmi3DoStep(fmi3Instance instance, fmi3Float64 time, fmi3Float64 length,
+                                        fmi3Boolean /*no_state_before*/, fmi3Boolean* event,
+                                        fmi3Boolean* terminate, fmi3Boolean* early,
+                                        fmi3Float64* reached) {
     *event = *terminate = *early = false;
     return with(instance, fmi3Discard, [&](Component& component) {
         *reached = component.reached();
