@@ -156,7 +156,7 @@ def test_messages(run, args, message):
         ("time,y\n", "stdin has no column 'x', only time, y"),
         (
             "time [min],x\n",
-            "stdin, line 1: the unit of the time column 'time [min]' is none of s, ms, us, ns",
+            "stdin, line 1: the unit of the time column 'time [min]' is 'min', which is none of s, ms, us, ns",
         ),
         ("time,x\n0\n", "stdin, line 2: 1 value, but 2 columns (time, x)"),
         ("time,x\n0,\n", "stdin, line 2: 'x' is empty, expected a number"),

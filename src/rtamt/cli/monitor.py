@@ -35,6 +35,10 @@ if TYPE_CHECKING:
     from rtamt.engine.dense_monitor import DenseMonitor
     from rtamt.engine.monitor import Monitor
     from rtamt.signals.arrays import Signal
+    from rtamt.specification import Specification
+
+#: By how much, as a fraction, a gap may miss a period that it is: stamps since 1970 are no more precise.
+_BLUR = 5e-7
 
 _DESCRIPTION = """\
 Watch a stream of samples. Each line of input is one sample; each line of output is the robustness
@@ -43,9 +47,10 @@ follows at the end of input)."""
 
 _EPILOG = """\
 input: JSON objects, one a line, or CSV with a header row. What the formula does not read is left
-out of account. Time stamps are in time, t, timestamp or stamp: seconds (--time-unit, or the unit in
-a CSV header: 't [ms]', says otherwise) or dates (ISO 8601); without one, samples are one period apart
-(--period, default 1 s). Fields: {"req": {"value": 3}} or {"req.value": 3}.
+out of account. Time stamps are found and read as in files (see 'rtamt check --help'): in time, t, timestamp,
+stamp or datetime, perhaps with a unit ('t [ms]', 'time_ms'), else in the one column of dates. Without any,
+samples are one period apart. A stream does not show its period in time: --period says it (default: 1 s,
+which stamps must then be apart). Fields: {"req": {"value": 3}} or {"req.value": 3}.
 
 With --time dense signals change at any instant, each on its own clock: a JSON object may hold some of
 the variables, a cell of CSV may be empty, and a line of output is printed for every change and at the
@@ -79,9 +84,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--tolerance",
         type=float,
-        default=TOLERANCE,
         metavar="FRACTION",
-        help=f"by how much of the period a gap between samples may miss it (default: {TOLERANCE})",
+        help=f"by how much of the period a gap between samples may miss it (default: {TOLERANCE} with --period, "
+        "else 0)",
     )
     parser.add_argument(
         "--live", action="store_true", help="draw verdict, robustness and values on the terminal"
@@ -91,16 +96,14 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Read samples until the end of input, print what becomes known."""
-    if not args.tolerance >= 0:
+    if args.tolerance is not None and not args.tolerance >= 0:
         raise CommandError(f"the tolerance is {args.tolerance:g}; give a fraction of the period, such as 0.1")
     spec = read_specification(args, args.time)
     dense = spec.time == "dense"
     live = _live(printed(spec.formula)) if args.live else None
     told = Output(verdicts=spec.semantics == "boolean", live=live)
     watched: Watched | DenseWatched = (
-        DenseWatched(spec.monitor(time="dense"), told)
-        if dense
-        else Watched(spec.monitor(tolerance=args.tolerance), told)
+        DenseWatched(spec.monitor(time="dense"), told) if dense else _watched(spec, args.tolerance, told)
     )
     samples = Samples(watched.monitor.input_names, args.time_column, dense=dense, unit=args.time_unit)
     if sys.stdin.isatty():
@@ -128,6 +131,11 @@ def run(args: argparse.Namespace) -> int:
     if live is not None:
         live.draw()
     return code
+
+
+def _watched(spec: Specification, tolerance: float | None, told: Output) -> Watched:
+    monitor = spec.monitor(tolerance=TOLERANCE if tolerance is None else tolerance)
+    return Watched(monitor, told, assumed=spec.period is None and tolerance is None)
 
 
 def _live(title: str) -> Live:
@@ -166,26 +174,43 @@ class Output:
 
 
 class Watched:
-    """A monitor with the time stamps of the samples whose robustness is not known yet."""
+    """A monitor with the time stamps of the samples whose robustness is not known yet.
 
-    def __init__(self, monitor: Monitor, output: Output) -> None:
+    ``assumed``: whether nobody said how long the period is. A file is read with the period that its stamps
+    have, which a stream shows too late: the stamps must then be what is assumed, and not merely near it.
+    """
+
+    def __init__(self, monitor: Monitor, output: Output, *, assumed: bool) -> None:
         self.monitor = monitor
         self._output = output
         self._period = float(monitor.period)
+        self._assumed = assumed
+        self._last: float | None = None
         self._stamps: deque[float] = deque()
 
     def take(self, time: float | None, values: dict[str, float], line: int) -> str:
         """Take a sample and print what became known; return what is wrong with the sample, if anything is."""
         if time is None:
             time = self.monitor.samples * self._period
+        elif self._assumed and self._last is not None and self._differs(time - self._last):
+            return (
+                f"{STDIN}, line {line}: sample {self.monitor.samples} at {time:.15g} s is {time - self._last:g} s "
+                f"after the one before, expected {self._period:g} s: give the right period with --period, "
+                f"or use --time dense"
+            )
         try:
             robustness = self.monitor.update(time, **values)
         except StlError as error:
             return f"{STDIN}, line {line}: {error}"
+        self._last = time
         self._stamps.append(time)
         if robustness is not None:
             self._output.point(self._stamps.popleft(), robustness)
         return ""
+
+    def _differs(self, gap: float) -> bool:
+        """Tell whether a gap is near the period, so that the monitor would take it, but not the period."""
+        return _BLUR < abs(gap / self._period - 1) <= TOLERANCE
 
     def finish(self) -> None:
         """End the trace; print what was not known yet."""

@@ -11,7 +11,7 @@ from rtamt.cli.command import CommandError, add_stamp_options
 from rtamt.errors import TraceError, UsageError
 from rtamt.language.units import duration
 from rtamt.readers.assemble import trace_of
-from rtamt.readers.csv_cells import EXAMPLE, date_in
+from rtamt.readers.dates import EXAMPLE, date_in
 from rtamt.readers.formats import is_bag
 from rtamt.readers.read import choice, opened
 from rtamt.ros.bags import columns_of

@@ -4,29 +4,27 @@ from __future__ import annotations
 
 import csv
 import json
-from math import isfinite
+from math import isinf
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from rtamt.errors import TraceError
-from rtamt.language.units import UNITS, exact
-from rtamt.readers.csv import (
-    TIME_NAMES,
-    Header,
-    check_width,
-    find,
-    find_time,
-    numbers,
-    read_header,
-    time_unit,
-)
-from rtamt.readers.csv_cells import DATE, EXAMPLE, Cells
-from rtamt.signals.arrays import missing_variable
-from rtamt.signals.ticks import FARTHEST
+from rtamt.readers.assemble import Choice, clock_of, select
+from rtamt.readers.csv import Column, Header, check_width, numbers, read_header
+from rtamt.readers.csv_cells import Cells
+from rtamt.readers.dates import EXAMPLE, is_date
+from rtamt.readers.frames import field_of
+from rtamt.readers.source import Source, Table
+from rtamt.readers.timestamps import CHOICES
+from rtamt.signals.arrays import TIME, missing_variable
+from rtamt.signals.stamps import is_stamps, may_be_stamps, split_unit
+from rtamt.signals.trace import in_seconds
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+
+    from rtamt.readers.assemble import Selection
+    from rtamt.readers.source import Field, Raw
+    from rtamt.readers.timestamps import Clock
 
 #: What messages call the input.
 STDIN = "stdin"
@@ -40,9 +38,9 @@ _INFINITIES = ("inf", "-inf")
 class Samples:
     """Reads one sample from each line: its time stamp (None if there are none) and the values wanted.
 
-    A stamp is seconds; ``dense``: or nanoseconds (integers of numpy) where the unit is less than a
-    second, or a date, and a sample may hold some of the values only. ``unit``: of stamps that are
-    numbers, by default what a CSV header says, else seconds.
+    A stamp is seconds; ``dense``: or what else a file of the same columns is read as, and a sample may
+    hold some of the values only. ``time_name``: the column of stamps, "" for none, by default the one
+    that :func:`rtamt.read` would take. ``unit``: of stamps that are numbers.
     """
 
     def __init__(
@@ -54,9 +52,8 @@ class Samples:
         unit: str | None = None,
     ) -> None:
         self._names = tuple(names)
-        self._time_name = time_name
+        self._choice = Choice(time=time_name, units={} if unit is None else {TIME: unit})
         self._dense = dense
-        self._unit = unit
         self._read: Callable[[str, int], Sample] | None = None
 
     def read(self, line: bytes, number: int) -> Sample | None:
@@ -70,78 +67,133 @@ class Samples:
             raise _error(number, "not UTF-8 text") from None
         if not text.strip() or text.startswith("#"):
             return None
-        if self._read is not None:
-            return self._read(text, number)
-        if text.lstrip().startswith("{"):
-            reader = JsonSamples(self._names, self._time_name, self._dense, self._unit)
-            sample = reader.read(text, number)
-            self._read = reader.read
-            return sample
-        self._read = CsvSamples(self._names, self._time_name, self._dense, self._unit, text, number).read
+        try:
+            if self._read is not None:
+                return self._read(text, number)
+            stamps = _Stamps(self._names, self._choice, self._dense)
+            if text.lstrip().startswith("{"):
+                reader = JsonSamples(self._names, stamps, self._dense)
+                sample = reader.read(text, number)
+                self._read = reader.read
+                return sample
+            self._read = CsvSamples(self._names, stamps, self._dense, text, number).read
+        except TraceError as error:
+            if str(error).startswith(STDIN):
+                raise
+            raise _error(number, str(error).replace(f" of {STDIN}", "", 1), error.variable) from None
         return None
+
+
+class _Stamps:
+    """Where the time stamps are among the columns of a stream, as in a file of the same columns.
+
+    Columns are looked at as long as no clock is found: what a column holds may show in a later line.
+    """
+
+    def __init__(self, names: Sequence[str], choice: Choice, dense: bool) -> None:
+        self._names = names
+        self._choice = choice
+        self._dense = dense
+        self._kinds: dict[str, str] = {}
+        self._samples = 0
+        self._cells: Cells | None = None
+        self.clock: Clock | None = None
+
+    def look(self, columns: Iterable[tuple[str, Any]], *, all_named: bool = True) -> Selection | None:
+        """Look for the clock among columns and what they hold, None where that is not known yet.
+
+        ``all_named``: whether every variable of the formula must be among them.
+        """
+        if self.clock is not None or (self._choice.time == "" and self._kinds):
+            return None
+        found = False
+        for column, value in columns:
+            if not self._kinds.get(column):
+                found |= value is not None or column not in self._kinds
+                self._kinds[column] = "" if value is None else "time" if is_date(value) else "number"
+        return self._select(all_named) if found else None
+
+    def _select(self, all_named: bool) -> Selection:
+        fields = tuple(field_of(column, kind) for column, kind in self._kinds.items())
+        source = Source(STDIN, (Table(fields, _load),))
+        known = {name for field in fields for name in (field.name, field.column)}
+        names = tuple(name for name in self._names if all_named or name in known)
+        time = self._choice.time
+        if time is None and not any(self._kinds.values()) and not any(is_stamps(f.name) for f in fields):
+            time = ""  # the columns' names do not decide, and no row has been seen yet
+        choice = Choice(time=time, columns=names, units=self._choice.units)
+        (selection,) = select(source, choice)
+        self.clock = clock_of(source, selection, choice)
+        if self.clock is not None and self._samples:
+            column = self.clock.field.column
+            self.clock = None
+            del self._kinds[column]
+            raise TraceError(
+                f"'{column}' may hold the time stamps, but is empty before: give every sample its time, or {CHOICES}"
+            )
+        return selection
+
+    def sample(self, stamp: str | None, values: dict[str, float], number: int) -> Sample:
+        """Return a sample with its stamp, a text in line ``number``; None where there are no stamps."""
+        time = None
+        if stamp is not None:
+            assert self.clock is not None
+            if self._cells is None:
+                column = self.clock.field.column
+                self._cells = Cells(Header(STDIN, (column,), ",", 0), column)
+            self._cells.extend([stamp], [number])
+            times = self.clock.times(self._cells.take(), self._samples)
+            seconds = float(in_seconds(times)[0])
+            time = times[0] if self._dense and times.dtype.kind != "f" else seconds
+            if TIME in self._names:  # a formula may read the time
+                values[TIME] = seconds
+        self._samples += 1
+        return time, values
+
+
+def _load(_: Sequence[Field]) -> list[Raw]:
+    raise AssertionError("a stream is read line by line")
 
 
 class JsonSamples:
     """Samples as JSON objects; the first one tells where the time stamp is."""
 
-    def __init__(self, names: tuple[str, ...], time_name: str | None, dense: bool, unit: str | None) -> None:
+    def __init__(self, names: tuple[str, ...], stamps: _Stamps, dense: bool) -> None:
         self._names = names
+        self._stamps = stamps
         self._dense = dense
-        self._time_name = time_name
-        self._unit = unit or "s"
 
     def read(self, text: str, number: int) -> Sample:
         """Return the sample in one line."""
-        try:
-            data = json.loads(text)
-        except json.JSONDecodeError as error:
-            raise _error(number, f"not JSON: {error.msg} at column {error.colno}") from None
-        except (ValueError, RecursionError):
-            raise _error(number, "not JSON to read: a number is too long, or nesting too deep") from None
-        if not isinstance(data, dict):
-            raise _error(number, f'expected a JSON object, such as {{"time": 0, "x": 1}}, got {_shown(data)}')
-        if self._time_name is None:
-            lowered = {key.lower(): key for key in reversed(data)}
-            self._time_name = next((lowered[name] for name in TIME_NAMES if name in lowered), "")
-        time = self._time(data, self._time_name, number) if self._time_name else None
-        names = [name for name in self._names if not self._dense or _has(data, name)]
-        return time, {name: _number(data, name, number) for name in names}
-
-    def _time(self, data: dict[str, Any], name: str, number: int) -> Any:
-        value = data.get(name)
-        if isinstance(value, str):
-            return _stamp(value, self._unit, self._dense, name, number)
-        seconds = _number(data, name, number)
-        text = str(int(value)) if isinstance(value, int) else repr(seconds)  # an integer to its last digit
-        return _stamp(text, self._unit, self._dense, name, number)
+        data = _object(text, number)
+        if self._stamps.clock is None:
+            self._stamps.look(_flat(data), all_named=False)
+        clock = self._stamps.clock
+        names = [name for name in self._names if clock is None or name != TIME]
+        names = [name for name in names if not self._dense or _has(data, name)]
+        values = {name: _number(data, name, number) for name in names}
+        stamp = None if clock is None else _stamp(data, clock.field.column, number)
+        return self._stamps.sample(stamp, values, number)
 
 
 class CsvSamples:
     """Samples as rows of CSV under a header row."""
 
-    def __init__(
-        self,
-        names: tuple[str, ...],
-        time_name: str | None,
-        dense: bool,
-        unit: str | None,
-        text: str,
-        number: int,
-    ) -> None:
+    def __init__(self, names: tuple[str, ...], stamps: _Stamps, dense: bool, text: str, number: int) -> None:
         self._dense = dense
+        self._stamps = stamps
         self._header, _ = read_header(iter([text]), STDIN, number - 1)
-        known = {cell.lower() for cell in self._header.names}
-        if names and known.isdisjoint({*TIME_NAMES, *(name.lower() for name in names)}):
+        columns = [split_unit(column)[0] for column in self._header.names]
+        if names and not any(is_stamps(c) or may_be_stamps(c) or c in names for c in columns):
             shown = text if len(text) <= 60 else f"{text[:60]}..."
             raise _error(
                 number,
                 f'expected a JSON object, such as {{"time": 0, "x": 1}}, or a row of CSV column names, '
                 f"got '{shown}'",
             )
-        self._columns = [find(self._header, name) for name in names]
-        time = find_time(self._header, time_name)
-        self._time = time
-        self._unit = unit or ("s" if time is None else time_unit(self._header, time))
+        selection = stamps.look((column, None) for column in self._header.names)
+        assert selection is not None
+        self._columns = [Column(name, self._header.names.index(f.column)) for name, f in selection.signals]
 
     def read(self, text: str, number: int) -> Sample:
         """Return the sample in one line."""
@@ -151,50 +203,99 @@ class CsvSamples:
         except csv.Error as error:
             raise header.error(number, str(error)) from None
         check_width(row, header, number)
+        if self._stamps.clock is None:
+            self._stamps.look(zip(header.names, (cell.strip() or None for cell in row), strict=True))
         given = [c for c in self._columns if not self._dense or row[c.position].strip()]
         values = dict(zip((c.name for c in given), numbers(row, header, number, given), strict=True))
-        if self._time is None:
-            return None, values
-        text, name = row[self._time.position].strip(), header.names[self._time.position]
-        if DATE.fullmatch(text) is None:
-            numbers(row, header, number, [self._time])  # says what is wrong
-        return _stamp(text, self._unit, self._dense, name, number), values
+        clock = self._stamps.clock
+        stamp = None if clock is None else row[header.names.index(clock.field.column)]
+        return self._stamps.sample(stamp, values, number)
 
 
-def _stamp(text: str, unit: str, dense: bool, name: str, number: int) -> Any:
-    """Return a number or a date as a time."""
-    if DATE.fullmatch(text) is not None:
-        cells = Cells(Header(STDIN, (name,), ",", 0), name)
-        cells.extend([text], [number])
-        moment = cells.values()[0]
-        return moment if dense else float(moment.astype(np.int64) / 1e9)
+# ---- JSON ----------------------------------------------------------------------------------------
+
+
+class _TooLarge(str):
+    """The text of a number beyond the range of a double."""
+
+    __slots__ = ()
+
+
+class _RepeatedKeyError(ValueError):
+    pass
+
+
+def _object(text: str, number: int) -> dict[str, Any]:
+    """Return the JSON object in a line."""
     try:
-        value = float(text)
-        if not dense or unit == "s" or not isfinite(value):
-            # A division by a whole number rounds once; a product with 0.001 would round twice.
-            return value / float(1 / UNITS[unit])
-        nanoseconds = round(exact(text) * UNITS[unit] * 10**9)
-    except ValueError:
-        problem = f"expected a number, or a date such as {EXAMPLE}"
-        raise _error(number, f"'{name}' is {_shown(text)}, {problem}") from None
-    if abs(nanoseconds) >= FARTHEST:
-        raise _error(number, f"'{name}' is {text} {unit}, too far from 0: subtract a start time")
-    return np.int64(nanoseconds)
+        data = json.loads(text, parse_float=_float, object_pairs_hook=_unique)
+    except json.JSONDecodeError as error:
+        raise _error(number, f"not JSON: {error.msg} at column {error.colno}") from None
+    except _RepeatedKeyError as error:
+        raise _error(number, f"the key {_shown(str(error))} is given twice; give it once") from None
+    except (ValueError, RecursionError):
+        raise _error(number, "not JSON to read: a number is too long, or nesting too deep") from None
+    if not isinstance(data, dict):
+        raise _error(number, f'expected a JSON object, such as {{"time": 0, "x": 1}}, got {_shown(data)}')
+    return data
+
+
+def _float(text: str) -> float | _TooLarge:
+    value = float(text)
+    return _TooLarge(text) if isinf(value) else value
+
+
+def _unique(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    data = dict(pairs)
+    if len(data) < len(pairs):
+        keys = [key for key, _ in pairs]
+        raise _RepeatedKeyError(next(key for key in keys if keys.count(key) > 1))
+    return data
+
+
+def _flat(data: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
+    """Yield what an object holds; fields of nested objects under names with dots."""
+    stack = list(data.items())
+    while stack:
+        name, value = stack.pop(0)
+        if isinstance(value, dict):
+            stack += [(f"{name}.{key}", inner) for key, inner in value.items()]
+        else:
+            yield name, value
+
+
+def _stamp(data: dict[str, Any], name: str, number: int) -> str:
+    """Return a stamp as it would be written in a cell: a number, or a date."""
+    value = _given(data, name, number)
+    if isinstance(value, str) and not isinstance(value, _TooLarge) and value not in _INFINITIES:
+        if not is_date(value):
+            problem = f"expected a number, or a date such as {EXAMPLE}"
+            raise _error(number, f"'{name}' is {_shown(value)}, {problem}")
+        return value
+    seconds = _number(data, name, number)
+    return str(int(value)) if isinstance(value, int) else repr(seconds)  # an integer to its last digit
 
 
 def _number(data: dict[str, Any], name: str, number: int) -> float:
-    try:
-        value = _member(data, name)
-    except KeyError:
-        raise _error(number, str(missing_variable(name, list(data))), name) from None
+    value = _given(data, name, number)
     if isinstance(value, (bool, int, float)):
         try:
             return float(value)
         except OverflowError:
-            raise _error(number, f"'{name}' is {_shown(value)}, beyond the range of a double", name) from None
+            value = _TooLarge(json.dumps(value))
+    if isinstance(value, _TooLarge):
+        text = value if len(value) <= 40 else f"{value[:40]}..."
+        raise _error(number, f"'{name}' is {text}, beyond the range of a double", name)
     if value in _INFINITIES:
         return float(value)
     raise _error(number, f"'{name}' is {_shown(value)}, expected a number", name)
+
+
+def _given(data: dict[str, Any], name: str, number: int) -> Any:
+    try:
+        return _member(data, name)
+    except KeyError:
+        raise _error(number, str(missing_variable(name, list(data))), name) from None
 
 
 def _has(data: dict[str, Any], name: str) -> bool:

@@ -7,20 +7,28 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from rtamt.readers.dates import is_date
 from rtamt.readers.frames import field_of
 from rtamt.readers.source import CHUNK, Field, Source, Table, library
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Sequence
+    from collections.abc import Collection, Iterable, Iterator, Sequence
 
     from rtamt.readers.source import Raw
+
+
+#: Rows that are looked at to tell dates from other texts.
+_SAMPLE = 100
 
 
 def open_parquet(path: str) -> Source:
     """Open a Parquet file; its row groups are read one after another where chunks are asked for."""
     parquet, arrow = library("pyarrow.parquet", "Parquet"), library("pyarrow", "Parquet")
     file = parquet.ParquetFile(path)
-    fields = _fields(file.schema_arrow.empty_table().flatten().schema, arrow)
+    schema = file.schema_arrow.empty_table().flatten().schema
+    texts = _texts(schema, arrow)
+    first = next(file.iter_batches(_SAMPLE, columns=texts), None) if texts else None
+    fields = _fields(schema, arrow, _dated(first, texts, arrow))
 
     def load(wanted: Sequence[Field]) -> list[Raw]:
         return _raws(file.read(columns=_columns(wanted)).flatten(), wanted)
@@ -37,11 +45,15 @@ def open_arrow(path: str) -> Source:
     file = arrow.memory_map(path)
     try:
         reader = ipc.open_file(file)
-        batches: Iterable[Any] = (reader.get_batch(i) for i in range(reader.num_record_batches))
+        batches: Iterator[Any] = (reader.get_batch(i) for i in range(reader.num_record_batches))
     except arrow.ArrowInvalid:
         file.seek(0)
-        batches = reader = ipc.open_stream(file)
-    fields = _fields(reader.schema.empty_table().flatten().schema, arrow)
+        reader = ipc.open_stream(file)
+        batches = iter(reader)
+    schema = reader.schema.empty_table().flatten().schema
+    first = next(batches, None)
+    batches = chain(() if first is None else (first,), batches)
+    fields = _fields(schema, arrow, _dated(first, _texts(schema, arrow), arrow))
 
     def chunks(wanted: Sequence[Field]) -> Iterator[list[Raw]]:
         yield from _of_batches(batches, wanted, arrow)
@@ -57,7 +69,8 @@ def table_of_arrow(table: Any) -> Table:
     """Return an arrow table; a struct is a column for each of its fields, called ``struct.field``."""
     arrow = library("pyarrow", "arrow tables")
     flat = table.flatten()
-    return Table(_fields(flat.schema, arrow), lambda wanted: _raws(flat, wanted))
+    fields = _fields(flat.schema, arrow, _dated(flat, _texts(flat.schema, arrow), arrow))
+    return Table(fields, lambda wanted: _raws(flat, wanted))
 
 
 def _of_batches(batches: Iterable[Any], wanted: Sequence[Field], arrow: Any) -> Iterator[list[Raw]]:
@@ -71,12 +84,28 @@ def _columns(wanted: Sequence[Field]) -> list[str]:
     return list(dict.fromkeys(field.column for field in wanted))
 
 
-def _fields(schema: Any, arrow: Any) -> tuple[Field, ...]:
+def _texts(schema: Any, arrow: Any) -> list[str]:
+    """Return the columns of texts whose names no other column has."""
+    types = arrow.types
+    texts = [c.name for c in schema if types.is_string(c.type) or types.is_large_string(c.type)]
+    return [name for name in texts if schema.names.count(name) == 1]
+
+
+def _dated(first: Any, texts: Sequence[str], arrow: Any) -> set[str]:
+    """Return which columns of texts hold dates, as the first text that is not missing tells."""
+    if first is None or not texts:
+        return set()
+    head = first if isinstance(first, arrow.Table) else arrow.Table.from_batches([first]).flatten()
+    cells = {name: head.column(name).slice(0, _SAMPLE).to_pylist() for name in texts}
+    return {name for name in texts if is_date(next((c for c in cells[name] if c is not None), None))}
+
+
+def _fields(schema: Any, arrow: Any, dated: Collection[str]) -> tuple[Field, ...]:
     types = arrow.types
     fields = []
     for column in schema:
         kind = ""
-        if types.is_temporal(column.type) and not types.is_time(column.type):
+        if column.name in dated or (types.is_temporal(column.type) and not types.is_time(column.type)):
             kind = "time"
         elif any(
             test(column.type)

@@ -10,16 +10,15 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rtamt.errors import TraceError, did_you_mean, shown
-from rtamt.readers import timestamps
+from rtamt.readers.timestamps import Clock, guess_field
 from rtamt.signals.arrays import TIME, is_number
 from rtamt.signals.ticks import NANOSECOND, TimeScale
-from rtamt.signals.trace import Channel, Trace, show_time
+from rtamt.signals.trace import Channel, Trace, in_seconds, show_time
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
     from rtamt.readers.source import Field, Raw, Source, Table
-    from rtamt.readers.timestamps import Clock
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,9 +58,9 @@ def trace_of(source: Source, choice: Choice) -> Trace:
     notes = list(source.notes)
     for selection in select(source, choice):
         raws = selection.table.load(selection.fields)
-        clock = _clock(source, selection, raws, choice)
-        notes += [] if clock is None else [note for note in clock.notes if note not in notes]
+        clock = clock_of(source, selection, choice)
         made, left_out, skipped = _channels(source, selection, clock, raws, choice)
+        notes += [] if clock is None else [note for note in clock.notes if note not in notes]
         channels.update(made)
         if choice.columns is None:
             taken = {clock.field if clock else None, *(f for _, f in selection.signals)}
@@ -77,10 +76,9 @@ def chunks_of(source: Source, choice: Choice) -> Iterator[Trace]:
     """Read a source in chunks: traces that follow one another."""
     (selection,) = select(source, choice)
     assert selection.table.chunks is not None
-    clock: Clock | None = None
+    clock = clock_of(source, selection, choice)
     before = 0
     for raws in selection.table.chunks(selection.fields):
-        clock = clock or _clock(source, selection, raws, choice)
         made, _, skipped = _channels(source, selection, clock, raws, choice, before)
         before += len(raws[0]) if raws else 0
         notes = (*source.notes, *(() if clock is None else clock.notes), *skipped)
@@ -209,20 +207,19 @@ def _time_field(source: Source, table: Table, choice: Choice) -> tuple[Field | N
     if table.clock is not None:
         return table.clock, False
     wanted = [choice.names.get(name, name) for name in choice.columns or ()]
-    return timestamps.guess_field(table.fields, source.name, [*wanted, *choice.names.values()]), True
+    return guess_field(table.fields, source.name, [*wanted, *choice.names.values()]), True
 
 
 # ---- values --------------------------------------------------------------------------------------
 
 
-def _clock(source: Source, selection: Selection, raws: Sequence[Raw], choice: Choice) -> Clock | None:
+def clock_of(source: Source, selection: Selection, choice: Choice) -> Clock | None:
+    """Return what makes times of the stamps of a table; None where it has none."""
     if selection.clock is None:
         return None
     unit = choice.units.get(selection.clock.column, choice.units.get(TIME))
     guessed = selection.guessed and selection.clock.column.lower() != TIME
-    return timestamps.clock_of(
-        selection.clock, _dated(raws[0], selection.clock.column), unit, guessed, source.name
-    )
+    return Clock(selection.clock, unit, guessed, source.name)
 
 
 def _channels(
@@ -236,7 +233,7 @@ def _channels(
     """Return the signals of a table, the columns that were left out, and a note for each with NaN left out."""
     times = None
     if clock is not None:
-        times = timestamps.times_of(clock, _dated(raws[0], clock.field.column), source.name)
+        times = clock.times(raws[0], before)
     values = raws if clock is None else raws[1:]
     made, left_out, notes = {}, [], []
     for (name, field), raw in zip(selection.signals, values, strict=True):
@@ -272,6 +269,9 @@ def _channels(
             numbers, mine = numbers[~missing], times[~missing]
         unit = choice.units.get(name, choice.units.get(field.column, field.unit))
         made[name] = Channel(mine, numbers, unit, field.column)
+    if times is not None and TIME in (choice.columns or ()) and TIME not in choice.names:
+        # The formula reads the time; in discrete time the engine gives it.
+        made[TIME] = Channel(times, in_seconds(times), "s", TIME)
     return made, left_out, notes
 
 
@@ -306,31 +306,6 @@ def _no_number(value: Any, field: Field, source: str, row: int) -> TraceError:
         variable=field.name,
         index=row,
     )
-
-
-def _dated(raw: Raw, column: str) -> Raw:
-    """Return stamps with dates, if that is what the objects are, as numpy's dates."""
-    if raw.dtype.kind not in "OUS":
-        return raw
-    values = raw.filled(None).tolist() if isinstance(raw, np.ma.MaskedArray) else raw.tolist()
-    dates = timestamps.from_objects(values)
-    if dates is not None and any(value is not None for value in values):
-        if len(timestamps.zones_of(values)) > 1:
-            raise TraceError(
-                f"the time column '{column}' has dates with a time zone beside dates without one: "
-                f"use one way for all"
-            )
-        return dates
-    for value in values:
-        if not (value is None or is_number(value) or isinstance(value, Decimal)):
-            raise TraceError(
-                f"the time column '{column}' has {shown(value)}, expected a number, or dates such as "
-                f"2024-05-01T12:00:00"
-            )
-    whole = all(value is None or isinstance(value, int) for value in values)
-    plain = np.array([value or 0 for value in values], dtype=np.int64 if whole else np.float64)
-    missing = np.array([value is None for value in values], dtype=bool)
-    return np.ma.masked_array(plain, missing) if missing.any() else plain
 
 
 def _one_kind(channels: dict[str, Channel], source: str) -> dict[str, Channel]:

@@ -3,30 +3,24 @@
 from __future__ import annotations
 
 import csv
-import re
 from contextlib import suppress
 from dataclasses import dataclass
 from itertools import chain, islice
-from math import isnan
+from math import isinf, isnan
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rtamt.errors import TraceError, did_you_mean
-from rtamt.language.units import UNITS
+from rtamt.errors import TraceError, shown
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator, Sequence
 
     from rtamt.signals.arrays import FloatArray
 
-#: What a column of time stamps is called, in any case, with or without a unit: ``Time [ms]``.
-TIME_NAMES = ("time", "t", "timestamp", "stamp")
-
 DELIMITERS = (",", ";", "\t")
 
 BLOCK = 65_536  # lines at a time: enough to keep numpy busy, little enough to keep memory flat
-_NAME_WITH_UNIT = re.compile(r"(?P<name>.*\S)\s*[\[(]\s*(?P<unit>[^\[\]()]+?)\s*[\])]", re.DOTALL)
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,7 +69,7 @@ def read_header(lines: Iterator[str], file: str, before: int = 0) -> tuple[Heade
     except csv.Error as error:
         raise TraceError(f"{file}, line {count - 1 + reader.line_num}: {error}") from None
     header = Header(file, tuple(cell.strip() for cell in cells), delimiter, count - 1 + reader.line_num)
-    if not all(_is_number(cell) for cell in header.names if cell):
+    if not all(is_number(cell) for cell in header.names if cell):
         return header, lines
     names = tuple(cell.strip() for cell in comment.split(delimiter))
     if len(names) == len(cells) and all(names):
@@ -83,64 +77,10 @@ def read_header(lines: Iterator[str], file: str, before: int = 0) -> tuple[Heade
     raise header.error(header.line, f"expected a row of column names, such as time,x; got '{first.strip()}'")
 
 
-def find(header: Header, name: str) -> Column:
-    """Return the column called ``name``; a unit in brackets after it in the file does not matter."""
-    exact = [i for i, cell in enumerate(header.names) if cell == name]
-    found = exact or [i for i, cell in enumerate(header.names) if split_unit(cell)[0] == name]
-    if not found:
-        raise missing_column(header, name)
-    if len(found) > 1:
-        raise header.error(
-            header.line,
-            f"columns {found[0] + 1} and {found[1] + 1} are both called '{name}'; rename one of them",
-            name,
-        )
-    return Column(name, found[0])
-
-
-def missing_column(header: Header, name: str) -> TraceError:
-    """Return the error for a column that is not there."""
-    hint = did_you_mean(name, header.names)
-    return TraceError(f"{header.file} has no column '{name}', only {_listing(header)}{hint}", variable=name)
-
-
 def _listing(header: Header) -> str:
     shown = header.names[:12]
     more = len(header.names) - len(shown)
     return ", ".join(shown) + (f" and {more} more" if more else "")
-
-
-def find_time(header: Header, wanted: str | None) -> Column | None:
-    """Return the column of time stamps: the one wanted, else the first with a known name, if any."""
-    if wanted is not None:
-        return find(header, wanted) if wanted else None
-    bare = [split_unit(cell)[0].lower() for cell in header.names]
-    for name in TIME_NAMES:
-        if name in bare:
-            return find(header, header.names[bare.index(name)])
-    return None
-
-
-def split_unit(cell: str) -> tuple[str, str]:
-    """Return the name and the unit of a column: ``Time [ms]`` is ``("Time", "ms")``.
-
-    >>> split_unit("Time [ms]"), split_unit("req")
-    (('Time', 'ms'), ('req', ''))
-    """
-    match = _NAME_WITH_UNIT.fullmatch(cell)
-    return (match["name"], match["unit"]) if match else (cell, "")
-
-
-def time_unit(header: Header, column: Column) -> str:
-    """Return the unit of the time column, seconds where the header says none."""
-    cell = header.names[column.position]
-    unit = split_unit(cell)[1]
-    if unit in ("", "sec", "seconds"):
-        return "s"
-    if unit not in UNITS:
-        known = ", ".join(UNITS)
-        raise header.error(header.line, f"the unit of the time column '{cell}' is none of {known}", cell)
-    return unit
 
 
 # ---- the rows ------------------------------------------------------------------------------------
@@ -156,7 +96,9 @@ def plain(block: list[str], header: Header, columns: Sequence[Column]) -> FloatA
     with suppress(ValueError):
         positions = [column.position for column in columns]
         values = np.loadtxt(block, delimiter=header.delimiter, usecols=positions, comments=None, ndmin=2)
-        if not np.isnan(values[:, [not column.skip_nan for column in columns]]).any():
+        # A number beyond the range of a double is infinite here; only its text tells it from infinity.
+        skipped = [column.skip_nan for column in columns]
+        if not np.isinf(values).any() and not np.isnan(values[:, np.logical_not(skipped)]).any():
             return np.ascontiguousarray(values.T)
     return None  # the slow way finds the cell that is no number
 
@@ -200,16 +142,25 @@ def number(text: str, name: str, header: Header, line: int, *, nan: bool = False
     text = text.strip()
     if not text:
         raise header.error(line, f"'{name}' is empty, expected a number", name)
-    if not _is_number(text):
-        hint = " with a decimal point" if _is_number(text.replace(",", ".")) else ""
+    if not is_number(text):
+        hint = " with a decimal point" if is_number(text.replace(",", ".")) else ""
         raise header.error(line, f"'{name}' is '{text}', expected a number{hint}", name)
     value = float(text)
+    if isinf(value) and any(character.isdigit() for character in text):
+        raise header.error(
+            line, f"'{name}' is {shown(text)}, beyond the range of a double; infinity is written inf", name
+        )
     if isnan(value) and not nan:
         raise header.error(line, f"'{name}' is NaN: fill the gap or leave the sample out", name)
     return value
 
 
-def _is_number(text: str) -> bool:
+def is_number(text: str) -> bool:
+    """Tell whether the text of a cell is a decimal number, ``inf`` or ``nan``.
+
+    >>> [text for text in ("1e-3", "-inf", "1_000", "0x10", "\u0661", "") if is_number(text)]
+    ['1e-3', '-inf']
+    """
     if "_" in text or not text.isascii():  # Python's 1_000, and digits of other scripts
         return False
     try:

@@ -2,55 +2,20 @@
 
 from __future__ import annotations
 
-import re
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from rtamt.readers.csv import Header, number
+from rtamt.readers.dates import DateError, Dates, is_date
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from rtamt.errors import TraceError
     from rtamt.readers.source import Raw
 
-#: What messages show.
-EXAMPLE = "2026-05-01T12:00:00.5"
-
-#: ISO 8601: a date, perhaps a time, perhaps a time zone.
-DATE = re.compile(
-    r"(?P<date>\d{4}-\d\d-\d\d)(?:[T ](?P<time>\d\d:\d\d(?::\d\d(?:\.\d{1,9})?)?)(?P<zone>Z|[+-]\d\d:?\d\d)?)?"
-)
-#: Years that nanoseconds since 1970 can hold.
-_YEARS = range(1678, 2262)
 #: From here on a double may not be the integer that was written.
 LARGEST = 2.0**53
-
-
-def date_in(text: str) -> np.datetime64 | None:
-    """Return the date that a text is, in UTC where it names a time zone; None where it is none.
-
-    >>> date_in("2026-05-01T12:00:00.5+02:00"), date_in("12.5")
-    (np.datetime64('2026-05-01T10:00:00.500000000'), None)
-    """
-    match = DATE.fullmatch(text.strip())
-    if match is None or int(match["date"][:4]) not in _YEARS or _is_no_date(_stamp(match)):
-        return None
-    return np.datetime64(_stamp(match), "ns") - _offset(match["zone"])
-
-
-def _stamp(match: re.Match[str]) -> str:
-    return f"{match['date']}T{match['time'] or '00:00'}"
-
-
-def _offset(zone: str | None) -> np.timedelta64:
-    """Return by how much the clocks of a zone are ahead of UTC."""
-    if zone in (None, "Z"):
-        return np.timedelta64(0, "m")
-    assert zone is not None
-    minutes = int(zone[1:3]) * 60 + int(zone[-2:])
-    return np.timedelta64(-minutes if zone[0] == "-" else minutes, "m")
 
 
 class Cells:
@@ -66,7 +31,7 @@ class Cells:
         self._header = header
         self._name = name
         self._dated = dated  # None: not known before the first cell that is not empty
-        self._zoned: bool | None = None
+        self._dates = Dates()
         self._whole = True  # whether all numbers are integers that an int64 holds
         self._parts: list[Raw] = []
         self._missing: list[Raw] = []
@@ -77,8 +42,8 @@ class Cells:
         missing = np.array([not text for text in texts], dtype=bool)
         given = [(text, line) for text, line in zip(texts, lines, strict=True) if text]
         if self._dated is None and given:
-            self._dated = DATE.fullmatch(given[0][0]) is not None
-        values = self._dates(given) if self._dated else self._numbers(given)
+            self._dated = is_date(given[0][0])
+        values = self._moments(given) if self._dated else self._numbers(given)
         if missing.any():
             part = np.zeros(len(texts), values.dtype)
             part[~missing] = values
@@ -106,7 +71,7 @@ class Cells:
         together = "".join(texts)
         try:
             values = np.array(texts, dtype=np.float64)
-            plain = self._skip_nan or not np.isnan(values).any()
+            plain = (self._skip_nan or not np.isnan(values).any()) and not np.isinf(values).any()
         except ValueError:
             plain = False
         if not plain or "_" in together or not together.isascii():
@@ -131,32 +96,13 @@ class Cells:
             )
         return value
 
-    def _dates(self, given: Sequence[tuple[str, int]]) -> Raw:
-        stamps, offsets = [], []
-        for text, line in given:
-            match = DATE.fullmatch(text)
-            if match is None:
-                raise self._error(line, text, f"expected a date such as {EXAMPLE}, like those before")
-            zone = match["zone"]
-            if self._zoned is None:
-                self._zoned = zone is not None
-            if self._zoned != (zone is not None):
-                has = "a time zone, and those before have" if zone else "no time zone, and those before have"
-                raise self._error(line, text, f"with {has} {'none' if zone else 'one'}; use one way for all")
-            stamps.append(_stamp(match))
-            offsets.append(_offset(zone))
-            if int(text[:4]) not in _YEARS:
-                raise self._error(line, text, "a year that nanoseconds since 1970 cannot reach")
+    def _moments(self, given: Sequence[tuple[str, int]]) -> Raw:
+        texts = [text for text, _ in given]
         try:
-            times: Raw = np.array(stamps, dtype="M8[ns]") - np.array(offsets, dtype="m8[m]")
-        except ValueError:
-            pairs = zip(stamps, given, strict=True)
-            text, line = next(cell for stamp, cell in pairs if _is_no_date(stamp))
-            raise self._error(line, text, "which is no date of the calendar") from None
-        return times
-
-    def _error(self, line: int, text: str, problem: str) -> TraceError:
-        return self._header.error(line, f"'{self._name}' is '{text}', {problem}", self._name)
+            return self._dates.take(texts)
+        except DateError as error:
+            text, line = given[error.index]
+            raise self._header.error(line, f"'{self._name}' is '{text}', {error}", self._name) from None
 
 
 def _integers(texts: Sequence[str]) -> Raw | None:
@@ -164,11 +110,3 @@ def _integers(texts: Sequence[str]) -> Raw | None:
         return np.array([int(text) for text in texts], dtype=np.int64)
     except (ValueError, OverflowError):
         return None
-
-
-def _is_no_date(stamp: str) -> bool:
-    try:
-        np.datetime64(stamp, "ns")
-    except ValueError:
-        return True
-    return False

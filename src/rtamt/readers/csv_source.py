@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rtamt.errors import TraceError
-from rtamt.readers.csv import BLOCK, Column, Header, blocks, plain, read_header, rows
-from rtamt.readers.csv_cells import DATE, LARGEST, Cells
+from rtamt.readers.csv import BLOCK, Column, Header, blocks, is_number, plain, read_header, rows
+from rtamt.readers.csv_cells import LARGEST, Cells
+from rtamt.readers.dates import is_date
 from rtamt.readers.frames import field_of
 from rtamt.readers.source import Field, Source, Table
 
@@ -83,14 +84,6 @@ def _joined(parts: Sequence[Raw]) -> Raw:
 
 
 def _kind(cells: Sequence[str]) -> str:
-    if cells and all(DATE.fullmatch(cell) for cell in cells):
+    if cells and is_date(cells[0]):
         return "time"
-    return "text" if cells and not any(map(_is_number, cells)) else "number"
-
-
-def _is_number(cell: str) -> bool:
-    try:
-        float(cell.replace(",", "."))
-    except ValueError:
-        return False
-    return True
+    return "text" if cells and not any(is_number(cell.replace(",", ".")) for cell in cells) else "number"

@@ -11,11 +11,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rtamt.errors import TraceError
-from rtamt.readers.csv import split_unit
+from rtamt.readers.dates import is_date
 from rtamt.readers.source import Field, Source, Table
-from rtamt.readers.timestamps import looks_like_stamps
 from rtamt.signals import dense_arrays
 from rtamt.signals.arrays import TIME
+from rtamt.signals.stamps import is_stamps, split_unit
 from rtamt.signals.ticks import kind_of as kind_of_times
 from rtamt.signals.ticks import sequence_of
 
@@ -43,9 +43,12 @@ def field_of(column: str, kind: str = "") -> Field:
 
 
 def kind_of(raw: Raw) -> str:
-    """Tell what a column holds."""
+    """Tell what a column holds; of objects and texts, whether the first that is not missing is a date."""
+    if raw.dtype.kind in "OUS":
+        first = next((value for value in raw if value is not None and value is not np.ma.masked), None)
+        return "time" if is_date(first) else "" if raw.dtype.kind == "O" else "text"
     return {"f": "number", "i": "number", "u": "number", "b": "number", "M": "time", "m": "time"}.get(
-        raw.dtype.kind, "text" if raw.dtype.kind in "US" else ""
+        raw.dtype.kind, ""
     )
 
 
@@ -131,7 +134,7 @@ def _pandas(frame: Any) -> Source:
         dated = type(index).__name__ in {"DatetimeIndex", "TimedeltaIndex"}
         if name not in columns:
             columns = {name: _pandas_column(index.to_series()), **columns}
-            clock = name if dated or looks_like_stamps(field_of(name)) else None
+            clock = name if dated or is_stamps(field_of(name).name) else None
     return Source("a pandas frame", (table_of(columns, clock),))
 
 
@@ -194,7 +197,7 @@ def _xarray(data: Any) -> Source:
         if dim in data.coords:
             columns[str(dim)] = data.coords[dim].values
             units[str(dim)] = str(data.coords[dim].attrs.get("units", ""))
-            timed = kind_of(columns[str(dim)]) == "time" or looks_like_stamps(field_of(str(dim)))
+            timed = kind_of(columns[str(dim)]) == "time" or is_stamps(field_of(str(dim)).name)
             clock = str(dim) if timed else None
         tables.append(table_of(columns, clock, {name: unit for name, unit in units.items() if unit}))
     notes = (f"left out, not one-dimensional: {', '.join(left_out)}",) if left_out else ()

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from rtamt.readers.dates import is_date
 from rtamt.readers.frames import field_of
 from rtamt.readers.source import CHUNK, Field, Table
-from rtamt.readers.timestamps import from_objects
 from rtamt.signals.arrays import is_number
 
 if TYPE_CHECKING:
@@ -51,7 +51,7 @@ def _kind(values: Sequence[Any]) -> str:
         return ""
     if all(is_number(value) or isinstance(value, Decimal) for value in given):
         return "number"
-    if from_objects(given) is not None:
+    if is_date(given[0]):
         return "time"
     return "text" if all(isinstance(value, str) for value in given) else ""
 

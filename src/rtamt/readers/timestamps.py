@@ -1,17 +1,22 @@
-"""Which column holds the time stamps, in what unit, and what its values are as times."""
+"""Which column holds the time stamps, in what unit, and what its values are as times.
+
+Files, frames, queries, chunks and streams all come here. What cannot be told from the name of the
+column is told by its first stamp, which every one of them has.
+"""
 
 from __future__ import annotations
 
-import re
-from dataclasses import dataclass
-from datetime import date, datetime, timedelta
+from decimal import Decimal
+from numbers import Integral
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rtamt.errors import TraceError
+from rtamt.errors import TraceError, shown
 from rtamt.language.units import UNITS
-from rtamt.signals.datetimes import nanoseconds_of
+from rtamt.readers.dates import EXAMPLE, DateError, Dates, is_date
+from rtamt.signals.arrays import is_number
+from rtamt.signals.stamps import is_stamps, may_be_stamps, unit_called, unit_of
 from rtamt.signals.ticks import NANOSECOND, TimeScale
 
 if TYPE_CHECKING:
@@ -21,163 +26,184 @@ if TYPE_CHECKING:
 
     from rtamt.readers.source import Field, Raw
 
-#: What a column of time stamps is called, in any case, perhaps with a unit: ``Time [ms]``, ``time_ms``.
-NAMES = ("time", "t", "timestamp", "stamp", "datetime")
+#: What messages offer where the column of time stamps is not clear.
+CHOICES = "choose one with time=, or on the command line --time-column ('' for none)"
 
-#: How people write units of time.
-SPELLINGS = {
-    "s": "s sec secs second seconds",
-    "ms": "ms msec millis millisecond milliseconds",
-    "us": "us µs μs usec micros microsecond microseconds",
-    "ns": "ns nsec nanos nanosecond nanoseconds",
-}
-_UNIT_OF = {spelling: unit for unit, spellings in SPELLINGS.items() for spelling in spellings.split()}
-_STAMPS = re.compile(rf"(?P<name>{'|'.join(NAMES)})(?:[ _](?P<unit>{'|'.join(_UNIT_OF)}))?")
-
-#: Integers at least this large count since 1970 in that unit: the year 1973 in it, 5138 in the next coarser one.
+#: Numbers at least this large count since 1970 in that unit: the year 1973 in it, 5138 in the next coarser one.
 _SINCE_1970 = (("ns", 10**17), ("us", 10**14), ("ms", 10**11))
-
-#: How numpy keeps a time that is none.
-_NOT_A_TIME = np.iinfo(np.int64).min
 
 #: Nanoseconds that a double of seconds holds exactly enough to be rounded back.
 _EXACT = 2**50
-
-
-@dataclass(frozen=True, slots=True)
-class Clock:
-    """How the stamps of a column become times; found once, the same for all chunks of a stream.
-
-    ``unit``: of numbers, "" for dates. ``kind``: seconds, ns or datetime, as in the engine.
-    """
-
-    field: Field
-    unit: str
-    kind: str
-    notes: tuple[str, ...] = ()
-
-
-def looks_like_stamps(field: Field) -> bool:
-    """Tell whether a column is called as columns of time stamps are."""
-    return _STAMPS.fullmatch(field.name.lower()) is not None
 
 
 def guess_field(fields: Sequence[Field], source: str, wanted: Sequence[str]) -> Field | None:
     """Return the field of time stamps by its name, else the one with dates in it; None if there is none.
 
     What a formula reads (``wanted``) is no candidate while there are others. Raises
-    :class:`TraceError` that lists the candidates where there are several.
+    :class:`TraceError` that lists the candidates where there are several, or where there is none
+    but columns that are called in a similar way.
     """
-    found = [field for field in fields if looks_like_stamps(field)]
-    found = found or [field for field in fields if field.kind == "time"]
-    free = [field for field in found if field.name not in wanted and field.column not in wanted] or found
+    found = [field for field in fields if is_stamps(field.name)]
+    if not found:
+        found = [field for field in fields if field.kind == "time"]
+        others = [field for field in fields if field not in found and may_be_stamps(field.name)]
+        others = [field for field in others if not _is_wanted(field, wanted)]
+        if others:
+            raise _unclear([*found, *others], source)
+    free = [field for field in found if not _is_wanted(field, wanted)] or found
     if len(free) > 1:
-        listing = ", ".join(f"'{field.column}'" for field in free)
-        raise TraceError(
-            f"{source} has several columns that may hold the time stamps: {listing}; "
-            f"choose one with time=, or on the command line --time-column"
-        )
+        raise _unclear(free, source)
     return free[0] if free else None
 
 
-def clock_of(field: Field, raw: Raw, unit: str | None, guessed: bool, source: str) -> Clock:
-    """Return how ``raw``, the first stamps of a column, become times. ``unit``: what the caller says of it."""
-    why = "by its name" if looks_like_stamps(field) else "the one column of dates"
-    notes = [f"time is '{field.column}', {why}"] if guessed else []
-    if raw.dtype.kind == "M":
-        return Clock(field, "", "datetime", tuple(notes))
-    raw, unit = (_nanoseconds(raw), "ns") if raw.dtype.kind == "m" else (raw, unit)
-    if unit is not None:
-        unit = _unit(unit, field, source)
-    elif field.unit:
-        unit = _unit(field.unit, field, source)
-    else:
-        match = _STAMPS.fullmatch(field.name.lower())
-        unit = _UNIT_OF[match["unit"]] if match and match["unit"] else None
-    integers = raw.dtype.kind in "iu"
-    present = raw.compressed() if isinstance(raw, np.ma.MaskedArray) else raw
-    farthest = max(abs(int(present.min())), abs(int(present.max()))) if integers and present.size else 0
-    if unit is None:
-        unit = next((u for u, least in _SINCE_1970 if farthest >= least), "s")
-        if unit != "s":
-            notes.append(f"its integers are taken as {unit} since 1970, by their size")
-    exact = integers and unit != "s" and farthest * int(UNITS[unit] * 10**9) >= _EXACT
-    return Clock(field, unit, "ns" if exact else "seconds", tuple(notes))
+def _is_wanted(field: Field, wanted: Sequence[str]) -> bool:
+    return field.name in wanted or field.column in wanted
 
 
-def _unit(text: str, field: Field, source: str) -> str:
-    unit = _UNIT_OF.get(text.strip().lower()) or (text if text in UNITS else None)
-    if unit is None:
-        raise TraceError(
-            f"the unit of the time column '{field.column}' of {source} is '{text}', which is none of {', '.join(UNITS)}"
-        )
-    return unit
+def _unclear(candidates: Sequence[Field], source: str) -> TraceError:
+    listing = ", ".join(f"'{field.column}'" for field in candidates)
+    has = "several columns that" if len(candidates) > 1 else "a column that"
+    return TraceError(f"{source} has {has} may hold the time stamps: {listing}; {CHOICES}")
 
 
-def times_of(clock: Clock, raw: Raw, source: str) -> NDArray[Any]:
-    """Return stamps as the clock's kind of times; raise :class:`TraceError` at one that is missing."""
-    if np.ma.isMaskedArray(raw):
-        missing = np.ma.getmaskarray(raw)
-        if missing.any():
-            raise _missing(clock, source, int(missing.argmax()))
-        raw = raw.data
-    if raw.dtype.kind in "mM" and np.isnat(raw).any():
-        raise _missing(clock, source, int(np.isnat(raw).argmax()))
-    if clock.kind == "datetime":
-        return raw.astype("datetime64[ns]")
-    raw = _nanoseconds(raw)
-    size = UNITS[clock.unit]
-    if clock.kind == "ns":
-        named = f"'{clock.field.column}'"
-        try:
-            return TimeScale(NANOSECOND, "units", size).ticks(raw, clock.field.column)
-        except TraceError as error:
-            raise TraceError(str(error).replace(named, f"{named} of {source}", 1)) from None
-    # A division by a whole number rounds once; a product with 0.001 would round twice.
-    return raw.astype(np.float64) / float(1 / size)
+class Clock:
+    """How the stamps of a column become times, a few at a time: the first one decides for all.
 
-
-def _nanoseconds(raw: Raw) -> Raw:
-    return raw.astype("timedelta64[ns]").astype(np.int64) if raw.dtype.kind == "m" else raw
-
-
-def _missing(clock: Clock, source: str, row: int) -> TraceError:
-    return TraceError(f"the time column '{clock.field.column}' of {source} is empty at sample {row}")
-
-
-def from_objects(values: Sequence[Any]) -> Raw | None:
-    """Return dates, or texts of ISO dates, as datetime64[ns], and times since a start as timedelta64[ns]; else None.
-
-    A date with a time zone is converted to UTC; one without is taken as it stands. None is missing.
+    ``said``: the unit that the caller says. ``notes``: what was guessed.
     """
-    found = np.full(len(values), _NOT_A_TIME, np.int64)
-    kinds = set()
-    for i, value in enumerate(values):
-        if value is None:
-            continue
-        moment = _date_of(value)
-        if moment is None:
-            return None
-        kinds.add("m" if isinstance(moment, timedelta) else "M")
-        nanoseconds = nanoseconds_of(moment)
-        found[i] = _NOT_A_TIME if nanoseconds is None else nanoseconds
-    return None if len(kinds) > 1 else found.view(f"{kinds.pop() if kinds else 'M'}8[ns]")
 
+    def __init__(self, field: Field, said: str | None, guessed: bool, source: str) -> None:
+        self.field = field
+        self._source = source
+        why = "by its name" if is_stamps(field.name) else "the one column of dates"
+        self.notes = [f"time is '{field.column}', {why}"] if guessed else []
+        #: Of numbers; None before the first stamp where neither the caller nor the column names one.
+        self._unit = self._named_unit(said)
+        #: The first stamp, where its size told the unit.
+        self._first: Any = None
+        #: Whether numbers become int64 nanoseconds, and not float64 seconds; None before the first.
+        self._exact: bool | None = None
+        #: Reads objects that are dates, once the first of them was one.
+        self._dates: Dates | None = None
 
-def zones_of(values: Sequence[Any]) -> set[bool]:
-    """Return whether dates have a time zone: one answer, or two where they are not alike."""
-    moments = (_date_of(value) for value in values if value is not None)
-    return {moment.tzinfo is not None for moment in moments if isinstance(moment, datetime)}
+    def _named_unit(self, said: str | None) -> str | None:
+        text = said if said is not None else self.field.unit
+        if not text:
+            return unit_of(self.field.name)
+        unit = unit_called(text)
+        if unit is None:
+            raise TraceError(
+                f"the unit of the time column '{self.field.column}' of {self._source} is '{text}', "
+                f"which is none of {', '.join(UNITS)}"
+            )
+        return unit
 
+    def times(self, raw: Raw, before: int = 0) -> NDArray[Any]:
+        """Return the next stamps as times: float64 seconds, int64 nanoseconds or datetime64[ns].
 
-def _date_of(value: Any) -> datetime | timedelta | None:
-    """Return a date, a text of one, or a time since a start; None for anything else."""
-    if isinstance(value, str):
+        ``before``: how many stamps there were before. Raises :class:`TraceError` at one that is missing
+        or is no time.
+        """
+        raw = self._plain(raw, before)
+        if raw.dtype.kind == "M":
+            return raw.astype("datetime64[ns]")
+        if raw.dtype.kind == "m":
+            raw, unit = raw.astype("timedelta64[ns]").astype(np.int64), "ns"
+        else:
+            unit = self._unit_of(raw, before)
+        size = UNITS[unit]
+        if self._exact is None and len(raw):
+            integers = raw.dtype.kind in "iuO"
+            farthest = max(abs(int(raw.min())), abs(int(raw.max()))) if integers else 0
+            self._exact = unit != "s" and farthest * size * 10**9 >= _EXACT
+        if not self._exact:
+            # A division by a whole number rounds once; a product with 0.001 would round twice.
+            return raw.astype(np.float64) / float(1 / size)
+        named = f"'{self.field.column}'"
         try:
-            # Python 3.10 reads no 'Z', and milliseconds with three or six digits only.
-            return datetime.fromisoformat(value.replace("Z", "+00:00"))
-        except ValueError:
-            return None
-    if isinstance(value, date) and not isinstance(value, datetime):
-        return datetime(value.year, value.month, value.day)
-    return value if isinstance(value, (datetime, timedelta)) else None
+            return TimeScale(NANOSECOND, "units", size).ticks(raw, self.field.column)
+        except TraceError as error:
+            raise TraceError(str(error).replace(named, f"{named} of {self._source}", 1)) from None
+
+    def _unit_of(self, raw: Raw, before: int) -> str:
+        """Return the unit of numbers, by the size of the first where nothing names it; all must be alike."""
+        if self._unit is None and len(raw):
+            self._first = raw[0]
+            self._unit = _unit_of_size(self._first)
+            if self._unit != "s":
+                self.notes.append(f"its numbers are taken as {self._unit} since 1970, by their size")
+        unit = self._unit or "s"
+        if self._first is not None:
+            sizes = np.abs(np.where(np.isfinite(raw.astype(np.float64)), raw, 0))
+            if len(raw) and _unit_of_size(sizes.max()) not in (unit, "s"):
+                i = int(sizes.argmax())
+                raise TraceError(
+                    f"the time column '{self.field.column}' of {self._source} is {self._first} at first and "
+                    f"{raw[i]} at sample {before + i}, too large for {unit}: give its unit ({', '.join(UNITS)}) with "
+                    f"units={{'time': ...}}, or on the command line --time-unit"
+                )
+        return unit
+
+    # ---- what is in the cells --------------------------------------------------------------------
+
+    def _plain(self, raw: Raw, before: int) -> Raw:
+        """Return stamps as numbers or dates of numpy, none of which is missing."""
+        if self._dates is not None or raw.dtype.kind in "OUS":
+            raw = self._of_objects(_objects(raw), before)
+        missing = np.isnat(raw) if raw.dtype.kind in "mM" else np.ma.getmaskarray(raw)
+        if missing.any():
+            raise TraceError(
+                f"the time column '{self.field.column}' of {self._source} is empty at sample "
+                f"{before + int(missing.argmax())}"
+            )
+        return raw.data if isinstance(raw, np.ma.MaskedArray) else raw
+
+    def _of_objects(self, values: list[Any], before: int) -> Raw:
+        first = next((value for value in values if value is not None), None)
+        if self._dates is None and is_date(first) and self._exact is None:
+            self._dates = Dates()
+        if self._dates is not None:
+            try:
+                return self._dates.take(values)
+            except DateError as error:
+                raise self._no_time(values[error.index], before + error.index, str(error)) from None
+        for i, value in enumerate(values):
+            if not (value is None or is_number(value) or isinstance(value, Decimal)):
+                or_date = "" if self._exact is not None else f", or a date such as {EXAMPLE}"
+                raise self._no_time(value, before + i, f"expected a number{or_date}")
+        return numbers_in(values)
+
+    def _no_time(self, value: Any, row: int, problem: str) -> TraceError:
+        return TraceError(
+            f"the time column '{self.field.column}' of {self._source} is {shown(value)} at sample {row}, {problem}"
+        )
+
+
+def _unit_of_size(number: Any) -> str:
+    """Return the unit of a number that counts since 1970, by its size; seconds where it may count from anywhere.
+
+    >>> _unit_of_size(1_700_000_000), _unit_of_size(1_700_000_000_123)
+    ('s', 'ms')
+    """
+    return next((unit for unit, least in _SINCE_1970 if abs(number) >= least), "s")
+
+
+def _objects(raw: Raw) -> list[Any]:
+    """Return an array as a list in which None stands for what is missing."""
+    whole = raw.astype(object)
+    return list(whole.filled(None) if isinstance(whole, np.ma.MaskedArray) else whole)
+
+
+def numbers_in(values: Sequence[Any]) -> Raw:
+    """Return numbers as int64 where all are integers, as integers of Python where int64 is too small, else as float64.
+
+    None is masked.
+    """
+    whole = all(value is None or isinstance(value, Integral) for value in values)
+    plain = [value or 0 for value in values]
+    try:
+        numbers = np.array(plain, dtype=np.int64 if whole else np.float64)
+    except OverflowError:
+        numbers = np.array(plain, dtype=object)
+    missing = np.array([value is None for value in values], dtype=bool)
+    return np.ma.masked_array(numbers, missing) if missing.any() else numbers

@@ -199,5 +199,66 @@ def test_dense_stamps_may_be_dates(run):
 def test_a_dense_stamp_too_far_from_0(run):
     _, errors = watch(run, "x", jsonl({"time": 10**30, "x": 5}), "--time-unit", "us")
     assert errors == (
-        "rtamt: stdin, line 1: 'time' is 1000000000000000000000000000000 us, too far from 0: subtract a start time\n"
+        "rtamt: stdin, line 1: 'x' has a time too far from 0 for ticks of 1 ns: subtract a start time, "
+        "or choose a coarser resolution\n"
     )
+
+
+def test_a_csv_with_time_ms_is_not_satisfied_by_a_monitor_that_check_calls_violated(run, write):
+    text = "time_ms,x\n" + "".join(f"{i * 500},{x}\n" for i, x in enumerate([1, -1, 1, 1]))
+    formula = "historically[0:500ms](x >= 0)"
+    write("log.csv", text)
+    found = json.loads(run("check", f"always({formula})", "log.csv", "--json").out)
+    assert (found["robustness"], found["period"], found["first_violation"]) == (-1.0, 0.5, 0.5)
+    answer = run("monitor", formula, "--period", "500ms", stdin=text)
+    assert lines(answer.out) == [(0.0, 1.0), (0.5, -1.0), (1.0, -1.0), (1.5, 1.0)]
+    answer = run("monitor", "historically(x >= 0)", stdin=text)
+    assert (answer.code, answer.err) == (
+        2,
+        "rtamt: stdin, line 3: sample 1 at 0.5 s is 0.5 s after the one before, expected 1 s (within 10%): "
+        "give the right period, or resample the trace\n",
+    )
+
+
+@pytest.mark.parametrize(
+    ("names", "values"), [(["t", "timestamp"], [0, 0]), (["sim_time"], [0]), (["elapsed"], [0])]
+)
+def test_a_stream_whose_time_column_is_not_clear_is_rejected_as_the_file_is(run, write, names, values):
+    text = f"{','.join(names)},x\n{','.join(map(str, values))},1\n"
+    write("log.csv", text)
+    has = "several columns that" if len(names) > 1 else "a column that"
+    sentence = (
+        f"has {has} may hold the time stamps: {', '.join(map(repr, names))}; choose one with time=, "
+        f"or on the command line --time-column ('' for none)\n"
+    )
+    assert run("check", "x >= 0", "log.csv").err == f"rtamt: log.csv {sentence}"
+    assert run("monitor", "x >= 0", stdin=text).err == f"rtamt: stdin {sentence}"
+    sample = dict(zip([*names, "x"], [*values, 1], strict=True))
+    assert run("monitor", "x >= 0", stdin=jsonl(sample)).err == f"rtamt: stdin {sentence}"
+    assert run("monitor", "x >= 0", "--time-column", "", stdin=text).code == 0
+
+
+def test_a_time_that_comes_later_is_not_left_out_of_account(run):
+    for stdin in (jsonl({"x": 1}, {"x": 1, "time": 7}), "when,x\n,1\n2026-01-01,1\n"):
+        answer = run("monitor", "x >= 0", stdin=stdin)
+        name = "time" if stdin.startswith("{") else "when"
+        assert (answer.code, answer.err.split(": ", 2)[2]) == (
+            2,
+            f"'{name}' may hold the time stamps, but is empty before: give every sample its time, "
+            f"or choose one with time=, or on the command line --time-column ('' for none)\n",
+        )
+
+
+@pytest.mark.parametrize("number", ["1e400", "-1e999"])
+def test_a_number_beyond_the_range_of_a_double_is_no_infinity(run, write, number):
+    write("log.csv", f"time,x\n0,1\n1,{number}\n2,inf\n")
+    sentence = f"line 3: 'x' is '{number}', beyond the range of a double; infinity is written inf\n"
+    assert run("check", "x >= 0", "log.csv").err == f"rtamt: log.csv, {sentence}"
+    assert run("monitor", "x >= 0", stdin=f"time,x\n0,1\n1,{number}\n").err == f"rtamt: stdin, {sentence}"
+    answer = run("monitor", "x >= 0", stdin=f'{{"x": {number}}}\n')
+    assert answer.err == f"rtamt: stdin, line 1: 'x' is {number}, beyond the range of a double\n"
+
+
+def test_a_key_that_is_given_twice_is_rejected(run):
+    answer = run("monitor", "x >= 0", stdin='{"x": 1, "y": 2, "x": -1}\n')
+    assert answer.err == 'rtamt: stdin, line 1: the key "x" is given twice; give it once\n'

@@ -194,7 +194,7 @@ LONG = "time,x\n" + "0,1\n" * 10 + "1,{}\n" + "0,1\n" * 10
             "time,time,req\n0,1,2\n",
             ["req"],
             "log.csv has several columns that may hold the time stamps: 'time', 'time'; "
-            "choose one with time=, or on the command line --time-column",
+            "choose one with time=, or on the command line --time-column ('' for none)",
         ),
         (
             "t [min],req\n0,1\n",

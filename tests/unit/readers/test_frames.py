@@ -130,7 +130,7 @@ def test_every_guess_is_visible():
     epoch = rtamt.read({"timestamp": np.array([1_700_000_000_123, 1_700_000_000_223]), "x": [1, 2]})
     assert epoch.notes == (
         "time is 'timestamp', by its name",
-        "its integers are taken as ms since 1970, by their size",
+        "its numbers are taken as ms since 1970, by their size",
     )
     assert epoch["x"].times.tolist() == [1_700_000_000_123_000_000, 1_700_000_000_223_000_000]
     assert rtamt.read(pl.DataFrame({"when": DATES, "x": X})).notes == (
@@ -171,14 +171,15 @@ def test_the_data_of_the_caller_is_not_shared():
          "or an array with named fields"),
         (lambda: rtamt.read({"time": [0, 1], "stamp": [0, 1], "x": [1, 2]}),
          "a dict has several columns that may hold the time stamps: 'time', 'stamp'; "
-         "choose one with time=, or on the command line --time-column"),
+         "choose one with time=, or on the command line --time-column ('' for none)"),
         (lambda: rtamt.read({"time": [0, 1], "x": [1]}),
          "'time' has 2 and 'x' has 1 samples: give one value of each at every sample"),
         (lambda: rtamt.read({"x": [[1, 2, 3]]}), "'x' has 2 dimensions, expected 1: give one number a sample"),
         (lambda: rtamt.read({"time": [0, None], "x": [1, 2]}),
          "the time column 'time' of a dict is empty at sample 1"),
         (lambda: rtamt.read({"time": [0, "now"], "x": [1, 2]}),
-         "the time column 'time' has 'now', expected a number, or dates such as 2024-05-01T12:00:00"),
+         "the time column 'time' of a dict is 'now' at sample 1, expected a number, "
+         "or a date such as 2026-05-01T12:00:00.5"),
         (lambda: rtamt.read({"x": [1, "a"]}, columns=["x"]), "'x' of a dict is 'a' at sample 1, expected a number"),
         (lambda: rtamt.read({"x": [1, None]}),
          "'x' is missing at sample 1 of a dict: fill the gap, or name the column of time stamps, "

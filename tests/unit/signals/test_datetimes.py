@@ -58,7 +58,8 @@ def test_a_column_of_dates_with_and_without_a_time_zone_is_an_error():
     with pytest.raises(rtamt.TraceError) as failure:
         rtamt.read({"t": ["2024-05-01T10:00:00Z", "2024-05-01T10:00:01"], "x": [1, 2]})
     assert str(failure.value) == (
-        "the time column 't' has dates with a time zone beside dates without one: use one way for all"
+        "the time column 't' of a dict is '2024-05-01T10:00:01' at sample 1, with no time zone, "
+        "and those before have one; use one way for all"
     )
 
 

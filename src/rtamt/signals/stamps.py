@@ -1,0 +1,82 @@
+"""Which columns hold the time stamps, and in what unit: by their names, the same for files, frames and streams."""
+
+from __future__ import annotations
+
+import re
+from types import MappingProxyType
+from typing import TYPE_CHECKING
+
+from rtamt.language.units import UNITS
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+#: What a column of time stamps is called, in any case, perhaps with a unit: ``Time [ms]``, ``time_ms``.
+NAMES = ("time", "t", "timestamp", "stamp", "datetime")
+
+#: How people write units of time.
+SPELLINGS: Mapping[str, str] = MappingProxyType(
+    {
+        "s": "s sec secs second seconds",
+        "ms": "ms msec millis millisecond milliseconds",
+        "us": "us µs μs usec micros microsecond microseconds",
+        "ns": "ns nsec nanos nanosecond nanoseconds",
+    }
+)
+_UNIT_OF = {spelling: unit for unit, spellings in SPELLINGS.items() for spelling in spellings.split()}
+_STAMPS = re.compile(rf"(?P<name>{'|'.join(NAMES)})(?:[ _](?P<unit>{'|'.join(_UNIT_OF)}))?")
+_BRACKETS = re.compile(r"(?P<name>.*\S)\s*[\[(]\s*(?P<unit>[^\[\]()]+?)\s*[\])]", re.DOTALL)
+
+#: Words in the names of columns that may hold time stamps, but need not.
+_HINTS = frozenset({*NAMES, "ts", "date", "clock", "epoch", "elapsed"} - {"t"})
+#: Names that are units: 's' and 'ms' are short for too many other things.
+_UNITS = frozenset(spelling for spelling in _UNIT_OF if len(spelling) > 2)
+_WORDS = re.compile(r"[A-Z]?[a-z]+|[A-Z]+(?![a-z])")
+
+
+def split_unit(column: str) -> tuple[str, str]:
+    """Return the name and the unit of a column: ``Time [ms]`` is ``("Time", "ms")``.
+
+    >>> split_unit("Time [ms]"), split_unit("req")
+    (('Time', 'ms'), ('req', ''))
+    """
+    match = _BRACKETS.fullmatch(column)
+    return (match["name"], match["unit"]) if match else (column, "")
+
+
+def unit_called(text: str) -> str | None:
+    """Return the unit of time that a text writes; None where it writes none.
+
+    >>> unit_called("msec"), unit_called("s"), unit_called("min")
+    ('ms', 's', None)
+    """
+    return _UNIT_OF.get(text.strip().lower()) or (text if text in UNITS else None)
+
+
+def is_stamps(name: str) -> bool:
+    """Tell whether a column is called as columns of time stamps are; ``name``: without a unit in brackets."""
+    return _STAMPS.fullmatch(name.lower()) is not None
+
+
+def unit_of(name: str) -> str | None:
+    """Return the unit at the end of such a name, None where there is none.
+
+    >>> unit_of("time_ms"), unit_of("stamp")
+    ('ms', None)
+    """
+    match = _STAMPS.fullmatch(name.lower())
+    return _UNIT_OF[match["unit"]] if match and match["unit"] else None
+
+
+def may_be_stamps(name: str) -> bool:
+    """Tell whether a column may hold time stamps, though its name alone does not decide it.
+
+    >>> [name for name in ("sim_time", "timeMs", "header.stamp", "rostime", "speed", "t_max") if may_be_stamps(name)]
+    ['sim_time', 'timeMs', 'header.stamp', 'rostime']
+    """
+    words = {word.lower() for word in _WORDS.findall(name)}
+    return (
+        bool(words & _HINTS)
+        or name.lower() in _UNITS
+        or any(word.endswith(("time", "timestamp")) for word in words)
+    )
