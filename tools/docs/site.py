@@ -30,6 +30,7 @@ INCLUDED = {
     "README.md": "index.md",
     "CHANGELOG.md": "changelog.md",
     "CONTRIBUTING.md": "contributing.md",
+    "SECURITY.md": "security.md",
     "conformance/RESULTS.md": "explanation/conformance.md",
     "conformance/README.md": "reference/conformance-corpus.md",
 }
@@ -56,7 +57,7 @@ def on_config(config: MkDocsConfig) -> MkDocsConfig:
         found |= {Path(page).stem for page in made if page.startswith(f"{folder}/")}
         ordered = [name for name in first if name in found] + sorted(found - set(first))
         nav.append({title: [f"{folder}/{name}.md" for name in ordered]})
-    nav.append({"Project": ["changelog.md", "contributing.md"]})
+    nav.append({"Project": ["changelog.md", "contributing.md", "security.md"]})
     config.nav = nav
     return config
 

@@ -32,7 +32,7 @@ def write_bag(
         raise CommandError(
             f"'{trace}' is no bag, so that there are no topics to write to '{path}'; write .csv"
         )
-    write_mcap(trace, path, _findings(requirement, trace, reading, results))
+    write_mcap(trace, path, _findings(requirement, trace, reading, results), reading.recover)
 
 
 def _findings(

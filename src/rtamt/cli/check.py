@@ -185,6 +185,7 @@ def _as_json(outcome: Outcome, requirement: Requirement) -> str:
             "samples": outcome.samples,
             "period": None if outcome.period is None else float(outcome.period),
             **more,
+            **({"notes": outcome.notes} if outcome.notes else {}),
         }
     )
 
@@ -204,6 +205,9 @@ def _as_table(requirements: Sequence[Requirement], found: Sequence[Outcome], col
         spec = requirements[0].spec
         title = f"{spec.name}: {printed(spec.formula)}" if spec.name else printed(spec.formula)
         text = f"{title}\n\n{table([row[1:] for row in rows], right=(1, 2, 3), kinds=kinds, color=color)}"
+    notes = dict.fromkeys(f"note: {outcome.trace}: {note}" for outcome in found for note in outcome.notes)
+    if notes:
+        text += "\n\n" + "\n".join(notes)
     if len(found) > 1:
         verdicts = [outcome.verdict for outcome in found]
         counts = [f"{verdicts.count(verdict)} {verdict}" for verdict in CODES if verdict in verdicts]

@@ -39,6 +39,7 @@ class Reading:
     skip_nan: Sequence[str] = ()
     resample: str | None = None
     how: str = "hold"
+    recover: bool = False
     #: Never in chunks: somebody wants the whole signal.
     whole: bool = False
 
@@ -75,6 +76,11 @@ def add_reading_options(parser: argparse.ArgumentParser) -> None:
         metavar="{hold,linear}",
         help="between two samples the last one holds, or a line (default: hold)",
     )
+    parser.add_argument(
+        "--recover",
+        action="store_true",
+        help="read an MCAP file that was cut off or is damaged as far as possible, an error otherwise",
+    )
 
 
 def add_instant_option(parser: argparse.ArgumentParser) -> None:
@@ -105,6 +111,7 @@ def reading_of(args: argparse.Namespace, read: Collection[str], *, whole: bool) 
         tuple(args.skip_nan),
         args.resample,
         args.how,
+        args.recover,
         whole=whole,
     )
 
@@ -122,7 +129,7 @@ def _names_of(texts: Sequence[str]) -> dict[str, str]:
 
 def recording(args: argparse.Namespace, source: str) -> Trace:
     """Return all that is in a recording, read and put on one clock as the options say."""
-    with opened(source, args.sheet, args.query) as found:
+    with opened(source, args.sheet, args.query, args.recover) as found:
         units = None if args.time_unit is None else {TIME: args.time_unit}
         wanted = choice(args.time_column, None, _names_of(args.name), units, args.skip_nan)
         trace = trace_of(found, wanted)
@@ -134,7 +141,7 @@ def recording(args: argparse.Namespace, source: str) -> Trace:
 
 def read_for(specs: Sequence[Specification], trace: str, reading: Reading) -> Trace:
     """Read what some requirements read of a recording."""
-    with opened(trace, reading.sheet, reading.query) as source:
+    with opened(trace, reading.sheet, reading.query, reading.recover) as source:
         return trace_of(source, choice_for(specs, trace, reading))
 
 

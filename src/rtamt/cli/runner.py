@@ -64,6 +64,7 @@ class Outcome:
     """What came of one requirement over one recording, or the sentence that says why nothing did.
 
     ``first_violation``: seconds, or a date; None where there is none. ``period``: None in dense time.
+    ``notes``: what the verdict has to do without (:attr:`Trace.losses`).
     ``seconds``: how long it took. ``result`` stays in the process that made it.
     """
 
@@ -75,6 +76,7 @@ class Outcome:
     samples: int = 0
     period: Fraction | None = None
     error: str = ""
+    notes: tuple[str, ...] = ()
     seconds: float = 0.0
     result: Result | None = None
 
@@ -140,7 +142,7 @@ def _in_chunks(requirement: Requirement, trace: str, reading: Reading) -> list[O
     found: StreamResult | None = None
     try:
         check_streamable(requirement.spec)
-        with opened(trace, reading.sheet, reading.query) as source:
+        with opened(trace, reading.sheet, reading.query, reading.recover) as source:
             if all(table.chunks is not None for table in source.tables) and len(source.tables) == 1:
                 chunks = _Chunks(chunks_of(source, choice_for([requirement.spec], trace, reading)))
                 found = check_stream(requirement.spec, chunks)
@@ -166,6 +168,7 @@ def _in_chunks(requirement: Requirement, trace: str, reading: Reading) -> list[O
             None if part.first_violation is None else _told(part.first_violation, chunks.dated),
             part.samples,
             part.period,
+            notes=tuple(chunks.losses),
             seconds=seconds,
         )
         for row, part in zip(rows, found.requirements.values(), strict=True)
@@ -194,13 +197,13 @@ def _check(requirement: Requirement, trace: str, data: Trace | None, reading: Re
         return [_failed(requirement, trace, f"{place}{error}{how_to_mend(error, whole)}", begin)]
     found = []
     for row, part in zip(requirement.rows or (requirement,), parts, strict=True):
-        found.append(_outcome(row, trace, part, isinstance(whole.start, np.datetime64), begin))
+        found.append(_outcome(row, trace, part, whole, begin))
         begin = time.perf_counter()
     return found
 
 
-def _outcome(requirement: Requirement, trace: str, result: Result, dated: bool, begin: float) -> Outcome:
-    """Return what an evaluation says of one requirement; ``dated``: whether the recording has dates."""
+def _outcome(requirement: Requirement, trace: str, result: Result, data: Trace, begin: float) -> Outcome:
+    """Return what an evaluation of ``data`` says of one requirement."""
     try:
         satisfied, violated = result.satisfied, first_violation(result)
     except StlError as error:
@@ -211,9 +214,10 @@ def _outcome(requirement: Requirement, trace: str, result: Result, dated: bool, 
         shown(trace),
         "satisfied" if satisfied else "violated",
         result.robustness,
-        None if violated is None else _told(violated, dated),
+        None if violated is None else _told(violated, isinstance(data.start, np.datetime64)),
         _samples(recording),
         recording.period if isinstance(recording, Recording) else None,
+        notes=data.losses,
         seconds=time.perf_counter() - begin,
         result=result,
     )
@@ -247,12 +251,14 @@ class _Chunks:
         self._counts: Counter[str] = Counter()
         self.dated = False
         self.last: Trace | None = None
+        self.losses: dict[str, None] = {}
 
     def __iter__(self) -> Iterator[Trace]:
         for chunk in self._chunks:
             if self.last is not None:
                 self._counts.update({name: len(self.last[name].values) for name in self.last})
             self.last = chunk
+            self.losses.update(dict.fromkeys(chunk.losses))
             self.dated = isinstance(chunk.start, np.datetime64)
             yield chunk
 

@@ -55,7 +55,7 @@ class Selection:
 def trace_of(source: Source, choice: Choice) -> Trace:
     """Read a source whole."""
     channels: dict[str, Channel] = {}
-    notes = list(source.notes)
+    notes, losses = list(source.notes), list(source.losses)
     for selection in select(source, choice):
         raws = selection.table.load(selection.fields)
         clock = clock_of(source, selection, choice)
@@ -66,10 +66,11 @@ def trace_of(source: Source, choice: Choice) -> Trace:
             taken = {clock.field if clock else None, *(f for _, f in selection.signals)}
             left_out += [f.column for f in selection.table.fields if f.kind == "text" and f not in taken]
         notes += [] if not left_out else [f"left out, not numbers: {', '.join(left_out)}"]
-        notes += skipped
+        losses += skipped
     if choice.columns is not None:  # in the caller's order, whatever the tables'
         channels = {name: channels[name] for name in choice.columns if name in channels}
-    return Trace(_one_kind(channels, source.name), source=source.name, notes=notes, origin=source.origin)
+    channels = _one_kind(channels, source.name)
+    return Trace(channels, source=source.name, notes=notes, losses=losses, origin=source.origin)
 
 
 def chunks_of(source: Source, choice: Choice) -> Iterator[Trace]:
@@ -81,8 +82,9 @@ def chunks_of(source: Source, choice: Choice) -> Iterator[Trace]:
     for raws in selection.table.chunks(selection.fields):
         made, _, skipped = _channels(source, selection, clock, raws, choice, before)
         before += len(raws[0]) if raws else 0
-        notes = (*source.notes, *(() if clock is None else clock.notes), *skipped)
-        yield Trace(made, source=source.name, notes=notes, origin=source.origin)
+        notes = (*source.notes, *(() if clock is None else clock.notes))
+        losses = (*source.losses, *skipped)
+        yield Trace(made, source=source.name, notes=notes, losses=losses, origin=source.origin)
 
 
 # ---- which columns -------------------------------------------------------------------------------

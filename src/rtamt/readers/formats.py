@@ -13,6 +13,7 @@ from rtamt.readers.source import guarded, opening
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+    from contextlib import AbstractContextManager
 
     from rtamt.readers.source import Source
 
@@ -22,29 +23,39 @@ class Format:
     """A kind of file.
 
     ``opener``: module and function, imported when such a file is read. ``sheets``: whether a file may
-    hold several tables, of which the opener takes one by its name.
+    hold several tables, of which the opener takes one by its name. ``recovers``: how the names of files end
+    that the opener can read up to their damage, on request.
     """
 
     name: str
     suffixes: tuple[str, ...]
     opener: str
     sheets: bool = False
+    recovers: str = ""
 
-    def open(self, path: str, sheet: str | None = None) -> Source:
+    def guard(self, path: str) -> AbstractContextManager[None]:
+        """Turn whatever the library raises at a file into one sentence."""
+        if self.recovers and path.lower().endswith(self.recovers):
+            return opening(path, self.name, "read it as far as possible with recover=True (--recover)")
+        return opening(path, self.name)
+
+    def open(self, path: str, sheet: str | None = None, recover: bool = False) -> Source:
         """Open a file of this kind. Whatever its library raises, now or when the samples are read, is a sentence."""
         module, function = self.opener.split(":")
         opener: Callable[..., Source] = getattr(importlib.import_module(f"rtamt.readers.{module}"), function)
         if sheet is not None and not self.sheets:
             raise UsageError(f"'{path}' is {self.name}, which has no sheets; leave the sheet out")
-        guard = partial(opening, path, self.name)
+        choice = {"sheet": sheet} if self.sheets else {"recover": recover} if self.recovers else {}
+        guard = partial(self.guard, path)
         with guard():
-            source = opener(path, sheet) if self.sheets else opener(path)
+            source = opener(path, **choice)
         return guarded(source, guard)
 
 
 #: A bag has a table for each topic; a specification's annotations say which topics it reads. ROS 2 records
 #: folders: such files, or parts of them, and metadata.yaml.
-BAG = Format("ROS bag", (".bag", ".db3", ".mcap"), "rosbag:open_bag")
+MCAP = ".mcap"
+BAG = Format("ROS bag", (".bag", ".db3", MCAP), "rosbag:open_bag", recovers=MCAP)
 
 FORMATS = (
     Format("CSV", (".csv", ".tsv", ".txt"), "csv_source:open_csv"),

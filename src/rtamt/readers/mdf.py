@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import logging
+import os
 from collections import Counter
 from contextlib import ExitStack, contextmanager
 from datetime import timezone
@@ -21,6 +22,8 @@ if TYPE_CHECKING:
     from rtamt.readers.source import Raw
 
 
+#: Bytes that a byte of a compressed block can stand for (deflate).
+_DENSEST = 1032
 #: Types of channels of MDF 4 that have no bytes in the records: virtual masters and data.
 _VIRTUAL = (3, 6)
 _VARIABLE_LENGTH = 1
@@ -52,14 +55,15 @@ def open_mdf(path: str) -> Source:
             raise
     with ExitStack() as stack:
         stack.callback(file.close)
+        most = _DENSEST * os.path.getsize(path)
         for number, group in enumerate(file.groups):
-            _check_group(path, number, group)
+            _check_group(path, number, group, most)
         stack.pop_all()
     counts = Counter(channel.name for group in file.groups for channel in group.channels)
     tables = tuple(_table(file, number, counts) for number in range(len(file.groups)))
     start = file.start_time
     origin = np.datetime64(start.astimezone(timezone.utc).replace(tzinfo=None), "ns")
-    return Source(path, tables, origin=origin, notes=damage(complaints), close=file.close)
+    return Source(path, tables, origin=origin, losses=damage(complaints), close=file.close)
 
 
 def _table(file: Any, number: int, counts: Counter[str]) -> Table:
@@ -117,13 +121,20 @@ def _abandon(error: Exception) -> None:
             half._tempfile.close()
 
 
-def _check_group(path: str, number: int, group: Any) -> None:
+def _check_group(path: str, number: int, group: Any, most: int) -> None:
     """Raise :class:`TraceError` at what asammdf would do whatever it leads to.
 
-    It reads a channel that lies outside its records wherever that is in memory, and evaluates any formula.
+    It takes memory for any number of records, reads a channel that lies outside its records wherever that is
+    in memory, and evaluates any formula. ``most``: bytes that a file of this size can hold.
     """
     size = group.channel_group.samples_byte_nr
     flags = 8 * getattr(group.channel_group, "invalidation_bytes_nr", 0)
+    records = group.channel_group.cycles_nr
+    if records * max(size, 1) > most:
+        raise TraceError(
+            f"'{path}' cannot be read as MDF: group {number} claims {records:,} records of {size} bytes, more than "
+            f"a file of its size can hold; the file is damaged: copy or export it again"
+        )
     for channel in group.channels:
         if hasattr(channel, "byte_offset"):  # MDF 4; before, a channel begins at a bit
             end = 8 * channel.byte_offset + channel.bit_offset + channel.bit_count

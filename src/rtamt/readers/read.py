@@ -29,6 +29,7 @@ def read(
     sheet: str | None = None,
     query: str | None = None,
     skip_nan: Iterable[str] = (),
+    recover: bool = False,
 ) -> Trace:
     r"""Read a recording; ``Specification.evaluate`` and ``update_many`` take what comes out.
 
@@ -42,12 +43,13 @@ def read(
     ``time_ms``), else the one column of dates. ``units``: from column to unit, where the source does
     not say it; ``"time"`` stands for the column of time stamps, which otherwise are seconds, or, where
     they are integers too large for that, ms, us or ns since 1970. ``sheet``: of an Excel workbook that
-    has several.
+    has several. ``recover``: read an MCAP file that was cut off or is damaged up to the damage, an
+    error otherwise; flight logs are always read that far.
 
     A value that is missing (an empty cell, null, pandas' NaN) is no sample: the signal then has a
     clock of its own. Any other NaN stays, and an evaluation that reads it is an error; for the signals
     in ``skip_nan`` it is a missing value, too. What was guessed or left out is in ``Trace.notes``, and
-    printed with it.
+    printed with it; what a verdict has to do without is in ``Trace.losses``, too.
 
     Raises :class:`TraceError` where the data is wrong or columns cannot be told apart, and
     :class:`UsageError` where a library is missing: ``pip install 'rtamt[data]'``.
@@ -68,7 +70,7 @@ def read(
       left out, NaN: 1 sample of v, the first at 1 s
       v  2 samples, 0 s to 2 s
     """
-    with opened(source, sheet, query) as found:
+    with opened(source, sheet, query, recover) as found:
         return trace_of(found, choice(time, columns, names, units, skip_nan))
 
 
@@ -126,9 +128,11 @@ def choice(
 
 
 @contextmanager
-def opened(source: Any, sheet: str | None = None, query: str | None = None) -> Iterator[Source]:
+def opened(
+    source: Any, sheet: str | None = None, query: str | None = None, recover: bool = False
+) -> Iterator[Source]:
     """Open whatever can be read, and close it at the end."""
-    found = _open(source, sheet, query)
+    found = _open(source, sheet, query, recover)
     try:
         yield found
     finally:
@@ -136,14 +140,14 @@ def opened(source: Any, sheet: str | None = None, query: str | None = None) -> I
             found.close()
 
 
-def _open(source: Any, sheet: str | None, query: str | None) -> Source:
+def _open(source: Any, sheet: str | None, query: str | None, recover: bool) -> Source:
     if isinstance(source, str) and is_url(source):
         return open_sql(source, query)
     if query is not None:
         raise UsageError("a query is for a database, whose address looks like sqlite:///log.db")
     if isinstance(source, (str, os.PathLike)):
         path = os.fspath(source)
-        return format_of(path).open(path, sheet)
+        return format_of(path).open(path, sheet, recover)
     found = frames.source_of(source)
     if found is None:
         kinds = ", ".join(known.name for known in FORMATS)

@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 import os
-from contextlib import ExitStack
+from contextlib import ExitStack, contextmanager
 from itertools import groupby
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from rtamt.errors import TraceError
 from rtamt.extras import library
-from rtamt.readers.formats import BAG, METADATA
-from rtamt.readers.source import Field, Source, Table, opening, reason
+from rtamt.readers.formats import BAG, MCAP, METADATA
+from rtamt.readers.mcap import salvage
+from rtamt.readers.source import Field, Source, Table, reason
 from rtamt.signals.arrays import is_number
 
 if TYPE_CHECKING:
@@ -28,32 +30,51 @@ _ELEMENTS = 1000
 Steps = tuple["str | int", ...]
 
 
-def open_bag(path: str) -> Source:
-    """Open a bag.
+def open_bag(path: str, recover: bool = False) -> Source:
+    """Open a bag. ``recover``: read a damaged MCAP file as far as possible.
 
     A column is called ``/topic.field.path``, elements of arrays ``/topic.ranges[0]``: what the first
     message of the topic holds. The time of a message is the stamp in its header, in nanoseconds; where
     there is none, or it was left at 0, the time at which it was recorded.
     """
     with ExitStack() as stack:
-        reader = open_reader(path)
-        stack.callback(reader.close)
+        reader, losses = stack.enter_context(open_reader(path, recover))
         # A damaged database may hold anything where a name was.
         ordered = sorted(reader.connections, key=lambda connection: str(connection.topic))
         tables = [
             _table(reader, topic, list(group)) for topic, group in groupby(ordered, lambda c: str(c.topic))
         ]
         found = tuple(table for table in tables if table is not None)
-        return Source(path, found, close=stack.pop_all().close)
+        return Source(path, found, losses=losses, close=stack.pop_all().close)
 
 
-def open_reader(path: str) -> Any:
-    """Return a reader of any bag; raise :class:`TraceError` where it is none."""
+@contextmanager
+def open_reader(path: str, recover: bool = False) -> Iterator[tuple[Any, tuple[str, ...]]]:
+    """Open any bag; yield its reader, and what is lost of it. Raise :class:`TraceError` where it is none."""
+    with ExitStack() as stack:
+        losses: tuple[str, ...] = ()
+        if recover and path.lower().endswith(MCAP):
+            folder = stack.enter_context(TemporaryDirectory(prefix="rtamt-"))
+            copy = os.path.join(folder, os.path.basename(path))
+            with BAG.guard(path):
+                lost = salvage(path, copy)
+            losses = (lost,) if lost else ()
+            try:
+                reader = _reader(copy if lost else path)
+            except TraceError:
+                reader = _reader(copy)  # every message is there, but their index is damaged
+        else:
+            reader = _reader(path)
+        stack.callback(reader.close)
+        yield reader, losses
+
+
+def _reader(path: str) -> Any:
     highlevel = library("rosbags.highlevel", "reading ROS bags", "ros")
     typesys = library("rosbags.typesys", "reading ROS bags", "ros")
     # ROS 2's sqlite3 files came without definitions of their messages until 2023.
     known = typesys.get_typestore(typesys.Stores.ROS2_HUMBLE)
-    with opening(path, BAG.name):
+    with BAG.guard(path):
         reader = highlevel.AnyReader([_existing(path)], default_typestore=known)
         reader.open()
     return reader
@@ -61,7 +82,7 @@ def open_reader(path: str) -> Any:
 
 def messages(reader: Any, connections: Sequence[Any] = ()) -> Iterator[tuple[Any, int, bytes]]:
     """Yield connections, times of recording and messages as bytes; raise :class:`TraceError` where a bag is damaged."""
-    with opening(str(reader.paths[0]), BAG.name):
+    with BAG.guard(str(reader.paths[0])):
         yield from reader.messages(connections=connections)
 
 

@@ -72,6 +72,8 @@ class Source:
     origin: np.datetime64 | None = None
     #: What was left out, a sentence each.
     notes: tuple[str, ...] = ()
+    #: What the recording should have and has not, because it is damaged: a sentence each.
+    losses: tuple[str, ...] = ()
     close: Callable[[], None] | None = None
 
 
@@ -91,7 +93,7 @@ _SHOWN = 200
 
 
 @contextmanager
-def opening(path: str, what: str) -> Iterator[None]:
+def opening(path: str, what: str, remedy: str = "copy or export it again") -> Iterator[None]:
     """Turn whatever a format library raises at a file into one sentence. ``what``: the format.
 
     Our own errors pass, and so do our own bugs: they are no damage of the file.
@@ -111,7 +113,7 @@ def opening(path: str, what: str) -> Iterator[None]:
             raise
         raise TraceError(
             f"'{path}' cannot be read as {what}: {reason(error)}; "
-            f"the file is damaged, incomplete or of another kind: copy or export it again"
+            f"the file is damaged, incomplete or of another kind: {remedy}"
         ) from error
 
 

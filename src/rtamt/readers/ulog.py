@@ -38,16 +38,16 @@ def open_ulog(path: str) -> Source:
     with open(path, "rb") as opened, redirect_stdout(said):
         file = _Watched(opened)
         log = core.ULog(file)
-    notes = _damage(log, said.getvalue(), file)
+    losses = _damage(log, said.getvalue(), file)
     topics = sorted(log.data_list, key=lambda topic: (topic.name, topic.multi_id))
-    if notes and not topics:
-        raise TraceError(f"'{path}' cannot be read as PX4 ULog: {notes[0]}, and no sample comes before that")
+    if losses and not topics:
+        raise TraceError(f"'{path}' cannot be read as PX4 ULog: {losses[0]}, and no sample comes before that")
     for topic in topics:
         if _CLOCK not in topic.data:
             raise TraceError(
                 f"'{path}' cannot be read as PX4 ULog: the topic '{topic.name}' has no field '{_CLOCK}'"
             )
-    return Source(path, tuple(map(_table, topics)), notes=(*_dropouts(log), *notes))
+    return Source(path, tuple(map(_table, topics)), notes=_dropouts(log), losses=losses)
 
 
 class _Watched:

@@ -35,6 +35,7 @@ class Row:
     first_violation: str = ""
     samples: str = ""
     error: str = ""
+    notes: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -114,7 +115,9 @@ def _row(row: Row, number: int | None) -> str:
     if row.error:
         return f'<tr>{first}{verdict}<td colspan="3">{escape(row.error)}</td></tr>'
     cells = (row.robustness, row.first_violation, row.samples)
-    return f"<tr>{first}{verdict}{''.join(f'<td class=number>{escape(cell)}</td>' for cell in cells)}</tr>"
+    notes = "".join(f'<tr><td colspan="6">note: {escape(note)}</td></tr>' for note in row.notes)
+    numbers = "".join(f"<td class=number>{escape(cell)}</td>" for cell in cells)
+    return f"<tr>{first}{verdict}{numbers}</tr>{notes}"
 
 
 def _card(number: int, row: Row, card: Card) -> str:

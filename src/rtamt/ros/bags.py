@@ -14,7 +14,6 @@ from rtamt.errors import TraceError, UsageError
 from rtamt.extras import library
 from rtamt.readers.formats import BAG
 from rtamt.readers.rosbag import messages, open_reader
-from rtamt.readers.source import opening
 from rtamt.ros.messages import DEFINITIONS, FLOAT_STAMPED, SATISFIED, VERDICT, VIOLATED
 
 if TYPE_CHECKING:
@@ -58,31 +57,29 @@ class Finding:
     truth: Signal
 
 
-def write_mcap(source: str, path: str, findings: Iterable[Finding]) -> None:
+def write_mcap(source: str, path: str, findings: Iterable[Finding], recover: bool = False) -> None:
     """Write a bag as one MCAP file for ROS 2, with a topic of robustness and one of verdicts for each finding.
 
     ``source``: any bag; messages of ROS 1 are converted. A topic that is there already gets
-    ``/offline`` after its name. The file is complete or not there. Raises :class:`TraceError`,
-    :class:`UsageError`.
+    ``/offline`` after its name; ``recover``: as for :func:`rtamt.read`. The file is complete or
+    not there. Raises :class:`TraceError`, :class:`UsageError`.
     """
     if Path(path).exists() and Path(path).samefile(source):
         raise UsageError(f"'{path}' is the recording itself; write to another file")
     rosbag2 = library("rosbags.rosbag2", "reading ROS bags", "ros")
-    reader = open_reader(source)
-    try:
-        with tempfile.TemporaryDirectory(dir=Path(path).resolve().parent) as folder:
-            bag = Path(folder) / "bag"
-            with rosbag2.Writer(bag, version=8, storage_plugin=rosbag2.StoragePlugin.MCAP) as writer:
-                store = _types(reader)
-                _copy(reader, writer, store)
-                taken = {connection.topic for connection in reader.connections}
-                for finding in findings:
-                    _add(finding, writer, store, taken)
-            shutil.move(next(bag.glob("*.mcap")), path)
-    except OSError as error:
-        raise TraceError(f"cannot write '{path}': {error.strerror or error}") from None
-    finally:
-        reader.close()
+    with open_reader(source, recover) as (reader, _):
+        try:
+            with tempfile.TemporaryDirectory(dir=Path(path).resolve().parent) as folder:
+                bag = Path(folder) / "bag"
+                with rosbag2.Writer(bag, version=8, storage_plugin=rosbag2.StoragePlugin.MCAP) as writer:
+                    store = _types(reader)
+                    _copy(reader, writer, store)
+                    taken = {connection.topic for connection in reader.connections}
+                    for finding in findings:
+                        _add(finding, writer, store, taken)
+                shutil.move(next(bag.glob("*.mcap")), path)
+        except OSError as error:
+            raise TraceError(f"cannot write '{path}': {error.strerror or error}") from None
 
 
 def _types(reader: Any) -> Any:
@@ -105,7 +102,7 @@ def _copy(reader: Any, writer: Any, store: Any) -> None:
         if key not in connections:
             connections[key] = writer.add_connection(known.topic, known.msgtype, typestore=store)
     for known, recorded, raw in messages(reader):
-        with opening(str(reader.paths[0]), BAG.name):
+        with BAG.guard(str(reader.paths[0])):
             data = raw if reader.is2 else store.ros1_to_cdr(raw, known.msgtype)
         writer.write(connections[known.topic, known.msgtype], recorded, data)
 

@@ -122,7 +122,7 @@ def _plant(data: dict[str, Any], folder: Path) -> Callable[..., Any]:
 
         return FmuPlant(folder / plant, data.get("duration"), step=data.get("step"))
     module, colon, name = plant.partition(":")
-    if not colon:
+    if not (module and colon and name):
         raise UsageError(f"the plant is '{plant}'; write it as 'module:function', or name an FMU file")
     try:
         made = _module(module, folder.resolve())

@@ -67,7 +67,7 @@ class Trace(Clocked):
     1.0
     """
 
-    __slots__ = ("_channels", "_notes", "_origin", "_source")
+    __slots__ = ("_channels", "_losses", "_notes", "_origin", "_source")
 
     def __init__(
         self,
@@ -75,11 +75,13 @@ class Trace(Clocked):
         *,
         source: str = "data",
         notes: Sequence[str] = (),
+        losses: Sequence[str] = (),
         origin: np.datetime64 | None = None,
     ) -> None:
         self._channels = dict(channels)
         self._source = source
         self._notes = tuple(notes)
+        self._losses = tuple(losses)
         self._origin = origin
 
     # ---- what is in it ---------------------------------------------------------------------------
@@ -96,8 +98,13 @@ class Trace(Clocked):
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """What was guessed or left out while reading, a sentence each."""
-        return self._notes
+        """What was guessed or left out while reading, a sentence each; :attr:`losses` among it."""
+        return (*self._notes, *self._losses)
+
+    @property
+    def losses(self) -> tuple[str, ...]:
+        """What a verdict has to do without: the rest of a damaged file, samples that are NaN."""
+        return self._losses
 
     @property
     def origin(self) -> np.datetime64 | None:
@@ -259,7 +266,8 @@ class Trace(Clocked):
     # ---- inside ----------------------------------------------------------------------------------
 
     def _with(self, channels: Mapping[str, Channel]) -> Trace:
-        return Trace(channels, source=self._source, notes=self._notes, origin=self._origin)
+        notes, losses = self._notes, self._losses
+        return Trace(channels, source=self._source, notes=notes, losses=losses, origin=self._origin)
 
     def _timed(self) -> list[Any]:
         return [c for c in self._channels.values() if c.times is not None and len(c.times)]
@@ -295,7 +303,7 @@ class Trace(Clocked):
         lines = [f"Trace of {self._source}: {count} signal{'s' * (count != 1)}{extent}"]
         if self._origin is not None:
             lines.append(f"  time 0 is {self._origin} UTC")
-        lines += [f"  {note}" for note in self._notes]
+        lines += [f"  {note}" for note in self.notes]
         rows = [
             (
                 name + (f" [{c.unit}]" if c.unit else ""),

@@ -41,4 +41,5 @@ def row(outcome: Outcome) -> Row:
         short(outcome.robustness),
         moment(outcome),
         str(outcome.samples),
+        notes=outcome.notes,
     )

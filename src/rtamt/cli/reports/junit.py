@@ -38,6 +38,8 @@ def as_junit(requirements: Sequence[Requirement], outcomes: Sequence[Outcome]) -
                     case, kind, type=outcome.verdict, message=_text(sentence(outcome, requirement))
                 )
                 problem.text = _text(printed(requirement.spec.formula))
+            if outcome.notes:
+                ET.SubElement(case, "system-out").text = _text("\n".join(outcome.notes))
     ET.indent(root)
     return f'<?xml version="1.0" encoding="UTF-8"?>\n{ET.tostring(root, encoding="unicode")}\n'
 

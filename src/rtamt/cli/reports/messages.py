@@ -23,4 +23,5 @@ def sentence(outcome: Outcome, requirement: Requirement) -> str:
     description = requirement.written.description
     name = f"{outcome.requirement} ({description})" if description else outcome.requirement
     told = f"{name} is {outcome.verdict} by {outcome.trace}: robustness {short(outcome.robustness)}"
-    return f"{told}, first violated at {moment(outcome)}" if moment(outcome) else told
+    told = f"{told}, first violated at {moment(outcome)}" if moment(outcome) else told
+    return "; ".join([told, *outcome.notes])

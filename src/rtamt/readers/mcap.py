@@ -1,0 +1,130 @@
+"""MCAP files that were cut off or are damaged: the part before the damage, as a file that can be read.
+
+Such a file is a sequence of records, each with its kind and its length; messages lie in records of their own, or
+in those of a chunk, which may be compressed. The index at the end is not needed. See https://mcap.dev/spec.
+"""
+
+from __future__ import annotations
+
+import os
+import struct
+from io import BytesIO
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rtamt.errors import TraceError
+from rtamt.extras import library
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from typing import BinaryIO
+
+_MAGIC = b"\x89MCAP0\r\n"
+_FOOTER, _MESSAGE, _CHUNK, _DATA_END = 0x02, 0x05, 0x06, 0x0F
+_KINDS = range(0x01, 0x10)
+
+_LAST = 2**63 - 1  # ns since 1970
+_RECORD = struct.Struct("<BQ")  # kind, length
+_IN_MESSAGE = struct.Struct("<HIQQ")  # channel, number, time of recording, time of publication
+_IN_CHUNK = struct.Struct("<QQQII")  # first time, last time, size, checksum, length of the compression's name
+_LENGTH = struct.Struct("<Q")
+
+
+def salvage(path: str, copy: str) -> str:
+    """Write what comes before the damage of a file to ``copy``; return what is lost as a sentence, "" if nothing is."""
+    size = os.path.getsize(path)
+    last: int | None = None
+    with open(path, "rb") as file, open(copy, "wb") as out:
+        if file.read(len(_MAGIC)) != _MAGIC:
+            raise TraceError(f"'{path}' cannot be read as MCAP: it does not begin as such a file does")
+        out.write(_MAGIC)
+        whole = False
+        reached = file.tell()
+        for kind, data, complete in _records(file, size):
+            if kind in (_DATA_END, _FOOTER):
+                whole = True
+                break
+            intact = complete and (kind != _CHUNK or _is_intact(data))
+            cut = not complete and kind == _CHUNK
+            for part, content in [(kind, data)] if intact else _whole_records(data) if cut else []:
+                out.write(_RECORD.pack(part, len(content)) + content)
+                last = _later(last, part, content)
+            if not intact:
+                break
+            reached = file.tell()
+        out.write(_RECORD.pack(_FOOTER, 20) + bytes(20) + _MAGIC)
+    if whole:
+        return ""
+    if last is None:
+        raise TraceError(
+            f"'{path}' is damaged at byte {reached:,} of {size:,}, and no message comes before that"
+        )
+    until = np.datetime64(min(last, _LAST), "ns")
+    return f"the file is damaged at byte {reached:,} of {size:,}: read up to {until} UTC"
+
+
+def _records(file: BinaryIO, size: int) -> Iterator[tuple[int, bytes, bool]]:
+    """Yield kind, contents and whether these are complete, up to the first thing that is no record."""
+    while len(header := file.read(_RECORD.size)) == _RECORD.size:
+        kind, length = _RECORD.unpack(header)
+        if kind not in _KINDS:
+            return
+        data = file.read(min(length, size - file.tell()))
+        yield kind, data, len(data) == length
+
+
+def _later(last: int | None, kind: int, data: bytes) -> int | None:
+    """Return the time of the last message so far."""
+    if kind == _CHUNK:
+        found = int(_IN_CHUNK.unpack_from(data)[1])
+    elif kind == _MESSAGE and len(data) >= _IN_MESSAGE.size:
+        found = int(_IN_MESSAGE.unpack_from(data)[2])
+    else:
+        return last
+    return found if last is None else max(last, found)
+
+
+# ---- chunks --------------------------------------------------------------------------------------
+
+
+def _contents(chunk: bytes) -> tuple[str, int, int, bytes, bool]:
+    """Return compression, size, checksum and the packed records of a chunk, and whether these are complete."""
+    _, _, size, checksum, length = _IN_CHUNK.unpack_from(chunk)
+    at = _IN_CHUNK.size + length
+    (packed,) = _LENGTH.unpack_from(chunk, at)
+    data = chunk[at + _LENGTH.size :]
+    return chunk[_IN_CHUNK.size : at].decode(), size, checksum, data, len(data) == packed
+
+
+def _is_intact(chunk: bytes) -> bool:
+    storage = library("rosbags.rosbag2.storage_mcap", "reading ROS bags", "ros")
+    try:
+        compression, size, checksum, data, complete = _contents(chunk)
+        storage.decompress(data, compression, size, checksum)
+    except Exception:  # noqa: BLE001 - whatever it is, the chunk is not to be used
+        return False
+    return complete
+
+
+def _whole_records(chunk: bytes) -> list[tuple[int, bytes]]:
+    """Return the whole records of a chunk that was cut off."""
+    try:
+        compression, _, _, data, _ = _contents(chunk)
+        records = _unpacked(data, compression)
+    except (struct.error, UnicodeDecodeError, ValueError, RuntimeError, OSError):
+        return []
+    found = _records(BytesIO(records), len(records))
+    return [(kind, content) for kind, content, complete in found if complete and kind != _CHUNK]
+
+
+def _unpacked(data: bytes, compression: str) -> bytes:
+    """Return as much of compressed data as can be told without its end."""
+    if not compression:
+        return data
+    if compression == "lz4":
+        decompressor: Any = library("lz4.frame", "reading ROS bags", "ros").LZ4FrameDecompressor()
+    else:
+        zstd = library("rosbags.rosbag2.storage_mcap", "reading ROS bags", "ros").zstd
+        decompressor = zstd.ZstdDecompressor()
+    return bytes(decompressor.decompress(data))
