@@ -21,8 +21,12 @@ constexpr std::size_t checksum_size = 4;
 // How far, as a part of the period, a communication point may miss a sampling instant.
 constexpr double tolerance = 1e-6;
 
-// Places of the outputs after the inputs.
-enum class Output : std::uint32_t { robustness, verdict, known, since, count };
+// The variables of a Told, in this order.
+enum class Output : std::uint32_t { robustness, verdict, known, since };
+
+[[nodiscard]] constexpr Output output_of(std::uint32_t place) noexcept {
+    return static_cast<Output>(place % Component::fields);
+}
 
 [[noreturn]] void refuse(const std::string& sentence) {
     throw std::invalid_argument(sentence);
@@ -85,14 +89,24 @@ Component::Component(const std::string& folder, const std::string& token)
         refuse("The model description is for the program '" + token + "', but the unit carries '" +
                token_of(program_) + "'.");
     }
-    now_.inputs.resize(monitor_->metadata().inputs.size());
+    const std::size_t count = monitor_->program().outputs.size();
+    if (count == 0 || count % 2 != 0) {
+        refuse("The program has " + std::to_string(count) +
+               " outputs, but a unit needs a robustness and a verdict of each requirement.");
+    }
+    now_ = fresh();
+}
+
+Component::Now Component::fresh() const {
+    Now fresh;
+    fresh.told.resize(monitor_->program().outputs.size() / 2);
+    fresh.inputs.resize(monitor_->metadata().inputs.size());
+    return fresh;
 }
 
 void Component::reset() {
     monitor_ = std::make_unique<capi::Monitor>(program_);
-    Now fresh;
-    fresh.inputs.resize(now_.inputs.size());
-    now_ = std::move(fresh);
+    now_ = fresh();
 }
 
 // ---- steps --------------------------------------------------------------------------------------
@@ -138,13 +152,16 @@ void Component::advance_discrete(double time, double end) {
         refuse("The step begins at " + shown(time) + " s, but the last one ended at " +
                shown(now_.reached) + " s.");
     }
-    std::array<double, 2> known{};
+    std::vector<double> known(2 * now_.told.size());
     monitor_->hold(now_.inputs, static_cast<std::size_t>(last - first), known);
-    if (std::isnan(known[0])) return;
-    now_.known = true;
-    now_.robustness = known[0];
-    now_.verdict = known[1];
-    now_.since = now_.start + static_cast<double>(*monitor_->runner().known_until(0)) * step();
+    for (std::size_t i = 0; i < now_.told.size(); ++i) {
+        if (std::isnan(known[2 * i])) continue;
+        const std::int64_t until = *monitor_->runner().known_until(2 * i);
+        now_.told[i] = {.robustness = known[2 * i],
+                        .verdict = known[2 * i + 1],
+                        .since = now_.start + static_cast<double>(until) * step(),
+                        .known = true};
+    }
 }
 
 void Component::advance_dense(double time) {
@@ -165,13 +182,16 @@ void Component::advance_dense(double time) {
     for (std::uint32_t input = 0; input < now_.inputs.size(); ++input)
         samples.push_back({static_cast<std::int64_t>(tick), now_.inputs[input], input});
     monitor_->push(samples);
-    const dense::Events robustness = monitor_->runner().told(0);
-    const dense::Events verdict = monitor_->runner().told(1);
-    if (robustness.count != 0) now_.robustness = robustness.values[robustness.count - 1];
-    if (verdict.count != 0) now_.verdict = verdict.values[verdict.count - 1];
-    if (const auto until = monitor_->runner().known_until(0)) {
-        now_.known = true;
-        now_.since = static_cast<double>(*until) / ticks_a_second;
+    for (std::size_t i = 0; i < now_.told.size(); ++i) {
+        Told& told = now_.told[i];
+        const dense::Events robustness = monitor_->runner().told(2 * i);
+        const dense::Events verdict = monitor_->runner().told(2 * i + 1);
+        if (robustness.count != 0) told.robustness = robustness.values[robustness.count - 1];
+        if (verdict.count != 0) told.verdict = verdict.values[verdict.count - 1];
+        if (const auto until = monitor_->runner().known_until(2 * i)) {
+            told.known = true;
+            told.since = static_cast<double>(*until) / ticks_a_second;
+        }
     }
 }
 
@@ -179,32 +199,34 @@ void Component::advance_dense(double time) {
 
 double Component::real(std::uint32_t reference) const {
     if (reference < outputs()) return now_.inputs[reference];
-    const std::uint32_t place = reference - outputs();
-    constexpr auto parameters = static_cast<std::uint32_t>(Output::count);
-    if (place == static_cast<std::uint32_t>(Output::robustness)) return now_.robustness;
-    if (place == static_cast<std::uint32_t>(Output::since)) return now_.since;
-    const std::size_t count = monitor_->metadata().parameters.size();
-    if (place >= parameters && place - parameters < count) {
-        return monitor_->parameter(place - parameters);
+    if (is_output(reference)) {
+        const Output place = output_of(reference - outputs());
+        if (place == Output::robustness) return told(reference).robustness;
+        if (place == Output::since) return told(reference).since;
+    } else {
+        const std::uint32_t place = reference - parameters();
+        const std::size_t count = monitor_->metadata().parameters.size();
+        if (place < count) return monitor_->parameter(place);
+        if (place == count) return now_.reached; // time, which FMI 3.0 has as a variable
     }
-    if (place == parameters + count) return now_.reached; // time, which FMI 3.0 has as a variable
     refuse("There is no real variable with the reference " + std::to_string(reference) + ".");
 }
 
 std::int32_t Component::integer(std::uint32_t reference) const {
-    if (reference != outputs() + static_cast<std::uint32_t>(Output::verdict)) {
+    if (!is_output(reference) || output_of(reference - outputs()) != Output::verdict) {
         refuse("There is no integer variable with the reference " + std::to_string(reference) +
                ".");
     }
-    return now_.verdict > 0.0 ? 1 : now_.verdict < 0.0 ? -1 : 0;
+    const double verdict = told(reference).verdict;
+    return verdict > 0.0 ? 1 : verdict < 0.0 ? -1 : 0;
 }
 
 bool Component::boolean(std::uint32_t reference) const {
-    if (reference != outputs() + static_cast<std::uint32_t>(Output::known)) {
+    if (!is_output(reference) || output_of(reference - outputs()) != Output::known) {
         refuse("There is no Boolean variable with the reference " + std::to_string(reference) +
                ".");
     }
-    return now_.known;
+    return told(reference).known;
 }
 
 void Component::set_real(std::uint32_t reference, double value) {
@@ -212,7 +234,7 @@ void Component::set_real(std::uint32_t reference, double value) {
         now_.inputs[reference] = value; // NaN is refused when it becomes a sample
         return;
     }
-    const std::uint32_t first = outputs() + static_cast<std::uint32_t>(Output::count);
+    const std::uint32_t first = parameters();
     if (reference < first || reference - first >= monitor_->metadata().parameters.size()) {
         refuse("The variable with the reference " + std::to_string(reference) + " cannot be set.");
     }
@@ -230,10 +252,14 @@ void Component::Now::transfer(Snapshot& snapshot) {
     snapshot.item(number);
     snapshot.require(number <= static_cast<std::uint8_t>(Phase::terminated));
     phase = static_cast<Phase>(number);
-    for (double* value : {&start, &reached, &robustness, &verdict, &since})
+    for (double* value : {&start, &reached})
         snapshot.item(*value);
     snapshot.require(std::isfinite(start) && std::isfinite(reached));
-    snapshot.item(known);
+    for (Told& each : told) {
+        for (double* value : {&each.robustness, &each.verdict, &each.since})
+            snapshot.item(*value);
+        snapshot.item(each.known);
+    }
     snapshot.cells(inputs.data(), inputs.size());
 }
 
@@ -258,8 +284,7 @@ void Component::restore(std::span<const std::uint8_t> state) {
         Reader(state.subspan(outside)).take<std::uint32_t>() != crc32(state.first(outside))) {
         refuse("This is not a state of this unit, or it was damaged on the way.");
     }
-    Now then;
-    then.inputs.resize(now_.inputs.size());
+    Now then = fresh();
     Snapshot snapshot(state.first(outside));
     then.transfer(snapshot);
     monitor_->restore(state.subspan(outside + checksum_size));

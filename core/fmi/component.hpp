@@ -2,8 +2,9 @@
 // communication steps, state. What is wrong is thrown as std::invalid_argument or capi::Undefined,
 // and everything is then as it was.
 //
-// Value references: the inputs from 0 on, then robustness, verdict, known, known_since, then the
-// parameters; src/rtamt/fmi/variables.py counts in the same way.
+// Value references: the inputs from 0 on, then robustness, verdict, known, known_since of all
+// requirements together, where there are several these four of each, then the parameters;
+// src/rtamt/fmi/variables.py counts in the same way.
 //
 // Discrete time: sample k is what the inputs are at start + k periods, and a step from t to t + h
 // takes the samples in [t, t + h), with the inputs held. Dense time: every communication point
@@ -23,6 +24,8 @@ namespace rtamt::fmi {
 
 class Component {
   public:
+    static constexpr std::uint32_t fields = 4; // variables of each requirement
+
     // `folder` is where program.rtamt lies; the token must be that of the program.
     Component(const std::string& folder, const std::string& token);
 
@@ -52,15 +55,20 @@ class Component {
   private:
     enum class Phase : std::uint8_t { setting, stepping, terminated };
 
+    // What is known of one requirement, or of all together.
+    struct Told {
+        double robustness = 0.0;
+        double verdict = 0.0; // +inf or -inf; 0 as long as it is not known
+        double since = 0.0;
+        bool known = false;
+    };
+
     // All that is not in the monitor.
     struct Now {
         Phase phase = Phase::setting;
         double start = 0.0;
         double reached = 0.0;
-        double robustness = 0.0;
-        double verdict = 0.0; // +inf or -inf; 0 as long as it is not known
-        double since = 0.0;
-        bool known = false;
+        std::vector<Told> told; // the first is of all together
         std::vector<double> inputs;
 
         void transfer(Snapshot& snapshot);
@@ -71,8 +79,18 @@ class Component {
     Now now_;
 
     [[nodiscard]] double step() const noexcept { return monitor_->metadata().seconds(); }
+    [[nodiscard]] Now fresh() const;
     [[nodiscard]] std::uint32_t outputs() const noexcept { // the first reference of one
         return static_cast<std::uint32_t>(now_.inputs.size());
+    }
+    [[nodiscard]] std::uint32_t parameters() const noexcept { // the first reference of one
+        return outputs() + static_cast<std::uint32_t>(now_.told.size()) * fields;
+    }
+    [[nodiscard]] bool is_output(std::uint32_t reference) const noexcept {
+        return reference >= outputs() && reference < parameters();
+    }
+    [[nodiscard]] const Told& told(std::uint32_t reference) const noexcept {
+        return now_.told[(reference - outputs()) / fields];
     }
     void advance_discrete(double time, double end);
     void advance_dense(double time);

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 __all__ = ["DECLARING", "StlLexer", "functions", "logical", "symbols", "temporal"]
 
 #: The words of specification files that are no operators.
-DECLARING = ("specification", "from", "import", "input", "output", "const", "topic")
+DECLARING = ("specification", "from", "import", "input", "output", "const", "topic", "require", "severity")
 
 
 def temporal() -> list[str]:

@@ -15,6 +15,7 @@ from rtamt.engine.offline import Evaluators, Question
 from rtamt.engine.online import Watched
 from rtamt.language.formula import Formula, variables
 from rtamt.language.grammar import is_number
+from rtamt.language.lint import LintWarning, warnings_of
 from rtamt.language.operators import STL, Language
 from rtamt.language.parser import parse_formula
 from rtamt.language.printer import to_text
@@ -91,6 +92,19 @@ class Specification:
         if len(known) == 1:
             return MappingProxyType({known[0].name: self})
         return MappingProxyType({requirement.name: self.select(requirement.name) for requirement in known})
+
+    @cached_property
+    def warnings(self) -> tuple[LintWarning, ...]:
+        """What is legal in the text and seldom meant; each with a code, a message and its place.
+
+        >>> import rtamt
+        >>> print(*rtamt.parse("prev(x) - x <= 3").warnings)
+        RT105: 'prev' applies to all of '(x) - x <= 3'; write prev((x) - x <= 3) if that is meant
+          line 1, column 1:
+            prev(x) - x <= 3
+            ^^^^^^^^^^^^^^^^
+        """
+        return warnings_of(self.document)
 
     def select(self, name: str) -> Specification:
         """Return the specification of one requirement or named sub-specification alone.
@@ -298,7 +312,8 @@ class Specification:
         """Return the requirement as a program, whose bytes run wherever the core does, without Python.
 
         Its outputs are ``robustness`` (ρ, or what ``semantics`` says) and ``verdict`` (+inf where the
-        formula holds, -inf where it does not). The named constants of the specification are parameters
+        formula holds, -inf where it does not); of several requirements these are of all together, and each has
+        its own, ``robustness.R1`` and ``verdict.R1``. The named constants of the specification are parameters
         of the program, except those that bound an interval. Settings and errors as for :meth:`monitor`.
 
         >>> import rtamt
@@ -308,9 +323,13 @@ class Specification:
         """
         domain = self._time(time)
         step = self._resolution(resolution) if domain == "dense" else self._period(period) or Fraction(1)
+        chosen = self._semantics(semantics)
+        several = self.requirements if len(self.requirements) > 1 else {}
+        parts = {name: (one.formula, one.judged(one.formula, chosen)) for name, one in several.items()}
         return standalone.carried_program(
             self.formula,
-            judged=self.judged(self.formula, self._semantics(semantics)),
+            judged=self.judged(self.formula, chosen),
+            parts=parts,
             period=step,
             domain=domain,
             text=self.text,
@@ -365,9 +384,9 @@ class Specification:
         return Watched(name, formula, name if self._known(name) is None else self.text)
 
     def _known(self, name: str) -> Formula | None:
-        """Return a named sub-specification, or the requirement of this name where no variable has it."""
+        """Return a named sub-specification or requirement, if there is one."""
         definition = self.document.definitions.get(name)
-        if definition is not None or name in self.input_names:
+        if definition is not None:
             return definition
         return next((known.formula for known in self.document.requirements if known.name == name), None)
 

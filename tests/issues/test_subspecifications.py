@@ -78,7 +78,9 @@ def test_issue_164_a_stateful_subspecification_changes_no_result(mode, texts, pa
 def test_in_the_modern_face_neither_named_nor_watched_subspecifications_change_a_result(time, texts):
     told = []
     for text, watch in ((texts[0], ()), (texts[1], ()), (texts[1], ("premise", "unused"))):
-        monitor = rtamt.parse(text).monitor(time=time, watch=watch)
+        *parts, last = text.split(";")
+        required = ";".join([*parts, f"require it: {last}"])
+        monitor = rtamt.parse(required).monitor(time=time, watch=watch)
         updates = [repr(monitor.update(t, x=x, y=y)) for t, x, y in zip(TIMES, XS, YS, strict=True)]
         told.append([*updates, repr(monitor.finish())])
     assert told[0] == told[1] == told[2]

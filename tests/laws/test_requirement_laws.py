@@ -14,11 +14,13 @@ from hypothesis import strategies as st
 
 import rtamt
 from rtamt.errors import EvaluationError
+from rtamt.fmi.variables import variables_of
 from rtamt.language.formula import Apply, Formula, Var, fold
 from rtamt.language.grammar import is_number
 from rtamt.language.parser import parse_formula
 from rtamt.language.specfile import parse_document
 from rtamt.verdicts.first_violation import first_violation
+from tests import capi
 from tests.strategies import chunkings, dense_traces, formulas, traces
 
 DECLARED = "float x  float y  "
@@ -144,6 +146,35 @@ def test_chunks(data: st.DataObject, dense: bool) -> None:
     told = {name: (p.robustness, p.satisfied, p.first_violation) for name, p in found.requirements.items()}
     assert told == parts
     assert found.minimum == min(part.minimum for part in found.requirements.values())
+
+
+@settings(max_examples=30)
+@given(several(), traces())
+def test_program(drawn: tuple[str, list[Formula]], columns: dict[str, Any]) -> None:
+    spec = rtamt.parse(drawn[0])
+    program = spec.compile()
+    names = [f".{name}" for name in spec.requirements]
+    assert program.metadata is not None
+    assert program.metadata.outputs == tuple(
+        f"{o}{n}" for n in ("", *names) for o in ("robustness", "verdict")
+    )
+    declared = [variable.name for variable in variables_of(program)]
+    assert all(f"known_since{name}" in declared for name in names)
+    monitor = capi.Monitor(program.to_bytes())
+    known: list[list[float]] = [[] for _ in program.metadata.outputs]
+    rows = [[float(columns[name][i]) for name in spec.input_names] for i in range(len(columns["x"]))]
+    try:
+        for row in rows:
+            for values, value in zip(known, monitor.step(row, len(known)), strict=True):
+                values.extend([] if np.isnan(value) else [value])
+        monitor.finish()
+    except capi.RefusedError:
+        return
+    for output, values in enumerate(known):
+        values.extend(monitor.told(output)[1].tolist())
+        assert len(values) == len(rows)
+    for which in (0, 1):
+        np.testing.assert_array_equal(known[which], np.minimum.reduce(known[2 + which :: 2]))
 
 
 CORPUS = sorted({case.formula for name in FILES for case in read(name)})

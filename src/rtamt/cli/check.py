@@ -16,12 +16,14 @@ from rtamt.cli.command import (
     VIOLATED,
     Command,
     CommandError,
+    add_ignore_option,
     add_specification_options,
     add_time_option,
     complain,
     json_number,
     short,
     stamp_text,
+    warn,
 )
 from rtamt.cli.reading_options import add_reading_options, reading_of
 from rtamt.cli.reports import REPORTS, write_report
@@ -63,6 +65,9 @@ is written again, with the topics of robustness and verdicts that SPEC names.
 
 Each requirement has a row of its own: the formulas after 'require ID "text" severity WORD:' in SPEC, and
 without any of these the formulas that no other one uses.
+
+What is legal in SPEC and seldom meant is a warning on stderr, with a code that --ignore silences; it does
+not change the exit code. 'rtamt lint' prints the same.
 
 Large files are read in chunks, in memory that does not grow with them, where the future of the formula
 is bounded (but for always and eventually at its top). Many files are read on all cores.
@@ -110,6 +115,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     for kind in REPORTS:
         parser.add_argument(f"--{kind}", metavar="FILE", help=f"write a report as {_REPORT_NAMES[kind]}")
     parser.add_argument("--jobs", type=int, metavar="N", help="processes (default: one a core, if it pays)")
+    add_ignore_option(parser)
     parser.add_argument("--quiet", action="store_true", help="print errors only: the exit code has it all")
     parser.add_argument(
         "--color", default="auto", metavar="{auto,always,never}", help="colour (default: auto, on a terminal)"
@@ -120,6 +126,8 @@ def run(args: argparse.Namespace) -> int:
     """Evaluate every requirement over every trace, print what came of it."""
     color = use_color(args.color, sys.stdout)
     given, traces = requirements_and_traces(args, "check")
+    for each in [] if args.quiet else given:
+        warn(each.spec, each.given, args.ignore)
     _check_output(args.output, given, traces)
     requirements = judged(given)
     rows = {requirement.label: requirement for requirement in requirements}

@@ -17,6 +17,7 @@ import numpy as np
 from rtamt.cli.language import add_language_option, read_language
 from rtamt.engine.native import core
 from rtamt.errors import SpecificationError, StlError, UsageError
+from rtamt.language.lint import CODES
 from rtamt.language.units import UNITS, decimal
 from rtamt.readers.formats import METADATA, SUFFIXES
 from rtamt.rewrite.semantics import SEMANTICS
@@ -117,6 +118,27 @@ def add_time_option(parser: argparse.ArgumentParser) -> None:
         metavar="{discrete,dense}",
         help="dense: signals change at any instant, not once a period (default: discrete)",
     )
+
+
+def add_ignore_option(parser: argparse.ArgumentParser) -> None:
+    """Add which warnings are silenced; see :func:`warn`."""
+    parser.add_argument(
+        "--ignore",
+        metavar="CODE",
+        action="append",
+        default=[],
+        choices=CODES,
+        help=f"no warning of this kind: {', '.join(CODES)}; may be given again",
+    )
+
+
+def warn(spec: Specification, given: str, ignored: Sequence[str]) -> int:
+    """Print the warnings about a specification that are not silenced on stderr; return how many there are."""
+    place = f"{given}: " if os.path.isfile(given) else ""
+    found = [warning for warning in spec.warnings if warning.code not in ignored]
+    for warning in found:
+        complain(f"{place}warning {warning}")
+    return len(found)
 
 
 def add_stamp_options(parser: argparse.ArgumentParser, what: str) -> None:

@@ -9,14 +9,18 @@ from typing import TYPE_CHECKING
 from rtamt.cli.command import (
     ERROR,
     OK,
+    VIOLATED,
     Command,
     CommandError,
+    add_ignore_option,
     add_specification_options,
     add_time_option,
     complain,
     read_specification,
+    warn,
 )
 from rtamt.errors import StlError
+from rtamt.language.lint import RULES
 from rtamt.rewrite.check import check_bounds, check_online
 
 if TYPE_CHECKING:
@@ -25,14 +29,18 @@ if TYPE_CHECKING:
     from rtamt.specification import Specification
 
 _DESCRIPTION = """\
-Read specification files and say what is wrong with each: what, where (line, column and a caret) and how
-to mend it. Nothing is evaluated.
+Read specification files and report what is wrong with each: what, where (line, column and a caret) and how
+to mend it; and as warnings what is legal and seldom meant. Nothing is evaluated.
 
-Exit code: 0 all are right, 2 some are not."""
+Exit code: 0 all are right, 2 some are not; with --strict 1 where there are warnings only."""
 
 _EPILOG = """\
 With --period the bounds must be whole numbers of it; with --online no operator may need the whole
 future, so that a monitor can run the requirement.
+
+Warnings, by the codes that --ignore takes:
+
+{warnings}
 
 examples:
   rtamt lint examples/request_grant/spec.stl
@@ -42,36 +50,42 @@ examples:
 def configure(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     parser.description = _DESCRIPTION
-    parser.epilog = _EPILOG
+    parser.epilog = _EPILOG.format(
+        warnings="\n".join(f"  {rule.code}  {rule.about}: {rule.example}" for rule in RULES)
+    )
     add_specification_options(parser)
     parser.add_argument("more", metavar="SPEC", nargs="*", help="more of them")
     add_time_option(parser)
     parser.add_argument("--online", action="store_true", help="refuse what a monitor cannot run")
+    add_ignore_option(parser)
+    parser.add_argument("--strict", action="store_true", help="exit with 1 where there are warnings")
     parser.add_argument("--quiet", action="store_true", help="print errors only")
 
 
 def run(args: argparse.Namespace) -> int:
     """Read every file; report each that is wrong."""
     files = [args.spec, *args.more]
-    right = [_is_right(file, args) for file in files]
-    if not all(right):
+    warnings = [_warnings(file, args) for file in files]
+    if None in warnings:
         return ERROR
+    if any(warnings) and args.strict:
+        return VIOLATED
     if not args.quiet:
         print(f"{len(files)} {'file is' if len(files) == 1 else 'files are'} right")
     return OK
 
 
-def _is_right(file: str, args: argparse.Namespace) -> bool:
-    """Check a file; say what is wrong with it."""
+def _warnings(file: str, args: argparse.Namespace) -> int | None:
+    """Check a file, print what is wrong with it; return the number of warnings, None where there is an error."""
     try:
-        _check(file, args)
+        spec = _check(file, args)
     except StlError as error:
         complain(error)
-        return False
-    return True
+        return None
+    return 0 if args.quiet and not args.strict else warn(spec, file, args.ignore)
 
 
-def _check(file: str, args: argparse.Namespace) -> None:
+def _check(file: str, args: argparse.Namespace) -> Specification:
     if not os.path.isfile(file):
         raise CommandError(f"there is no file '{file}'; 'rtamt info' looks at a formula in quotes")
     spec = read_specification(Namespace(**{**vars(args), "spec": file}), args.time)
@@ -79,6 +93,7 @@ def _check(file: str, args: argparse.Namespace) -> None:
         _check_formula(spec, online=args.online)
     except StlError as error:
         raise CommandError(f"{file}: {error}") from error
+    return spec
 
 
 def _check_formula(spec: Specification, *, online: bool) -> None:

@@ -6,6 +6,7 @@ import json
 import sys
 from collections import deque
 from dataclasses import dataclass
+from math import inf
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -27,14 +28,14 @@ from rtamt.cli.live_view import Live
 from rtamt.cli.stdin_reader import STDIN, Samples
 from rtamt.cli.terminal import printed
 from rtamt.errors import StlError, TraceError
-from rtamt.signals.arrays import TOLERANCE
+from rtamt.signals.arrays import TOLERANCE, Signal
 
 if TYPE_CHECKING:
     import argparse
+    from collections.abc import Mapping, Sequence
 
     from rtamt.engine.dense_monitor import DenseMonitor
     from rtamt.engine.monitor import Monitor
-    from rtamt.signals.arrays import Signal
     from rtamt.specification import Specification
 
 #: By how much, as a fraction, a gap may miss a period that it is: stamps since 1970 are no more precise.
@@ -56,9 +57,11 @@ With --time dense signals change at any instant, each on its own clock: a JSON o
 the variables, a cell of CSV may be empty, and a line of output is printed for every change and at the
 last known instant.
 
-output: {"time": 0.0, "robustness": 3.0}; the time is seconds, or in dense time a date where the input
-has dates. JSON has no infinities: they are the strings "inf" and "-inf", here and in the input. With
---semantics boolean a line has the verdict too: {"time": 0.0, "robustness": "inf", "satisfied": true}.
+output: {"time": 0.0, "robustness": 3.0}; of several requirements also the robustness of each, by name:
+{"time": 0.0, "robustness": 3.0, "requirements": {"R1": 3.0, "R2": 4.5}}. The time is seconds, or in dense
+time a date where the input has dates. JSON has no infinities: they are the strings "inf" and "-inf", here
+and in the input. With --semantics boolean a line has the verdict too: {"time": 0.0, "robustness": "inf",
+"satisfied": true}.
 
 A line that is no sample ends the monitor with exit code 2. With --keep-going it is reported and
 left out, and the exit code is 2 at the end. A sample that is left out leaves a gap in time, which
@@ -102,8 +105,11 @@ def run(args: argparse.Namespace) -> int:
     dense = spec.time == "dense"
     live = _live(printed(spec.formula)) if args.live else None
     told = Output(verdicts=spec.semantics == "boolean", live=live)
+    names = tuple(spec.requirements) if len(spec.requirements) > 1 else ()
     watched: Watched | DenseWatched = (
-        DenseWatched(spec.monitor(time="dense"), told) if dense else _watched(spec, args.tolerance, told)
+        DenseWatched(spec.monitor(time="dense", watch=names), told, names)
+        if dense
+        else _watched(spec, args.tolerance, told, names)
     )
     samples = Samples(watched.monitor.input_names, args.time_column, dense=dense, unit=args.time_unit)
     if sys.stdin.isatty():
@@ -133,9 +139,9 @@ def run(args: argparse.Namespace) -> int:
     return code
 
 
-def _watched(spec: Specification, tolerance: float | None, told: Output) -> Watched:
-    monitor = spec.monitor(tolerance=TOLERANCE if tolerance is None else tolerance)
-    return Watched(monitor, told, assumed=spec.period is None and tolerance is None)
+def _watched(spec: Specification, tolerance: float | None, told: Output, names: Sequence[str]) -> Watched:
+    monitor = spec.monitor(tolerance=TOLERANCE if tolerance is None else tolerance, watch=names)
+    return Watched(monitor, told, names, assumed=spec.period is None and tolerance is None)
 
 
 def _live(title: str) -> Live:
@@ -154,13 +160,8 @@ class Output:
     verdicts: bool
     live: Live | None = None
 
-    def signal(self, signal: Signal) -> None:
-        """Print every point of a signal."""
-        for time, robustness in zip(signal.times, signal.values.tolist(), strict=True):
-            self.point(time, robustness)
-
-    def point(self, time: Any, robustness: float) -> None:
-        """Print the robustness at one instant."""
+    def point(self, time: Any, robustness: float, parts: Mapping[str, float]) -> None:
+        """Print the robustness at one instant; ``parts``: of each of several requirements."""
         if self.live is not None:
             self.live.point(time, robustness)
             if sys.stdout.isatty():
@@ -170,6 +171,8 @@ class Output:
         rest: dict[str, Any] = {"robustness": json_number(robustness)}
         if self.verdicts:
             rest["satisfied"] = robustness > 0
+        if parts:
+            rest["requirements"] = {name: json_number(value) for name, value in parts.items()}
         print(f'{{"time": {stamp}, {json.dumps(rest)[1:]}', flush=True)
 
 
@@ -180,9 +183,11 @@ class Watched:
     have, which a stream shows too late: the stamps must then be what is assumed, and not merely near it.
     """
 
-    def __init__(self, monitor: Monitor, output: Output, *, assumed: bool) -> None:
+    def __init__(self, monitor: Monitor, output: Output, names: Sequence[str], *, assumed: bool) -> None:
         self.monitor = monitor
         self._output = output
+        #: Of each requirement what is known, but not yet of all together.
+        self._parts: dict[str, deque[float]] = {name: deque() for name in names}
         self._period = float(monitor.period)
         self._assumed = assumed
         self._last: float | None = None
@@ -204,8 +209,12 @@ class Watched:
             return f"{STDIN}, line {line}: {error}"
         self._last = time
         self._stamps.append(time)
+        for name, known in self._parts.items():
+            value = self.monitor[name]
+            if isinstance(value, float):
+                known.append(value)
         if robustness is not None:
-            self._output.point(self._stamps.popleft(), robustness)
+            self._point(self._stamps.popleft(), robustness)
         return ""
 
     def _differs(self, gap: float) -> bool:
@@ -214,29 +223,61 @@ class Watched:
 
     def finish(self) -> None:
         """End the trace; print what was not known yet."""
-        self._output.signal(self.monitor.finish())
+        rest = self.monitor.finish()
+        for name, known in self._parts.items():
+            signal = self.monitor[name]
+            assert isinstance(signal, Signal)
+            known.extend(signal.values.tolist())
+        for time, robustness in zip(rest.times, rest.values.tolist(), strict=True):
+            self._point(time, robustness)
+
+    def _point(self, time: float, robustness: float) -> None:
+        self._output.point(time, robustness, {name: known.popleft() for name, known in self._parts.items()})
 
 
 class DenseWatched:
     """A monitor in dense time: a sample may hold some of the variables, a result any number of points."""
 
-    def __init__(self, monitor: DenseMonitor, output: Output) -> None:
+    def __init__(self, monitor: DenseMonitor, output: Output, names: Sequence[str]) -> None:
         self.monitor = monitor
         self._output = output
+        self._names = names
+        #: Changes of the requirements that lie beyond what is known of all together.
+        self._ahead: list[tuple[Any, str, float]] = []
+        self._latest: dict[str, float] = {}
+        self._robustness = inf
 
     def take(self, time: Any, values: dict[str, float], line: int) -> str:
         """Take a sample and print what became known; return what is wrong with the sample, if anything is."""
         if time is None:
             return f"{STDIN}, line {line}: in dense time every sample needs its time"
         try:
-            self._output.signal(self.monitor.update(time, **values))
+            signal = self.monitor.update(time, **values)
         except StlError as error:
             return f"{STDIN}, line {line}: {error}"
+        self._print(signal)
         return ""
 
     def finish(self) -> None:
         """End the signals; print what was not known yet."""
-        self._output.signal(self.monitor.finish())
+        self._print(self.monitor.finish())
+
+    def _print(self, signal: Signal) -> None:
+        """Print a line at every change of the robustness and of the requirements, as far as all are known."""
+        for name in self._names:
+            part = self.monitor[name]
+            self._ahead += [(t, name, v) for t, v in zip(part.times, part.values.tolist(), strict=True)]
+        if not len(signal):
+            return
+        overall = dict(zip(signal.times, signal.values.tolist(), strict=True))
+        due = [change for change in self._ahead if change[0] <= signal.times[-1]]
+        self._ahead = [change for change in self._ahead if change[0] > signal.times[-1]]
+        for time in sorted({*overall, *(time for time, _, _ in due)}):
+            before = dict(self._latest)
+            self._latest.update((name, value) for at, name, value in due if at == time)
+            if time in overall or self._latest != before:
+                self._robustness = overall.get(time, self._robustness)
+                self._output.point(time, self._robustness, {name: self._latest[name] for name in self._names})
 
 
 COMMAND = Command("monitor", "watch a stream: samples on stdin, robustness on stdout", configure, run)

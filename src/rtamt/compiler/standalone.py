@@ -15,12 +15,13 @@ from rtamt.rewrite.desugar import desugar
 from rtamt.rewrite.semantics import boolean
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Mapping
     from fractions import Fraction
 
     from rtamt.compiler.program import Program
 
-#: What a carried program tells, in this order: ρ, and +inf or -inf as the formula holds or not.
+#: What a standalone program tells, in this order: ρ, and +inf or -inf as the formula holds or not. Of several
+#: requirements it tells both of all together, then of each: ``robustness.R1``, ``verdict.R1``.
 OUTPUTS = ("robustness", "verdict")
 
 #: Nodes of the largest formula that is written out; a message with a longer one would help nobody.
@@ -33,15 +34,16 @@ def carried_program(
     period: Fraction,
     domain: str,
     judged: Formula | None = None,
+    parts: Mapping[str, tuple[Formula, Formula]] | None = None,
     text: str | None = None,
     name: str | None = None,
 ) -> Program:
     """Compile a requirement for carriers: outputs :data:`OUTPUTS`, its named constants as parameters.
 
     ``period``: seconds of a step, as for ``compile_program``. ``judged``: the formula whose robustness is
-    told, where a semantics says so; the verdict is that of ``formula`` all the same. ``text``: what
-    errors point at. A constant that is also the bound of an interval decides how long windows are, and
-    is no parameter.
+    told, where a semantics says so; the verdict is that of ``formula`` all the same. ``parts``: by name the
+    formula and the judged formula of each of several requirements. ``text``: what errors point at. A
+    constant that is also the bound of an interval decides how long windows are, and is no parameter.
 
     >>> from fractions import Fraction
     >>> from rtamt.language.parser import parse_formula
@@ -61,7 +63,8 @@ def carried_program(
         raise UsageError("the formula reads no variable, so in dense time nothing says when to evaluate it")
     structural = _bounds(formula)
     values: dict[str, float] = {}
-    lowered = (desugar(judged or formula), desugar(boolean(formula)))
+    pairs = {"": (formula, judged or formula)} | {f".{name}": pair for name, pair in (parts or {}).items()}
+    lowered = [desugar(each) for own, worth in pairs.values() for each in (worth, boolean(own))]
     told = [_with_parameters(each, structural, values) for each in lowered]
     program = compile_program(told, period, inputs, domain=domain, parameters=values)
     places = {
@@ -72,7 +75,7 @@ def carried_program(
     metadata = Metadata(
         name or "",
         str(formula) if _sizes((formula,))[formula] <= _LARGEST else text or "",
-        OUTPUTS,
+        tuple(f"{output}{suffix}" for suffix in pairs for output in OUTPUTS),
         MappingProxyType(places),
         MappingProxyType(_meanings(program, told)),
     )

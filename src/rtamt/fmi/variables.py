@@ -1,7 +1,7 @@
 """What a unit has for variables, in the order of their value references.
 
-The inputs from 0 on, then the outputs, then the parameters; core/fmi/component.hpp counts in the
-same way.
+The inputs from 0 on, then the outputs, of several requirements first those of all together, then the
+parameters; core/fmi/component.hpp counts in the same way.
 """
 
 from __future__ import annotations
@@ -39,18 +39,6 @@ def variables_of(program: Program) -> tuple[Variable, ...]:
     """
     metadata = program.metadata
     assert metadata is not None
-    late = format_duration(program.lags[0] * program.period)
-    outputs = (
-        (
-            "robustness",
-            "real",
-            f"how far the behaviour is from violating the requirement at known_since ({late} before the last "
-            f"sample); 0 while known is false",
-        ),
-        ("verdict", "integer", "1 satisfied, -1 violated at known_since; 0 while known is false"),
-        ("known", "boolean", "whether the horizon has passed, so that robustness and verdict mean something"),
-        ("known_since", "real", "the time in s that robustness and verdict are for; 0 while known is false"),
-    )
     found: list[Variable] = []
 
     def add(name: str, kind: str, causality: str, start: float, description: str) -> None:
@@ -65,12 +53,29 @@ def variables_of(program: Program) -> tuple[Variable, ...]:
 
     for name in program.inputs:
         add(name, "real", "input", 0.0, "a variable of the requirement")
-    for name, kind, description in outputs:
-        add(name, kind, "output", 0.0, description)
+    for output, lag in zip(metadata.outputs[::2], program.lags[::2], strict=True):
+        requirement = output.removeprefix("robustness")
+        for name, kind, description in _outputs(format_duration(lag * program.period)):
+            add(f"{name}{requirement}", kind, "output", 0.0, description)
     for name, places in metadata.parameters.items():
         value = program.instructions[places[0]].x
         add(name, "real", "parameter", value, "a constant of the requirement")
     return tuple(found)
+
+
+def _outputs(late: str) -> tuple[tuple[str, str, str], ...]:
+    """Return the names, types and descriptions of the outputs of one requirement; ``late``: its horizon."""
+    return (
+        (
+            "robustness",
+            "real",
+            f"how far the behaviour is from violating the requirement at known_since ({late} before the last "
+            f"sample); 0 while known is false",
+        ),
+        ("verdict", "integer", "1 satisfied, -1 violated at known_since; 0 while known is false"),
+        ("known", "boolean", "whether the horizon has passed, so that robustness and verdict mean something"),
+        ("known_since", "real", "the time in s that robustness and verdict are for; 0 while known is false"),
+    )
 
 
 def convention(variables: tuple[Variable, ...]) -> str:

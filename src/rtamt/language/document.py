@@ -85,6 +85,8 @@ class Document:
     definitions: Mapping[str, Formula] = field(default_factory=lambda: MappingProxyType({}))
     #: Every variable declared, here or for :func:`parse_document`; if there is none, all names are free.
     variables: tuple[str, ...] = ()
+    #: The names of the assertions that others use.
+    used: frozenset[str] = frozenset()
     #: The name of the assertion or requirement that :meth:`select` has chosen.
     selected: str | None = None
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from rtamt.errors import ParseError
 from rtamt.language.document import SEVERITIES, Requirement
-from rtamt.language.formula import Span
+from rtamt.language.formula import Span, variables
 from rtamt.language.grammar import is_number
 from rtamt.language.lexer import unquoted
 from rtamt.language.parser import FormulaParser
@@ -31,6 +31,7 @@ class RequirementParser(FormulaParser):
         self._imports: list[Import] = []
         self._definitions = dict(scope.definitions)
         self._explicit: list[Requirement] = []
+        self._names: list[Span] = []  # where the name of each stands
 
     def _requirement(self) -> None:
         """``requirement = "require" , id , [ text ] , [ "severity" , word ] , ":" , expression``."""
@@ -57,6 +58,7 @@ class RequirementParser(FormulaParser):
                 formula.span or whole,
             )
         self._explicit.append(Requirement(name, formula, description, severity, True, whole))
+        self._names.append(span)
 
     def _id_span(self) -> Span:
         """Return where the name of a requirement stands."""
@@ -78,10 +80,16 @@ class RequirementParser(FormulaParser):
 
     def _requirements(self, assertions: tuple[Assertion, ...]) -> tuple[Requirement, ...]:
         """Return what must hold, in the order of the text."""
+        read = {name for assertion in assertions for name in variables(assertion.formula)}
+        for requirement, span in zip(self._explicit, self._names, strict=True):
+            if requirement.name in read:
+                raise self.error(
+                    f"'{requirement.name}' is the name of a variable; give the requirement another one", span
+                )
         if self._explicit:
             return tuple(self._explicit)
         unused = [a for a in assertions if not is_number(a.formula) and a.name not in self.used]
-        taken = {assertion.name for assertion in assertions}
+        taken = read | {assertion.name for assertion in assertions if assertion.name is not None}
         found = []
         for number, assertion in enumerate(unused or assertions[-1:], 1):
             name = assertion.name or f"requirement_{number}"

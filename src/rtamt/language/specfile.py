@@ -111,6 +111,7 @@ class _DocumentParser(RequirementParser):
             MappingProxyType(self._constants),
             MappingProxyType(self._definitions),
             variables,
+            frozenset(self.used),
         )
 
     # ---- before the formulas ---------------------------------------------------------------------

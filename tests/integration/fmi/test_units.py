@@ -96,9 +96,9 @@ class Unit:
 
     def get(self, name: str) -> Any:
         reference = [self.reference[name]]
-        if name == "verdict":
+        if name.startswith("verdict"):
             return (self.slave.getInteger if self.version == 2 else self.slave.getInt32)(reference)[0]
-        if name == "known":
+        if name.partition(".")[0] == "known":
             return bool(self.slave.getBoolean(reference)[0])
         return (self.slave.getReal if self.version == 2 else self.slave.getFloat64)(reference)[0]
 
@@ -392,3 +392,19 @@ def test_equal_requirements_make_equal_archives_with_the_library_and_the_program
             "resources/program.rtamt",
         ]
     assert parse_formula("x >= 3") == rtamt.parse("x >= 3").formula
+
+
+@BOTH
+def test_each_of_several_requirements_has_outputs_as_soon_as_it_is_known(exported, tmp_path, version):
+    text = "require R1: eventually[0:200ms](x >= 3); require R2: x <= 6"
+    unit = Unit(exported(text, version, period=PERIOD), tmp_path / "unit").begin()
+    for i, value in enumerate((2.0, 5.0, 7.0)):
+        unit.set(x=value)
+        unit.step(i * PERIOD)
+        assert (unit.get("known.R2"), unit.get("known.R1"), unit.get("known")) == (True, i == 2, i == 2)
+        assert unit.get("robustness.R2") == 6 - value
+    assert (unit.get("robustness"), unit.get("robustness.R1"), unit.get("verdict")) == (4, 4, 1)
+    assert (unit.get("verdict.R1"), unit.get("verdict.R2")) == (1, -1)
+    assert (unit.get("known_since"), unit.get("known_since.R1")) == (0, 0)
+    assert unit.get("known_since.R2") == pytest.approx(0.2)
+    unit.close()

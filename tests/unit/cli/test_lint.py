@@ -58,3 +58,35 @@ def test_dense_time_has_no_samples_to_step_by(run, write):
 def test_only_files_are_read(run):
     answer = run("lint", "x >= 3")
     assert answer == (2, "", "rtamt: there is no file 'x >= 3'; 'rtamt info' looks at a formula in quotes\n")
+
+
+def test_warnings_have_codes_that_can_be_silenced(run, write):
+    write("gap.stl", "x and y >= 3; 3 >= 2")
+    answer = run("lint", "gap.stl")
+    assert answer == (
+        0,
+        "1 file is right\n",
+        "rtamt: gap.stl: warning RT101: 'x' is a number where a formula is expected; compare it, such as x > 0\n"
+        "  line 1, column 1:\n"
+        "    x and y >= 3; 3 >= 2\n"
+        "    ^\n"
+        "rtamt: gap.stl: warning RT103: this compares constants: it always holds or never does\n"
+        "  line 1, column 15:\n"
+        "    x and y >= 3; 3 >= 2\n"
+        "                  ^^^^^^\n",
+    )
+    assert run("lint", "gap.stl", "--strict").code == 1
+    silent = run("lint", "gap.stl", "--strict", "--ignore", "RT101", "--ignore", "RT103")
+    assert silent == (0, "1 file is right\n", "")
+    assert "invalid choice: 'RT999'" in run("lint", "gap.stl", "--ignore", "RT999").err
+
+
+def test_check_prints_warnings_and_keeps_its_exit_code(run, write):
+    write("a.csv", "x\n5\n4\n")
+    answer = run("check", "prev(x) - x <= 3", "a.csv", "--json")
+    assert (answer.code, answer.err.splitlines()[0]) == (
+        0,
+        "rtamt: warning RT105: 'prev' applies to all of '(x) - x <= 3'; write prev((x) - x <= 3) if that is meant",
+    )
+    assert run("check", "prev(x) - x <= 3", "a.csv", "--json", "--ignore", "RT105").err == ""
+    assert run("check", "prev(x) - x <= 3", "a.csv", "--quiet").err == ""

@@ -262,3 +262,35 @@ def test_a_number_beyond_the_range_of_a_double_is_no_infinity(run, write, number
 def test_a_key_that_is_given_twice_is_rejected(run):
     answer = run("monitor", "x >= 0", stdin='{"x": 1, "y": 2, "x": -1}\n')
     assert answer.err == 'rtamt: stdin, line 1: the key "x" is given twice; give it once\n'
+
+
+def test_each_requirement_stands_in_the_line(run):
+    spec = "require R1: eventually[0:1](x >= 3); require R2: x <= 6"
+    answer = run("monitor", spec, stdin='{"x": 2}\n{"x": 5}\n{"x": 7}\n')
+    assert [json.loads(line) for line in answer.out.splitlines()] == [
+        {"time": 0, "robustness": 2, "requirements": {"R1": 2, "R2": 4}},
+        {"time": 1, "robustness": 1, "requirements": {"R1": 4, "R2": 1}},
+        {"time": 2, "robustness": -1, "requirements": {"R1": 4, "R2": -1}},
+    ]
+    assert (answer.code, answer.err) == (0, "")
+
+
+def test_in_dense_time_there_is_a_line_where_any_requirement_changes(run):
+    spec = "require R1: eventually[0:1](x >= 3); require R2: y <= 6"
+    stdin = "".join(
+        json.dumps(row) + "\n"
+        for row in (
+            {"time": 0, "x": 5, "y": 5},
+            {"time": 2, "y": 4},
+            {"time": 3, "x": 4},
+            {"time": 4, "x": 4, "y": 7},
+        )
+    )
+    lines = run("monitor", spec, "--time", "dense", stdin=stdin).out.splitlines()
+    told = [(row["time"], row["robustness"], row["requirements"]) for row in map(json.loads, lines)]
+    assert told[0] == (0, 1, {"R1": 2, "R2": 1})
+    assert (2, 2, {"R1": 2, "R2": 2}) in told
+    assert (3, 1, {"R1": 1, "R2": 2}) in told
+    assert told[-1] == (4, -1, {"R1": 1, "R2": -1})
+    assert all(robustness == min(each.values()) for _, robustness, each in told)
+    assert [time for time, _, _ in told] == sorted({time for time, _, _ in told})

@@ -98,7 +98,9 @@ def test_what_is_not_watched_is_an_error_that_lists_what_is(time: Any) -> None:
 
 @TIMES
 def test_what_cannot_be_watched_says_why(time: Any) -> None:
-    spec = rtamt.parse("input float x; input float z; later = eventually(x >= 1); odd = z >= 1; once(x >= 2)")
+    spec = rtamt.parse(
+        "input float x; input float z; later = eventually(x >= 1); odd = z >= 1; require it: once(x >= 2)"
+    )
     with pytest.raises(
         UsageError, match=r"^'odd' reads 'z', which the formula does not; watch what reads x only$"
     ):

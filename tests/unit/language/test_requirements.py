@@ -38,7 +38,7 @@ def required(text):
         ('require "a b/c": x > 1', [("a b/c", "x > 1")]),
         ("require S: x > 1; require U-2: y > 1", [("S", "x > 1"), ("U-2", "y > 1")]),
         ('require and "text" severity note: x > 1', [("and", "x > 1")]),
-        ("require x: x > 1", [("x", "x > 1")]),
+        ("requirement_1 > 3", [("requirement_1_", "requirement_1 > 3")]),
     ],
 )
 def test_requirements_of_a_text(text, expected):
@@ -93,6 +93,11 @@ MESSAGES = [
         "                     ^^^",
         "'low' is the name of another requirement or definition",
     ),
+    (
+        "require x: y > 1; x > 1",
+        "        ^",
+        "'x' is the name of a variable; give the requirement another one",
+    ),
     ("require low: x > 1; low = x > 1", "                    ^^^", "'low' is defined twice"),
     (
         "require R1 = 3",
@@ -124,10 +129,9 @@ def test_one_of_several_is_a_specification_of_its_own_also_after_pickling():
 
 
 def test_a_requirement_is_a_signal_of_the_result_and_can_be_watched():
-    spec = rtamt.parse("require A: always(x <= 3); require x: x >= 1")
+    spec = rtamt.parse("require A: always(x <= 3); require B: x >= 1")
     result = spec.evaluate({"x": [1, 2]})
-    assert result["A"].values.tolist() == [1, 1]
-    assert result["x"].values.tolist() == [1, 2]  # a variable's name is that of the variable
+    assert (result["A"].values.tolist(), result["B"].values.tolist()) == ([1, 1], [0, 1])
     monitor = rtamt.parse("require A: x <= 3; require B: x >= 1").monitor(watch=["A", "B"])
     assert (monitor.update(0.0, x=0), monitor["A"], monitor["B"]) == (-1, 3, -1)
 

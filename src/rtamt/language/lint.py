@@ -1,0 +1,176 @@
+"""What is legal in a specification and seldom meant: a table of rules, each with a code that can be silenced."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from rtamt.errors import caret
+from rtamt.language.formula import Apply, Const, Var, postorder, variables
+from rtamt.language.grammar import is_number, is_predicate
+from rtamt.language.records import Fixity, Sort
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+    from rtamt.language.document import Assertion, Document
+    from rtamt.language.formula import Formula, Span
+
+    Found = Iterator[tuple[Span | None, str]]
+
+
+@dataclass(frozen=True, slots=True)
+class Rule:
+    """One kind of warning: its code, what it is about, an example, and what finds it in a document."""
+
+    code: str
+    about: str
+    example: str
+    find: Callable[[Document], Found]
+
+
+@dataclass(frozen=True, slots=True)
+class LintWarning:
+    """A place in a specification that is legal and seldom meant; ``str()`` has the line and a caret."""
+
+    code: str
+    message: str
+    text: str
+    span: Span | None
+
+    def __str__(self) -> str:
+        where = "" if self.span is None else f"\n{caret(self.text, self.span)}"
+        return f"{self.code}: {self.message}{where}"
+
+
+def warnings_of(document: Document) -> tuple[LintWarning, ...]:
+    """Return the warnings about a document, in the order of its text.
+
+    >>> from rtamt.language.specfile import parse_document
+    >>> print(*warnings_of(parse_document("x and y >= 3")))
+    RT101: 'x' is a number where a formula is expected; compare it, such as x > 0
+      line 1, column 1:
+        x and y >= 3
+        ^
+    """
+    found = {
+        LintWarning(rule.code, message, document.text, span)
+        for rule in RULES
+        for span, message in rule.find(document)
+    }
+    return tuple(sorted(found, key=lambda each: (each.span.start if each.span else 0, each.code)))
+
+
+# ---- the rules -----------------------------------------------------------------------------------
+
+
+def _nodes(document: Document) -> Iterator[Apply]:
+    for assertion in document.assertions:
+        for node in postorder(assertion.formula):
+            if isinstance(node, Apply):
+                yield node
+
+
+def _operands(document: Document, sort: Sort) -> Iterator[tuple[Formula, str]]:
+    """Yield every operand that is read as this sort, and what the text has there."""
+    for node in _nodes(document):
+        for wanted, operand in zip(node.op.operands, node.args, strict=True):
+            if wanted is sort:
+                span = operand.span
+                yield operand, "this" if span is None else f"'{document.text[span.start : span.end]}'"
+
+
+def _number_as_formula(document: Document) -> Found:
+    truths = {declaration.name for declaration in document.declarations if declaration.type == "bool"}
+    for operand, written in _operands(document, Sort.FORMULA):
+        if is_number(operand) and not (isinstance(operand, Var) and operand.name in truths):
+            such = f", such as {operand.name} > 0" if isinstance(operand, Var) else ""
+            yield operand.span, f"{written} is a number where a formula is expected; compare it{such}"
+
+
+def _formula_as_number(document: Document) -> Found:
+    for operand, written in _operands(document, Sort.NUMBER):
+        if not is_number(operand):
+            yield operand.span, f"{written} is a formula where a number is expected: its robustness is taken"
+
+
+def _constant_comparison(document: Document) -> Found:
+    for node in _nodes(document):
+        if is_predicate(node.op) and not variables(node):
+            yield node.span, "this compares constants: it always holds or never does"
+
+
+def _division_by_zero(document: Document) -> Found:
+    for node in _nodes(document):
+        if node.op.name == "div" and isinstance(node.args[1], Const) and node.args[1].value == 0:
+            yield node.span, "this divides by 0"
+
+
+def _past_parenthesis(document: Document) -> Found:
+    """An operator is directly before a parenthesis, as a function is, but takes in what follows it, too."""
+    text = document.text
+    for node in _nodes(document):
+        if node.op.fixity is not Fixity.PREFIX or node.span is None or node.args[0].span is None:
+            continue
+        spelled = next((s for s in node.op.spellings if text.startswith(s, node.span.start)), "")
+        interval = None if node.interval is None else node.interval.span
+        begin = node.span.start + len(spelled) if interval is None else interval.end
+        operand = node.args[0].span
+        # The span of a whole group begins behind its parenthesis.
+        if operand.start == begin and text.startswith("(", begin):
+            operator, whole = text[node.span.start : begin], text[operand.start : operand.end]
+            yield (
+                node.span,
+                f"'{operator}' applies to all of '{whole}'; write {operator}({whole}) if that is meant",
+            )
+
+
+def _never_used(document: Document) -> Iterator[Assertion]:
+    """Yield the named assertions that nothing uses, requires or publishes."""
+    required = {requirement.span for requirement in document.requirements}
+    declared = {declaration.name for declaration in document.declarations}
+    for assertion in document.assertions:
+        name = assertion.name
+        if assertion.span in required or (name is not None and name in document.used):
+            continue
+        if name is None or name.partition(".")[0] not in declared:
+            yield assertion
+
+
+def _unused_number(document: Document) -> Found:
+    for assertion in _never_used(document):
+        if is_number(assertion.formula):
+            what = "this number" if assertion.name is None else f"the number '{assertion.name}'"
+            yield assertion.span, f"{what} is never used"
+
+
+def _not_required(document: Document) -> Found:
+    for assertion in _never_used(document):
+        if not is_number(assertion.formula):
+            what = "this formula" if assertion.name is None else f"'{assertion.name}'"
+            yield (
+                assertion.span,
+                f"{what} is not checked, as the text says with 'require' what is; require it, too",
+            )
+
+
+RULES: tuple[Rule, ...] = (
+    Rule("RT101", "a number where a formula is expected", "x and y >= 3", _number_as_formula),
+    Rule("RT102", "a formula where a number is expected", "(x >= 3) + 1 > 2", _formula_as_number),
+    Rule("RT103", "a comparison of constants", "3 >= 2 and x >= 1", _constant_comparison),
+    Rule("RT104", "a division by the constant 0", "x / 0 >= 1", _division_by_zero),
+    Rule(
+        "RT105",
+        "a prefix operator directly before a parenthesis, whose operand extends past it",
+        "prev(x) - x <= 3",
+        _past_parenthesis,
+    ),
+    Rule("RT201", "a number that has a name and is never used", "sum = x + y; x >= 3", _unused_number),
+    Rule(
+        "RT202",
+        "a formula that is no requirement, because the text uses 'require'",
+        "require R1: x >= 3; y >= 2",
+        _not_required,
+    ),
+)
+CODES = tuple(rule.code for rule in RULES)

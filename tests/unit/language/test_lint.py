@@ -1,0 +1,69 @@
+"""What is legal and seldom meant: every rule finds its example, and nothing in what is meant."""
+
+import pytest
+from conformance.cases import FILES, read
+
+from rtamt.language.lint import CODES, RULES, warnings_of
+from rtamt.language.specfile import parse_document
+
+
+def found(text):
+    document = parse_document(text)
+    return [(each.code, text[each.span.start : each.span.end]) for each in warnings_of(document)]
+
+
+def test_every_rule_finds_its_example_and_no_other_one_does():
+    assert [[code for code, _ in found(rule.example)] for rule in RULES] == [[code] for code in CODES]
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("always(x)", [("RT101", "x")]),
+        ("not gap", [("RT101", "gap")]),
+        ("input bool p  input float x  p and x > 1", []),
+        ("x >= -inf", []),
+        ("const float limit = 3; x > 1 or limit > 2", [("RT103", "limit > 2")]),
+        ("const float none = 0; x / none > 1", [("RT104", "x / none")]),
+        ("x / 2 > 0", []),
+        ("always[0:5](x + y) <= 3", [("RT105", "always[0:5](x + y) <= 3")]),
+        ("not(x) > 3", [("RT105", "not(x) > 3")]),
+        ("always (x + y) <= 3", []),
+        ("always(x > 3) and y > 1", []),
+        ("prev((x - 3) >= 2)", []),
+        ("-(x) * 3 >= 2", []),
+        ("abs(x) - x <= 3", []),
+        ("sum = x + y; sum > 3", []),
+        ("x + y", []),
+        ("a = x + 1; b = y + 1", [("RT201", "a = x + 1")]),
+        ("low = x > 1; require R: always(low)", []),
+        ("low = x > 1; require R: y > 2", [("RT202", "low = x > 1")]),
+    ],
+)
+def test_what_is_found(text, expected):
+    assert found(text) == expected
+
+
+def test_ros_outputs_are_used():
+    text = "from rtamt_msgs.msg import F  input F x  output F rob  rob.value = x.value + 1; require R: x.value > 1"
+    assert found(text) == []
+
+
+def test_the_line_is_shown():
+    (warning,) = warnings_of(parse_document("x > 1 and\n  prev(x) - x <= 3"))
+    assert str(warning) == (
+        "RT105: 'prev' applies to all of '(x) - x <= 3'; write prev((x) - x <= 3) if that is meant\n"
+        "  line 2, column 3:\n"
+        "      prev(x) - x <= 3\n"
+        "      ^^^^^^^^^^^^^^^^"
+    )
+
+
+def test_formulas_of_the_corpus_can_all_be_looked_at():
+    codes = {
+        each.code
+        for name in FILES
+        for case in read(name)
+        for each in warnings_of(parse_document(case.formula))
+    }
+    assert {"RT101", "RT103", "RT104"} <= codes <= set(CODES)
