@@ -1,4 +1,4 @@
-"""ros2 launch rtamt4ros2 monitor.launch.py spec:=/path/to/spec.stl period:=100ms."""
+"""ros2 launch rtamt4ros2 monitor.launch.py spec:=/path/to/spec.stl period:=100ms (or time:=dense)."""
 
 from launch.actions import DeclareLaunchArgument
 from launch.substitutions import LaunchConfiguration
@@ -9,7 +9,7 @@ from launch import LaunchDescription
 
 #: Arguments and what holds where nothing is said.
 ARGUMENTS = {
-    "period": "1",
+    "period": "",
     "unit": "s",
     "time": "discrete",
     "stale": "",

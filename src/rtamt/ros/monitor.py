@@ -22,6 +22,10 @@ if TYPE_CHECKING:
 #: After how many silent periods a topic is stale, unless a time is set; in dense time, seconds.
 STALE_PERIODS = 10
 STALE_DENSE = Fraction(5)
+#: Periods of which none is left out when the clock is looked at late, unless a topic is stale before that.
+CATCH_UP = 10_000
+#: Nanoseconds that a stamp may be ahead of the clock, and behind it whatever is stale.
+SKEW = 10**9
 #: Seconds between two looks at the clock, at most: how soon silence and the end are noticed.
 PAUSE = 0.1
 _NO_CLOCK = "simulated time has not begun: nobody publishes /clock"
@@ -30,19 +34,26 @@ _NO_CLOCK = "simulated time has not begun: nobody publishes /clock"
 class RosMonitor:
     """Watches the requirements of a specification over messages.
 
-    ``binding``: from :func:`~rtamt.ros.binding.bind`. ``time``: ``"discrete"``, where every tick is a
-    sample of the latest messages, or ``"dense"``, where every message is a sample at the time in its
-    header, each topic on its own clock. ``period``: seconds from tick to tick, or text such as
-    ``"100ms"``. ``stale``: after how long without a message a topic is stale; 0 for never, by default
-    ten periods, in dense time 5 s. All times are integers of nanoseconds; 0 is a simulated clock that nobody
-    has set yet.
+    ``binding``: from :func:`~rtamt.ros.binding.bind`. ``time``: ``"discrete"``, where the latest message
+    of each topic is sampled every ``period`` (seconds, or text such as ``"100ms"``), or ``"dense"``, where
+    every message is a sample, each topic on its own clock. ``stale``: after how long without a message a
+    topic is stale; 0 for never, by default ten periods, in dense time 5 s. All times are integers of
+    nanoseconds; 0 is a simulated clock that nobody has set yet.
+
+    The instant of a message is the stamp in its header, or its arrival where there is none. The first sample
+    of discrete time lies where the last of an output's topics has its first message. A sample is taken as
+    soon as every topic has a message at its instant or later, and at the latest when :meth:`tick` comes to it;
+    a message that is delivered after that is part of the next sample. So whoever delivers every message, and
+    calls :meth:`tick` no sooner than the messages up to that instant are delivered, gets the numbers
+    that ``rtamt check --period`` finds in a bag with these messages.
 
     Bounded future is pastified (the paper's Definition 4): robustness comes from the first sample on,
     and speaks of the instant one horizon ago; verdicts are unknown until the horizon has passed.
 
     Nothing is told of samples that are not there. An output is silent until each of its topics has had
     a message, and while one is stale. It begins anew when stamps go back, when a stale topic speaks
-    again, and after a number that is none; each is said once, in :meth:`notices`.
+    again, after a number that is none, and when the clock leaps by more than the stale time or, in discrete
+    time, :data:`CATCH_UP` periods; each is said once, in :meth:`notices`.
 
     >>> from types import SimpleNamespace as Message
     >>> import rtamt
@@ -53,28 +64,30 @@ class RosMonitor:
     ...     rob.value = once[0:1](req.value >= 3)''')), period=1)
     >>> monitor.tick(0)
     []
-    >>> monitor.message("rtamt/req", Message(value=5.0), 500_000_000)
-    []
-    >>> robustness, verdict = monitor.tick(1_000_000_000)
+    >>> robustness, verdict = monitor.message("rtamt/req", Message(value=5.0), 500_000_000)
     >>> robustness.stamp, robustness.value, verdict.satisfied
-    (1000000000, 2.0, True)
+    (500000000, 2.0, True)
+    >>> [record.stamp for record in monitor.tick(2_000_000_000)]
+    [1500000000, 1500000000]
     """
 
     def __init__(
         self,
         binding: Binding,
         *,
-        period: Duration = 1,
+        period: Duration | None = None,
         time: str = "discrete",
         stale: Duration | None = None,
     ) -> None:
         self.binding = binding
         self.time = time_domain(time)
-        self.period = positive_period(period)
-        if (self.period * 10**9).denominator != 1:
-            raise UsageError(f"the period {self.period} s is no whole number of nanoseconds")
-        self._step = int(self.period * 10**9)
+        self.period = self._period(period)
         self._stale = self._stale_after(stale)
+        # How far the clock may go from one look at it to the next; 0 for any distance.
+        self._leap = self._stale
+        if self.period is not None:
+            most = int(self.period * 10**9) * CATCH_UP
+            self._leap = min(self._stale or most, most)
         self._readers: dict[str, list[tuple[str, Callable[[Any], float]]]] = {}
         for known in binding.inputs:
             self._readers.setdefault(known.topic, []).extend((name, reader(name)) for name in known.fields)
@@ -84,6 +97,7 @@ class RosMonitor:
         if self.time == "dense":
             self._dense = [DenseWatch(outputs, topic_of) for outputs in together(binding.outputs)]
         else:
+            assert self.period is not None
             self._discrete = [
                 DiscreteWatch(outputs, topic_of, self.period) for outputs in together(binding.outputs)
             ]
@@ -93,11 +107,11 @@ class RosMonitor:
         self._heard: dict[str, int] = {}  # when a topic last spoke
         self._stamps: dict[str, int] = {}  # of its last message
         self._last: int | None = None  # the latest tick or arrival
-        self._next: int | None = None  # when the next sample is due
         self._silent: set[str] = set()
         self._notices: list[Notice] = []
         self._faults: dict[str, str] = {}  # of topics whose last message could not be used
         self._repeated: set[str] = set()  # topics whose last message had the stamp of the one before
+        self._foreign: set[str] = set()  # topics whose stamps are those of another clock
         self._timeless = False  # it was said that messages come before the simulated clock is set
 
     @property
@@ -105,11 +119,28 @@ class RosMonitor:
         """The outputs, those in one watch that read the same numbers."""
         return self._dense or self._discrete
 
+    def _period(self, period: Duration | None) -> Fraction | None:
+        """Return seconds; None in dense time."""
+        if self.time == "dense":
+            if period is not None:
+                raise UsageError(
+                    "dense time has no sampling period: leave out the period, or choose discrete time"
+                )
+            return None
+        if period is None:
+            raise UsageError(
+                "discrete time samples the topics once a period: give the period, such as 100ms, or "
+                "choose dense time, which reads every message at its own time"
+            )
+        exact = positive_period(period)
+        if (exact * 10**9).denominator != 1:
+            raise UsageError(f"the period {exact} s is no whole number of nanoseconds")
+        return exact
+
     def _stale_after(self, stale: Duration | None) -> int:
         """Return nanoseconds; 0 for never."""
         if stale is None:
-            dense = self.time == "dense"
-            return int((STALE_DENSE if dense else self.period * STALE_PERIODS) * 10**9)
+            return int((STALE_DENSE if self.period is None else self.period * STALE_PERIODS) * 10**9)
         exact = duration(stale)
         if exact < 0:
             raise UsageError(f"a topic cannot be stale after {stale!r}; give a time, or 0 for never")
@@ -118,9 +149,9 @@ class RosMonitor:
     # ---- what comes in ---------------------------------------------------------------------------
 
     def message(self, topic: str, message: Any, now: int) -> list[Record]:
-        """Take a message that arrived at ``now``; return what became known, in dense time only."""
-        records: list[Record] = []
+        """Take a message that arrived at ``now``; return what became known."""
         self._advance(now)
+        records = self._look_for_silence(now)
         if now == 0 and not self._timeless:
             self._timeless = True
             self._say(Level.WARN, _NO_CLOCK)
@@ -131,7 +162,8 @@ class RosMonitor:
             return records
         stamp = stamp_of(message) or now
         last = self._stamps.get(topic)
-        if self.time == "dense" and last is not None and stamp <= last:
+        # Before the simulated clock is set, messages without a stamp have no order but that of arrival.
+        if last is not None and stamp <= last and (stamp or self._dense):
             if stamp == last:
                 self._repeat(topic)
                 return records
@@ -148,6 +180,12 @@ class RosMonitor:
                 records += self._tell(watch, stamp, values)
             else:
                 watch.hold(stamp, values)
+        for group in self._discrete:
+            if topic in group.topics:
+                instant = now if self._is_foreign(topic, stamp, now) else stamp
+                group.hold(topic, instant, values)
+                if now and (complete := group.complete()) is not None:
+                    records += self._sample(group, complete)
         return records
 
     def tick(self, now: int) -> list[Record]:
@@ -156,24 +194,38 @@ class RosMonitor:
         Ticks that come late are made up for: every period has its sample. Returns what became known.
         """
         self._advance(now)
-        self._look_for_silence(now)
-        if self.time == "dense":
-            return []
-        records: list[Record] = []
-        due = now if self._next is None else self._next
-        while due <= now:
-            for watch in self._discrete:
-                if self._all_speak(watch):
-                    records += self._tell(watch, due, self._values)
-            due += self._step
-        self._next = due
+        records = self._look_for_silence(now)
+        for watch in self._discrete:
+            records += self._sample(watch, now)
         return records
+
+    def _sample(self, watch: DiscreteWatch, until: int) -> list[Record]:
+        """Take the samples that are due up to an instant, unless a topic is silent."""
+        records: list[Record] = []
+        if self._all_speak(watch):
+            while (sample := watch.sample(until)) is not None:
+                records += self._tell(watch, *sample)
+        return records
+
+    def _is_foreign(self, topic: str, stamp: int, now: int) -> bool:
+        """Tell whether a stamp is of another clock, such as that of a bag that is played without its clock.
+
+        The message is of its arrival then, which is said once.
+        """
+        foreign = now != 0 and not -max(self._leap, SKEW) <= stamp - now <= SKEW
+        if foreign and topic not in self._foreign:
+            self._foreign.add(topic)
+            apart = f"{_seconds(abs(stamp - now))} {'behind' if stamp < now else 'ahead of'}"
+            self._say(
+                Level.WARN,
+                f"the stamps on {topic} are {apart} the clock: its messages are sampled as of their arrival",
+            )
+        return foreign
 
     def pause(self, now: int) -> float:
         """Return how many seconds a node may sleep before it calls :meth:`tick`, at most :data:`PAUSE`."""
-        if self._next is None or self.time == "dense":
-            return PAUSE
-        return min(PAUSE, max(0.0, (self._next - now) / 1e9))
+        due = [watch.due for watch in self._discrete if watch.due is not None and self._all_speak(watch)]
+        return min(PAUSE, max(0.0, (min(due) - now) / 1e9)) if due else PAUSE
 
     def _all_speak(self, watch: Watch) -> bool:
         return watch.topics <= self._heard.keys() and not watch.topics & self._silent
@@ -198,18 +250,33 @@ class RosMonitor:
     def _advance(self, now: int) -> None:
         if self._last is not None and now < self._last:
             self._begin_anew(f"the clock went back by {_seconds(self._last - now)}")
-        elif self._last == 0:  # the clock starts: what came before came just now, and is not stale
+        elif self._last == 0 and now:  # the clock starts: what came before came just now, and is not stale
             self._heard = dict.fromkeys(self._heard, now)
+            for watch in self._discrete:
+                watch.clock_begins(now)
+        elif self._last is not None and self._leap and now - self._last > self._leap:
+            self._skip_ahead(now, now - self._last)
         self._last = now
+
+    def _skip_ahead(self, now: int, by: int) -> None:
+        """The clock leapt: samples of all that time would be invented, and might never end."""
+        for topic in [
+            topic for topic, heard in self._heard.items() if self._stale and now - heard > self._stale
+        ]:
+            self._forget(topic)
+            self._stamps.pop(topic, None)
+            self._silent.discard(topic)
+        for watch in self._discrete:
+            watch.leap(now)
+        self._say(Level.WARN, f"the clock went forward by {_seconds(by)} at once: all monitors begin anew")
 
     def _begin_anew(self, why: str) -> None:
         for watch in self.watches:
-            watch.reset()
+            watch.forget()
         self._values.clear()
         self._heard.clear()
         self._stamps.clear()
         self._silent.clear()
-        self._next = None
         self._say(Level.WARN, f"{why}: all monitors begin anew")
 
     def _broken(self, topic: str, problem: str) -> None:
@@ -229,27 +296,35 @@ class RosMonitor:
         self._heard.pop(topic, None)
         for watch in self.watches:
             if topic in watch.topics:
-                watch.reset()
+                watch.drop(topic)
 
-    def _look_for_silence(self, now: int) -> None:
+    def _look_for_silence(self, now: int) -> list[Record]:
+        """See which topics are stale by now; return what they were part of before that."""
+        records: list[Record] = []
         if not self._stale:
-            return
-        for topic, heard in self._heard.items():
-            if topic not in self._silent and now - heard > self._stale:
-                self._silent.add(topic)
-                self._say(Level.WARN, f"{topic} is stale: no message for {_seconds(now - heard)}")
-                for watch in self.watches:
-                    if topic in watch.topics:
-                        watch.reset()
+            return records
+        stale = {
+            topic
+            for topic, heard in self._heard.items()
+            if topic not in self._silent and now - heard > self._stale
+        }
+        for group in self._discrete:
+            if stale & group.topics and self._all_speak(group):
+                records += self._sample(
+                    group, min(self._heard[topic] for topic in group.topics) + self._stale
+                )
+        for topic in stale:
+            self._silent.add(topic)
+            self._say(Level.WARN, f"{topic} is stale: no message for {_seconds(now - self._heard[topic])}")
+            for watch in self.watches:
+                if topic in watch.topics:
+                    watch.drop(topic)
+        return records
 
     def _speaks(self, topic: str, now: int) -> None:
         if topic in self._silent:
             self._silent.discard(topic)
             self._say(Level.OK, f"{topic} speaks again: the monitors that read it begin anew")
-        elif self._stale and topic in self._heard and now - self._heard[topic] > self._stale:
-            # It was silent, and nobody looked meanwhile.
-            self._say(Level.WARN, f"{topic} was silent for {_seconds(now - self._heard[topic])}")
-            self._forget(topic)
         self._heard[topic] = now
 
     def _say(self, level: Level, message: str) -> None:

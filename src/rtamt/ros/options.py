@@ -10,13 +10,14 @@ from rtamt.errors import UsageError
 from rtamt.language.units import UNITS
 from rtamt.ros.binding import bind
 from rtamt.ros.monitor import RosMonitor
+from rtamt.settings import time_domain
 from rtamt.texts import load
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
 #: Names of parameters, and what holds where nothing is said.
-DEFAULTS: Mapping[str, str] = {"spec": "", "period": "1", "unit": "s", "time": "discrete", "stale": ""}
+DEFAULTS: Mapping[str, str] = {"spec": "", "period": "", "unit": "s", "time": "discrete", "stale": ""}
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,9 +34,16 @@ class Options:
         """Read the specification and make its monitor; raise :class:`StlError` where that cannot be."""
         if not self.spec:
             raise UsageError("no specification was given: name a file, or set the parameter spec")
-        period = self._duration(self.period)
-        dense = self.time == "dense"
-        spec = load(self.spec, time=self.time, period=None if dense else period)
+        dense = time_domain(self.time) == "dense"
+        if dense and self.period:
+            raise UsageError("dense time has no sampling period: leave out --period, or --time dense")
+        if not dense and not self.period:
+            raise UsageError(
+                "discrete time samples the topics once a period: give it, such as --period 100ms (the parameter "
+                "period), or use --time dense, which reads every message at its own time"
+            )
+        period = self._duration(self.period) if self.period else None
+        spec = load(self.spec, time=self.time, period=period)
         stale = self._duration(self.stale) if self.stale else None
         return RosMonitor(bind(spec), period=period, time=self.time, stale=stale)
 
@@ -75,7 +83,7 @@ def add_options(made: argparse.ArgumentParser) -> None:
     made.add_argument(
         "--period",
         metavar="DURATION",
-        help="from sample to sample: a number, or with a unit: 100ms (default: 1)",
+        help="from sample to sample: a number, or with a unit: 100ms; required in discrete time",
     )
     made.add_argument(
         "--unit", help=f"of --period and --stale where they are numbers: {', '.join(UNITS)} (default: s)"

@@ -58,7 +58,7 @@ class Standing:
     ``horizon``: seconds. ``lag``: the same in samples, in dense time in nanoseconds.
     """
 
-    __slots__ = ("horizon", "lag", "latest", "output", "satisfied", "topic", "verdicts")
+    __slots__ = ("horizon", "lag", "latest", "output", "satisfied", "topic", "truth", "undecided", "verdicts")
 
     def __init__(self, output: Output, period: Fraction | None) -> None:
         depth = horizon(output.specification.formula, period or Fraction(1))
@@ -74,6 +74,9 @@ class Standing:
         """Be as before the first sample."""
         self.latest: float | None = None
         self.satisfied: bool | None = None
+        #: Of dense time: the truth that became known last; whether the first verdict is still to come.
+        self.truth = 0.0
+        self.undecided = True
 
 
 class Watch:
@@ -147,7 +150,12 @@ def _watched(output: Output, period: Fraction | None) -> tuple[Watched, Watched]
 
 
 class DiscreteWatch(Watch):
-    """Samples one period apart."""
+    """Samples one period apart, each of the latest message of every topic at its instant.
+
+    The first sample lies where the last of the topics has its first message; ``due`` is the instant of the
+    next one, None before that. Messages wait until the sample at their instant has been taken, so that none
+    is newer than the sample that it is in: what ``Trace.resample`` does to a bag.
+    """
 
     def __init__(self, outputs: Sequence[Output], topic_of: Mapping[str, str], period: Fraction) -> None:
         super().__init__(outputs, topic_of, period)
@@ -156,6 +164,69 @@ class DiscreteWatch(Watch):
         self._monitor: Monitor = Monitor(
             first.formula, text=first.text, period=period, backend=backend, watch=every
         )
+        self._step = int(period / NANOSECOND)
+        self.due: int | None = None
+        self._channels = {topic: _Channel() for topic in self.topics}
+        self._earliest = 0  # no sample lies before that
+
+    def hold(self, topic: str, instant: int, values: Mapping[str, float]) -> None:
+        """Keep a message until the sample at its instant is due."""
+        mine = {name: values[name] for name in self.names if name in values}
+        self._channels[topic].hold(instant, mine)
+        if self.due is None:
+            self._begin()
+
+    def _begin(self) -> None:
+        firsts = [channel.first for channel in self._channels.values()]
+        known = [first for first in firsts if first is not None]
+        if len(known) == len(firsts):
+            self.due = max(*known, self._earliest)
+            return
+        for channel in self._channels.values():
+            channel.trim()
+
+    def complete(self) -> int | None:
+        """Return the instant up to which every topic has spoken; None before each has."""
+        latest = [channel.latest for channel in self._channels.values()]
+        known = [instant for instant in latest if instant is not None]
+        return min(known) if len(known) == len(latest) else None
+
+    def sample(self, until: int) -> tuple[int, Mapping[str, float]] | None:
+        """Return the instant and the values of the next sample; None where it lies after ``until``."""
+        if self.due is None or self.due > until:
+            return None
+        due, self.due = self.due, self.due + self._step
+        values: dict[str, float] = {}
+        for channel in self._channels.values():
+            values |= channel.at(due)
+        return due, values
+
+    def drop(self, topic: str) -> None:
+        """Begin anew when a topic speaks again, whose messages are no values of now."""
+        self._channels[topic] = _Channel()
+        self._earliest = self.due or self._earliest
+        self.due = None
+        self.reset()
+
+    def leap(self, now: int) -> None:
+        """Begin anew at ``now``, with the messages that are there."""
+        self._earliest, self.due = now, None
+        self.reset()
+        self._begin()
+
+    def clock_begins(self, now: int) -> None:
+        """Let messages that came before the simulated clock was set have come ``now``."""
+        if self.due:  # somebody took samples at 0, so that it was an instant
+            return
+        for channel in self._channels.values():
+            channel.move(now)
+        self.leap(now)
+
+    def forget(self) -> None:
+        """Be as before the first message."""
+        self._channels = {topic: _Channel() for topic in self.topics}
+        self._earliest, self.due = 0, None
+        self.reset()
 
     def take(
         self, stamp: int, values: Mapping[str, float], wanted: Container[str] | None = None
@@ -189,6 +260,47 @@ class DiscreteWatch(Watch):
         for standing, (robustness, truth) in zip(self.standings, self.formulas, strict=True):
             standing.latest = self._value(robustness)
             standing.satisfied = self._held(standing, truth)
+
+
+class _Channel:
+    """What a topic told one watch: the message that holds, and those that wait for their sample."""
+
+    __slots__ = ("_held", "_since", "_waiting", "latest")
+
+    def __init__(self) -> None:
+        self._since: int | None = None
+        self._held: Mapping[str, float] = {}
+        self._waiting: deque[tuple[int, Mapping[str, float]]] = deque()
+        #: The instant of the last message.
+        self.latest: int | None = None
+
+    @property
+    def first(self) -> int | None:
+        """The earliest instant with a value."""
+        return self._waiting[0][0] if self._since is None and self._waiting else self._since
+
+    def hold(self, instant: int, values: Mapping[str, float]) -> None:
+        """Keep a message; instants never go back, also where stamps and arrivals are mixed."""
+        self.latest = instant if self.latest is None else max(self.latest, instant)
+        self._waiting.append((self.latest, values))
+
+    def at(self, instant: int) -> Mapping[str, float]:
+        """Return what holds at an instant, later than any before."""
+        while self._waiting and self._waiting[0][0] <= instant:
+            self._since, self._held = self._waiting.popleft()
+        return self._held
+
+    def trim(self) -> None:
+        """Keep so many messages while another topic is silent."""
+        while len(self._waiting) > HELD:
+            self._since, self._held = self._waiting.popleft()
+
+    def move(self, now: int) -> None:
+        """Let all that came have come ``now``."""
+        while self._waiting:
+            self._since, self._held = self._waiting.popleft()
+        if self._since is not None:
+            self._since = self.latest = now
 
 
 class DenseWatch(Watch):
@@ -239,9 +351,24 @@ class DenseWatch(Watch):
             output = standing.output
             if wanted is None or standing.topic in wanted:
                 records += [Robustness(output, at, value) for at, value in told]
-            if wanted is None or standing.verdicts in wanted:
-                depth = standing.horizon
-                records += [Verdict(output, at, depth, self._judge(standing, at, v)) for at, v in truths]
+            heard = wanted is None or standing.verdicts in wanted
+            if heard or standing.undecided:
+                verdicts = self._verdicts(standing, truths)
+                records += verdicts if heard else []
+        return records
+
+    def _verdicts(self, standing: Standing, truths: Sequence[tuple[int, float]]) -> list[Record]:
+        """Return a verdict for each point, and one for the instant at which verdicts begin."""
+        assert self._start is not None
+        begin = self._start + standing.lag
+        records: list[Record] = []
+        for at, truth in truths:
+            if standing.undecided and at >= begin:
+                standing.undecided = False
+                if at > begin:  # what was so before still is
+                    records.append(Verdict(standing.output, begin, standing.horizon, standing.truth > 0))
+            standing.truth = truth
+            records.append(Verdict(standing.output, at, standing.horizon, self._judge(standing, at, truth)))
         return records
 
     def _judge(self, standing: Standing, at: int, truth: float) -> bool | None:
@@ -255,6 +382,14 @@ class DenseWatch(Watch):
         ):
             standing.latest = told[-1][1]
             standing.satisfied = self._judge(standing, *truths[-1])
+
+    def drop(self, topic: str) -> None:  # noqa: ARG002 - in dense time messages are samples
+        """Begin anew when a topic speaks again."""
+        self.reset()
+
+    def forget(self) -> None:
+        """Be as before the first message."""
+        self.reset()
 
     def reset(self) -> None:
         """Forget all samples."""

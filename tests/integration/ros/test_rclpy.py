@@ -86,7 +86,7 @@ def test_robustness_and_verdicts_come_every_period_from_arguments_or_parameters(
 
 
 def test_a_quality_of_service_that_is_none_is_said(start):
-    node = start(str(LISTING_8), "--ros-args", "-p", "reliability:=besteffort")
+    node = start(str(LISTING_8), "--period", "1", "--ros-args", "-p", "reliability:=besteffort")
     node.wait_for_output(
         "ros_stl_monitor: the reliability of topics cannot be 'besteffort'; choose from reliable, best_effort"
     )

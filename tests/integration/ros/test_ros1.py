@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import signal
+import time
 from itertools import pairwise
 from pathlib import Path
 
@@ -108,6 +109,7 @@ def test_simulated_time_gives_the_offline_answer_one_horizon_later_and_again_aft
     told = []
 
     def play(start, phases=PHASES):
+        told.append((start - 1) * SECOND)  # the first sample lies at the first messages
         for tick, (req, gnt) in enumerate(phases):
             if tick == 0 or PHASES[tick - 1] != (req, gnt):
                 publish(puppet, "rtamt/req", req)
@@ -126,17 +128,50 @@ def test_simulated_time_gives_the_offline_answer_one_horizon_later_and_again_aft
     play(50, PHASES[:7])
     heard = puppet.wait_for("rtamt/rob", lambda messages: len(messages) == len(told))
     assert [message["header"]["stamp"] for message in heard] == told
-    once = [message["value"] for message in heard[: len(PHASES)]]
-    assert [message["value"] for message in heard[len(PHASES) :]] == once[:7]
-    offline = rtamt.parse(FORMULA).evaluate(dict(zip(("req", "gnt"), zip(*PHASES, strict=True), strict=True)))
+    sampled = [PHASES[0], *PHASES]
+    once = [message["value"] for message in heard[: len(sampled)]]
+    assert [message["value"] for message in heard[len(sampled) :]] == once[:8]
+    offline = rtamt.parse(FORMULA).evaluate(
+        dict(zip(("req", "gnt"), zip(*sampled, strict=True), strict=True))
+    )
     horizon = 5
     assert once[horizon:] == offline.signal.values[:-horizon].tolist()
     assert min(once[horizon:]) == -2  # the second request is not granted
-    verdicts = [message["verdict"] for message in puppet.messages("rtamt/rob/verdict")][: len(PHASES)]
+    verdicts = [message["verdict"] for message in puppet.messages("rtamt/rob/verdict")][: len(sampled)]
     assert verdicts == [UNKNOWN] * horizon + [
         SATISFIED if value > 0 else VIOLATED for value in once[horizon:]
     ]
     said(puppet, "violated")
+
+
+@pytest.mark.parametrize("stale", ["0", "1e9"])
+def test_a_forward_jump_of_simulated_time_kept_the_node_busy_for_ever_and_deaf_to_sigterm(ros, stale):
+    ros.run("rosparam", "set", "/use_sim_time", "true")
+    puppet = ros.puppet()
+    for topic, kind in (("/clock", "rosgraph_msgs/Clock"), ("rtamt/req", FLOAT), ("rtamt/gnt", FLOAT)):
+        puppet.ask(do="advertise", topic=topic, kind=kind)
+    puppet.ask(do="subscribe", topic="rtamt/rob", kind=FLOAT)
+    node = ros.monitor(LISTING_8, "--period", "1ms", "--stale", stale)
+    connected(puppet, "rtamt/req", "rtamt/gnt", "rtamt/rob")
+    wait_for(lambda: puppet.ask(do="peers", topic="/clock")["answer"] >= 2, "the monitor on /clock")
+
+    def clock(seconds):
+        puppet.ask(do="publish", topic="/clock", fields={"clock": seconds * SECOND})
+
+    def speaks():
+        clock(1)
+        for topic in ("rtamt/req", "rtamt/gnt"):
+            publish(puppet, topic, 0.0)
+        return puppet.messages("rtamt/rob")
+
+    wait_for(speaks, "robustness")
+    clock(9)  # as many samples as are ever made up for
+    puppet.wait_for("rtamt/rob", lambda messages: messages[-1]["header"]["stamp"] == 9 * SECOND)
+    clock(1_600_000_000)
+    node.wait_for_output("the clock went forward by 1.6e+09 s at once: all monitors begin anew")
+    asked = time.monotonic()
+    assert node.stop(signal.SIGTERM) in {0, -signal.SIGTERM}
+    assert time.monotonic() - asked < 20  # a busy machine
 
 
 def test_dense_time_takes_the_stamps_of_messages_of_any_type_for_several_assertions(ros):
@@ -256,7 +291,7 @@ def test_the_launch_file_takes_parameters(ros, puppet):
 
 
 def test_a_specification_that_cannot_be_watched_ends_the_node_with_a_sentence(ros):
-    node = ros.monitor(LISTING_8.replace("(req.value", "(req.val"))
+    node = ros.monitor(LISTING_8.replace("(req.value", "(req.val"), "--period", "1")
     sentence = "'req' has no field 'val'; did you mean 'value'?"
     node.wait_for_output(f"ros_stl_monitor.py: {sentence}")
     wait_for(lambda: node.popen.poll() is not None, "the node's end")

@@ -126,8 +126,8 @@ def test_simulated_time_and_quality_of_service(dds):
     puppet.ask(do="subscribe", topic="/diagnostics", kind="diagnostic_msgs/msg/DiagnosticArray")
     listener = dds.puppet()
     listener.ask(do="subscribe", topic="rtamt/rob", kind=FLOAT)
-    deaf = dds.node("--sim-time")  # reliable: it is not offered that
-    node = dds.node("--sim-time", "--reliability", "best_effort", "--node", "hears")
+    deaf = dds.node("--sim-time", "--period", "1")  # reliable: it is not offered that
+    node = dds.node("--sim-time", "--period", "1", "--reliability", "best_effort", "--node", "hears")
     for topic in ("rtamt/req", "rtamt/gnt", "/clock", "rtamt/rob"):
         wait_for(lambda topic=topic: puppet.ask(do="peers", topic=topic)["answer"], f"the node on {topic}")
 
@@ -167,14 +167,14 @@ def test_a_domain_that_there_is_not_is_said(tmp_path, monkeypatch, capsys, domai
     pytest.importorskip("cyclonedds", reason="ROS 2 topics need cyclonedds: pip install 'rtamt[ros]'")
     monkeypatch.setenv("ROS_DOMAIN_ID", domain)
     (tmp_path / "spec.stl").write_text(SPEC)
-    assert main(["ros2", str(tmp_path / "spec.stl")]) == 2
+    assert main(["ros2", str(tmp_path / "spec.stl"), "--period", "1"]) == 2
     assert (
         capsys.readouterr().err == f"rtamt: ROS_DOMAIN_ID is '{domain}'; give a whole number from 0 to 232\n"
     )
 
 
 def test_a_type_that_is_not_known_is_said(dds):
-    node = dds.node("--distro", "hummble")
+    node = dds.node("--distro", "hummble", "--period", "1")
     node.wait_for_output("rtamt: unknown distribution 'hummble' of ROS 2, only ")
     wait_for(lambda: node.popen.poll() is not None, "the end of the command")
     assert node.stop() == 2

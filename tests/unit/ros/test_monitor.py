@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import time
+from fractions import Fraction
 from math import inf, nan
 from types import SimpleNamespace
 
@@ -33,6 +35,8 @@ def message(value, at=None):
 
 
 def monitor(formula, **settings):
+    if settings.get("time") != "dense":
+        settings = {"period": 1, **settings}
     return RosMonitor(bind(rtamt.parse(HEAD + formula)), **settings)
 
 
@@ -102,8 +106,8 @@ def test_each_assertion_is_published_and_other_names_are_sub_formulas():
 
 def test_a_silent_topic_is_stale_and_the_monitor_begins_anew_when_it_speaks():
     watched = monitor("rob.value = historically(req.value >= 0)", stale="2500ms")
-    watched.message("/req", message(-1), SECOND)
-    for i in (1, 2, 3):
+    assert numbers(watched.message("/req", message(-1), SECOND)) == [(1, -1)]
+    for i in (2, 3):
         assert numbers(watched.tick(i * SECOND)) == [(i, -1)]
     assert watched.tick(4 * SECOND) == []
     condition = watched.conditions(4 * SECOND)[0]
@@ -192,7 +196,7 @@ def test_only_what_is_wanted_is_told_and_the_conditions_know_all(time):
 
 def test_a_message_without_the_number_is_refused_and_the_old_one_is_no_value_of_now():
     text = HEAD + 'rob.value = "req.values[1]" >= 0'
-    watched = RosMonitor(bind(rtamt.parse(text)))
+    watched = RosMonitor(bind(rtamt.parse(text)), period=1)
     watched.message("/req", SimpleNamespace(values=[1, 2]), 0)
     assert numbers(watched.tick(0)) == [(0, 2)]
     watched.message("/req", SimpleNamespace(values=[1]), 1)
@@ -200,6 +204,123 @@ def test_a_message_without_the_number_is_refused_and_the_old_one_is_no_value_of_
     problem = "a message has no 'req.values[1]': the array is shorter"
     assert said(watched) == [NO_CLOCK, f"a message on /req cannot be used: {problem}"]
     assert watched.conditions(0)[0].message == problem
+
+
+# ---- which message a sample has, and the clock -------------------------------------------------------
+
+
+def test_a_sample_contained_a_message_newer_than_its_timestamp():
+    watched = monitor("rob.value = req.value >= 0")
+    told = watched.message("/req", message(1), 10 * SECOND)
+    for at, value in ((10.5, 2), (11.25, 3), (12, 4), (12.5, 5)):  # nobody looks at the clock in time
+        told += watched.message("/req", message(value), round(at * SECOND))
+    told += watched.tick(13 * SECOND)
+    assert numbers(told) == [(10, 1), (11, 2), (12, 4), (13, 5)]
+
+
+def test_a_message_is_sampled_by_the_stamp_in_its_header_however_late_or_early_it_comes():
+    watched = monitor("rob.value = req.value - gnt.value")
+    told = []
+    for arrival, topic, at, value in (
+        (10.2, "/req", 10, 1), (10.2, "/gnt", 10.1, 10), (11.3, "/req", 11.2, 2), (11.4, "/gnt", 11, 20),
+        (11.9, "/req", 12.2, 3), (13, "/gnt", 12.1, 30), (13, "/req", 12.4, 4),
+    ):  # fmt: skip
+        told += watched.message(topic, message(value, at=at), round(arrival * SECOND))
+    assert numbers(told) == [(10.1, -9), (11.1, 1 - 20), (12.1, 2 - 30)]
+    # At the latest a tick takes a sample; what is delivered after that is in the next one.
+    assert numbers(watched.tick(13 * SECOND)) == []
+    assert numbers(watched.tick(14 * SECOND)) == [(13.1, 4 - 30)]
+    watched.message("/req", message(5, at=13), 14 * SECOND)
+    assert numbers(watched.tick(15 * SECOND)) == [(14.1, 5 - 30)]
+
+
+def test_stamps_of_another_clock_are_replaced_by_the_arrival_and_it_is_said_once():
+    watched = monitor("rob.value = req.value >= 0", period="100ms")
+    told = []
+    for i in range(6):
+        told += watched.message("/req", message(i, at=100 + i / 20), 10**6 * SECOND + i * SECOND // 20)
+        told += watched.tick(10**6 * SECOND + i * SECOND // 20)
+    assert numbers(told) == [(10**6, 0), (10**6 + 0.1, 2), (10**6 + 0.2, 4)]
+    assert said(watched) == [
+        "the stamps on /req are 999900 s behind the clock: its messages are sampled as of their arrival"
+    ]
+
+
+def test_discrete_stamps_that_go_back_begin_anew_and_equal_ones_are_left_out():
+    watched = monitor("rob.value = historically(req.value >= 0)", stale=0)
+    told = []
+    for at, value in ((50, -1), (50, 9), (51, 3)):
+        told += watched.message("/req", message(value, at=at), 52 * SECOND)
+    assert numbers(told) == [(50, -1), (51, -1)]
+    told = watched.message("/req", message(4, at=49), 53 * SECOND)
+    assert numbers(told) == [(49, 4)]
+    assert said(watched) == [
+        "messages on /req with the stamp of the one before them are left out",
+        "the stamps on /req went back by 2 s: all monitors begin anew",
+    ]
+
+
+@pytest.mark.parametrize("stale", [None, "3600s", 0])
+def test_a_forward_jump_of_the_clock_iterated_period_by_period_for_ever(stale):
+    watched = monitor("rob.value = historically(req.value >= 0)", stale=stale, period="10ms")
+    watched.message("/req", message(-1), SECOND)
+    assert numbers(watched.tick(SECOND + 10**7)) == [(1.01, -1)]
+    said(watched)
+    jumped = 1_600_000_000 * SECOND
+    started = time.perf_counter()
+    told = watched.tick(jumped)
+    assert time.perf_counter() - started < 1
+    # What is never stale still holds, but nothing before the jump counts.
+    assert numbers(told) == ([(jumped / SECOND, -1)] if stale == 0 else [])
+    assert said(watched) == ["the clock went forward by 1.6e+09 s at once: all monitors begin anew"]
+    told = watched.message("/req", message(4), jumped + SECOND // 100) + watched.tick(jumped + SECOND // 50)
+    assert [value for _, value in numbers(told)][-1] == (-1 if stale == 0 else 4)
+    assert said(watched) == []
+
+
+def test_dense_time_says_a_forward_jump_once():
+    watched = monitor("rob.value = historically(req.value >= gnt.value)", time="dense")
+    for topic in ("/req", "/gnt"):
+        watched.message(topic, message(1), SECOND)
+    watched.tick(1_600_000_000 * SECOND)
+    assert said(watched) == ["the clock went forward by 1.6e+09 s at once: all monitors begin anew"]
+
+
+def test_what_is_due_before_a_topic_is_stale_is_told_however_late_somebody_looks():
+    watched = monitor("rob.value = req.value >= 0", stale="2500ms")
+    told = watched.message("/req", message(1), SECOND)
+    assert numbers(told + watched.tick(3 * SECOND) + watched.tick(5 * SECOND)) == [(1, 1), (2, 1), (3, 1)]
+    watched = monitor("rob.value = req.value >= gnt.value", stale="2500ms")
+    told = []
+    for topic in ("/req", "/gnt"):
+        told += watched.message(topic, message(1), SECOND)
+    told += watched.message("/req", message(2), 3 * SECOND) + watched.message("/req", message(3), 5 * SECOND)
+    assert numbers(told) == [(1, 0), (2, 0), (3, 1)]
+    assert said(watched) == ["/gnt is stale: no message for 4 s"]
+
+
+def test_messages_that_wait_for_another_topic_are_not_piled_up_and_the_first_sample_has_the_right_one():
+    watched = monitor("rob.value = req.value - gnt.value", stale=0)
+    for i in range(5000):
+        assert watched.message("/req", message(i, at=1 + i / 100), SECOND + i * SECOND // 100) == []
+    told = watched.message("/gnt", message(0, at=45.005), 51 * SECOND)
+    assert numbers(told) == [(45.005, 4400)]
+
+
+@pytest.mark.parametrize(
+    ("settings", "sentence"),
+    [
+        ({}, "discrete time samples the topics once a period: give the period, such as 100ms, or choose dense time, "
+             "which reads every message at its own time"),
+        ({"period": 1, "time": "dense"},
+         "dense time has no sampling period: leave out the period, or choose discrete time"),
+        ({"period": Fraction(1, 3)}, "the period 1/3 s is no whole number of nanoseconds"),
+    ],
+)  # fmt: skip
+def test_there_is_no_default_period(settings, sentence):
+    with pytest.raises(UsageError) as caught:
+        RosMonitor(bind(rtamt.parse(HEAD + "rob.value = req.value >= 0")), **settings)
+    assert str(caught.value) == sentence
 
 
 # ---- dense time ----------------------------------------------------------------------------------
@@ -237,6 +358,13 @@ def test_dense_verdicts_are_unknown_until_the_horizon_has_passed():
         records += watched.message("/req", message(3, at=at), 0)
     told = {record.stamp // SECOND: record.satisfied for record in records if isinstance(record, Verdict)}
     assert told == {10: None, 11: None, 12: False, 13: False}
+
+
+def test_a_dense_verdict_stayed_unknown_until_the_first_message_after_the_horizon():
+    watched = monitor("rob.value = eventually[0,2](req.value > 3)", time="dense")
+    records = watched.message("/req", message(3, at=10), 0) + watched.message("/req", message(3, at=15), 0)
+    told = [(record.stamp // SECOND, record.satisfied) for record in records if isinstance(record, Verdict)]
+    assert told == [(10, None), (12, False), (15, False)]
 
 
 def test_dense_silence_is_stale_and_what_others_say_meanwhile_is_not_piled_up():
@@ -282,8 +410,7 @@ def test_robustness_equals_the_offline_answer_one_horizon_later_in_both_kinds_of
     discrete, dense = monitor(f"rob.value = {formula}"), monitor(f"rob.value = {formula}", time="dense")
     ticked, came = [], []
     for i, value in enumerate(values, 1):
-        discrete.message("/req", message(value), i * SECOND)
-        ticked += discrete.tick(i * SECOND)
+        ticked += discrete.message("/req", message(value), i * SECOND) + discrete.tick(i * SECOND)
         came += dense.message("/req", message(value, at=i), i * SECOND)
     expected = offline.evaluate({"req": values}).signal.values.tolist()
     assert [value for _, value in numbers(ticked)][2:] == expected[:-2]
@@ -368,7 +495,7 @@ def test_any_path_of_fields_is_read(name):
     bind(spec).check(lambda _: Arm)
     arm = Arm()
     arm.hand.x, arm.torque[2], arm.fingers = 5.0, 5.0, [Point()] * 7 + [arm.hand]
-    watched = RosMonitor(bind(spec))
+    watched = RosMonitor(bind(spec), period=1)
     watched.message("rtamt/a", arm, 0)
     assert numbers(watched.tick(0)) == [(0, 2)]
 

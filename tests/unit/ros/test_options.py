@@ -24,7 +24,7 @@ def test_unit_is_that_of_the_period_and_bounds_stay_seconds_as_in_the_papers_lis
 
 
 def test_an_argument_comes_before_a_parameter_and_that_before_the_default():
-    assert monitor(spec=LISTING_8).period == 1
+    assert monitor(spec=LISTING_8, time="dense").period is None
     assert monitor(spec=LISTING_8, period=0.5).period == Fraction(1, 2)
     assert monitor("--period", "5s", spec=LISTING_8, period=0.5).period == 5
     assert monitor(LISTING_8, "--time", "dense", "--stale", "0").time == "dense"
@@ -34,6 +34,15 @@ def test_an_argument_comes_before_a_parameter_and_that_before_the_default():
     ("arguments", "sentence"),
     [
         ([], "no specification was given: name a file, or set the parameter spec"),
+        (
+            [LISTING_8],
+            "discrete time samples the topics once a period: give it, such as --period 100ms (the parameter period), "
+            "or use --time dense, which reads every message at its own time",
+        ),
+        (
+            [LISTING_8, "--time", "dense", "--period", "1"],
+            "dense time has no sampling period: leave out --period, or --time dense",
+        ),
         (["--pace", "3"], "unrecognized arguments: --pace; see 'node --help'"),
         (
             [LISTING_8, "--time", "dens"],
