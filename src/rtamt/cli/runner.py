@@ -16,6 +16,7 @@ from rtamt.cli.command import NO_STAMPS
 from rtamt.cli.reading_options import choice_for, how_to_mend, on_clock, read_for
 from rtamt.errors import BoundError, StlError, TraceError
 from rtamt.readers.assemble import chunks_of
+from rtamt.readers.formats import is_bag
 from rtamt.readers.read import opened
 from rtamt.readers.sql import is_url, shown
 from rtamt.signals.arrays import Recording
@@ -178,8 +179,11 @@ def _in_chunks(requirement: Requirement, trace: str, reading: Reading) -> list[O
 def _check(requirement: Requirement, trace: str, data: Trace | None, reading: Reading) -> list[Outcome]:
     """Check over a recording that is in memory, or read what the requirement needs of it.
 
-    Several requirements share one evaluation; where there is none, each is checked alone.
+    Several requirements share one evaluation; where there is none, each is checked alone, and over a bag, where
+    each has topics of its own, as a node has it.
     """
+    if requirement.rows and is_bag(trace):
+        return [o for row in requirement.rows for o in _check(row, trace, data, reading)]
     begin = time.perf_counter()
     spec, whole = requirement.spec, data
     try:

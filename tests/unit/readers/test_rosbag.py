@@ -126,13 +126,18 @@ def test_the_samples_of_a_requirement_depended_on_the_requirements_beside_it(tmp
             bag.plain("/late", START + 5.25 + i, float(i))
     specs = [str(tmp_path / name) for name in ("early.stl", "late.stl")]
 
-    def rows(*given):
-        assert main(["check", *given, str(bag.path), "--period", "1", "--json"]) == 0
+    (tmp_path / "both.stl").write_text('require early: "/early.data" >= 0; require late: "/late.data" >= 0')
+
+    def rows(*given, options=("--period", "1")):
+        assert main(["check", *given, str(bag.path), *options, "--json"]) == 0
         return [json.loads(line) for line in capsys.readouterr().out.splitlines()]
 
     def told(row):
         return row["robustness"], row["samples"]
 
+    for options in (["--period", "1"], ["--time", "dense"]):
+        alone = [told(row) for spec in specs for row in rows(spec, options=options)]
+        assert [told(row) for row in rows(str(tmp_path / "both.stl"), options=options)] == alone
     assert [told(row) for row in rows(*specs)] == [told(row) for spec in specs for row in rows(spec)]
     assert [told(row) for row in rows(*specs)] == [(0, 10), (0, 10)]
 
