@@ -15,6 +15,7 @@ import picture
 import rtamt
 from rtamt.cli import COMMANDS, overview, parser_of
 from rtamt.language import parser, specfile
+from rtamt.language.lint import RULES
 from rtamt.language.operators import STL, Bounds, Fixity, Tense
 
 if TYPE_CHECKING:
@@ -138,6 +139,23 @@ def _productions(module: object) -> str:
 # ---- the command line -------------------------------------------------------------------------------
 
 
+def warnings() -> str:
+    """Return the page of the warnings of ``rtamt lint``, from the table of its rules."""
+    rows = [f"| {rule.code} | {_cell(rule.about)} | `{_cell(rule.example)}` |" for rule in RULES]
+    return "\n".join(
+        [
+            "# Warnings\n",
+            "What is legal in a specification and seldom meant. `rtamt lint` and `rtamt check` print it on stderr, ",
+            "with the line and a caret; `--ignore CODE` silences a code. The exit code of `rtamt check` does not ",
+            "change; that of `rtamt lint --strict` is 1. In Python: `rtamt.parse(...).warnings`.\n",
+            "| code | what | example |",
+            "|---|---|---|",
+            *rows,
+            "",
+        ]
+    )
+
+
 def command_line() -> str:
     """Return the page of the command line: the help of every command."""
     before = os.environ.get("COLUMNS")
@@ -220,5 +238,6 @@ PAGES: dict[str, Callable[[], str]] = {
     "reference/grammar.md": grammar,
     "reference/command-line.md": command_line,
     "reference/api.md": api,
+    "reference/warnings.md": warnings,
     "reference/messages.md": lambda: "\n".join(_messages()),
 }

@@ -38,7 +38,10 @@ INCLUDED = {
 #: The sections, in the order in which they are read. Each holds the pages of its folder, the first ones named.
 SECTIONS = {
     "How-to": ("how-to", ["logs"]),
-    "Reference": ("reference", ["language", "grammar", "command-line", "api", "messages"]),
+    "Reference": (
+        "reference",
+        ["language", "grammar", "specification-files", "command-line", "api", "messages", "warnings"],
+    ),
     "Explanation": (
         "explanation",
         ["semantics", "horizon", "interface-aware", "engine", "rtamt", "choosing"],

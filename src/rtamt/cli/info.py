@@ -48,10 +48,11 @@ In the listing of the program every line is an instruction: %0, %1, ... are resu
 samples, and a lag is the number of samples after which a result is known. With --time dense both
 are counted in ticks of the resolution.
 
---json prints one object: {"name", "formula", "latex", "semantics", "variables", "period", "resolution",
-"horizon", "pastified", "program", "memory", "offline_only"}; what does not exist is null: dense time has
-no period, and its memory depends on the data. Durations are in seconds, memory in bytes. The program is
-that of the semantics, the pastified form serves each.
+--json prints one object: {"name", "formula", "requirements", "latex", "semantics", "variables", "period",
+"resolution", "horizon", "pastified", "program", "memory", "offline_only"}; what does not exist is null: dense
+time has no period, and its memory depends on the data. Durations are in seconds, memory in bytes. The
+program is that of the semantics, the pastified form serves each. Of several requirements all this is about
+their conjunction; each has its {"name", "description", "severity", "formula", "horizon"}.
 
 examples:
   rtamt info examples/request_grant/spec.stl
@@ -156,14 +157,40 @@ def _variables(spec: Specification) -> list[dict[str, Any]]:
     return rows
 
 
+def _requirements(facts: Facts) -> list[dict[str, Any]]:
+    """Return what there is to tell of each requirement; ``ahead``: its horizon in words."""
+    rows = []
+    for known in facts.spec.document.requirements:
+        depth = horizon(known.formula, facts.step)
+        rows.append(
+            {
+                "name": known.name,
+                "description": known.description,
+                "severity": known.severity,
+                "formula": printed(known.formula),
+                "horizon": None if depth is None else float(depth),
+                "ahead": "offline only" if depth is None else f"horizon {format_duration(depth)}",
+                "explicit": known.explicit,
+            }
+        )
+    return rows
+
+
 def _lines(facts: Facts) -> Iterator[str]:
     spec = facts.spec
     if spec.name:
         yield f"name       {spec.name}"
     yield f"formula    {printed(spec.formula)}"
-    for assertion in spec.document.assertions[:-1]:
-        if assertion.name:
+    required = {requirement.span for requirement in spec.document.requirements}
+    for assertion in spec.document.assertions:
+        if assertion.name and assertion.span not in required:
             yield f"           {assertion.name} = {printed(assertion.formula)}"
+    for i, requirement in enumerate(_requirements(facts)):
+        if requirement["explicit"] or len(required) > 1:
+            about = [requirement["severity"], requirement["ahead"], requirement["description"]]
+            label = "requires" if i == 0 else ""
+            told = ", ".join(filter(None, about))
+            yield f"{label:<11}{requirement['name']}: {requirement['formula']}  ({told})"
     if spec.semantics != "standard":
         yield f"semantics  {spec.semantics}"
     for i, variable in enumerate(_variables(spec)):
@@ -203,6 +230,10 @@ def _as_json(facts: Facts) -> str:
         {
             "name": spec.name,
             "formula": printed(spec.formula),
+            "requirements": [
+                {key: value for key, value in row.items() if key not in ("ahead", "explicit")}
+                for row in _requirements(facts)
+            ],
             "latex": spec.formula.latex() if is_printable(spec.formula) else None,
             "semantics": spec.semantics,
             "variables": _variables(spec),

@@ -38,9 +38,7 @@ _EPILOG = """\
 With --period the bounds must be whole numbers of it; with --online no operator may need the whole
 future, so that a monitor can run the requirement.
 
-Warnings, by the codes that --ignore takes:
-
-{warnings}
+Warnings, by the codes that --ignore takes: {warnings}.
 
 examples:
   rtamt lint examples/request_grant/spec.stl
@@ -50,9 +48,7 @@ examples:
 def configure(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     parser.description = _DESCRIPTION
-    parser.epilog = _EPILOG.format(
-        warnings="\n".join(f"  {rule.code}  {rule.about}: {rule.example}" for rule in RULES)
-    )
+    parser.epilog = _EPILOG.format(warnings=", ".join(f"{rule.code} ({rule.about})" for rule in RULES))
     add_specification_options(parser)
     parser.add_argument("more", metavar="SPEC", nargs="*", help="more of them")
     add_time_option(parser)

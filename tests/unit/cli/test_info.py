@@ -70,9 +70,27 @@ def test_bounds_that_need_another_period(run):
     assert "slide_max %2 n=3" in answer.out
 
 
+def test_each_of_several_requirements_is_listed_with_its_horizon(run):
+    text = 'low = x <= 3; require A "short" severity note: next(low); require B: always(low)'
+    assert run("info", text).out.splitlines()[1:4] == [
+        "           low = x <= 3",
+        "requires   A: next(x <= 3)  (note, horizon 1 s, short)",
+        "           B: always(x <= 3)  (error, offline only)",
+    ]
+
+
 def test_json(run):
     assert json.loads(run("info", "next(req.value >= 3)", "--json", "--backend", "python").out) == {
         "name": None,
+        "requirements": [
+            {
+                "name": "requirement_1",
+                "description": "",
+                "severity": "error",
+                "formula": "next(req.value >= 3)",
+                "horizon": 1,
+            }
+        ],
         "formula": "next(req.value >= 3)",
         "latex": run("info", "next(req.value >= 3)", "--latex").out.strip(),
         "semantics": "standard",

@@ -539,3 +539,21 @@ def test_messages_before_simulated_time_has_begun_are_no_ok_and_said_once(time):
     watched.tick(SECOND)
     assert watched.conditions(SECOND)[0].message == "satisfied"
     assert said(watched) == []
+
+
+def test_each_requirement_is_published_also_where_no_declared_message_is_for_it():
+    text = """
+        from rtamt_msgs.msg import FloatStamped
+        input FloatStamped x  output FloatStamped rob
+        require rob.value: x.value >= 1
+        require REQ-12 "at most": historically(x.value <= 3)"""
+    binding = bind(rtamt.parse(text))
+    assert [(output.name, output.topic, output.field) for output in binding.outputs] == [
+        ("rob.value", "rtamt/rob", "rob.value"),
+        ("REQ-12", "rtamt/REQ_12", "REQ_12.value"),
+    ]
+    assert {output.type.ros for output in binding.outputs} == {"rtamt_msgs/FloatStamped"}
+    monitor = RosMonitor(binding, period=1)
+    records = monitor.message("rtamt/x", SimpleNamespace(value=4.0), 500_000_000)
+    told = {record.output.name: record.value for record in records if isinstance(record, Robustness)}
+    assert told == {"rob.value": 3, "REQ-12": -1}
