@@ -271,9 +271,11 @@ NB_MODULE(_core, m) {
 
     const Exceptions exceptions{
         new_exception(m, "Refused", "An update was refused; the monitor is as it was."),
+        nb::module_::import_("rtamt.engine.gate").attr("in_use"),
         new_exception(m, "Undefined",
                       "An operation made NaN; args are the instruction and the sample, or "
-                      "the tick in dense time. Or a call failed: then also what it said, and "
+                      "the tick in dense time; online in discrete time `time` is that of the "
+                      "sample. Or a call failed: then also what it said, and "
                       "the cause is what a Python operator raised.")};
 
     nb::class_<Monitor>(m, "Monitor", nb::type_slots(monitor_slots),
@@ -294,7 +296,9 @@ NB_MODULE(_core, m) {
             nb::arg("tolerance") = rtamt::infinity, nb::arg("strict") = true,
             nb::arg("ignored") = nb::none(), nb::arg("calls") = nb::list())
         .def("push", &Monitor::push, nb::arg("times").none(), nb::arg("columns"),
-             "Take a chunk, a column an input; return what became known of each output.")
+             nb::arg("after") = nb::none(),
+             "Take a chunk, a column an input, unless others than `after` samples came before; "
+             "return what became known of each output.")
         .def("finish", &Monitor::finish, "End the trace; return the rest of each output.")
         .def("reset", &Monitor::reset, "Forget every sample.")
         .def("state", &Monitor::state, "What the samples so far have left behind.")

@@ -36,14 +36,16 @@ class Clock {
     // that was given, so that they do not drift.
     void tick(std::size_t count) noexcept {
         for (std::size_t i = 0; i < count; ++i) {
+            const double time = upcoming(0);
             steps_ += 1.0;
-            if (stamps_.count() == 0) {
-                stamps_.add(0.0);
-            } else {
-                stamps_.add(stamps_.regular() ? stamps_.regular_next()
-                                              : anchor_ + steps_ * period_);
-            }
+            stamps_.add(time);
         }
+    }
+
+    // The time of the sample after so many more that come one period apart.
+    [[nodiscard]] double upcoming(std::size_t more) const noexcept {
+        if (stamps_.regular()) return stamps_.regular_at(stamps_.count() + more);
+        return anchor_ + (steps_ + static_cast<double>(more) + 1.0) * period_;
     }
 
     void reset() noexcept {

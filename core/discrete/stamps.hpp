@@ -54,8 +54,16 @@ class Stamps {
     // Whether every time so far is the first one and a whole number of periods.
     [[nodiscard]] bool regular() const noexcept { return regular_ == count_; }
 
-    // The time that keeps them so.
-    [[nodiscard]] double regular_next() const noexcept { return computed(count_); }
+    // What keeps them so: the time of a sample by its index, in a trace that begins at 0 if it has
+    // not begun.
+    [[nodiscard]] double regular_at(std::size_t index) const noexcept {
+        return count_ == 0 ? static_cast<double>(index) * period_ : computed(index);
+    }
+
+    // The time of a sample that is still here.
+    [[nodiscard]] double at(std::size_t index) const noexcept {
+        return index < regular_ ? computed(index) : ring_[(index - regular_) % size_];
+    }
 
     // The last time; NaN before the first.
     [[nodiscard]] double last() const noexcept { return last_; }

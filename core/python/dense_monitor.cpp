@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 #include <initializer_list>
+#include <limits>
 #include <memory>
 #include <new>
 #include <stdexcept>
@@ -75,12 +76,6 @@ void fill_slot(const nb::object& object, Py_ssize_t slot, nb::object value) noex
     return count;
 }
 
-// Drops a Python exception that only says that a time is not plain; KeyboardInterrupt stays set.
-bool forget() noexcept {
-    if (PyErr_ExceptionMatches(PyExc_Exception) != 0) PyErr_Clear();
-    return false;
-}
-
 } // namespace
 
 std::vector<Events> events_of(const std::vector<EventColumn>& columns, std::size_t inputs) {
@@ -124,7 +119,7 @@ DenseMonitor::DenseMonitor(Program program, const std::vector<nb::str>& names,
                            Exceptions exceptions)
     : calls_(std::move(calls)), executor_(std::move(program)),
       names_(names, executor_.program().inputs, ignored), exceptions_(std::move(exceptions)),
-      gate_(exceptions_.refused), row_(names.size()), events_(names.size()),
+      gate_(exceptions_.refused, exceptions_.in_use), row_(names.size()), events_(names.size()),
       results_(executor_.program().outputs.size()), spare_(results_.size()),
       until_(results_.size()), counts_(names.size()) {}
 
@@ -145,10 +140,7 @@ void DenseMonitor::tell(const nb::type_object& signal, const nb::object& scale,
 
 template <class Values>
 PyObject* DenseMonitor::update(PyObject* time, const Values& values) noexcept {
-    if (!ready()) return nullptr;
-    const char* reason =
-        gate_.briefly([&] { return told_ && read_time(time) ? read_values(values) : "time"; });
-    if (reason != nullptr) return gate_.refuse(reason);
+    if (!ready() || !read(time, values)) return nullptr;
     for (EventList& list : spare_)
         list.resize(0);
     try {
@@ -185,48 +177,82 @@ PyObject* DenseMonitor::fail(const Failure& failure) const noexcept {
     return nullptr;
 }
 
+// Reads an instant, after which the gate is open; if not, a Python exception is set. Plain numbers,
+// which run no Python code, are read into row_ at once. All others are read into a row of this call
+// alone, and the monitor is looked at when all of them have been read: only then is it certain what
+// its state is.
+template <class Values>
+bool DenseMonitor::read(PyObject* time, const Values& values) noexcept {
+    const bool told = told_;
+    const double rate = rate_;
+    const auto tick = told ? read_time(time) : std::nullopt;
+    if (!tick) return gate_.refuse("time") != nullptr;
+    for (double& value : row_)
+        value = std::numeric_limits<double>::quiet_NaN();
+    // A time of any other kind may have run Python code.
+    if (!(PyFloat_Check(time) || PyLong_CheckExact(time)) ||
+        read_values(values, PlainNumbers{}, row_) != nullptr) {
+        Row row(row_.size());
+        if (!row) return PyErr_NoMemory() != nullptr;
+        if (const char* wrong = read_values(values, numbers_, row.values())) {
+            return gate_.refuse(wrong) != nullptr;
+        }
+        if (!ready()) return false;
+        std::ranges::copy(row.values(), row_.begin());
+    }
+    time_ = *tick;
+    return (told == told_ && rate == rate_ && aim()) || gate_.refuse("time") != nullptr;
+}
+
 // The tick of a plain time: of a float or an int in seconds, rounded to the nearest and halves to
 // the even one; or of an integer of another kind, in ticks.
-bool DenseMonitor::read_time(PyObject* time) noexcept {
+std::optional<std::int64_t> DenseMonitor::read_time(PyObject* time) const noexcept {
     if (rate_ != 0.0) {
         double seconds = 0.0;
         if (PyFloat_Check(time)) {
             seconds = PyFloat_AS_DOUBLE(time);
         } else if (PyLong_CheckExact(time)) {
             seconds = PyLong_AsDouble(time);
-            if (PyErr_Occurred() != nullptr) return forget();
+            if (PyErr_Occurred() != nullptr && !forget_no_number()) return std::nullopt;
         } else {
-            return false;
+            return std::nullopt;
         }
         const double tick = std::nearbyint(seconds * rate_);
-        if (!(std::fabs(tick) < farthest)) return false;
-        time_ = std::fabs(tick) < near ? static_cast<std::int64_t>(tick)
-                                       : far_tick(seconds, static_cast<std::int64_t>(rate_));
-    } else {
-        if (PyLong_Check(time) || PyIndex_Check(time) == 0) return false;
-        const nb::object index = nb::steal(PyNumber_Index(time));
-        if (!index.is_valid()) return forget();
-        time_ = PyLong_AsLongLong(index.ptr());
-        if (time_ == -1 && PyErr_Occurred() != nullptr) return forget();
-        if (!(std::fabs(static_cast<double>(time_)) < farthest)) return false;
+        if (!(std::fabs(tick) < farthest)) return std::nullopt;
+        return std::fabs(tick) < near ? static_cast<std::int64_t>(tick)
+                                      : far_tick(seconds, static_cast<std::int64_t>(rate_));
     }
-    return time_ <= executor_.last_possible();
+    if (PyLong_Check(time) || PyIndex_Check(time) == 0) return std::nullopt;
+    const nb::object index = nb::steal(PyNumber_Index(time));
+    const std::int64_t tick = index.is_valid() ? PyLong_AsLongLong(index.ptr()) : -1;
+    if (tick == -1 && PyErr_Occurred() != nullptr && !forget_no_number()) return std::nullopt;
+    if (!(std::fabs(static_cast<double>(tick)) < farthest)) return std::nullopt;
+    return tick;
 }
 
 // Answers what is wrong, or null.
-template <class Values>
-const char* DenseMonitor::read_values(const Values& values) noexcept {
-    std::ranges::fill(events_, Events{});
+template <class Values, class Numbers>
+const char* DenseMonitor::read_values(const Values& values, const Numbers& numbers,
+                                      std::span<double> row) const noexcept {
     std::size_t guess = 0;
     return values.each([&](PyObject* name, PyObject* value) -> const char* {
-        const auto index = names_.place(name, guess);
-        if (!index) return names_.ignored(name) ? nullptr : "names";
-        if (!numbers_.read(value, row_[*index])) return "value";
-        if (time_ <= executor_.last_time(*index).value_or(-dense::never - 1)) return "time";
-        events_[*index] = {&time_, &row_[*index], 1};
+        const auto index = names_.place(name, guess, Numbers::plain);
+        if (!index) return names_.ignored(name, Numbers::plain) ? nullptr : "names";
         guess = *index + 1;
-        return nullptr;
+        return numbers.read(value, row[*index]) ? nullptr : "value";
     });
+}
+
+// Makes events of the instant; answers whether it may come now.
+bool DenseMonitor::aim() noexcept {
+    if (time_ > executor_.last_possible()) return false;
+    for (std::size_t input = 0; input < row_.size(); ++input) {
+        events_[input] = {};
+        if (std::isnan(row_[input])) continue;
+        if (time_ <= executor_.last_time(input).value_or(-dense::never - 1)) return false;
+        events_[input] = {&time_, &row_[input], 1};
+    }
+    return true;
 }
 
 PyObject* DenseMonitor::answer() const noexcept {
@@ -375,6 +401,11 @@ std::vector<std::optional<std::int64_t>> DenseMonitor::last_times() const {
     for (std::size_t input = 0; input < names_.count(); ++input)
         times.push_back(executor_.last_time(input));
     return times;
+}
+
+std::int64_t DenseMonitor::last_possible() const {
+    gate_.require_idle();
+    return executor_.last_possible();
 }
 
 std::size_t DenseMonitor::state_bytes() const {

@@ -13,6 +13,7 @@
 #include "gate.hpp"
 #include "names.hpp"
 #include "numbers.hpp"
+#include "row.hpp"
 
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
@@ -79,7 +80,7 @@ class DenseMonitor {
     [[nodiscard]] std::optional<std::int64_t> start() const;
     [[nodiscard]] std::optional<std::int64_t> known(std::size_t output) const;
     [[nodiscard]] std::vector<std::optional<std::int64_t>> last_times() const;
-    [[nodiscard]] std::int64_t last_possible() const noexcept { return executor_.last_possible(); }
+    [[nodiscard]] std::int64_t last_possible() const;
     [[nodiscard]] std::size_t state_bytes() const;
 
   private:
@@ -89,9 +90,9 @@ class DenseMonitor {
     Numbers numbers_;
     Exceptions exceptions_;
     Gate gate_;
-    std::int64_t time_ = 0;                          // of the instant that is being read
-    std::vector<double> row_;                        // its values
-    std::vector<dense::Events> events_;              // one for each input that has a value then
+    std::int64_t time_ = 0;                          // of the instant that is being taken
+    std::vector<double> row_;                        // its values, NaN where there is none
+    std::vector<dense::Events> events_;              // the same
     std::vector<dense::EventList> results_;          // of the last update, an output each
     std::vector<dense::EventList> spare_;            // of the next one, which may fail
     std::vector<std::optional<std::int64_t>> until_; // how far each output was told
@@ -108,9 +109,13 @@ class DenseMonitor {
     void require_output(std::size_t output) const;
     [[nodiscard]] PyObject* fail(const dense::Failure& failure) const noexcept;
     [[nodiscard]] bool ready() const noexcept { return gate_.open(executor_.finished()); }
-    [[nodiscard]] bool read_time(PyObject* time) noexcept;
+    [[nodiscard]] std::optional<std::int64_t> read_time(PyObject* time) const noexcept;
+    template <class Values, class Numbers>
+    [[nodiscard]] const char* read_values(const Values& values, const Numbers& numbers,
+                                          std::span<double> row) const noexcept;
     template <class Values>
-    [[nodiscard]] const char* read_values(const Values& values) noexcept;
+    [[nodiscard]] bool read(PyObject* time, const Values& values) noexcept;
+    [[nodiscard]] bool aim() noexcept;
     void close();
     [[nodiscard]] PyObject* answer() const noexcept;
     [[nodiscard]] nb::object signal_of(const dense::Events& events) const noexcept;

@@ -9,12 +9,14 @@
 #include <cstdint>
 #include <exception>
 #include <new>
+#include <optional>
 #include <stdexcept>
 
 namespace rtamt::python {
 
 struct Exceptions {
     nb::object refused;   // an update was refused
+    nb::object in_use;    // makes the one for a monitor that is in the middle of another call
     nb::object undefined; // an operation made NaN: instruction, sample or tick; and, of a call that
                           // failed, what it said
 };
@@ -32,9 +34,11 @@ inline void translate_memory(const std::exception_ptr& exception, void* /*payloa
     }
 }
 
-// Sets Undefined; its cause is what a Python operator raised, if one did.
+// Sets Undefined; its cause is what a Python operator raised, if one did, and its `time` that of
+// the sample, where that is known here.
 inline void set_undefined(const Exceptions& exceptions, Calls& calls, std::uint32_t instruction,
-                          std::int64_t moment, const Fault& fault) noexcept {
+                          std::int64_t moment, const Fault& fault,
+                          std::optional<double> time = std::nullopt) noexcept {
     const auto when = static_cast<long long>(moment);
     PyObject* raised = nullptr;
     if (fault) {
@@ -45,6 +49,13 @@ inline void set_undefined(const Exceptions& exceptions, Calls& calls, std::uint3
         raised = PyObject_CallFunction(exceptions.undefined.ptr(), "IL", instruction, when);
     }
     if (raised == nullptr) return;
+    if (time) {
+        const auto seconds = nb::steal(PyFloat_FromDouble(*time));
+        if (!seconds.is_valid() || PyObject_SetAttrString(raised, "time", seconds.ptr()) != 0) {
+            Py_DECREF(raised);
+            return;
+        }
+    }
     if (fault) PyException_SetCause(raised, calls.take_error().release().ptr());
     PyErr_SetObject(exceptions.undefined.ptr(), raised);
     Py_DECREF(raised);
@@ -52,8 +63,9 @@ inline void set_undefined(const Exceptions& exceptions, Calls& calls, std::uint3
 
 [[noreturn]] inline void raise_undefined(const Exceptions& exceptions, Calls& calls,
                                          std::uint32_t instruction, std::int64_t moment,
-                                         const Fault& fault) {
-    set_undefined(exceptions, calls, instruction, moment, fault);
+                                         const Fault& fault,
+                                         std::optional<double> time = std::nullopt) {
+    set_undefined(exceptions, calls, instruction, moment, fault, time);
     throw nb::python_error();
 }
 

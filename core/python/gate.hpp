@@ -1,7 +1,8 @@
 // Who may use a monitor: one thread at a time, and nobody brings samples after the end.
 //
-// A thread that is inside may have given up the GIL, or be in a Python operator or a __float__ that
-// calls back. What is refused is refused with a Python exception set; nothing here allocates.
+// A thread that is inside may have given up the GIL, or be in a Python operator that calls back.
+// Values are read before the gate is looked at: reading them may run Python code, too. What is
+// refused is refused with a Python exception set.
 #pragma once
 
 #include "arrays.hpp"
@@ -9,7 +10,6 @@
 #include <nanobind/nanobind.h>
 
 #include <cstddef>
-#include <stdexcept>
 #include <utility>
 
 namespace rtamt::python {
@@ -18,8 +18,10 @@ namespace nb = nanobind;
 
 class Gate {
   public:
-    // `refused` is the class of the exception that says, in a word, why samples are not taken.
-    explicit Gate(nb::object refused) : refused_(std::move(refused)) {}
+    // `refused` is the class of the exception that says, in a word, why samples are not taken;
+    // `in_use` makes the exception for a monitor that is in the middle of another call.
+    Gate(nb::object refused, nb::object in_use)
+        : refused_(std::move(refused)), in_use_(std::move(in_use)) {}
 
     PyObject* refuse(const char* reason) const noexcept {
         if (PyErr_Occurred() == nullptr) PyErr_SetString(refused_.ptr(), reason);
@@ -31,13 +33,18 @@ class Gate {
         if (!busy_ && !finished) [[likely]] {
             return true;
         }
-        if (busy_) PyErr_SetString(PyExc_RuntimeError, in_use);
+        if (busy_) set_in_use();
         (void)refuse("finished");
         return false;
     }
 
-    void require_idle() const {
-        if (busy_) throw std::runtime_error(in_use);
+    void require_idle() const { require(!busy_); }
+
+    // What does not hold shows that somebody else has used the monitor meanwhile.
+    void require(bool holds) const {
+        if (holds) return;
+        set_in_use();
+        throw nb::python_error();
     }
 
     // Works with the gate closed, for as long as `count` samples take: without the GIL if they are
@@ -56,9 +63,6 @@ class Gate {
     }
 
   private:
-    static constexpr const char* in_use =
-        "The monitor is in use by another thread: give each thread a monitor of its own.";
-
     struct Closed {
         bool& flag;
         explicit Closed(bool& busy) noexcept : flag(busy) { flag = true; }
@@ -70,7 +74,13 @@ class Gate {
     };
 
     nb::object refused_;
+    nb::object in_use_;
     bool busy_ = false;
+
+    void set_in_use() const noexcept {
+        const auto error = nb::steal(PyObject_CallNoArgs(in_use_.ptr()));
+        if (error.is_valid()) PyErr_SetObject(error.type().ptr(), error.ptr());
+    }
 };
 
 } // namespace rtamt::python

@@ -5,6 +5,7 @@
 #include <limits>
 #include <stdexcept>
 #include <string>
+#include <type_traits>
 
 namespace rtamt::python {
 
@@ -21,6 +22,16 @@ constexpr double missing = std::numeric_limits<double>::quiet_NaN();
     return static_cast<std::size_t>(program.latest()) + 1;
 }
 
+// What a list holds: where reading numbers runs Python code that may change the list, kept alive.
+template <bool plain>
+[[nodiscard]] auto held(PyObject* object) noexcept {
+    if constexpr (plain) {
+        return nb::handle(object);
+    } else {
+        return nb::borrow(object);
+    }
+}
+
 } // namespace
 
 Monitor::Monitor(Program program, const std::vector<nb::str>& names, double period,
@@ -29,7 +40,8 @@ Monitor::Monitor(Program program, const std::vector<nb::str>& names, double peri
     : calls_(std::move(calls)), executor_(std::move(program)),
       clock_(period, tolerance, strict, history_of(executor_.program())),
       names_(names, executor_.program().inputs, ignored), exceptions_(std::move(exceptions)),
-      gate_(exceptions_.refused), row_(names.size()), previous_(names.size(), missing) {
+      gate_(exceptions_.refused, exceptions_.in_use), row_(names.size()),
+      previous_(names.size(), missing) {
     if (!(period > 0.0) || !std::isfinite(period) || !(tolerance >= 0.0)) {
         throw std::invalid_argument(
             "The period must be positive and finite, the tolerance 0 or more.");
@@ -38,90 +50,137 @@ Monitor::Monitor(Program program, const std::vector<nb::str>& names, double peri
 
 // ---- one sample ---------------------------------------------------------------------------------
 
+// Has `read(numbers, time, row)` read a sample, which answers what is wrong, or null. Plain
+// numbers, which run no Python code, are read into row_ at once. `keeps`: an input that is left out
+// keeps its value.
+template <bool timed, bool keeps, class Read>
+PyObject* Monitor::sample(const Read& read) noexcept {
+    if (!ready()) return nullptr;
+    double time = 0.0;
+    if constexpr (keeps) std::ranges::copy(previous_, row_.begin());
+    if (read(PlainNumbers{}, time, std::span(row_)) != nullptr) [[unlikely]] {
+        return sample_carefully<timed, keeps>(read);
+    }
+    if (timed && !clock_.accepts(time)) return gate_.refuse("time");
+    if (keeps && !whole()) return gate_.refuse("names");
+    return take<timed>(time);
+}
+
+// All other numbers are read into a row of this call alone, and the monitor is looked at when all
+// of them have been read: only then is it certain what its state is.
+template <bool timed, bool keeps, class Read>
+PyObject* Monitor::sample_carefully(const Read& read) noexcept {
+    double time = 0.0;
+    Row row(row_.size());
+    if (!row) return PyErr_NoMemory();
+    if (const char* wrong = read(numbers_, time, row.values())) return gate_.refuse(wrong);
+    if (!ready()) return nullptr;
+    if constexpr (keeps) row.complete(previous_);
+    std::ranges::copy(row.values(), row_.begin());
+    if (timed && !clock_.accepts(time)) return gate_.refuse("time");
+    return whole() ? take<timed>(time) : gate_.refuse("names");
+}
+
+bool Monitor::whole() const noexcept {
+    return std::ranges::none_of(row_, [](double value) { return std::isnan(value); });
+}
+
 template <class Values>
 PyObject* Monitor::update(PyObject* time, const Values& values) noexcept {
-    double t = 0.0;
-    if (!ready()) return nullptr;
-    if (!numbers_.read(time, t) || !clock_.accepts(t)) return gate_.refuse("time");
-    if (values.count() != names_.count()) return gate_.refuse("names");
-    std::size_t guess = 0;
-    const char* wrong = values.each([&](PyObject* name, PyObject* value) -> const char* {
-        const auto index = names_.place(name, guess++);
-        if (!index) return "names";
-        return numbers_.read(value, row_[*index]) ? nullptr : "value";
-    });
-    if (wrong != nullptr) return gate_.refuse(wrong);
-    return take([&] { clock_.advance(t); });
+    return sample<true, false>(
+        [&](const auto& numbers, double& t, std::span<double> row) -> const char* {
+            if (!numbers.read(time, t)) return "time";
+            if (values.count() != names_.count()) return "names";
+            std::size_t guess = 0;
+            return values.each([&](PyObject* name, PyObject* value) -> const char* {
+                const auto index = names_.place(name, guess++, numbers.plain);
+                if (!index) return "names";
+                return numbers.read(value, row[*index]) ? nullptr : "value";
+            });
+        });
 }
 
 template PyObject* Monitor::update(PyObject* time, const Named& values) noexcept;
 template PyObject* Monitor::update(PyObject* time, const InDict& values) noexcept;
 
 PyObject* Monitor::update_pairs(PyObject* time, PyObject* pairs) noexcept {
-    double t = 0.0;
-    if (!ready()) return nullptr;
-    if (!numbers_.read(time, t) || !clock_.accepts(t)) return gate_.refuse("time");
-    if (!PyList_Check(pairs) && !PyTuple_Check(pairs)) return gate_.refuse("pairs");
-    std::ranges::copy(previous_, row_.begin());
-    std::size_t guess = 0;
-    for (Py_ssize_t i = 0; i < PySequence_Fast_GET_SIZE(pairs); ++i) {
-        PyObject* pair = PySequence_Fast_GET_ITEM(pairs, i);
-        if ((!PyTuple_Check(pair) && !PyList_Check(pair)) || PySequence_Fast_GET_SIZE(pair) != 2) {
-            return gate_.refuse("pairs");
-        }
-        PyObject* name = PySequence_Fast_GET_ITEM(pair, 0);
-        PyObject* value = PySequence_Fast_GET_ITEM(pair, 1);
-        if (const auto index = names_.place(name, guess)) {
-            if (!numbers_.read(value, row_[*index])) return gate_.refuse("value");
-            guess = *index + 1;
-            continue;
-        }
-        if (!names_.ignored(name)) return gate_.refuse("names");
-    }
-    for (const double value : row_) {
-        if (std::isnan(value)) return gate_.refuse("names");
-    }
-    return take([&] { clock_.advance(t); });
+    return sample<true, true>(
+        [&](const auto& numbers, double& t, std::span<double> row) -> const char* {
+            if (!numbers.read(time, t)) return "time";
+            constexpr bool plain = std::remove_cvref_t<decltype(numbers)>::plain;
+            if (!PyList_Check(pairs) && !PyTuple_Check(pairs)) return "pairs";
+            std::size_t guess = 0;
+            for (Py_ssize_t i = 0; i < PySequence_Fast_GET_SIZE(pairs); ++i) {
+                const auto pair = held<plain>(PySequence_Fast_GET_ITEM(pairs, i));
+                if ((!PyTuple_Check(pair.ptr()) && !PyList_Check(pair.ptr())) ||
+                    PySequence_Fast_GET_SIZE(pair.ptr()) != 2) {
+                    return "pairs";
+                }
+                const auto name = held<plain>(PySequence_Fast_GET_ITEM(pair.ptr(), 0));
+                const auto value = held<plain>(PySequence_Fast_GET_ITEM(pair.ptr(), 1));
+                if (const auto index = names_.place(name.ptr(), guess, plain)) {
+                    if (!numbers.read(value.ptr(), row[*index])) return "value";
+                    guess = *index + 1;
+                } else if (!names_.ignored(name.ptr(), plain)) {
+                    return "names";
+                }
+            }
+            return nullptr;
+        });
 }
 
 PyObject* Monitor::step(std::span<PyObject* const> values) noexcept {
-    if (!ready()) return nullptr;
-    if (values.size() != row_.size()) return gate_.refuse("count");
-    for (std::size_t i = 0; i < values.size(); ++i) {
-        if (!numbers_.read(values[i], row_[i])) return gate_.refuse("value");
-    }
-    return take([&] { clock_.tick(1); });
+    if (values.size() != names_.count()) return ready() ? gate_.refuse("count") : nullptr;
+    return sample<false, false>(
+        [&](const auto& numbers, double& /*time*/, std::span<double> row) -> const char* {
+            for (std::size_t i = 0; i < values.size(); ++i) {
+                if (!numbers.read(values[i], row[i])) return "value";
+            }
+            return nullptr;
+        });
 }
 
-// Runs the sample in row_; `accepted` sets the clock once nothing can go wrong any more.
-template <class Accepted>
-PyObject* Monitor::take(Accepted&& accepted) noexcept {
+// Runs the sample in row_, a period after the last one if it has no time of its own; sets the clock
+// once nothing can go wrong any more.
+template <bool timed>
+PyObject* Monitor::take(double time) noexcept {
     double value = 0.0;
     const Outcome outcome = gate_.briefly([&] { return executor_.step(row_.data(), value); });
     if (outcome == Outcome::failed) [[unlikely]] {
-        return fail();
+        const Failure& failure = executor_.failure();
+        const bool before = failure.sample < executor_.samples();
+        set_undefined(exceptions_, *calls_, failure.instruction, failure.sample, failure.fault,
+                      before  ? time_of(failure.sample, std::nullopt)
+                      : timed ? time
+                              : clock_.upcoming(0));
+        return nullptr;
     }
     std::swap(row_, previous_);
-    std::forward<Accepted>(accepted)();
+    timed ? clock_.advance(time) : clock_.tick(1);
     if (outcome == Outcome::known) return PyFloat_FromDouble(value);
     Py_RETURN_NONE;
 }
 
-PyObject* Monitor::fail() const noexcept {
-    const Failure& failure = executor_.failure();
-    set_undefined(exceptions_, *calls_, failure.instruction, failure.sample, failure.fault);
-    return nullptr;
+// The time of a sample that the last history_of() or the ones that are being taken have; those come
+// at the given times, or a period apart.
+double Monitor::time_of(std::int64_t sample, const std::optional<Column>& times) const {
+    const auto index = static_cast<std::size_t>(sample);
+    const std::size_t so_far = clock_.stamps().count();
+    if (index < so_far) return clock_.stamps().at(index);
+    return times ? times->data()[index - so_far] : clock_.upcoming(index - so_far);
 }
 
 // ---- many samples -------------------------------------------------------------------------------
 
 std::vector<Result> Monitor::push(const std::optional<Column>& times,
-                                  const std::vector<Column>& columns) {
+                                  const std::vector<Column>& columns,
+                                  std::optional<std::int64_t> after) {
     gate_.require_idle();
     if (executor_.finished()) {
         (void)gate_.refuse("finished");
         throw nb::python_error();
     }
+    gate_.require(after.value_or(executor_.samples()) == executor_.samples());
     std::size_t count = times ? times->shape(0) : 0;
     if (!times && !columns.empty()) count = columns.front().shape(0);
     const auto pointers = pointers_of(columns, names_.count(), count);
@@ -132,8 +191,8 @@ std::vector<Result> Monitor::push(const std::optional<Column>& times,
     const auto failure = gate_.exclusively(
         count, [&] { return executor_.push(pointers, count, results.pointers()); });
     if (failure) {
-        raise_undefined(exceptions_, *calls_, failure->instruction, failure->sample,
-                        failure->fault);
+        raise_undefined(exceptions_, *calls_, failure->instruction, failure->sample, failure->fault,
+                        time_of(failure->sample, times));
     }
     if (times) {
         for (std::size_t i = 0; i < count; ++i)
@@ -157,8 +216,8 @@ std::vector<Result> Monitor::finish() {
     const auto failure = gate_.exclusively(history_of(executor_.program()),
                                            [&] { return executor_.finish(results.pointers()); });
     if (failure) {
-        raise_undefined(exceptions_, *calls_, failure->instruction, failure->sample,
-                        failure->fault);
+        raise_undefined(exceptions_, *calls_, failure->instruction, failure->sample, failure->fault,
+                        time_of(failure->sample, std::nullopt));
     }
     return results.hand_over();
 }
@@ -188,6 +247,26 @@ void Monitor::transfer(Snapshot& snapshot) {
     executor_.transfer(snapshot);
     clock_.transfer(snapshot);
     snapshot.cells(previous_.data(), previous_.size());
+}
+
+std::int64_t Monitor::samples() const {
+    gate_.require_idle();
+    return executor_.samples();
+}
+
+std::uint64_t Monitor::violations() const {
+    gate_.require_idle();
+    return clock_.violations();
+}
+
+double Monitor::last_time() const {
+    gate_.require_idle();
+    return clock_.stamps().last();
+}
+
+std::size_t Monitor::state_bytes() const {
+    gate_.require_idle();
+    return executor_.state_bytes() + clock_.stamps().bytes();
 }
 
 double Monitor::last(std::uint32_t instruction) const {

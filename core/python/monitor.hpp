@@ -12,6 +12,7 @@
 #include "gate.hpp"
 #include "names.hpp"
 #include "numbers.hpp"
+#include "row.hpp"
 
 #include <nanobind/nanobind.h>
 
@@ -39,8 +40,11 @@ class Monitor {
     [[nodiscard]] PyObject* update_pairs(PyObject* time, PyObject* pairs) noexcept;
     [[nodiscard]] PyObject* step(std::span<PyObject* const> values) noexcept;
 
+    // `after`: how many samples the caller knows of; when there are others by now, nothing is
+    // taken.
     [[nodiscard]] std::vector<Result> push(const std::optional<Column>& times,
-                                           const std::vector<Column>& columns);
+                                           const std::vector<Column>& columns,
+                                           std::optional<std::int64_t> after);
     [[nodiscard]] std::vector<Result> finish();
     void reset();
 
@@ -56,12 +60,10 @@ class Monitor {
     [[nodiscard]] std::optional<double> latest(std::size_t output) const;
     [[nodiscard]] Result recent(std::size_t count) const;
 
-    [[nodiscard]] std::int64_t samples() const noexcept { return executor_.samples(); }
-    [[nodiscard]] std::uint64_t violations() const noexcept { return clock_.violations(); }
-    [[nodiscard]] double last_time() const noexcept { return clock_.stamps().last(); }
-    [[nodiscard]] std::size_t state_bytes() const noexcept {
-        return executor_.state_bytes() + clock_.stamps().bytes();
-    }
+    [[nodiscard]] std::int64_t samples() const;
+    [[nodiscard]] std::uint64_t violations() const;
+    [[nodiscard]] double last_time() const;
+    [[nodiscard]] std::size_t state_bytes() const;
 
   private:
     std::shared_ptr<Calls> calls_; // what the executor's calls need
@@ -71,15 +73,19 @@ class Monitor {
     Names names_;
     Exceptions exceptions_;
     Gate gate_;
-    std::vector<double> row_;      // the sample that is being read
+    std::vector<double> row_;      // the sample that is being taken
     std::vector<double> previous_; // the last sample that was taken; NaN where there is none
 
     void transfer(Snapshot& snapshot);
     [[nodiscard]] bool ready() const noexcept { return gate_.open(executor_.finished()); }
-    [[nodiscard]] PyObject* fail() const noexcept;
-
-    template <class Accepted>
-    [[nodiscard]] PyObject* take(Accepted&& accepted) noexcept;
+    [[nodiscard]] double time_of(std::int64_t sample, const std::optional<Column>& times) const;
+    template <bool timed, bool keeps, class Read>
+    [[nodiscard]] PyObject* sample(const Read& read) noexcept;
+    template <bool timed, bool keeps, class Read>
+    RTAMT_COLD [[nodiscard]] PyObject* sample_carefully(const Read& read) noexcept;
+    [[nodiscard]] bool whole() const noexcept;
+    template <bool timed>
+    [[nodiscard]] PyObject* take(double time) noexcept;
 };
 
 } // namespace rtamt::python

@@ -1,6 +1,8 @@
 // The names of a program's inputs, looked up by the Python strings that a caller passes.
 #pragma once
 
+#include "../vectors.hpp"
+
 #include <nanobind/nanobind.h>
 
 #include <cstddef>
@@ -25,7 +27,7 @@ struct Named {
 
     // Calls `take` with every name and value until it answers what is wrong; null if nothing is.
     template <class Take>
-    const char* each(Take&& take) const noexcept {
+    RTAMT_INLINE const char* each(Take&& take) const noexcept {
         for (std::size_t i = 0; i < count(); ++i) {
             const char* wrong = take(PyTuple_GET_ITEM(names, i), values[i]);
             if (wrong != nullptr) return wrong;
@@ -34,7 +36,8 @@ struct Named {
     }
 };
 
-// The same in a dict; anything else has more names than there are.
+// The same in a dict; anything else has more names than there are. What runs while a value is read
+// may change the dict.
 struct InDict {
     PyObject* dict;
 
@@ -49,6 +52,7 @@ struct InDict {
         PyObject* name = nullptr;
         PyObject* value = nullptr;
         while (PyDict_Next(dict, &position, &name, &value) != 0) {
+            const nb::object held[] = {nb::borrow(name), nb::borrow(value)};
             const char* wrong = take(name, value);
             if (wrong != nullptr) return wrong;
         }
@@ -82,12 +86,14 @@ class Names {
 
     [[nodiscard]] std::size_t count() const noexcept { return names_.size(); }
 
-    // The index of the input of this name, which is probably the one guessed; or nothing.
-    [[nodiscard]] std::optional<std::size_t> place(PyObject* name,
-                                                   std::size_t guess) const noexcept {
+    // The index of the input of this name, which is probably the one guessed; or nothing. If it is
+    // to be found without running Python code (`plain`), nothing for what is not quite a str.
+    [[nodiscard]] RTAMT_INLINE std::optional<std::size_t> place(PyObject* name, std::size_t guess,
+                                                                bool plain) const noexcept {
         if (guess < names_.size() && names_[guess].ptr() == name) [[likely]] {
             return guess;
         }
+        if (plain && !PyUnicode_CheckExact(name)) return std::nullopt;
         PyObject* index = PyDict_GetItemWithError(places_.ptr(), name);
         if (index == nullptr) {
             PyErr_Clear(); // what cannot be hashed is no name
@@ -96,7 +102,8 @@ class Names {
         return PyLong_AsSize_t(index);
     }
 
-    [[nodiscard]] bool ignored(PyObject* name) const noexcept {
+    [[nodiscard]] bool ignored(PyObject* name, bool plain) const noexcept {
+        if (plain && !PyUnicode_CheckExact(name)) return false;
         const int found = PySet_Contains(ignored_.ptr(), name);
         if (found < 0) PyErr_Clear(); // what cannot be hashed is no name
         return found > 0;

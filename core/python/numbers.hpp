@@ -1,6 +1,8 @@
 // Real numbers from Python objects.
 #pragma once
 
+#include "../vectors.hpp"
+
 #include <nanobind/nanobind.h>
 
 #include <cmath>
@@ -9,16 +11,43 @@ namespace rtamt::python {
 
 namespace nb = nanobind;
 
+// Drops a Python exception that only says that an object is no number, or too large a one.
+inline bool forget_no_number() noexcept {
+    if (PyErr_ExceptionMatches(PyExc_TypeError) != 0 ||
+        PyErr_ExceptionMatches(PyExc_OverflowError) != 0) {
+        PyErr_Clear();
+    }
+    return false;
+}
+
+// The numbers that are read without running any Python code: what nearly all values are. False for
+// all others, and for NaN.
+struct PlainNumbers {
+    static constexpr bool plain = true;
+
+    [[nodiscard]] RTAMT_INLINE static bool read(PyObject* object, double& value) noexcept {
+        if (PyFloat_Check(object)) [[likely]] {
+            value = PyFloat_AS_DOUBLE(object);
+            return !std::isnan(value);
+        }
+        if (!PyLong_CheckExact(object)) return false;
+        value = PyLong_AsDouble(object);
+        return value != -1.0 || PyErr_Occurred() == nullptr || forget_no_number();
+    }
+};
+
 // What counts as a number: float and int at once; else whatever calls itself a numbers.Real, and
 // numpy's bool. Strings, decimals and arrays do not.
 class Numbers {
   public:
+    static constexpr bool plain = false;
+
     Numbers()
         : accepted_(nb::make_tuple(nb::module_::import_("numbers").attr("Real"),
                                    nb::module_::import_("numpy").attr("bool_"))) {}
 
-    // False for what is no number and for NaN. A Python exception that the object raises counts as
-    // no number; only what is no ordinary error (KeyboardInterrupt) stays set.
+    // False for what is no number, for one that no double holds, and for NaN. What the object
+    // itself raises stays set.
     [[nodiscard]] bool read(PyObject* object, double& value) const noexcept {
         if (PyFloat_CheckExact(object)) [[likely]] {
             value = PyFloat_AS_DOUBLE(object);
@@ -36,16 +65,10 @@ class Numbers {
     [[nodiscard]] bool convert(PyObject* object, double& value) const noexcept {
         if (!PyFloat_Check(object) && !PyLong_Check(object)) {
             const int real = PyObject_IsInstance(object, accepted_.ptr());
-            if (real == 0) return false;
-            if (real < 0) return forget();
+            if (real <= 0) return false;
         }
         value = PyFloat_AsDouble(object);
-        return value != -1.0 || PyErr_Occurred() == nullptr || forget();
-    }
-
-    static bool forget() noexcept {
-        if (PyErr_ExceptionMatches(PyExc_Exception) != 0) PyErr_Clear();
-        return false;
+        return value != -1.0 || PyErr_Occurred() == nullptr || forget_no_number();
     }
 };
 

@@ -17,10 +17,12 @@ class Refused(Exception):  # noqa: N818 - a word that reads well after except
 class Undefined(Exception):  # noqa: N818
     """An operation made NaN; args are the instruction and the sample, or the tick in dense time.
 
-    Or a call failed: a third one is what it said, and the cause what a Python operator raised.
+    A monitor in discrete time tells the ``time`` of the sample. Or a call failed: a third one is what it
+    said, and the cause what a Python operator raised.
     """
 
     args: tuple[int, int] | tuple[int, int, str]
+    time: float
 
 class Monitor:
     """Runs a program online, one sample or one chunk at a time."""
@@ -45,9 +47,15 @@ class Monitor:
         """Take the next sample, one value an input, a period after the last one."""
 
     def push(
-        self, times: NDArray[np.float64] | None, columns: Sequence[NDArray[np.float64]]
+        self,
+        times: NDArray[np.float64] | None,
+        columns: Sequence[NDArray[np.float64]],
+        after: int | None = None,
     ) -> list[NDArray[np.float64]]:
-        """Take a chunk, a column an input; return what became known of each output."""
+        """Take a chunk, a column an input, unless others than ``after`` samples came before.
+
+        Return what became known of each output.
+        """
 
     def finish(self) -> list[NDArray[np.float64]]:
         """End the trace; return the rest of each output."""

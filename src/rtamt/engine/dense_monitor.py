@@ -9,6 +9,7 @@ import numpy as np
 
 from rtamt.compiler.plan import compile_program
 from rtamt.engine.dense_python_backend import PythonDenseMonitor
+from rtamt.engine.gate import alone, in_use
 from rtamt.engine.native import compiled, core, culprit, not_made
 from rtamt.engine.online import OnlineMonitor, Watched, depth_of
 from rtamt.engine.python_backend import Refused
@@ -140,6 +141,7 @@ class DenseMonitor(OnlineMonitor):
         """
         return self._take(dense_arrays.columns_of(data, self.input_names, self._known))
 
+    @alone
     def finish(self) -> Signal:
         """Say that no more samples will come: every signal holds its last value. Returns the rest."""
         if self._finished:
@@ -185,6 +187,7 @@ class DenseMonitor(OnlineMonitor):
         output = len(self._formulas) + self._program.value_of[desugar(formula)]
         return self._signal(self._backend.told(output))
 
+    @alone
     def reset(self) -> None:
         """Forget the trace; the next sample is the first."""
         self._backend.reset()
@@ -193,6 +196,7 @@ class DenseMonitor(OnlineMonitor):
 
     # ---- the long way ----------------------------------------------------------------------------
 
+    @alone
     def _take(self, columns: dict[str, tuple[Any, Any]]) -> Signal:
         if self._finished:
             raise UsageError("the monitor has finished its trace; call reset() before the next sample")
@@ -226,6 +230,8 @@ class DenseMonitor(OnlineMonitor):
         """Call the back end; turn its failure into a sentence."""
         try:
             return call()
+        except self._refused:  # all was checked, and then a quicker update came
+            raise in_use() from None
         except self._undefined as error:
             raise self._no_value(error, scale) from None
 

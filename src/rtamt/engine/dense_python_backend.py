@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from rtamt.engine.gate import Gate, alone
 from rtamt.engine.python_backend import Refused
 from rtamt.reference.dense import DenseReferenceMonitor
 
@@ -31,6 +32,7 @@ class PythonDenseMonitor:
         self._tick = tick
         self._monitor = DenseReferenceMonitor(formulas, names, tick)
         self._outputs = len(formulas)
+        self._gate = Gate()
         self._last: list[int | None]
         self._until: list[int | None]  # how far each output was told
         self._told: list[Samples]  # what the last update made known
@@ -38,16 +40,19 @@ class PythonDenseMonitor:
         self._start_over()
 
     @property
+    @alone
     def state_bytes(self) -> int:
         """Bytes of signal kept; grows with the trace."""
         return self._monitor.state_bytes
 
     @property
+    @alone
     def counts(self) -> list[int]:
         """How many samples of each input came."""
         return list(self._counts)
 
     @property
+    @alone
     def last_times(self) -> list[int | None]:
         """The tick of the last sample of each input, or None."""
         return list(self._last)
@@ -59,8 +64,12 @@ class PythonDenseMonitor:
         """Refuse: there is no quick way here."""
         raise Refused("time")
 
+    @alone
     def push(self, columns: Sequence[Events]) -> Samples:
         """Take a chunk, checked by the caller; return what became known of the first output."""
+        for (ticks, _), last in zip(columns, self._last, strict=True):
+            if len(ticks) and last is not None and ticks[0] <= last:
+                raise Refused("time")
         given = dict(zip(self._names, columns, strict=True))
         before = self._monitor.kept
         self._told = self._closed(self._monitor.push(given))
@@ -71,19 +80,23 @@ class PythonDenseMonitor:
                 self._last[i] = int(ticks[-1])
         return self._told[0]
 
+    @alone
     def finish(self) -> Samples:
         """End the trace; return the rest of the first output."""
         self._told = self._closed(self._monitor.finish())
         return self._told[0]
 
+    @alone
     def told(self, output: int) -> Samples:
         """Return what the last update made known of an output."""
         return self._told[output]
 
+    @alone
     def points(self) -> list[list[tuple[int, float]]]:
         """The same of every output: a list for each, of pairs of tick and value."""
         return [list(zip(ticks.tolist(), values.tolist(), strict=True)) for ticks, values in self._told]
 
+    @alone
     def part(self, formula: Formula) -> Samples:
         """Return what the last chunk made known of a formula: it is taken once more, for this one alone."""
         before, columns = self._latest
@@ -91,11 +104,13 @@ class PythonDenseMonitor:
         again.push([before.get(name, ([], [])) for name in self._names])
         return again.push(columns)
 
+    @alone
     def reset(self) -> None:
         """Forget the trace."""
         self._monitor.reset()
         self._start_over()
 
+    @alone
     def state(self) -> tuple[Any, ...]:
         """Return what the samples so far have left behind."""
         mine = self._counts, self._last, self._until, self._values, self._told

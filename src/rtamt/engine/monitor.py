@@ -10,6 +10,7 @@ import numpy as np
 
 from rtamt.compiler.plan import compile_program
 from rtamt.engine import python_backend
+from rtamt.engine.gate import alone, in_use
 from rtamt.engine.native import compiled, core, core_monitor, culprit
 from rtamt.engine.online import OnlineMonitor, Watched, depth_of
 from rtamt.errors import TraceError, UsageError, shown
@@ -20,7 +21,7 @@ from rtamt.signals import arrays
 from rtamt.signals.arrays import Signal
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Sequence
+    from collections.abc import Callable, Collection, Mapping, Sequence
 
     from rtamt.language.formula import Formula
 
@@ -41,6 +42,8 @@ class Monitor(OnlineMonitor):
     Signal(times=array([2.]), values=array([3.]))
 
     ``copy.copy`` branches a monitor: the copy has the same state and goes its own way. So does pickling.
+    Give each thread a monitor of its own: one that threads share takes every sample whole, in some order, or
+    raises :class:`UsageError`.
     """
 
     _remembered = ("_finished", "_news")
@@ -122,12 +125,20 @@ class Monitor(OnlineMonitor):
         try:
             return self._update(time, values)  # type: ignore[no-any-return]
         except self._refused:
-            flat = self._read_by_formula(values)
-            if flat.keys() != values.keys():
-                return self.update(time, **flat)
-            raise self._refusal(time, values) from None
+            pass  # the long way takes it, or finds out what is wrong and says it
         except self._undefined as error:
-            raise self._no_value(error, (time,)) from None
+            raise self._no_value(error) from None
+        flat = self._read_by_formula(values)
+        if self._finished:
+            raise self._is_finished()
+        stamp = read_time(time, self.samples, self._last_time)
+        numbers = read_values(flat, self.input_names, self.samples, stamp)
+        try:
+            return self._update(stamp, numbers)  # type: ignore[no-any-return]
+        except self._refused:
+            raise self._refusal(stamp) from None
+        except self._undefined as error:
+            raise self._no_value(error) from None
 
     @compiled("step")
     def step(self, *values: float) -> float | None:
@@ -145,16 +156,26 @@ class Monitor(OnlineMonitor):
         try:
             return self._step(*values)  # type: ignore[no-any-return]
         except self._refused:
-            if len(values) != len(self.input_names):
-                raise TraceError(
-                    f"sample {self.samples} has the wrong number of values: expected {len(self.input_names)} "
-                    f"({', '.join(self.input_names) or 'the formula reads no variable'}), got {len(values)}"
-                ) from None
-            time = self._next_time()
-            raise self._refusal(time, dict(zip(self.input_names, values, strict=True))) from None
+            pass
         except self._undefined as error:
-            raise self._no_value(error, (self._next_time(),)) from None
+            raise self._no_value(error) from None
+        if len(values) != len(self.input_names):
+            raise TraceError(
+                f"sample {self.samples} has the wrong number of values: expected {len(self.input_names)} "
+                f"({', '.join(self.input_names) or 'the formula reads no variable'}), got {len(values)}"
+            )
+        if self._finished:
+            raise self._is_finished()
+        named = dict(zip(self.input_names, values, strict=True))
+        numbers = read_values(named, self.input_names, self.samples, self._next_time())
+        try:
+            return self._step(*numbers.values())  # type: ignore[no-any-return]
+        except self._refused:
+            raise self._refusal(self._next_time()) from None
+        except self._undefined as error:
+            raise self._no_value(error) from None
 
+    @alone
     def update_many(self, data: Any) -> Signal:
         """Take a chunk of samples: a mapping (or frame) from variable to values, with ``"time"``.
 
@@ -168,13 +189,13 @@ class Monitor(OnlineMonitor):
         """
         if self._finished:
             raise self._is_finished()
-        times, columns = self._chunk(data)
         samples = self.samples
+        times, columns = self._chunk(data)
         before = self._backend.recent(min(self._oldest, samples))
         try:
-            known = self._backend.push(times, columns)
+            known = self._backend.push(times, columns, samples)
         except self._undefined as error:
-            raise self._no_value(error, times) from None
+            raise self._no_value(error) from None
         stamps = np.concatenate((before, times))
         news = []
         for lag, values in zip(self._lags, known, strict=True):
@@ -183,6 +204,7 @@ class Monitor(OnlineMonitor):
         self._news = samples + len(times), news
         return news[0]
 
+    @alone
     def finish(self) -> Signal:
         """Say that no more samples will come; returns the values that were still unknown.
 
@@ -197,7 +219,7 @@ class Monitor(OnlineMonitor):
         try:
             known = self._backend.finish()
         except self._undefined as error:
-            raise self._no_value(error, ()) from None
+            raise self._no_value(error) from None
         self._finished = True
         news = [Signal(self._backend.recent(len(values)), values) for values in known]
         self._news = self.samples, news
@@ -221,6 +243,7 @@ class Monitor(OnlineMonitor):
             return news[output]
         return self._backend.latest(output)  # type: ignore[no-any-return]
 
+    @alone
     def reset(self) -> None:
         """Forget the trace; the next sample is the first.
 
@@ -236,13 +259,19 @@ class Monitor(OnlineMonitor):
         self._finished = False
         self._news = (0, [])
 
+    @property
+    def _last_time(self) -> float | None:
+        time = float(self._backend.last_time)
+        return None if isnan(time) else time
+
     def _next_time(self) -> float:
-        return float(self._backend.last_time) + float(self._period) if self.samples else 0.0
+        last = self._last_time
+        return 0.0 if last is None else last + float(self._period)
 
     # ---- what goes wrong -------------------------------------------------------------------------
 
     def _chunk(self, data: Any) -> tuple[arrays.FloatArray, list[arrays.FloatArray]]:
-        last = float(self._backend.last_time) if self.samples else None
+        last = self._last_time
         times, columns, n = arrays.columns_of(data, self.input_names, self._known)
         if times is None:
             times = np.array(self._next_time() + float(self._period) * np.arange(n), dtype=np.float64)
@@ -255,55 +284,57 @@ class Monitor(OnlineMonitor):
     def _is_finished(self) -> UsageError:
         return UsageError("the monitor has finished its trace; call reset() before the next sample")
 
-    def _refusal(self, time: Any, values: dict[str, Any]) -> Exception:
-        """Find out why the back end took no sample, and say it."""
-        index = self.samples
+    def _refusal(self, time: float) -> Exception:
+        """Find out why the back end took no sample of numbers at this time, and say it."""
         if self._finished:
             return self._is_finished()
-        last = float(self._backend.last_time) if index else None
-        error = refused_time(time, index, last) or refused_values(values, self.input_names, index, time)
-        if error is not None:
-            return error
-        assert last is not None
-        return arrays.irregular(index, float(time), last, self._period, self._tolerance)
+        index, last = self.samples, self._last_time
+        read_time(time, index, last)
+        period = float(self._period)
+        if last is None or abs(time - last - period) <= self._tolerance * period:
+            return in_use()  # what was wrong is so no more
+        return arrays.irregular(index, time, last, self._period, self._tolerance)
 
-    def _no_value(self, error: Exception, new: Sequence[float] | arrays.FloatArray) -> Exception:
-        """Name the sub-formula and the instant of a value that does not exist; ``new`` are the stamps taken."""
+    def _no_value(self, error: Any) -> Exception:
+        """Name the sub-formula and the instant of a value that does not exist."""
         assert self._program is not None
         formula = culprit(error, self._program, self._formulas)
-        stamps = np.concatenate((self._backend.recent(min(self._oldest, self.samples)), new))
-        first, sample = self.samples + len(new) - len(stamps), error.args[1]
-        return undefined(formula, at_sample(sample, float(stamps[sample - first])))
+        return undefined(formula, at_sample(error.args[1], error.time))
 
 
-def refused_time(time: Any, index: int, last: float | None) -> TraceError | None:
-    """Return what is wrong with a sample's time stamp, if anything is."""
-    if not arrays.is_number(time):
-        return TraceError(
+def read_time(time: Any, index: int, last: float | None) -> float:
+    """Return a sample's time stamp; raise :class:`TraceError` for one that no sample can have."""
+    stamp = arrays.number_of(time)
+    if stamp is None:
+        raise TraceError(
             f"time is {shown(time)} at sample {index}, expected a number of seconds", variable="time"
         )
-    if not isfinite(time):
-        return TraceError(f"time is {float(time)} at sample {index}: give a finite number of seconds")
-    if last is not None and time <= last:
-        return arrays.not_increasing(index, float(time), last)
-    return None
+    if not isfinite(stamp):
+        raise TraceError(f"time is {stamp} at sample {index}: give a finite number of seconds")
+    if last is not None and stamp <= last:
+        raise arrays.not_increasing(index, stamp, last)
+    return stamp
 
 
-def refused_values(
-    values: dict[str, Any], names: tuple[str, ...], index: int, time: float
-) -> TraceError | None:
-    """Return what is wrong with a sample's values, if anything is."""
+def read_values(
+    values: Mapping[str, Any], names: tuple[str, ...], index: int, time: float
+) -> dict[str, float]:
+    """Return a sample's values in the order of the names, each read once; raise :class:`TraceError`."""
     for name in values:
         if name not in names:
-            return arrays.unknown_variable(name, names)
+            raise arrays.unknown_variable(name, names)
+    numbers = {}
     for name in names:
         if name not in values:
-            return arrays.missing_variable(name, tuple(values))
-        value = values[name]
-        if not arrays.is_number(value):
-            return TraceError(
-                f"'{name}' is {shown(value)} at sample {index}, expected a number", variable=name, index=index
+            raise arrays.missing_variable(name, tuple(values))
+        number = arrays.number_of(values[name])
+        if number is None:
+            raise TraceError(
+                f"'{name}' is {shown(values[name])} at sample {index}, expected a number",
+                variable=name,
+                index=index,
             )
-        if isnan(value):
-            return arrays.nan_error(name, index, float(time))
-    return None
+        if isnan(number):
+            raise arrays.nan_error(name, index, time)
+        numbers[name] = number
+    return numbers

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
+from rtamt.engine.gate import Gate, alone
 from rtamt.errors import UsageError, did_you_mean
 from rtamt.language.formula import variables
 from rtamt.rewrite.horizon import horizon
@@ -59,6 +60,7 @@ class OnlineMonitor(ABC):
         self._output_of = {watched.name: output for output, watched in enumerate(watch, 1)}
         self._known = frozenset(known)
         self._again = again
+        self._gate = Gate()  # what takes more than one step is done alone
         self._finished = False
 
     @property
@@ -109,6 +111,7 @@ class OnlineMonitor(ABC):
     def __copy__(self: Self) -> Self:
         twin = object.__new__(type(self))
         twin.__dict__.update(self.__dict__)  # nothing in it is changed in place
+        twin._gate = Gate()
         twin._resume(self._state())
         return twin
 
@@ -120,6 +123,7 @@ class OnlineMonitor(ABC):
             raise UsageError("only a monitor that Specification.monitor() has made can be pickled")
         return _resumed, (self._again, self._state())
 
+    @alone
     def _state(self) -> tuple[Any, ...]:
         if self._program is not None and self._program.calls:
             name = self._program.calls[0].op.name

@@ -8,11 +8,12 @@ from __future__ import annotations
 
 from collections import deque
 from fractions import Fraction
-from math import inf, isfinite, isnan
+from math import inf, isfinite, isnan, nan
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from rtamt.engine.gate import Gate, alone, in_use
 from rtamt.reference.discrete import ReferenceMonitor, history
 from rtamt.rewrite.horizon import horizon
 from rtamt.signals import arrays
@@ -66,24 +67,33 @@ class PythonMonitor:
         self._stamps: deque[float] = deque(maxlen=max(lags, default=0) + 1)
         self._values: dict[str, float] = {}
         self._finished = False
+        self._gate = Gate()
         self._news: list[FloatArray] = [np.empty(0) for _ in formulas]  # of the last update
         self.violations = 0
 
     @property
+    @alone
     def samples(self) -> int:
         """How many samples have been taken."""
         return self._monitor.samples
 
     @property
-    def last_time(self) -> float | None:
-        """The stamp of the last sample; None before the first."""
-        return self._stamps[-1] if self._stamps else None
+    @alone
+    def last_time(self) -> float:
+        """The stamp of the last sample; NaN before the first."""
+        return self._last_time
 
     @property
+    def _last_time(self) -> float:
+        return self._stamps[-1] if self._stamps else nan
+
+    @property
+    @alone
     def state_bytes(self) -> int:
         """Bytes of signal kept; grows with the trace where the past is unbounded."""
         return self._monitor.state_bytes
 
+    @alone
     def last(self, part: Formula) -> float:
         """Return the value at the last sample of a past formula: one of the monitor's, or a part of one."""
         return self._monitor.last(part)
@@ -93,6 +103,7 @@ class PythonMonitor:
         news = self._news[output]
         return float(news[-1]) if len(news) else None
 
+    @alone
     def recent(self, count: int) -> FloatArray:
         """Return the stamps of the last ``count`` samples."""
         return np.array(list(self._stamps)[len(self._stamps) - count :], dtype=np.float64)
@@ -101,29 +112,31 @@ class PythonMonitor:
         """Take one sample with a value for every variable."""
         if set(values) != set(self._names):
             raise Refused("variables")
-        return self._take(time, {name: _number(values[name]) for name in self._names})
+        return self._take(_number(time), {name: _number(values[name]) for name in self._names})
 
     def update_pairs(self, time: float, pairs: Sequence[tuple[str, float]]) -> float | None:
         """Take one sample; a variable that is left out keeps its value."""
-        values = dict(self._values)
+        values = {}
         for name, value in pairs:
             if name not in self._names:
                 raise Refused("unknown variable")
             values[name] = _number(value)
-        if len(values) != len(self._names):
-            raise Refused("missing variable")
-        return self._take(time, values)
+        return self._take(_number(time), values)
 
     def step(self, *values: float) -> float | None:
         """Take one sample, values in the order of the inputs, one period after the last."""
         if len(values) != len(self._names):
             raise Refused("number of values")
-        time = self._stamps[-1] + self._period if self._stamps else 0.0
-        return self._take(time, {n: _number(v) for n, v in zip(self._names, values, strict=True)})
+        return self._take(None, {n: _number(v) for n, v in zip(self._names, values, strict=True)})
 
-    def push(self, times: FloatArray, columns: Sequence[FloatArray]) -> list[FloatArray]:
-        """Take many samples, checked by the caller."""
-        off = [self._off(a, b) for a, b in zip([self.last_time, *times], times, strict=False)]
+    @alone
+    def push(
+        self, times: FloatArray, columns: Sequence[FloatArray], after: int | None = None
+    ) -> list[FloatArray]:
+        """Take many samples, checked by the caller, unless others than ``after`` samples came before."""
+        if after not in {None, self._monitor.samples}:
+            raise in_use()
+        off = [self._off(a, b) for a, b in zip([self._last_time, *times], times, strict=False)]
         if len(times):
             self._begin(float(times[0]))
         known = self._news = self._monitor.push(list(columns) or [np.zeros(len(times))])
@@ -133,12 +146,14 @@ class PythonMonitor:
             self._values = {name: float(c[-1]) for name, c in zip(self._names, columns, strict=True)}
         return known
 
+    @alone
     def finish(self) -> list[FloatArray]:
         """Return what was still unknown; after it only ``reset`` is possible."""
         known = self._monitor.finish()
         self._finished = True
         return known
 
+    @alone
     def reset(self) -> None:
         """Forget the trace."""
         self._monitor.reset()
@@ -148,6 +163,7 @@ class PythonMonitor:
         self._news = [np.empty(0) for _ in self._news]
         self.violations = 0
 
+    @alone
     def state(self) -> tuple[Any, ...]:
         """Return what the samples so far have left behind."""
         mine = tuple(self._stamps), self._values, self._news, self._finished, self.violations
@@ -159,21 +175,28 @@ class PythonMonitor:
         self._stamps.extend(stamps)
         self._monitor.restore(definition)
 
-    def _take(self, time: Any, values: Mapping[str, float]) -> float | None:
-        time = _number(time)
+    @alone
+    def _take(self, time: float | None, given: Mapping[str, float]) -> float | None:
+        """Take numbers; those left out keep their values, and without a time it is a period after the last."""
         if self._finished:
             raise Refused("finished")
-        if not isfinite(time) or (self._stamps and time <= self._stamps[-1]):
+        last = self._last_time
+        if time is None:
+            time = last + self._period if self._stamps else 0.0
+        if not isfinite(time) or time <= last:
             raise Refused("time")
-        off = self._off(self.last_time, time)
+        off = self._off(last, time)
         if off and self._strict:
             raise Refused("period")
+        values = {**self._values, **given}
+        if len(values) != len(self._names):
+            raise Refused("missing variable")
         columns = [np.array([values[name]]) for name in self._names] or [np.zeros(1)]
         self._begin(time)
         self._news = self._monitor.push(columns)
         known = self._news[0]
         self._stamps.append(time)
-        self._values = dict(values)
+        self._values = values
         self.violations += off
         return float(known[0]) if len(known) else None
 
@@ -182,9 +205,9 @@ class PythonMonitor:
         if not self._stamps:
             self._monitor.start = time * self._unit
 
-    def _off(self, before: float | None, time: float) -> bool:
-        """Tell whether a gap misses the period by more than the tolerance; the first sample has none."""
-        return before is not None and abs(time - before - self._period) > self._tolerance * self._period
+    def _off(self, before: float, time: float) -> bool:
+        """Tell whether a gap misses the period by more than the tolerance; before the first sample is NaN."""
+        return abs(time - before - self._period) > self._tolerance * self._period
 
 
 class _Questioned(ReferenceMonitor):
@@ -208,9 +231,7 @@ class _Questioned(ReferenceMonitor):
 
 
 def _number(value: Any) -> float:
-    if not arrays.is_number(value):
+    number = arrays.number_of(value)
+    if number is None or isnan(number):
         raise Refused("not a number")
-    number = float(value)
-    if isnan(number):
-        raise Refused("NaN")
     return number

@@ -106,7 +106,7 @@ class CompiledStream:
         self._made_of = (formulas, inputs, period, unit, tolerance, ignored)
         self._program = compile_program([desugar(formula) for formula in formulas], period, inputs)
         self._unit = float(UNITS[unit])
-        self._undefined: type[Exception] = compiled.Undefined
+        self._undefined: Any = compiled.Undefined
         in_units = float(period / UNITS[unit])
         #: Counts samples and gaps, and forgets them.
         self.monitor: Any = core_monitor(self._program, in_units, tolerance, strict=False, ignored=ignored)
@@ -114,7 +114,7 @@ class CompiledStream:
         self.refused: type[Exception] = compiled.Refused
         #: A quick way in for whatever a caller has (None if there is none), and what it raises if that will not do.
         self.quick: Callable[[Any, Any], Any] | None = self.monitor.update_pairs
-        self.refusals: tuple[type[Exception], ...] = (compiled.Refused, compiled.Undefined)
+        self.refusals: tuple[type[Exception], ...] = (compiled.Refused, compiled.Undefined, UsageError)
 
     def take(self, timestamp: Any, numbers: Mapping[str, Any]) -> float:
         """Take a sample and return the robustness.
@@ -126,7 +126,7 @@ class CompiledStream:
             robustness: float = self.monitor.update_pairs(timestamp, list(numbers.items()))
         except self._undefined as error:
             formula = culprit(error, self._program, self._made_of[0])
-            raise undefined(formula, at_sample(error.args[1], timestamp * self._unit)) from None
+            raise undefined(formula, at_sample(error.args[1], error.time * self._unit)) from None
         return robustness
 
     def __reduce__(self) -> tuple[Any, ...]:

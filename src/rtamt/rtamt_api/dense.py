@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from rtamt.engine import dense_evaluate
 from rtamt.engine.dense_monitor import DenseMonitor
+from rtamt.engine.gate import alone
 from rtamt.engine.online import Watched
 from rtamt.errors import NameInFormulaError, StlError, TraceError, UsageError, shown
 from rtamt.language.formula import Var, postorder, variables
@@ -157,6 +158,7 @@ class StlDenseTimeOnlineSpecification(OnlineSpecification, DenseTimeSpecificatio
         self._whole = True  # whether all times so far were integers
 
     @raises_rtamt
+    @alone
     def update(self, *dataset: Sequence[Any]) -> list[list[float]]:
         """Take the next samples and return what became known, in the form of ``evaluate``.
 
@@ -165,6 +167,9 @@ class StlDenseTimeOnlineSpecification(OnlineSpecification, DenseTimeSpecificatio
         since the update before, and one at that time. Raises :class:`RTAMTException` for wrong data,
         and the monitor is then as it was.
         """
+        return self._updated(dataset)
+
+    def _updated(self, dataset: tuple[Any, ...]) -> list[list[float]]:
         monitor = self._require_monitor()
         given = _by_name(dataset)
         for name in given:
@@ -181,6 +186,7 @@ class StlDenseTimeOnlineSpecification(OnlineSpecification, DenseTimeSpecificatio
         return _points(signal, self._whole)
 
     @raises_rtamt
+    @alone
     def final_update(self, *dataset: Sequence[Any]) -> list[list[float]]:
         """Take the last samples, as :meth:`update` does, and return all that was not told before.
 
@@ -200,7 +206,7 @@ class StlDenseTimeOnlineSpecification(OnlineSpecification, DenseTimeSpecificatio
         [[1, 0.0], [4, 0.0]]
         """
         before = copy(self)
-        told = self.update(*dataset)
+        told = self._updated(dataset)
         try:
             signal = self._require_monitor().finish()
         except StlError:  # the last samples are not taken either
@@ -216,6 +222,8 @@ class StlDenseTimeOnlineSpecification(OnlineSpecification, DenseTimeSpecificatio
         # Where the update ended nothing need have changed.
         return [point for i, point in enumerate(points) if i in {0, last} or point[1] != points[i - 1][1]]
 
+    @raises_rtamt
+    @alone
     def reset(self) -> None:
         """Forget the signals; the next samples are the first."""
         self._value_of = None

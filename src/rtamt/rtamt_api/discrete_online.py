@@ -5,8 +5,9 @@ from __future__ import annotations
 from numbers import Real
 from typing import TYPE_CHECKING, Any
 
-from rtamt.engine.monitor import refused_time, refused_values
-from rtamt.errors import RTAMTException, TraceError
+from rtamt.engine.gate import alone, in_use
+from rtamt.engine.monitor import read_time, read_values
+from rtamt.errors import TraceError
 from rtamt.language.formula import Formula, Var
 from rtamt.language.units import UNITS
 from rtamt.rtamt_api.backends import check_language, open_stream, require_core
@@ -59,6 +60,8 @@ class StlDiscreteTimeOnlineSpecification(OnlineSpecification, DiscreteTimeSpecif
         except self._refusals:
             return self._update_carefully(timestamp, dataset)
 
+    @raises_rtamt
+    @alone
     def reset(self) -> None:
         """Forget the trace; the next sample is the first."""
         if self._stream is not None:
@@ -96,17 +99,22 @@ class StlDiscreteTimeOnlineSpecification(OnlineSpecification, DiscreteTimeSpecif
 
     def _begin(self, timestamp: Any, dataset: Any) -> Any:
         """Take a sample before which something has to be set up."""
-        stream = self._require_stream()
+        stream = self._opened_stream()
         objects = self.out_var_field or any(name != head_of(name) for name in self._inputs)
         quick = None if self._shared or objects else stream.quick
         self._take = quick or self._update_carefully
         try:
             robustness = self.update(timestamp, dataset)
-        except RTAMTException:
+        except BaseException:  # of a value, too
             self._take = self._begin
             raise
         self._value_of = self._latest
         return robustness
+
+    @raises_rtamt
+    @alone
+    def _opened_stream(self) -> CompiledStream | DefinedStream:
+        return self._require_stream()
 
     @raises_rtamt
     def _require_stream(self) -> CompiledStream | DefinedStream:
@@ -125,6 +133,7 @@ class StlDiscreteTimeOnlineSpecification(OnlineSpecification, DiscreteTimeSpecif
     # ---- the careful way: objects, values assigned from outside, any iterable, and errors ----------
 
     @raises_rtamt
+    @alone
     def _update_carefully(self, timestamp: Any, dataset: Any) -> Any:
         stream = self._require_stream()
         given = self._pairs(dataset)
@@ -172,20 +181,18 @@ class StlDiscreteTimeOnlineSpecification(OnlineSpecification, DiscreteTimeSpecif
     def _refusal(self, timestamp: Any, numbers: dict[str, Any], monitor: Any) -> Exception:
         """Find out why the monitor took no sample, and say it."""
         index = monitor.samples
-        time = self._seconds(timestamp)
         last = self._seconds(monitor.last_time) if index else None
-        error = refused_time(time, index, last)
+        time = read_time(self._seconds(timestamp), index, last)
         for name in self._inputs:
-            if error is None and index == 0 and name not in numbers:
-                error = TraceError(
+            if index == 0 and name not in numbers:
+                return TraceError(
                     f"'{name}' has no value yet at sample 0: give every variable in the first update; "
                     f"later ones may leave it out",
                     variable=name,
                     index=0,
                 )
-        error = error or refused_values(numbers, tuple(numbers), index, time)
-        assert error is not None, "a sample is refused for one of these reasons"
-        return error
+        read_values(numbers, tuple(numbers), index, time)
+        return in_use()  # what was wrong is so no more
 
     def _seconds(self, timestamp: Any) -> Any:
         return timestamp * float(UNITS[self._unit]) if isinstance(timestamp, Real) else timestamp

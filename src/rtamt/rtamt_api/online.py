@@ -5,6 +5,7 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
+from rtamt.engine.gate import Gate
 from rtamt.errors import RTAMTException, SpecificationError
 from rtamt.language.formula import Apply, Formula, postorder
 from rtamt.language.operators import Tense
@@ -27,6 +28,7 @@ class OnlineSpecification(Formulas):
     def __init__(self) -> None:
         super().__init__()
         self._pastified = False
+        self._gate = Gate()  # what takes more than one step is done alone
         # From a variable to what formulas read of it: itself, or its fields by full name.
         self._reads: dict[str, list[str]] = {}
 

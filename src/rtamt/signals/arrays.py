@@ -219,15 +219,19 @@ def array(values: Any, name: str, first: int = 0) -> FloatArray:
 
 def is_number(value: Any) -> bool:
     """Tell whether a value is a real number that a double can hold: Python's, numpy's, or any other."""
+    return number_of(value) is not None
+
+
+def number_of(value: Any) -> float | None:
+    """Return a real number as a double; None for what is none, or too large for one."""
     if value.__class__ is float:
-        return True
+        return value
     if not isinstance(value, (Real, np.bool_)):
-        return False
+        return None
     try:
-        float(value)
-    except OverflowError:
-        return False
-    return True
+        return float(value)
+    except (OverflowError, TypeError):
+        return None
 
 
 def stamps(values: Any) -> FloatArray:

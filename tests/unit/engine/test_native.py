@@ -16,6 +16,7 @@ import pytest
 
 from rtamt.compiler.program import Instruction, Program
 from rtamt.engine.native import core
+from rtamt.errors import UsageError
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -416,7 +417,7 @@ def test_calls_neither_lose_nor_keep_references() -> None:
 def complaint(m: Any) -> str | None:
     try:
         m.step(1.0, 1.0)
-    except RuntimeError as error:
+    except UsageError as error:
         return str(error)
     return None
 
@@ -436,6 +437,7 @@ def test_a_monitor_in_use_by_another_thread_says_so_and_goes_on_undisturbed() ->
         thread.join()
         pushes += 1
     assert set(answers) - {None} == {
-        "The monitor is in use by another thread: give each thread a monitor of its own."
+        "the monitor is in use by another call, from another thread or from a value or operator that calls it "
+        "back; give each thread a monitor of its own"
     }
     assert m.samples == pushes * n + answers.count(None)

@@ -1,0 +1,64 @@
+"""Who may use a monitor: one call at a time.
+
+A second call comes from another thread, or from code that the first one runs: the ``__float__`` of a value,
+the fields of an object, an operator of the user's. It is refused, and neither changes what the other does.
+"""
+
+from __future__ import annotations
+
+from functools import wraps
+from threading import Lock
+from typing import TYPE_CHECKING, Concatenate, ParamSpec, Protocol, TypeVar
+
+from rtamt.errors import UsageError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    P = ParamSpec("P")
+    R = TypeVar("R")
+
+
+class Gate:
+    """Lets one call in; :class:`UsageError` for a second one."""
+
+    __slots__ = ("_lock",)
+
+    def __init__(self) -> None:
+        self._lock = Lock()
+
+    def __enter__(self) -> None:
+        if not self._lock.acquire(blocking=False):
+            raise in_use()
+
+    def __exit__(self, *_: object) -> None:
+        self._lock.release()
+
+    def __reduce__(self) -> tuple[type[Gate], tuple[()]]:
+        return Gate, ()  # nobody is inside a copy
+
+
+class _Guarded(Protocol):
+    _gate: Gate
+
+
+G = TypeVar("G", bound=_Guarded)
+
+
+def alone(method: Callable[Concatenate[G, P], R]) -> Callable[Concatenate[G, P], R]:
+    """Make a method hold the ``_gate`` of its object."""
+
+    @wraps(method)
+    def guarded(self: G, /, *args: P.args, **kwargs: P.kwargs) -> R:
+        with self._gate:
+            return method(self, *args, **kwargs)
+
+    return guarded
+
+
+def in_use() -> UsageError:
+    """Return the error for a monitor that is in the middle of another call, or was meanwhile used by one."""
+    return UsageError(
+        "the monitor is in use by another call, from another thread or from a value or operator that calls it "
+        "back; give each thread a monitor of its own"
+    )
