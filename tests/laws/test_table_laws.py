@@ -16,7 +16,7 @@ from hypothesis import strategies as st
 
 import rtamt
 from rtamt.cli import main
-from rtamt.readers import csv, csv_source
+from rtamt.readers import csv
 
 #: Names of the column of time stamps; columns that leave open which one it is, or whether there is one.
 CLOCKS = ["time", "t", "Time [ms]", "time_ms", "stamp_us", "timestamp", "t (ns)", "Time(s)", "when"]
@@ -149,7 +149,6 @@ def streamed(asked):
     spec = asked.spec()
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(csv, "BLOCK", 2)
-        patch.setattr(csv_source, "BLOCK", 2)
         try:
             chunks = rtamt.scan("log.csv", columns=["x"], units=asked.units)
             return rtamt.check_stream(spec, chunks).robustness

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+from collections import defaultdict
 from dataclasses import dataclass
 from decimal import Decimal
 from typing import TYPE_CHECKING, Any
@@ -95,16 +96,15 @@ def select(source: Source, choice: Choice) -> list[Selection]:
     if choice.time:
         everything = [(table, field) for table in source.tables for field in table.fields]
         if not any(choice.time in (field.name, field.column) for _, field in everything):
-            _find(source, choice.time, everything)  # raises
-    wanted = _wanted(source, choice)
+            _Columns(source, everything).find(choice.time)  # raises
+    of_table: dict[int, list[tuple[str, Field]]] = defaultdict(list)
+    skipped = set(choice.skip_nan)
+    for name, table, field in _wanted(source, choice):
+        of_table[id(table)].append((name, dataclasses.replace(field, skip_nan=name in skipped)))
     found = []
     for table in source.tables:
         clock, guessed = _time_field(source, table, choice)
-        mine = [
-            (name, dataclasses.replace(f, skip_nan=name in choice.skip_nan))
-            for name, t, f in wanted
-            if t is table
-        ]
+        mine = of_table[id(table)]
         if choice.columns is None:
             mine = [(name, f) for name, f in mine if f != clock or name in choice.names]
         if mine or len(source.tables) == 1:
@@ -114,9 +114,10 @@ def select(source: Source, choice: Choice) -> list[Selection]:
 
 def _wanted(source: Source, choice: Choice) -> list[tuple[str, Table, Field]]:
     everything = [(table, field) for table in source.tables for field in table.fields]
+    columns = _Columns(source, everything)
     if choice.columns is None:
-        for name in choice.names:
-            _find(source, choice.names[name], everything)
+        for column in choice.names.values():
+            columns.find(column)
         new = {column: name for name, column in choice.names.items()}
         result = [
             (new.get(field.column, new.get(field.name, field.name)), table, field)
@@ -130,13 +131,13 @@ def _wanted(source: Source, choice: Choice) -> list[tuple[str, Table, Field]]:
     for name in dict.fromkeys(choice.columns):
         if name == TIME and name not in choice.names and _has_clock_called_otherwise(source, choice):
             continue
-        found.append((name, *_find(source, choice.names.get(name, name), everything)))
+        found.append((name, *columns.find(choice.names.get(name, name))))
     _check_skipped(source, found, choice)
     return found
 
 
 def _check_skipped(source: Source, found: Sequence[tuple[str, Table, Field]], choice: Choice) -> None:
-    names = [name for name, _, _ in found]
+    names = {name for name, _, _ in found}
     for name in choice.skip_nan:
         if name not in names:
             raise TraceError(
@@ -162,23 +163,34 @@ def _has_clock_called_otherwise(source: Source, choice: Choice) -> bool:
     return False
 
 
-def _find(source: Source, column: str, everything: Sequence[tuple[Table, Field]]) -> tuple[Table, Field]:
-    exact = [(table, field) for table, field in everything if field.column == column]
-    found = exact or [(table, field) for table, field in everything if field.name == column]
-    if len(found) == 1:
-        return found[0]
-    if found:
+class _Columns:
+    """Columns by what the source calls them, else by their names in formulas."""
+
+    def __init__(self, source: Source, everything: Sequence[tuple[Table, Field]]) -> None:
+        self._source = source
+        self._by_column: dict[str, list[tuple[Table, Field]]] = defaultdict(list)
+        self._by_name: dict[str, list[tuple[Table, Field]]] = defaultdict(list)
+        for table, field in everything:
+            self._by_column[field.column].append((table, field))
+            self._by_name[field.name].append((table, field))
+
+    def find(self, column: str) -> tuple[Table, Field]:
+        """Return the one column that is called so; raise :class:`TraceError` where there is none, or are several."""
+        found = self._by_column.get(column) or self._by_name.get(column) or []
+        if len(found) == 1:
+            return found[0]
+        if found:
+            raise TraceError(
+                f"{self._source.name} has {len(found)} columns called '{column}'; rename all but one of them",
+                variable=column,
+            )
+        names = [field.name for same in self._by_column.values() for _, field in same]
+        more = f" and {len(names) - 12} more" if len(names) > 12 else ""
+        hint = did_you_mean(column, names)
         raise TraceError(
-            f"{source.name} has {len(found)} columns called '{column}'; rename all but one of them",
+            f"{self._source.name} has no column '{column}', only {', '.join(names[:12]) or 'nothing'}{more}{hint}",
             variable=column,
         )
-    names = [field.name for _, field in everything]
-    more = f" and {len(names) - 12} more" if len(names) > 12 else ""
-    hint = did_you_mean(column, names)
-    raise TraceError(
-        f"{source.name} has no column '{column}', only {', '.join(names[:12]) or 'nothing'}{more}{hint}",
-        variable=column,
-    )
 
 
 def _check_unique(source: Source, found: Sequence[tuple[str, Table, Field]]) -> None:
@@ -205,11 +217,11 @@ def _time_field(source: Source, table: Table, choice: Choice) -> tuple[Field | N
     if choice.time is not None:
         if table.clock is not None and all(choice.time not in (f.name, f.column) for f in table.fields):
             return table.clock, False
-        return _find(source, choice.time, [(table, field) for field in table.fields])[1], False
+        return _Columns(source, [(table, field) for field in table.fields]).find(choice.time)[1], False
     if table.clock is not None:
         return table.clock, False
-    wanted = [choice.names.get(name, name) for name in choice.columns or ()]
-    return guess_field(table.fields, source.name, [*wanted, *choice.names.values()]), True
+    wanted = {choice.names.get(name, name) for name in choice.columns or ()}
+    return guess_field(table.fields, source.name, wanted.union(choice.names.values())), True
 
 
 # ---- values --------------------------------------------------------------------------------------

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 DELIMITERS = (",", ";", "\t")
 
 BLOCK = 65_536  # lines at a time: enough to keep numpy busy, little enough to keep memory flat
+_CELLS = 2**22  # at a time, where lines are long
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,10 +104,15 @@ def plain(block: list[str], header: Header, columns: Sequence[Column]) -> FloatA
     return None  # the slow way finds the cell that is no number
 
 
+def block_of(header: Header) -> int:
+    """Return the number of lines that are read at a time."""
+    return max(1, min(BLOCK, _CELLS // len(header.names)))
+
+
 def blocks(lines: Iterator[str], header: Header) -> Iterator[list[tuple[int, list[str]]]]:
     """Yield the rows after the header, many at a time, each with its line: as many cells as there are columns."""
     checked = rows(lines, header, header.line)
-    while block := list(islice(checked, BLOCK)):
+    while block := list(islice(checked, block_of(header))):
         for line, row in block:
             check_width(row, header, line)
         yield block

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rtamt.errors import TraceError
-from rtamt.readers.csv import BLOCK, Column, Header, blocks, is_number, plain, read_header, rows
+from rtamt.readers.csv import Column, Header, block_of, blocks, is_number, plain, read_header, rows
 from rtamt.readers.csv_cells import LARGEST, Cells
 from rtamt.readers.dates import is_date
 from rtamt.readers.frames import field_of
@@ -53,9 +53,11 @@ def open_csv(path: str) -> Source:
 
 def _blocks(lines: Iterator[str], header: Header, wanted: Sequence[Field]) -> Iterator[list[Raw]]:
     """Yield columns block by block: by numpy as long as lines are plain numbers, cell by cell from there on."""
-    columns = [Column(f.column, header.names.index(f.column), f.skip_nan) for f in wanted]
+    # Of a name that is there twice: the first.
+    places = {name: i for i, name in reversed(list(enumerate(header.names)))}
+    columns = [Column(f.column, places[f.column], f.skip_nan) for f in wanted]
     line = header.line
-    while block := list(islice(lines, BLOCK)):
+    while block := list(islice(lines, block_of(header))):
         values = plain(block, header, columns)
         if values is None or np.abs(values).max(initial=0) >= LARGEST:
             break

@@ -20,7 +20,7 @@ from rtamt.signals.stamps import is_stamps, may_be_stamps, unit_called, unit_of
 from rtamt.signals.ticks import NANOSECOND, TimeScale
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Collection, Sequence
 
     from numpy.typing import NDArray
 
@@ -36,7 +36,7 @@ _SINCE_1970 = (("ns", 10**17), ("us", 10**14), ("ms", 10**11))
 _EXACT = 2**50
 
 
-def guess_field(fields: Sequence[Field], source: str, wanted: Sequence[str]) -> Field | None:
+def guess_field(fields: Sequence[Field], source: str, wanted: Collection[str]) -> Field | None:
     """Return the field of time stamps by its name, else the one with dates in it; None if there is none.
 
     What a formula reads (``wanted``) is no candidate while there are others. Raises
@@ -46,7 +46,7 @@ def guess_field(fields: Sequence[Field], source: str, wanted: Sequence[str]) -> 
     found = [field for field in fields if is_stamps(field.name)]
     if not found:
         found = [field for field in fields if field.kind == "time"]
-        others = [field for field in fields if field not in found and may_be_stamps(field.name)]
+        others = [field for field in fields if field.kind != "time" and may_be_stamps(field.name)]
         others = [field for field in others if not _is_wanted(field, wanted)]
         if others:
             raise _unclear([*found, *others], source)
@@ -56,7 +56,7 @@ def guess_field(fields: Sequence[Field], source: str, wanted: Sequence[str]) -> 
     return free[0] if free else None
 
 
-def _is_wanted(field: Field, wanted: Sequence[str]) -> bool:
+def _is_wanted(field: Field, wanted: Collection[str]) -> bool:
     return field.name in wanted or field.column in wanted
 
 

@@ -52,7 +52,9 @@ def test_nan_is_skipped_and_the_rest_put_on_one_clock(commands, write, run):
             "on the command line --skip-nan\n",
         )
     found = commands(MENDED, "log.csv", "--skip-nan", "x", "--resample", "500ms", "--how", "linear")
-    assert found["check"].out.splitlines()[-1].split() == ["log.csv", "4", "500", "ms", "-1", "violated"]
+    *_, row, _, note = found["check"].out.splitlines()
+    assert row.split() == ["log.csv", "4", "500", "ms", "-1", "violated"]
+    assert note == "note: log.csv: left out, NaN: 1 sample of x, the first at 0.5 s"
     assert found["explain"].out.splitlines()[1].startswith("'x >= 3' is -1 at 1.5 s")
     assert (
         run("check", MENDED, "log.csv", "--skip-nan", "y").err

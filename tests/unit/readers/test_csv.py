@@ -1,5 +1,7 @@
 """The CSV reader: what it takes, what it refuses, and in which words."""
 
+import time
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -8,7 +10,6 @@ from hypothesis import strategies as st
 import rtamt
 from rtamt.errors import TraceError
 from rtamt.readers import csv as csv_module
-from rtamt.readers import csv_source as text_module
 
 
 def read(path, names=None, *, time_column=None):
@@ -124,7 +125,6 @@ def test_numbers_survive_whatever_block_an_unusual_line_falls_into(tmp_path_fact
     path.write_text("".join(["a,b\n", *lines[:at], odd, *lines[at:]]))
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(csv_module, "BLOCK", block)
-        patch.setattr(text_module, "BLOCK", block)
         data = read(path)
     expected = [*rows[:at], *extra, *rows[at:]]
     assert list(zip(data["a"], data["b"], strict=True)) == expected
@@ -222,7 +222,6 @@ LONG = "time,x\n" + "0,1\n" * 10 + "1,{}\n" + "0,1\n" * 10
 @pytest.mark.parametrize("block", [3, 65_536])
 def test_messages(write, monkeypatch, content, names, message, block):
     monkeypatch.setattr(csv_module, "BLOCK", block)
-    monkeypatch.setattr(text_module, "BLOCK", block)
     with pytest.raises(TraceError) as error:
         read(write(content), names)
     assert str(error.value) == message
@@ -273,3 +272,16 @@ def test_message_for_an_unknown_suffix():
         "cannot tell how to read 'log.cvs': its name ends in none of .csv, .tsv, .txt, .parquet, .pq, .arrow, "
         ".feather, .ipc, .xlsx, .xlsm, .ulg, .mf4, .mdf, .bag, .db3, .mcap; did you mean '.csv'?"
     )
+
+
+def test_a_file_of_20_000_columns_takes_time_in_proportion_to_its_size(tmp_path):
+    names = [f"x{i}" for i in range(20_000)]
+    path = tmp_path / "wide.csv"
+    path.write_text(f"time,{','.join(names)}\n" + "".join(f"{k},{'1.5,' * 19_999}\n" for k in range(2)))
+    began = time.process_time()  # what other processes do does not matter
+    trace = rtamt.read(
+        path, columns=names, names={f"x{i}": f"x{i + 1}" for i in range(19_998)}, skip_nan=names
+    )
+    assert time.process_time() - began < 12
+    assert trace.names == tuple(names)
+    assert len(trace["x19997"]) == 2

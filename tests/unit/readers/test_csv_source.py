@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import rtamt
-from rtamt.readers import csv, csv_source
+from rtamt.readers import csv
 
 CELLS = st.sampled_from(["1", "2", "0.5", "", '"3"', " 4 ", "1e3", "inf", "9007199254740993"])
 
@@ -19,7 +19,6 @@ def test_law_blocks_change_nothing(tmp_path_factory, rows, size):
     whole = rtamt.read(path)
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(csv, "BLOCK", size)
-        patch.setattr(csv_source, "BLOCK", size)
         parts = rtamt.read(path)
         chunks = list(rtamt.scan(path))
     for name, column in (("x", 0), ("y", 1)):
@@ -33,7 +32,6 @@ def test_law_blocks_change_nothing(tmp_path_factory, rows, size):
 
 def test_dates_after_numbers_are_named_whatever_the_block(tmp_path, monkeypatch):
     monkeypatch.setattr(csv, "BLOCK", 1)
-    monkeypatch.setattr(csv_source, "BLOCK", 1)
     (tmp_path / "log.csv").write_text("time,x\n0,1\n2024-05-01,2\n")
     with pytest.raises(
         rtamt.TraceError, match=r"log.csv, line 3: 'time' is '2024-05-01', expected a number$"

@@ -14,7 +14,6 @@ from pyarrow import feather, parquet
 import rtamt
 from rtamt.language.operators import STL
 from rtamt.readers import arrow, csv, rows
-from rtamt.readers import csv_source as text_module
 from rtamt.verdicts.first_violation import first_violation
 from tests import strategies
 
@@ -152,7 +151,6 @@ def test_files_and_queries_in_chunks(tmp_path, monkeypatch):
     parquet.write_table(table, tmp_path / "log.parquet", row_group_size=33)
     feather.write_feather(table, str(tmp_path / "log.feather"))
     monkeypatch.setattr(csv, "BLOCK", 9)
-    monkeypatch.setattr(text_module, "BLOCK", 9)
     lines = [f"{100 * i},{float(np.cos(i))!r},a" for i in range(95)]
     (tmp_path / "log.csv").write_text("t_ms,x,note\n" + "\n".join(lines))
     with closing(sqlite3.connect(tmp_path / "log.db")) as database:
