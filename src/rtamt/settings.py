@@ -104,7 +104,7 @@ def roles_of(document: Document, given: Mapping[str, str]) -> Mapping[str, str]:
     """
     _check_mapping("roles", given, "{'req': 'input'}")
     declared = {d.name: d.role for d in document.declarations if d.role is not None}
-    read = {name for assertion in document.assertions for name in variables(assertion.formula)}
+    read = set(variables(*(assertion.formula for assertion in document.assertions)))
     known = read | {name.split(".")[0] for name in read} | {d.name for d in document.declarations}
     for name, role in given.items():
         if name not in known:

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import UsageError, shown
+from rtamt.language.formula import outermost
 from rtamt.language.operators import STL, Language
 from rtamt.language.specfile import parse_document
 from rtamt.rewrite.check import check_bounds, check_dense
@@ -83,13 +84,12 @@ def parse(
         semantics_of(semantics),
         roles_of(document, {} if roles is None else roles),
     )
-    if spec.time == "dense":
-        for assertion in document.assertions:
-            check_dense(assertion.formula, text)
-            check_bounds(assertion.formula, tick, text, "resolution")
-    if exact is not None:
-        for assertion in document.assertions:
-            check_bounds(assertion.formula, exact, text)
+    for formula in outermost([assertion.formula for assertion in document.assertions]):
+        if spec.time == "dense":
+            check_dense(formula, text)
+            check_bounds(formula, tick, text, "resolution")
+        if exact is not None:
+            check_bounds(formula, exact, text)
     return spec
 
 

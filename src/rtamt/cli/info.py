@@ -18,11 +18,12 @@ from rtamt.cli.command import (
 )
 from rtamt.cli.compiled import compiled, listing
 from rtamt.cli.reading_options import add_reading_options, recording
-from rtamt.cli.terminal import is_printable, printed
+from rtamt.cli.terminal import printed
 from rtamt.compiler.plan import compile_program
 from rtamt.engine.native import core
 from rtamt.engine.user_operators import calls_of
-from rtamt.errors import BoundError, UsageError
+from rtamt.errors import BoundError, SpecificationError, UsageError
+from rtamt.language.printer import excerpt
 from rtamt.language.units import format_duration
 from rtamt.rewrite.check import check_bounds, check_online
 from rtamt.rewrite.desugar import desugar
@@ -128,9 +129,7 @@ def gather(spec: Specification) -> Facts:
     judged = spec.judged(spec.formula)
     try:
         check_online(spec.formula, spec.text)
-        facts = replace(
-            facts, horizon=horizon(spec.formula, step), pastified=pastify(spec.formula, step, spec.text)
-        )
+        facts = replace(facts, horizon=horizon(spec.formula, step), pastified=_pastified(spec, step))
         if not dense:  # whose bounds have been looked at when the text was read
             check_bounds(spec.formula, step, spec.text)
     except BoundError as error:
@@ -139,6 +138,16 @@ def gather(spec: Specification) -> Facts:
     unknown = dense or spec.backend == "python"
     memory = None if unknown else int(core().memory(program.code(), calls_of(program)))
     return replace(facts, program=program, memory=memory)
+
+
+def _pastified(spec: Specification, step: Fraction) -> Formula | None:
+    """Return the pastified formula, None where there is none: of shared sub-formulas it may be too large."""
+    try:
+        return pastify(spec.formula, step, spec.text)
+    except BoundError:
+        raise
+    except SpecificationError:
+        return None
 
 
 def _variables(spec: Specification) -> list[dict[str, Any]]:
@@ -184,7 +193,7 @@ def _lines(facts: Facts) -> Iterator[str]:
     required = {requirement.span for requirement in spec.document.requirements}
     for assertion in spec.document.assertions:
         if assertion.name and assertion.span not in required:
-            yield f"           {assertion.name} = {printed(assertion.formula)}"
+            yield f"           {assertion.name} = {excerpt(assertion.formula)}"
     for i, requirement in enumerate(_requirements(facts)):
         if requirement["explicit"] or len(required) > 1:
             about = [requirement["severity"], requirement["ahead"], requirement["description"]]
@@ -207,8 +216,7 @@ def _lines(facts: Facts) -> Iterator[str]:
     if facts.horizon is not None:
         ahead = format_duration(facts.horizon)
         yield f"horizon    {ahead}: the value at t is known at t + {ahead}"
-        assert facts.pastified is not None
-        yield f"pastified  {printed(facts.pastified)}"
+        yield f"pastified  {'no: too large' if facts.pastified is None else printed(facts.pastified)}"
     if facts.program is None:
         yield f"online     no: {facts.offline_only}"
         return
@@ -234,7 +242,7 @@ def _as_json(facts: Facts) -> str:
                 {key: value for key, value in row.items() if key not in ("ahead", "explicit")}
                 for row in _requirements(facts)
             ],
-            "latex": spec.formula.latex() if is_printable(spec.formula) else None,
+            "latex": spec.formula.latex(),
             "semantics": spec.semantics,
             "variables": _variables(spec),
             "period": None if spec.time == "dense" else float(facts.step),

@@ -8,15 +8,12 @@ import time
 from typing import TYPE_CHECKING, TextIO
 
 from rtamt.errors import UsageError, did_you_mean
-from rtamt.language.formula import size
+from rtamt.language.printer import PAGE, to_text
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from rtamt.language.formula import Formula
-
-#: Nodes of the largest formula that is written out.
-_PAGE = 5000
 
 COLOR_MODES = ("auto", "always", "never")
 
@@ -44,18 +41,11 @@ def paint(text: str, kind: str, color: bool) -> str:
 
 
 def printed(formula: Formula) -> str:
-    """Return a formula's text; of one that would fill pages, how large it is.
+    """Return a formula's text; of one that would fill pages, the beginning, and how large it is.
 
     Named sub-formulas that use each other may be small in a file and astronomical when written out.
     """
-    if is_printable(formula):
-        return str(formula)
-    return f"a formula of {size(formula):.6g} operators, variables and numbers"
-
-
-def is_printable(formula: Formula) -> bool:
-    """Tell whether a formula is small enough to be written out."""
-    return size(formula) <= _PAGE
+    return to_text(formula, limit=PAGE)
 
 
 def table(

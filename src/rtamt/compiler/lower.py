@@ -18,7 +18,7 @@ from rtamt.language.formula import Apply, Const, Formula, Var, postorder
 from rtamt.language.operators import Bounds, Pointwise, Shift, Since, Tense, Until, Window
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
     from fractions import Fraction
 
 _IDENTITY = {"max": -inf, "min": inf}
@@ -57,12 +57,12 @@ class Lowering(ABC):
             tuple(self.calls),
         )
 
-    def lower(self, formula: Formula) -> int:
-        """Emit the instructions of a formula, operands first, and return the last one's index."""
-        for node in postorder(formula):
+    def lower(self, formulas: Sequence[Formula]) -> list[int]:
+        """Emit the instructions of formulas, operands first, and return the index of each formula's last one."""
+        for node in postorder(*formulas):
             if node not in self.value_of:
                 self.value_of[node] = self._lower_node(node)
-        return self.value_of[formula]
+        return [self.value_of[formula] for formula in formulas]
 
     def _lower_node(self, node: Formula) -> int:
         if isinstance(node, Const):

@@ -11,9 +11,9 @@ from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from rtamt.compiler.lower import LOWERINGS
-from rtamt.language.formula import Apply, Formula, Interval, Var, fold, variables
+from rtamt.language.formula import Apply, Formula, Interval, Var, fold, folds, postorder, variables
 from rtamt.language.operators import STL, Until, Window
-from rtamt.rewrite.check import reads_unbounded_future, unbounded_future
+from rtamt.rewrite.check import reads_unbounded_future
 from rtamt.rewrite.horizon import horizon
 
 if TYPE_CHECKING:
@@ -92,7 +92,7 @@ def compile_program(
     if inputs is None:
         inputs = _read_by(outputs)
     lowering = LOWERINGS[domain](period, inputs, clip, parameters or {})
-    indices = [lowering.lower(formula) for formula in outputs]
+    indices = lowering.lower(outputs)
     if clip is None:  # online: each output is known at its horizon, even where less would do
         depths = (horizon(formula, period) for formula in outputs)
         indices = [
@@ -117,7 +117,7 @@ def compile_plan(
     formulas = tuple(outputs)
     # Every stage reads every variable, so that all of them begin and end together.
     names = _read_by(formulas, inputs)
-    while any(unbounded_future(formula) for formula in formulas):
+    while any(isinstance(node, Apply) and reads_unbounded_future(node) for node in postorder(*formulas)):
         formulas, stage = _cut(formulas, names, period, clip, domain, len(stages))
         stages.append(stage)
     program = compile_program(formulas, period, _read_by(formulas, names), clip, domain)
@@ -126,8 +126,7 @@ def compile_plan(
 
 def _read_by(formulas: Sequence[Formula], names: tuple[str, ...] = ()) -> tuple[str, ...]:
     """Return ``names`` and the variables of the formulas, each once."""
-    found = (name for formula in formulas for name in variables(formula))
-    return tuple(dict.fromkeys((*names, *found)))
+    return tuple(dict.fromkeys((*names, *variables(*formulas))))
 
 
 def _cut(
@@ -159,7 +158,7 @@ def _cut(
         result = Var(scan.name, node.span)
         return result if defined else _after_scan(node, result, just_before), True
 
-    rest = tuple(fold(formula, cut)[0] for formula in formulas)
+    rest = tuple(formula for formula, _ in folds(formulas, cut))
     program = compile_program(tuple(operands), period, _read_by(tuple(operands), names), clip, domain)
     return rest, Stage(program, tuple(scans.values()))
 

@@ -10,12 +10,13 @@ from rtamt.compiler.metadata import Metadata
 from rtamt.compiler.plan import compile_program
 from rtamt.errors import UsageError
 from rtamt.language.formula import Apply, Const, Formula, Var, fold, postorder, variables
+from rtamt.language.printer import PAGE, excerpt, to_text
 from rtamt.rewrite.check import check_bounds, check_dense, check_online
 from rtamt.rewrite.desugar import desugar
 from rtamt.rewrite.semantics import boolean
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Mapping
     from fractions import Fraction
 
     from rtamt.compiler.program import Program
@@ -23,9 +24,6 @@ if TYPE_CHECKING:
 #: What a standalone program tells, in this order: ρ, and +inf or -inf as the formula holds or not. Of several
 #: requirements it tells both of all together, then of each: ``robustness.R1``, ``verdict.R1``.
 OUTPUTS = ("robustness", "verdict")
-
-#: Nodes of the largest formula that is written out; a message with a longer one would help nobody.
-_LARGEST = 200
 
 
 def carried_program(
@@ -74,10 +72,10 @@ def carried_program(
     }
     metadata = Metadata(
         name or "",
-        str(formula) if _sizes((formula,))[formula] <= _LARGEST else text or "",
+        to_text(formula, limit=PAGE),
         tuple(f"{output}{suffix}" for suffix in pairs for output in OUTPUTS),
         MappingProxyType(places),
-        MappingProxyType(_meanings(program, told)),
+        MappingProxyType(_meanings(program)),
     )
     return replace(program, metadata=metadata)
 
@@ -102,21 +100,10 @@ def _with_parameters(formula: Formula, structural: frozenset[str], values: dict[
     return fold(formula, step)
 
 
-def _meanings(program: Program, told: Iterable[Formula]) -> dict[int, str]:
-    """Return the formula of each instruction that computes something and is small enough to be shown."""
-    sizes = _sizes(told)
+def _meanings(program: Program) -> dict[int, str]:
+    """Return the formula of each instruction that computes something, as far as a message shows it."""
     return {
-        i: str(formula)
+        i: excerpt(formula)
         for i, formula in enumerate(program.origins)
-        if isinstance(formula, Apply) and program.value_of[formula] == i and sizes[formula] <= _LARGEST
+        if isinstance(formula, Apply) and program.value_of[formula] == i
     }
-
-
-def _sizes(formulas: Iterable[Formula]) -> dict[Formula, int]:
-    """Return how many nodes each sub-formula has when it is printed."""
-    sizes: dict[Formula, int] = {}
-    for formula in formulas:
-        for node in postorder(formula):
-            below = node.args if isinstance(node, Apply) else ()
-            sizes[node] = 1 + sum(sizes[arg] for arg in below)
-    return sizes

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 from rtamt.engine.user_operators import calls_of
 from rtamt.errors import EvaluationError, UsageError
 from rtamt.language.formula import Apply
+from rtamt.language.printer import excerpt
 from rtamt.rewrite.desugar import written
 
 if TYPE_CHECKING:
@@ -101,6 +102,6 @@ def culprit(
     formula = written(original(formula), asked)
     if len(error.args) == 3 and isinstance(formula, Apply):
         raise EvaluationError(
-            f"the kernel of '{formula.op.name}' failed in '{formula}': {error.args[2]}; mend the kernel"
+            f"the kernel of '{formula.op.name}' failed in '{excerpt(formula)}': {error.args[2]}; mend the kernel"
         )
     return formula

@@ -13,11 +13,12 @@ from rtamt.explain.minimise import Forcing, intervals_of, minimal
 from rtamt.explain.necessary import Needs
 from rtamt.explain.propagate import Demands
 from rtamt.explain.report import CriticalPoint, Explanation, Stretch
-from rtamt.explain.sentences import formula_text, predicate_text, sentences
+from rtamt.explain.sentences import predicate_text, sentences
 from rtamt.explain.signals import Signals, truths
 from rtamt.explain.structure import Structure, literal, reaches
 from rtamt.explain.time_axis import timeline
 from rtamt.language.formula import postorder
+from rtamt.language.printer import PAGE, to_text
 from rtamt.rewrite.semantics import boolean, no_verdict
 from rtamt.signals.arrays import Recording
 
@@ -92,7 +93,7 @@ class _Explainer:
         implicant = self._implicant(cell, satisfied)
         critical, moment = self._critical(cell, implicant)
         stretches = tuple(self._stretch(interval, cell, satisfied) for interval in implicant)
-        told = formula_text(self._formula)
+        told = to_text(self._formula, limit=PAGE)
         return Explanation(
             told,
             self._line.time(cell),

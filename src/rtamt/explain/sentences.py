@@ -5,16 +5,13 @@ from __future__ import annotations
 from math import isinf
 from typing import TYPE_CHECKING
 
-from rtamt.language.formula import size
+from rtamt.language.printer import PAGE, to_text
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from rtamt.explain.report import CriticalPoint, Stretch
     from rtamt.language.formula import Formula
-
-#: Nodes of the largest formula that is written out.
-_PAGE = 5000
 
 _NO_PREDICATE = {
     "start": "no predicate decides it: nothing was recorded before the start, where a window looks",
@@ -23,20 +20,14 @@ _NO_PREDICATE = {
 }
 
 
-def formula_text(formula: Formula) -> str:
-    """Return a formula's text; of one that would fill pages, how large it is."""
-    count = size(formula)
-    return str(formula) if count <= _PAGE else f"a formula of {count:.6g} operators, variables and numbers"
-
-
 def predicate_text(predicate: Formula, text: str | None) -> str:
     """Return a predicate as it was written in ``text``, if it was on one line, else as it is printed."""
     span = predicate.span
     if text is not None and span is not None:
         written = text[span.start : span.end]
-        if written and "\n" not in written and "/*" not in written:
+        if written and "\n" not in written and "/*" not in written and len(written) <= PAGE:
             return written
-    return formula_text(predicate)
+    return to_text(predicate, limit=PAGE)
 
 
 def sentences(

@@ -7,21 +7,30 @@
 A node's ``span`` says where in the text it stood, so that every later error can point there; it
 takes no part in equality. Walk a formula with :func:`fold`, which uses no recursion: a conjunction
 of ten thousand terms is a formula like any other.
+
+Named sub-formulas are shared, so that a formula is a graph: written out, one of sixty definitions that
+each use the previous one twice has 10¹⁸ nodes. Whatever walks a formula visits each node object once.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from math import copysign
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable, Iterator, Mapping, Sequence
     from fractions import Fraction
 
     from rtamt.language.operators import Operator
 
 T = TypeVar("T")
+
+#: Nodes are counted up to this.
+COUNTLESS = 10**18
+
+#: Nodes of the largest formula that keeps the list of them: a file may name each of its sub-formulas.
+_KEPT = 5000
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,7 +65,21 @@ class Formula:
     span: Span | None
 
     def __repr__(self) -> str:
-        return f"<formula {self}>"
+        from rtamt.language.printer import PAGE, to_text
+
+        return f"<formula {to_text(self, limit=PAGE)}>"
+
+    def __copy__(self) -> Formula:
+        return self
+
+    def __deepcopy__(self, _memo: object) -> Formula:
+        return self  # immutable, as all that it holds
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        # A flat list of the nodes: pickle would recurse as deep as the formula is.
+        nodes = tuple(postorder(self))
+        places = {id(node): i for i, node in enumerate(nodes)}
+        return _restored, (tuple([_flat(node, places) for node in nodes]),)
 
     def __str__(self) -> str:
         from rtamt.language.printer import to_text
@@ -107,12 +130,16 @@ class Apply(Formula):
     interval: Interval | None = None
     span: Span | None = field(default=None, repr=False)
     _hash: int = field(init=False, repr=False, default=0)
+    _size: int = field(init=False, repr=False, default=1)
+    #: Of nodes that were found equal to this one.
+    _class: _Class | None = field(init=False, repr=False, default=None)
     #: The nodes below, in postorder, once they were asked for: a formula is walked many times.
     _below: tuple[Formula, ...] | None = field(init=False, repr=False, default=None)
 
     def __post_init__(self) -> None:
-        # Children carry their own hash, so that this is O(1) a node and needs no recursion.
+        # Children carry their own hash and size, so that this is O(1) a node and needs no recursion.
         object.__setattr__(self, "_hash", hash((self.op, self.args, self.interval)))
+        object.__setattr__(self, "_size", min(1 + sum(map(size, self.args)), COUNTLESS))
 
     def __hash__(self) -> int:
         return self._hash
@@ -121,6 +148,8 @@ class Apply(Formula):
         if not isinstance(other, Apply):
             return NotImplemented
         pairs: list[tuple[Formula, Formula]] = [(self, other)]
+        # Sound only if all of it turns out equal; then it is kept, so that each joint is compared once.
+        assumed: dict[_Class, _Class] = {}
         while pairs:
             a, b = pairs.pop()
             if a is b:
@@ -133,10 +162,67 @@ class Apply(Formula):
                     or len(a.args) != len(b.args)
                 ):
                     return False
-                pairs.extend(zip(a.args, b.args, strict=True))
+                first, second = _class_of(a, assumed), _class_of(b, assumed)
+                if first is not second:
+                    # By address: whatever threads do at the same time, no circle comes about.
+                    low, high = (first, second) if id(first) < id(second) else (second, first)
+                    assumed[high] = low
+                    pairs.extend(zip(a.args, b.args, strict=True))
             elif a != b:
                 return False
+        for high, low in assumed.items():
+            high.joined = low
         return True
+
+
+class _Class:
+    """A class of nodes that were found equal; ``joined`` to another one since, a union-find.
+
+    It holds no node, so that a formula keeps none alive to which it was compared.
+    """
+
+    __slots__ = ("joined",)
+
+    def __init__(self) -> None:
+        self.joined: _Class | None = None
+
+
+def _class_of(node: Apply, assumed: Mapping[_Class, _Class]) -> _Class:
+    """Return the class of a node, by what is known and by what is assumed."""
+    if node._class is None:
+        object.__setattr__(node, "_class", _Class())
+    found = _last(node._class)
+    if found is not node._class:
+        object.__setattr__(node, "_class", found)
+    while (other := assumed.get(found)) is not None:
+        found = _last(other)
+    return found
+
+
+def _last(found: _Class | None) -> _Class:
+    assert found is not None
+    while (above := found.joined) is not None:
+        if above.joined is not None:
+            found.joined = above.joined  # halves the way for the next one
+        found = above
+    return found
+
+
+def _flat(node: Formula, places: dict[int, int]) -> tuple[Any, ...]:
+    """Return a node as a constructor and what it takes, with the places of its operands for them."""
+    if isinstance(node, Apply):
+        return Apply, node.op, tuple([places[id(operand)] for operand in node.args]), node.interval, node.span
+    return (type(node), *[getattr(node, each.name) for each in fields(node)])  # type: ignore[arg-type]
+
+
+def _restored(flat: tuple[tuple[Any, ...], ...]) -> Formula:
+    """Return the formula of which ``flat`` are the nodes, as :func:`_flat` wrote them."""
+    nodes: list[Formula] = []
+    for kind, *values in flat:
+        if kind is Apply:
+            values[1] = tuple([nodes[place] for place in values[1]])
+        nodes.append(kind(*values))
+    return nodes[-1]
 
 
 def children(formula: Formula) -> tuple[Formula, ...]:
@@ -144,20 +230,30 @@ def children(formula: Formula) -> tuple[Formula, ...]:
     return formula.args if isinstance(formula, Apply) else ()
 
 
-def postorder(formula: Formula) -> Iterator[Formula]:
-    """Yield every distinct node object below and including ``formula``, operands first."""
+def postorder(*formulas: Formula) -> Iterator[Formula]:
+    """Yield every distinct node object below and including ``formulas``, operands first.
+
+    Together, formulas that share nodes are walked in time proportional to the number of nodes.
+    """
+    if len(formulas) != 1:
+        yield from _distinct(formulas)
+        return
+    (formula,) = formulas
     if isinstance(formula, Apply):
-        if formula._below is None:
-            object.__setattr__(formula, "_below", _below(formula))
-        yield from formula._below or ()
+        below = formula._below
+        if below is None:
+            below = _distinct(formula.args)
+            if formula._size <= _KEPT:
+                object.__setattr__(formula, "_below", below)
+        yield from below
     yield formula
 
 
-def _below(formula: Apply) -> tuple[Formula, ...]:
-    """Return every distinct node object below a formula, operands first."""
+def _distinct(formulas: tuple[Formula, ...]) -> tuple[Formula, ...]:
+    """Return every distinct node object of formulas, operands first."""
     seen: set[int] = set()
     found: list[Formula] = []
-    stack: list[tuple[Formula, bool]] = [(operand, False) for operand in reversed(formula.args)]
+    stack: list[tuple[Formula, bool]] = [(formula, False) for formula in reversed(formulas)]
     while stack:
         node, ready = stack.pop()
         if ready:
@@ -172,6 +268,23 @@ def _below(formula: Apply) -> tuple[Formula, ...]:
     return tuple(found)
 
 
+def outermost(formulas: Sequence[Formula]) -> list[Formula]:
+    """Return the formulas that are no part of a later one: what is looked for below them is looked for below all.
+
+    >>> from rtamt.language.operators import STL
+    >>> x = Var("x")
+    >>> outermost([x, STL["not"](x)])
+    [<formula not x>]
+    """
+    found: list[Formula] = []
+    seen: set[int] = set()
+    for formula in reversed(formulas):
+        if id(formula) not in seen:
+            found.append(formula)
+            seen.update(map(id, postorder(formula)))
+    return found[::-1]
+
+
 def fold(formula: Formula, step: Callable[[Formula, tuple[T, ...]], T]) -> T:
     """Compute a value bottom-up: ``step(node, values of its operands)``, once per node object.
 
@@ -179,24 +292,31 @@ def fold(formula: Formula, step: Callable[[Formula, tuple[T, ...]], T]) -> T:
     >>> fold(Var("x"), lambda node, below: 1 + sum(below))
     1
     """
+    return folds((formula,), step)[0]
+
+
+def folds(formulas: Sequence[Formula], step: Callable[[Formula, tuple[T, ...]], T]) -> tuple[T, ...]:
+    """Compute a value of each of several formulas as :func:`fold` does: a node that they share counts once."""
     values: dict[int, T] = {}
-    for node in postorder(formula):
+    for node in postorder(*formulas):
         below = tuple([values[id(operand)] for operand in node.args]) if isinstance(node, Apply) else ()
         values[id(node)] = step(node, below)
-    return values[id(formula)]
+    return tuple([values[id(formula)] for formula in formulas])
 
 
 def size(formula: Formula) -> int:
-    """Return how many nodes the printed formula has: a shared sub-formula counts wherever it stands.
+    """Return how many nodes the printed formula has, at most :data:`COUNTLESS`.
+
+    A shared sub-formula counts wherever it stands.
 
     >>> x = Var("x")
     >>> from rtamt.language.operators import STL
     >>> size(STL["and"](x, x))
     3
     """
-    return fold(formula, lambda _node, below: 1 + sum(below))
+    return formula._size if isinstance(formula, Apply) else 1
 
 
-def variables(formula: Formula) -> tuple[str, ...]:
-    """Return the names of the variables, each once, in order of first appearance."""
-    return tuple(dict.fromkeys(n.name for n in postorder(formula) if isinstance(n, Var)))
+def variables(*formulas: Formula) -> tuple[str, ...]:
+    """Return the names of the variables of formulas, each once, in order of first appearance."""
+    return tuple(dict.fromkeys(n.name for n in postorder(*formulas) if isinstance(n, Var)))

@@ -1,7 +1,9 @@
 """Formula to text, to RTAMT's canonical text and to LaTeX: parentheses only where the parser needs them.
 
 Nothing here recurses: a formula is written from the outside in, off a stack of pieces, in time
-proportional to what is written.
+proportional to what is written. A formula in which sub-formulas are shared may have a text of
+astronomical length: of a text that is longer than a limit the beginning is written, and how large the
+formula is.
 """
 
 from __future__ import annotations
@@ -12,28 +14,36 @@ from math import copysign, isinf
 from string import Formatter
 from typing import TYPE_CHECKING
 
-from rtamt.language.formula import Apply, Const, Formula, Interval, Var
+from rtamt.language.formula import COUNTLESS, Apply, Const, Formula, Interval, Var, size
 from rtamt.language.grammar import INFINITY, is_infix, is_predicate, passes_on, sign
 from rtamt.language.lexer import NAME, TOPIC, is_word, quoted
 from rtamt.language.operators import STL, Fixity, Language, Operator
 from rtamt.language.units import UNITS, decimal
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable
+    from collections.abc import Callable, Iterable, Iterator
     from fractions import Fraction
 
     #: Text, or a formula that is still to be written.
     Piece = str | Formula
 
+#: Characters of the longest text that is written out where nothing else is asked for,
+LONGEST = 1_000_000
+#: of the longest one in tables and reports, and in what people read,
+PAGE = 10_000
+#: and of the longest one in a message; so much is shown of a longer one.
+EXCERPT = 200
+
 #: RTAMT's identifiers that are none of ours: a slash is a letter there.
 _RTAMT_PATH = re.compile(r"[^\W\d][\w$.]*(?:/[\w$.]+)+")
 
 
-def to_text(formula: Formula, language: Language = STL) -> str:
+def to_text(formula: Formula, language: Language = STL, *, limit: int = LONGEST) -> str:
     """Return text that parses back to an equal formula, with the first spelling of each operator.
 
     ``language``: that of the formula. Variables whose names would read as something else are put
-    in parentheses or double quotes.
+    in parentheses or double quotes. A text of more than ``limit`` characters is abbreviated, and says
+    so: see :func:`excerpt`.
 
     >>> from rtamt.language.parser import parse_formula
     >>> to_text(parse_formula("G((req>=3)->(F[0,5](gnt>=3)))"))
@@ -72,14 +82,29 @@ def to_text(formula: Formula, language: Language = STL) -> str:
             *group(right, _falls_apart(right, op, Fixity.RIGHT, minus) or _reads_on(right, op, language)),
         )
 
-    return _write(formula, pieces)
+    return _written(formula, pieces, limit)
 
 
-def canonical(formula: Formula, language: Language = STL) -> str:
+def excerpt(formula: Formula) -> str:
+    """Return the text of a formula for a message: never more than some 200 characters of it.
+
+    >>> from rtamt.language.parser import parse_formula
+    >>> excerpt(parse_formula("x >= 3"))
+    'x >= 3'
+    >>> doubled = parse_formula("x + y")
+    >>> for _ in range(40):
+    ...     doubled = parse_formula("a + a", definitions={"a": doubled})
+    >>> excerpt(doubled)[-61:]
+    '… (abbreviated: 4.39805e+12 operators, variables and numbers)'
+    """
+    return to_text(formula, limit=EXCERPT)
+
+
+def canonical(formula: Formula, language: Language = STL, *, limit: int = LONGEST) -> str:
     """Return the formula as RTAMT names its nodes: ``((a)>=(2.0))and(b)``, every operand in parentheses.
 
-    Deviations: unless is not expanded, a negative literal is one number, a bound has the unit in
-    which it was read.
+    ``limit``: as for :func:`to_text`. Deviations: unless is not expanded, a negative literal is one
+    number, a bound has the unit in which it was read.
 
     >>> from rtamt.language.parser import parse_formula
     >>> canonical(parse_formula("always[0:5](a >= 2) and not prev(b)"))
@@ -101,11 +126,14 @@ def canonical(formula: Formula, language: Language = STL) -> str:
             return ("(", node.args[0], ")", word, "(", node.args[1], ")")
         return (word, "(", *_joined(node.args, ","), ")")
 
-    return _write(formula, pieces)
+    return _written(formula, pieces, limit)
 
 
 def to_latex(formula: Formula) -> str:
     r"""Return the formula as LaTeX mathematics, without dollar signs, from the operators' templates.
+
+    Of a formula that would take more than :data:`LONGEST` characters it is a text that says how large
+    the formula is.
 
     >>> from rtamt.language.parser import parse_formula
     >>> print(to_latex(parse_formula("always(req >= 3 -> eventually[0:5](gnt >= 3))")))
@@ -137,7 +165,8 @@ def to_latex(formula: Formula) -> str:
         else:
             raise TypeError(f"{type(node).__name__} is not a formula")
 
-    return _write(formula, pieces)
+    text = _write(formula, pieces, LONGEST)
+    return rf"\text{{a formula of {_extent(formula)}}}" if text is None else text
 
 
 def number(value: float) -> str:
@@ -154,17 +183,46 @@ def number(value: float) -> str:
 # ---- writing -------------------------------------------------------------------------------------
 
 
-def _write(formula: Formula, pieces: Callable[[Formula], Iterable[Piece]]) -> str:
-    """Write a formula, given what one node consists of."""
+def _written(formula: Formula, pieces: Callable[[Formula], Iterable[Piece]], limit: int) -> str:
+    """Write a formula; of a text longer than ``limit`` the beginning, and how large the formula is."""
+    text = _write(formula, pieces, limit)
+    if text is not None:
+        return text
+    begin = ""
+    for more in _texts(formula, pieces):
+        begin += more
+        if len(begin) >= EXCERPT:
+            break
+    return f"{begin[:EXCERPT]}… (abbreviated: {_extent(formula)})"
+
+
+def _write(formula: Formula, pieces: Callable[[Formula], Iterable[Piece]], limit: int) -> str | None:
+    """Write a formula, given what one node consists of; None if that takes more than ``limit`` characters."""
+    if size(formula) > limit:  # no node is written with less than one character
+        return None
     out: list[str] = []
+    for text in _texts(formula, pieces):
+        out.append(text)
+        limit -= len(text)
+        if limit < 0:
+            return None
+    return "".join(out)
+
+
+def _texts(formula: Formula, pieces: Callable[[Formula], Iterable[Piece]]) -> Iterator[str]:
     stack: list[Piece] = [formula]
     while stack:
         piece = stack.pop()
         if isinstance(piece, str):
-            out.append(piece)
+            yield piece
         else:
             stack.extend(reversed(tuple(pieces(piece))))
-    return "".join(out)
+
+
+def _extent(formula: Formula) -> str:
+    count = size(formula)
+    number = f"more than {COUNTLESS:.0e}" if count == COUNTLESS else f"{count:.6g}"
+    return f"{number} operators, variables and numbers"
 
 
 def _joined(operands: Iterable[Formula], separator: str) -> list[Piece]:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from rtamt.errors import EvaluationError
 from rtamt.language.formula import Apply
 from rtamt.language.operators import Blocks, Compiled
+from rtamt.language.printer import excerpt
 
 if TYPE_CHECKING:
     from rtamt.language.formula import Formula
@@ -23,11 +24,11 @@ def undefined(formula: Formula, where: str) -> EvaluationError:
     """
     if isinstance(formula, Apply) and _is_the_users(formula):
         return EvaluationError(
-            f"the operator '{formula.op.name}' gave NaN: '{formula}' has no value at {where}; "
+            f"the operator '{formula.op.name}' gave NaN: '{excerpt(formula)}' has no value at {where}; "
             f"mend the operator, or change the formula or the data so that this cannot happen"
         )
     return EvaluationError(
-        f"'{formula}' has no value at {where}: it is 0/0, inf - inf, 0 * inf, or a root "
+        f"'{excerpt(formula)}' has no value at {where}: it is 0/0, inf - inf, 0 * inf, or a root "
         f"or logarithm of a negative number; change the formula or the data so that this cannot happen"
     )
 

@@ -15,6 +15,7 @@ import numpy as np
 from rtamt.errors import EvaluationError, StlError, UsageError
 from rtamt.language.dense_definitions import QUARTERS, Steps, lifted, merged
 from rtamt.language.operators import Bounds, Tense
+from rtamt.language.printer import excerpt
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -51,7 +52,7 @@ def numbers_of(node: Apply, given: Any) -> Array:
     values = np.asarray(given)
     if values.dtype.kind not in "fiubO":
         raise EvaluationError(
-            f"the operator '{node.op.name}' gave values of type {values.dtype} in '{node}', "
+            f"the operator '{node.op.name}' gave values of type {values.dtype} in '{excerpt(node)}', "
             f"expected real numbers; mend the operator"
         )
     return values.astype(np.float64)
@@ -60,7 +61,7 @@ def numbers_of(node: Apply, given: Any) -> Array:
 def raised(node: Apply, error: Exception) -> EvaluationError:
     """Return the error for an operator whose own code raised one."""
     return EvaluationError(
-        f"the operator '{node.op.name}' failed in '{node}': {type(error).__name__}: {error}; mend the operator"
+        f"the operator '{node.op.name}' failed in '{excerpt(node)}': {type(error).__name__}: {error}; mend the operator"
     )
 
 

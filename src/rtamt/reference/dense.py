@@ -24,7 +24,7 @@ from rtamt.language.undefined_value import undefined
 from rtamt.reference.definition_adapter import check_dense_meaning, signal_of
 from rtamt.rewrite.check import check_dense
 from rtamt.rewrite.desugar import rebuilt, spelled_out
-from rtamt.rewrite.horizon import horizon
+from rtamt.rewrite.horizon import horizons
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -301,8 +301,7 @@ def _read(formula: Formula, last: int, tick: Fraction) -> dict[int, int | None]:
 def _depths(formula: Formula, tick: Fraction) -> dict[int, int]:
     """Return, by identity of each sub-formula, its horizon in quarters of a tick."""
     depths = {}
-    for node in postorder(formula):
-        depth = horizon(node, tick)
+    for node, depth in horizons(formula, tick).items():
         assert depth is not None, "unbounded future is refused before"
-        depths[id(node)] = int(depth / tick) * QUARTERS
+        depths[node] = int(depth / tick) * QUARTERS
     return depths

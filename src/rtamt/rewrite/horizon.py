@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from fractions import Fraction
 
-from rtamt.language.formula import Apply, Formula, fold
+from rtamt.language.formula import Apply, Formula, children, postorder
 from rtamt.language.operators import Bounds, Tense
 from rtamt.rewrite.desugar import spelled_out
 
@@ -21,8 +21,15 @@ def horizon(formula: Formula, period: Fraction = Fraction(1)) -> Fraction | None
     >>> horizon(parse_formula("always[0:10](x >= 3 -> eventually[0:5] y >= 3)"))
     Fraction(15, 1)
     """
+    formula = spelled_out(formula)
+    return horizons(formula, period)[id(formula)]
 
-    def step(node: Formula, below: tuple[Fraction | None, ...]) -> Fraction | None:
+
+def horizons(formula: Formula, period: Fraction) -> dict[int, Fraction | None]:
+    """Return the horizon of each sub-formula by its identity; ``formula``: see :func:`spelled_out`."""
+    found: dict[int, Fraction | None] = {}
+
+    def step(node: Formula, below: list[Fraction | None]) -> Fraction | None:
         deepest = _NONE
         for depth in below:
             if depth is None:
@@ -37,4 +44,6 @@ def horizon(formula: Formula, period: Fraction = Fraction(1)) -> Fraction | None
             return None
         return deepest + node.interval.end
 
-    return fold(spelled_out(formula), step)
+    for node in postorder(formula):
+        found[id(node)] = step(node, [found[id(operand)] for operand in children(node)])
+    return found

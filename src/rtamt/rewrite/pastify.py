@@ -20,6 +20,9 @@ from rtamt.rewrite.check import unbounded_future
 from rtamt.rewrite.desugar import spelled_out
 from rtamt.rewrite.horizon import horizon
 
+#: Different sub-formulas of the largest pastified formula: one that is shared may be needed at 2ⁿ delays.
+MOST = 100_000
+
 
 def pastify(
     formula: Formula, period: Fraction = Fraction(1), text: str | None = None, unit: str = "s"
@@ -28,7 +31,7 @@ def pastify(
 
     ``period`` (seconds) is what ``next`` counts. ``unit``: that of bounds without one, in the text from
     which φ was read and in which Π(φ) is to be read again. Raises :class:`BoundError` at an operator whose
-    future is unbounded.
+    future is unbounded, and :class:`SpecificationError` where the result has more than :data:`MOST` nodes.
 
     >>> from rtamt.language.parser import parse_formula
     >>> str(pastify(parse_formula("always[0:10](x >= 3 -> eventually[0:5] y >= 3)")))
@@ -88,6 +91,13 @@ class _Pastifier:
                 stack.extend(missing)
                 continue
             stack.pop()
+            if len(results) >= MOST:
+                raise SpecificationError(
+                    f"the pastified formula would have more than {MOST} different sub-formulas, one for each "
+                    f"delay of a shared one; monitor the formula as it is, which needs no pastification",
+                    self.text,
+                    formula.span,
+                )
             if (id(node), d) not in results:
                 results[id(node), d] = self._build(node, d, tuple(results[id(a), e] for a, e in wanted))
         return results[id(formula), delay]

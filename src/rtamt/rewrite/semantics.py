@@ -23,6 +23,7 @@ from rtamt.errors import EvaluationError, StlError, UsageError, did_you_mean, sh
 from rtamt.language.formula import Apply, Const, Formula, fold, variables
 from rtamt.language.grammar import is_number
 from rtamt.language.operators import STL, Sort, holds
+from rtamt.language.printer import excerpt
 from rtamt.rewrite.desugar import rebuilt, spelled_out
 
 #: From a variable to its side of the interface: ``"input"`` or ``"output"``.
@@ -209,12 +210,12 @@ def _judged(predicate: Formula, judge: Judge, roles: Roles) -> Formula:
         raise
     except Exception as error:
         raise EvaluationError(
-            f"the semantics {_name(judge)} failed for the predicate '{predicate}': {type(error).__name__}: "
+            f"the semantics {_name(judge)} failed for the predicate '{excerpt(predicate)}': {type(error).__name__}: "
             f"{error}; it is called with a predicate and the roles, and returns a formula"
         ) from error
     if not isinstance(judged, Formula):
         raise UsageError(
-            f"the semantics {_name(judge)} returned {shown(judged)} for the predicate '{predicate}'; "
+            f"the semantics {_name(judge)} returned {shown(judged)} for the predicate '{excerpt(predicate)}'; "
             f"return a formula"
         )
     if judged is predicate:
@@ -226,8 +227,8 @@ def _judged(predicate: Formula, judge: Judge, roles: Roles) -> Formula:
     for name in variables(judged):
         if name not in known:
             raise UsageError(
-                f"the semantics {_name(judge)} returned '{judged}' for the predicate '{predicate}', which "
-                f"does not read '{name}'; use the predicate's own variables"
+                f"the semantics {_name(judge)} returned '{excerpt(judged)}' for the predicate "
+                f"'{excerpt(predicate)}', which does not read '{name}'; use the predicate's own variables"
             )
     # min(inf, v) is v, to the sign of a zero; the truth, +inf or -inf, is computed for its operands.
     return STL["and"](STL["or"](holding, STL["true"]()), judged)

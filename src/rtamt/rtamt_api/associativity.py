@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 from rtamt.language.formula import Apply, Formula, fold, postorder
 from rtamt.language.operators import STL, Fixity, Language
+from rtamt.language.printer import excerpt
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -25,15 +26,15 @@ def warn_of_chains(document: Document, read: Callable[[str, Language], Document]
 
     ``read`` reads a text in a language; ``stacklevel`` is that of :func:`warnings.warn`.
     """
-    if not any(_may_differ(assertion.formula) for assertion in document.assertions):
+    if not _may_differ(*(assertion.formula for assertion in document.assertions)):
         return
     theirs = read(document.text, _left_to_right())
     for ours, other in zip(document.assertions, theirs.assertions, strict=True):
         formula = fold(other.formula, _as_ours)
         if formula != ours.formula:
             warnings.warn(
-                f"a chain without parentheses is read as '{ours.formula}'; RTAMT read it as '{formula}': "
-                f"add parentheses to say which one is meant",
+                f"a chain without parentheses is read as '{excerpt(ours.formula)}'; RTAMT read it as "
+                f"'{excerpt(formula)}': add parentheses to say which one is meant",
                 stacklevel=stacklevel,
             )
 
@@ -43,11 +44,11 @@ def _left_to_right() -> Language:
     return Language.of(replace(op, fixity=Fixity.LEFT) if op.fixity is Fixity.RIGHT else op for op in STL)
 
 
-def _may_differ(formula: Formula) -> bool:
+def _may_differ(*formulas: Formula) -> bool:
     """Tell whether an operator that associates to the right has an operand of the same kind."""
     return any(
         _to_the_right(node) and any(map(_to_the_right, node.args))
-        for node in postorder(formula)
+        for node in postorder(*formulas)
         if isinstance(node, Apply)
     )
 

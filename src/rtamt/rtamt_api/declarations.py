@@ -222,7 +222,7 @@ class Declarations(ABC):
         if self._document is None:
             return set(self._types)
         computed = {head_of(name) for name in self._assertions(self._document)}
-        read = {head_of(name) for f in self._assertions(self._document).values() for name in variables(f)}
+        read = {head_of(name) for name in variables(*self._assertions(self._document).values())}
         return (set(self._types) | read) - computed
 
     def _settings_changed(self) -> None:
@@ -299,12 +299,11 @@ class Declarations(ABC):
 
     def _check_objects(self, document: Document) -> None:
         """Make sure that the numbers that are read of declared objects, and written into one, are there."""
-        for formula in self._assertions(document).values():
-            for node in postorder(formula):
-                if isinstance(node, Var) and head_of(node.name) in self._objects:
-                    message = self._lacks(node.name)
-                    if message:
-                        raise NameInFormulaError(message, document.text, node.span)
+        for node in postorder(*self._assertions(document).values()):
+            if isinstance(node, Var) and head_of(node.name) in self._objects:
+                message = self._lacks(node.name)
+                if message:
+                    raise NameInFormulaError(message, document.text, node.span)
         result = list(self._assertions(document))[-1]
         if "." in result and head_of(result) not in self._objects:
             raise UsageError(

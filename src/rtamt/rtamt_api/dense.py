@@ -11,8 +11,9 @@ from rtamt.engine.dense_monitor import DenseMonitor
 from rtamt.engine.gate import alone
 from rtamt.engine.online import Watched
 from rtamt.errors import NameInFormulaError, StlError, TraceError, UsageError, shown
-from rtamt.language.formula import Var, postorder, variables
-from rtamt.language.printer import canonical
+from rtamt.language.formula import Apply, Var, folds, postorder, variables
+from rtamt.language.operators import Tense
+from rtamt.language.printer import EXCERPT, canonical
 from rtamt.language.units import UNITS
 from rtamt.rewrite.check import check_bounds, check_dense, has_future
 from rtamt.rtamt_api.backends import check_language, dense_signal, is_compiled
@@ -26,7 +27,7 @@ from rtamt.signals import arrays
 from rtamt.signals.ticks import NANOSECOND, TimeScale, all_integers
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Collection, Sequence
 
     from rtamt.engine.dense_evaluate import DenseRecording
     from rtamt.language.formula import Formula
@@ -74,6 +75,13 @@ class DenseTimeSpecification(Formulas):
                 values = [arrays.field_of(value, head, path, i) for i, value in enumerate(values)]
             columns[name] = times, values
         return columns
+
+
+def _is_watchable(node: Formula, reads: Collection[str]) -> bool:
+    """Tell whether a node by itself is past, and reads nothing but ``reads``."""
+    if isinstance(node, Apply):
+        return node.op.tense is not Tense.FUTURE and (node.op.definition is not None or not has_future(node))
+    return not isinstance(node, Var) or node.name in reads
 
 
 def _points(signal: Signal, whole: bool) -> list[list[float]]:
@@ -237,10 +245,10 @@ class StlDenseTimeOnlineSpecification(OnlineSpecification, DenseTimeSpecificatio
             times, values = self._given.get(part.name, ((), ()))
             told = int if self._whole else float
             return [[told(time), float(value)] for time, value in zip(times, values, strict=True)]
-        if not any(part == node for formula in self._watched for node in postorder(formula)):
+        if not any(part == node for node in postorder(*self._watched)):
             raise UsageError(
-                f"'{canonical(part)}' is no part of what is watched: the result, and past assertions that read "
-                f"no other variables; evaluate the finished signals offline"
+                f"'{canonical(part, limit=EXCERPT)}' is no part of what is watched: the result, and past "
+                f"assertions that read no other variables; evaluate the finished signals offline"
             )
         return _points(self._require_monitor().part(self._worth(part)), self._whole)
 
@@ -256,10 +264,10 @@ class StlDenseTimeOnlineSpecification(OnlineSpecification, DenseTimeSpecificatio
             backend = "cpp" if is_compiled() else "python"
             # Of variables that the result does not read, samples need not come.
             reads = set(variables(formula))
+            named = tuple(self._formulas.values())
+            watchable = folds(named, lambda node, below: all(below) and _is_watchable(node, reads))
             others = [
-                other
-                for other in self._formulas.values()
-                if other is not formula and reads.issuperset(variables(other)) and not has_future(other)
+                other for other, fits in zip(named, watchable, strict=True) if fits and other is not formula
             ]
             self._watched = (formula, *others)
             made = partial(

@@ -7,7 +7,7 @@ from numbers import Real
 from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import UsageError, did_you_mean
-from rtamt.language.formula import Formula, Var, postorder, variables
+from rtamt.language.formula import Formula, Var, outermost, postorder, variables
 from rtamt.language.grammar import is_number
 from rtamt.language.printer import canonical
 from rtamt.rewrite.semantics import lower, semantics_of
@@ -35,10 +35,10 @@ class Formulas(Declarations):
 
     def _parsed(self, document: Document) -> None:
         formulas = self._assertions(document)
-        for formula in formulas.values():
+        for formula in outermost([*formulas.values()]):
             self._check(formula, document.text)
         self._formulas = formulas
-        self._inputs = tuple(dict.fromkeys(name for f in formulas.values() for name in variables(f)))
+        self._inputs = variables(*formulas.values())
         self._value_of = None
 
     @property
@@ -90,7 +90,7 @@ class Formulas(Declarations):
         if part is not self._result and is_number(part):
             return part
         judged = self._judged(part)
-        read_so = (node for formula in self._formulas.values() for node in postorder(self._judged(formula)))
+        read_so = postorder(*map(self._judged, self._formulas.values()))
         return judged if judged == part or judged in set(read_so) else part
 
     # ---- values ----------------------------------------------------------------------------------
@@ -124,7 +124,6 @@ class Formulas(Declarations):
         if text in self._types:
             raise UsageError(f"the specification does not read '{text}', so that its values are not kept")
         formula = self._read_formula(text)
-        parts = {node for part in self._formulas.values() for node in postorder(part)}
-        if formula not in parts:
+        if formula not in set(postorder(*self._formulas.values())):
             raise UsageError(f"'{text}' is no part of the specification {self.spec_print()}")
         return formula

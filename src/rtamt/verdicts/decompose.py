@@ -9,10 +9,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from rtamt.errors import BoundError
-from rtamt.language.formula import Apply, Formula, Var, variables
+from rtamt.language.formula import Apply, Formula, Var, children, fold, postorder
 from rtamt.language.operators import Pointwise, Sort, Tense, Window
 from rtamt.rewrite.check import has_future, unbounded_future
 
@@ -41,10 +41,13 @@ class Anchored:
     leaves: tuple[Leaf, ...]
 
     def conjuncts(self) -> Iterator[Formula]:
-        """Yield the parts of the skeleton that must all hold."""
-        stack = [self.skeleton]
+        """Yield the parts of the skeleton that must all hold, each once."""
+        stack, seen = [self.skeleton], set[int]()
         while stack:
             node = stack.pop()
+            if id(node) in seen:
+                continue
+            seen.add(id(node))
             if isinstance(node, Apply) and node.op.kernel == Pointwise("min"):
                 stack.extend(reversed(node.args))
             else:
@@ -70,21 +73,58 @@ def anchor(formula: Formula) -> Anchored:
     def leaf(found: Leaf) -> Formula:
         return Var(f"#{leaves.setdefault(found, len(leaves))}")
 
-    def visit(node: Formula) -> Formula:
-        if not isinstance(node, Apply) or not has_future(node):
-            return leaf(Leaf(node)) if variables(node) else node
-        kernel = node.op.kernel
-        if isinstance(kernel, Window) and node.op.tense is Tense.FUTURE:
-            begin = node.interval.begin if node.interval is not None else Fraction(0)
-            end = node.interval.end if node.interval is not None else None
-            return leaf(Leaf(node.args[0], kernel.reduce, begin, end))
-        if node.op.tense is not Tense.NONE or set(node.op.operands) != {Sort.FORMULA}:
-            return leaf(Leaf(node))
-        # Only connectives are above a window that is reached here: no deeper than they are nested.
-        return replace(node, args=tuple(visit(arg) for arg in node.args))
+    facts: dict[int, _Facts] = {}
+    fold(formula, lambda node, below: facts.setdefault(id(node), _facts(node, below)))
+    # From the top down, as far as there are connectives; whatever else is reached is a leaf.
+    reached: set[int] = set()
+    stack = [formula]
+    while stack:
+        node = stack.pop()
+        if id(node) not in reached:
+            reached.add(id(node))
+            if facts[id(node)].joins:
+                stack.extend(children(node))
+    parts: dict[int, Formula] = {}
+    for node in postorder(formula):
+        if id(node) not in reached:
+            continue
+        if facts[id(node)].joins:
+            parts[id(node)] = replace(node, args=tuple([parts[id(arg)] for arg in children(node)]))  # type: ignore[type-var]
+        elif facts[id(node)].looks_ahead:
+            parts[id(node)] = leaf(_ahead(node))
+        else:
+            parts[id(node)] = leaf(Leaf(node)) if facts[id(node)].reads else node
+    return Anchored(parts[id(formula)], tuple(leaves))
 
-    skeleton = visit(formula)
-    return Anchored(skeleton, tuple(leaves))
+
+class _Facts(NamedTuple):
+    """Of a sub-formula: whether it reads a variable, whether it looks ahead, and that through a connective."""
+
+    reads: bool
+    looks_ahead: bool
+    joins: bool
+
+
+def _facts(node: Formula, below: tuple[_Facts, ...]) -> _Facts:
+    if not isinstance(node, Apply):
+        return _Facts(isinstance(node, Var), False, False)
+    below_ahead = any(each.looks_ahead for each in below)
+    looks_ahead = (
+        below_ahead or node.op.tense is Tense.FUTURE or (node.op.definition is None and has_future(node))
+    )
+    joins = looks_ahead and node.op.tense is Tense.NONE and set(node.op.operands) == {Sort.FORMULA}
+    return _Facts(any(each.reads for each in below), looks_ahead, joins)
+
+
+def _ahead(node: Formula) -> Leaf:
+    """Return the leaf that a formula is which looks ahead: a window of the future is its running extremum."""
+    assert isinstance(node, Apply)
+    kernel = node.op.kernel
+    if not isinstance(kernel, Window) or node.op.tense is not Tense.FUTURE:
+        return Leaf(node)
+    if node.interval is None:
+        return Leaf(node.args[0], kernel.reduce, end=None)
+    return Leaf(node.args[0], kernel.reduce, node.interval.begin, node.interval.end)
 
 
 def check_in_chunks(anchored: Anchored, text: str | None = None) -> None:

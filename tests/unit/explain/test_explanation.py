@@ -247,7 +247,8 @@ def test_the_robustness_is_that_of_the_semantics_and_the_verdict_the_same_under_
 def test_a_formula_of_thousands_of_operators():
     terms = " and ".join(f"always[0:1](x >= {-k})" for k in range(1100))
     explanation = explained(terms, {"x": [1, 2, 3]})
-    assert explanation.formula == "a formula of 5499 operators, variables and numbers"
+    assert explanation.formula.startswith("always[0:1](x >= 0) and always[0:1](x >= -1) and ")
+    assert explanation.formula.endswith("… (abbreviated: 5499 operators, variables and numbers)")
     assert explanation.critical.predicate == "x >= 0"
     assert len(explanation.implicant) == 1100
 
