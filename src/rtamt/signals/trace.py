@@ -103,7 +103,7 @@ class Trace(Clocked):
 
     @property
     def losses(self) -> tuple[str, ...]:
-        """What a verdict has to do without: the rest of a damaged file, samples that are NaN."""
+        """What a verdict has to do without: the rest of a damaged file, samples that are NaN or passed over."""
         return self._losses
 
     @property
@@ -216,7 +216,8 @@ class Trace(Clocked):
 
         ``how``: ``"hold"``, the last value before or at an instant (what dense time means; up to the
         latest last sample), or ``"linear"``, on the line between the two samples around it (up to the
-        earliest last sample). ``period``: seconds, or text such as ``"10ms"``.
+        earliest last sample). ``period``: seconds, or text such as ``"10ms"``. Samples that lie between are
+        left out, which :attr:`losses` tells.
 
         >>> import rtamt
         >>> trace = rtamt.read({"x": ([0.0, 1.0], [0, 10]), "y": ([0.0, 0.6, 1.0], [1, 2, 3])})
@@ -251,22 +252,28 @@ class Trace(Clocked):
         return self._at(grid[grid >= max(times[0] for times in timed)], "hold")
 
     def _at(self, grid: Times, how: str) -> Trace:
-        channels = {}
+        channels: dict[str, Channel] = {}
+        losses: list[str] = []
         for name, channel in self._channels.items():
             assert channel.times is not None
+            places = np.searchsorted(channel.times, grid, side="right") - 1
             if how == "hold":
-                values = channel.values[np.searchsorted(channel.times, grid, side="right") - 1]
+                values = channel.values[places]
+                losses += _passed_over(name, places, len(channel.times))
             else:
                 # Differences first: stamps of 10^18 ns do not fit into a double, their distances do.
                 zero = channel.times[0]
                 values = np.interp(_plain(grid - zero), _plain(channel.times - zero), channel.values)
+                between = channel.times[places] != grid
+                both = np.concatenate((places, places[between] + 1))
+                losses += _passed_over(name, both, len(channel.times))
             channels[name] = replace(channel, times=grid, values=values)
-        return self._with(channels)
+        return self._with(channels, losses)
 
     # ---- inside ----------------------------------------------------------------------------------
 
-    def _with(self, channels: Mapping[str, Channel]) -> Trace:
-        notes, losses = self._notes, self._losses
+    def _with(self, channels: Mapping[str, Channel], losses: Sequence[str] = ()) -> Trace:
+        notes, losses = self._notes, (*self._losses, *losses)
         return Trace(channels, source=self._source, notes=notes, losses=losses, origin=self._origin)
 
     def _timed(self) -> list[Any]:
@@ -313,6 +320,17 @@ class Trace(Clocked):
         ]
         width = max((len(label) for label, _ in rows), default=0)
         return "\n".join(lines + [f"  {label:<{width}}  {rest}" for label, rest in rows])
+
+
+def _passed_over(name: str, places: NDArray[np.intp], count: int) -> list[str]:
+    """Return the note for samples of a signal that none of another clock reads, from the first one read on."""
+    read = np.unique(places)
+    left_out = count - int(read[0]) - len(read)
+    if not left_out:
+        return []
+    return [
+        f"resampling left out {left_out:,} of {count:,} sample{'s' * (count != 1)} of {name}, between those it took"
+    ]
 
 
 def in_seconds(times: Times) -> FloatArray:

@@ -98,6 +98,16 @@ def test_a_spike_of_50_ms_was_missed_by_a_bag_sampled_at_1_hz(spike, tmp_path, c
     capsys.readouterr()
 
 
+def test_what_a_chosen_period_passes_over_is_noted_beside_the_verdict(spike, tmp_path, capsys):
+    arguments = ["check", 'always("/x.data" >= 0)', str(spike), "--period", "1"]
+    assert main([*arguments, "--junit", str(tmp_path / "junit.xml")]) == 0
+    note = "resampling left out 2 of 7 samples of /x.data, between those it took"
+    assert f"note: {spike}: {note}\n" in capsys.readouterr().out
+    assert note in (tmp_path / "junit.xml").read_text()
+    assert main([*arguments[:-1], "50ms", "--json"]) == 1
+    assert "notes" not in json.loads(capsys.readouterr().out)
+
+
 def test_topics_with_the_same_regular_stamps_imply_their_period_and_every_message_is_a_sample(
     spike, tmp_path, capsys
 ):

@@ -124,3 +124,11 @@ def test_law_a_resampled_or_held_signal_is_the_dense_one_at_those_instants(trace
         times = np.rint(held["x"].times * 1e9)
         at = np.searchsorted(dense.times, times, side="right") - 1
         assert result.tolist() == dense.values[at].tolist()
+
+
+def test_resampling_says_how_many_samples_it_passed_over():
+    trace = rtamt.read({"x": ([0.0, 1.0, 1.25, 1.5, 2.0], [0, 1, 9, 9, 2]), "y": ([1.0, 2.0], [0, 0])})
+    assert trace.resample(1).losses == ("resampling left out 2 of 5 samples of x, between those it took",)
+    assert trace.resample(1, "linear").losses == trace.resample(1).losses
+    assert trace.resample("400ms", "linear").losses == ()
+    assert trace.resample("250ms").losses == trace.hold().losses == ()

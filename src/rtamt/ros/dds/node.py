@@ -64,12 +64,17 @@ class Node:
                 self._publish(self._monitor.tick(now))
             self._tell(now)
             self._participant.wait(self._monitor.pause(self._time()))
-            for topic, message in self._participant.take():
-                self._receive(topic, message)
+            self._take()
         self._participant.close()
 
     def _time(self) -> int:
         return time.time_ns() if self._now is None else self._now
+
+    def _take(self) -> None:
+        for topic, message in self._participant.take():
+            if self._stopped:  # each of many clocks may ask for many samples
+                return
+            self._receive(topic, message)
 
     def _receive(self, topic: str, message: Any) -> None:
         if topic == _CLOCK:
