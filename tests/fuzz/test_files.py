@@ -10,7 +10,7 @@ from random import Random
 
 import pyarrow as pa
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from pyarrow import feather, parquet
 
@@ -25,6 +25,8 @@ pytestmark = pytest.mark.filterwarnings(
 
 CORPUS = Path(__file__).parent / "corpus" / "files"
 BY_SUFFIX = {target.suffix: target for target in TARGETS}
+#: Of each kind of file, for `make fuzz`: some minutes in all.
+MOST_EXAMPLES = 3000
 #: A file of some kB takes milliseconds; the rest is for a machine that is busy.
 MOST_SECONDS = 20
 #: What one file may add to the memory of the process at its largest.
@@ -64,6 +66,7 @@ def test_a_good_file_is_read(target: Target, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("target", TARGETS, ids=str)
+@settings(max_examples=min(settings.default.max_examples, MOST_EXAMPLES))
 @given(seed=st.integers(0, 2**63))
 def test_a_damaged_file_is_read_or_refused_in_a_sentence(target: Target, seed: int) -> None:
     check(target, damaged(good(target), Random(seed)))  # noqa: S311 - damage, no secret

@@ -50,6 +50,7 @@ def open_arrow(path: str) -> Source:
         file.seek(0)
         reader = ipc.open_stream(file)
         batches = iter(reader)
+    batches = map(_valid, batches)
     schema = reader.schema.empty_table().flatten().schema
     first = next(batches, None)
     batches = chain(() if first is None else (first,), batches)
@@ -63,6 +64,12 @@ def open_arrow(path: str) -> Source:
         return _raws(whole.flatten(), wanted)
 
     return Source(path, (Table(fields, load, chunks),), close=file.close)
+
+
+def _valid(batch: Any) -> Any:
+    """Return a batch whose texts and lists lie in its memory: pyarrow reads them wherever the file says."""
+    batch.validate(full=True)
+    return batch
 
 
 def table_of_arrow(table: Any) -> Table:

@@ -24,6 +24,8 @@ _CLOCK = "timestamp"
 _HEADER = 3
 #: How many times the size of a file is read of it at most.
 _AGAIN = 16
+#: Fields of all topics together, each element of an array one: a hundred times what an autopilot logs.
+_MOST_FIELDS = 2**20
 
 
 def open_ulog(path: str) -> Source:
@@ -37,7 +39,7 @@ def open_ulog(path: str) -> Source:
     said = StringIO()
     with open(path, "rb") as opened, redirect_stdout(said):
         file = _Watched(opened)
-        log = core.ULog(file)
+        log = _limited(core, path)(file)
     losses = _damage(log, said.getvalue(), file)
     topics = sorted(log.data_list, key=lambda topic: (topic.name, topic.multi_id))
     if losses and not topics:
@@ -48,6 +50,28 @@ def open_ulog(path: str) -> Source:
                 f"'{path}' cannot be read as PX4 ULog: the topic '{topic.name}' has no field '{_CLOCK}'"
             )
     return Source(path, tuple(map(_table, topics)), notes=_dropouts(log), losses=losses)
+
+
+def _limited(core: Any, path: str) -> Any:
+    """Return pyulog's reader, which does not spell out formats of nested arrays without end."""
+    left = _MOST_FIELDS
+
+    class Topic(core.ULog._MessageAddLogged):  # type: ignore[misc]
+        def _parse_nested_type(self, prefix_str: str, type_name: str, message_formats: Any) -> None:
+            nonlocal left
+            before = len(self.field_data)
+            super()._parse_nested_type(prefix_str, type_name, message_formats)
+            left -= 1 + (len(self.field_data) - before)
+            if left < 0:
+                raise TraceError(
+                    f"'{path}' cannot be read as PX4 ULog: its topics have more than {_MOST_FIELDS:,} fields, elements "
+                    f"of arrays included; the file is damaged: copy or export it again"
+                )
+
+    class Log(core.ULog):  # type: ignore[misc]
+        _MessageAddLogged = Topic
+
+    return Log
 
 
 class _Watched:

@@ -306,3 +306,22 @@ def test_pyulog_does_not_read_the_damaged_end_of_a_flight_log_for_ever(tmp_path)
     with pytest.raises(rtamt.TraceError) as error:
         rtamt.read(path)
     assert str(error.value) == f"'{path}' cannot be read as PX4 ULog: too much of it is damaged"
+
+
+def test_a_flight_log_of_60_bytes_with_billions_of_fields_is_refused(tmp_path):
+    path = ulog(tmp_path / "a.ulg", [("battery", 0, "float x", [])])
+    out = bytearray(path.read_bytes()[:16])
+    for kind, payload in (
+        ("F", b"a:uint64_t timestamp;b[60000] x;"),
+        ("F", b"b:c[60000] y;"),
+        ("F", b"c:float z;"),
+        ("A", struct.pack("<BH", 0, 0) + b"a"),
+    ):
+        out += struct.pack("<HB", len(payload), ord(kind)) + payload
+    path.write_bytes(out)
+    with pytest.raises(rtamt.TraceError) as error:
+        rtamt.read(path)
+    assert str(error.value) == (
+        f"'{path}' cannot be read as PX4 ULog: its topics have more than 1,048,576 fields, elements of arrays "
+        "included; the file is damaged: copy or export it again"
+    )
