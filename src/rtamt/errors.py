@@ -20,6 +20,7 @@ the line and a caret under the place.
 from __future__ import annotations
 
 import copy
+import re
 import reprlib
 from difflib import get_close_matches
 from typing import TYPE_CHECKING
@@ -171,3 +172,39 @@ def did_you_mean(name: object, known: Iterable[str]) -> str:
     """
     close = get_close_matches(name, list(known), n=1) if isinstance(name, str) else []
     return f"; did you mean '{close[0]}'?" if close else ""
+
+
+def escaped(text: str) -> str:
+    r"""Return a text with its control characters written out: what a file is called must not drive a terminal.
+
+    Line ends and tabs stay. Also written out: what turns the direction of writing, and the bytes of file names that are
+    not UTF-8 (Python's surrogate escapes).
+
+    >>> print(escaped("log\x1b[2J\x07.csv"), escaped("a\u202eb"), escaped("caf\udce9.csv"))
+    log\x1b[2J\x07.csv a\u202eb caf\xe9.csv
+    """
+    return _UNPRINTABLE.sub(lambda match: _written(ord(match[0])), text)
+
+
+#: Control characters (C0, DEL, C1), line separators, marks of direction, and surrogates.
+_UNPRINTABLE = re.compile(
+    "[\x00-\x08\x0b-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069\ud800-\udfff]"
+)
+
+
+def readable(text: str) -> str:
+    r"""Return a text that can be encoded: bytes of file names that are not UTF-8 are written out.
+
+    >>> print(readable("caf\udce9.csv"))
+    caf\xe9.csv
+    """
+    return _SURROGATES.sub(lambda match: _written(ord(match[0])), text)
+
+
+_SURROGATES = re.compile("[\ud800-\udfff]")
+
+
+def _written(code: int) -> str:
+    if 0xDC80 <= code <= 0xDCFF:
+        code -= 0xDC00
+    return f"\\x{code:02x}" if code < 0x100 else f"\\u{code:04x}"

@@ -23,7 +23,8 @@ from rtamt.cli import (
     report,
     ros2,
 )
-from rtamt.cli.command import BROKEN_PIPE, ERROR, INTERRUPTED, OK, Command, Help, Parser, complain
+from rtamt.cli.command import ERROR, INTERRUPTED, OK, Command, Help, Parser, complain
+from rtamt.cli.terminal import say
 from rtamt.errors import StlError, UsageError, did_you_mean
 
 if TYPE_CHECKING:
@@ -57,36 +58,56 @@ examples:
   echo '{"time": 0, "x": 5}' | rtamt monitor "x >= 3"
 
 exit codes:
-  0 satisfied (or done), 1 violated, 2 something is wrong: one sentence on stderr says what"""
+  0 satisfied (or done), 1 violated, 2 something is wrong: one sentence on stderr says what
+  (nothing where nobody reads the output to its end), 130 interrupted"""
 
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run the command line; return the exit code."""
+    if sys.stderr is None:  # closed: what would be said there goes nowhere
+        sys.stderr = open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115 - until the end of the process
+    if sys.stdout is None:
+        say("rtamt: stdout is closed, so that nobody would see the answer; use > /dev/null", file=sys.stderr)
+        return ERROR
     try:
-        code = _dispatch(list(sys.argv[1:] if argv is None else argv))
-        sys.stdout.flush()
-    except StlError as error:
-        complain(error)
+        return _answer(list(sys.argv[1:] if argv is None else argv))
     except KeyboardInterrupt:
         return INTERRUPTED
     except BrokenPipeError:
-        # Nobody reads on. What Python still holds for stdout goes nowhere, without a word at exit.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return BROKEN_PIPE
+        _forget_output()  # nobody reads on, which is no news to them
     except OSError as error:
+        _forget_output()
         complain(f"cannot write the output: {error.strerror}")
+    return ERROR
+
+
+def _answer(argv: list[str]) -> int:
+    try:
+        code = _dispatch(argv)
+    except StlError as error:
+        complain(error)
+        code = ERROR
+    except (OSError, SystemExit):  # SystemExit: --help and --version have printed what they print
+        sys.stdout.flush()
+        raise
     except MemoryError:
         complain("not enough memory: are the bounds of a window as large as they should be?")
+        code = ERROR
     except Exception as error:  # noqa: BLE001 - a mistake of ours; the user gets a sentence all the same
         complain(f"internal error, please report it: {type(error).__name__}: {error}")
-    else:
-        return code
-    return ERROR
+        code = ERROR
+    sys.stdout.flush()
+    return code
+
+
+def _forget_output() -> None:
+    """Let what Python still holds for stdout go nowhere, without a word at exit."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def _dispatch(argv: list[str]) -> int:
     if not argv:
-        print(overview().format_help().rstrip())
+        say(overview().format_help().rstrip())
         return ERROR
     name, *rest = argv
     if name.startswith("-"):

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import sys
 from typing import TYPE_CHECKING, Any
 
@@ -21,14 +20,17 @@ from rtamt.cli.command import (
     add_time_option,
     complain,
     json_number,
+    json_text,
     short,
     stamp_text,
     warn,
+    write_output,
 )
 from rtamt.cli.reading_options import add_reading_options, reading_of
 from rtamt.cli.reports import REPORTS, write_report
 from rtamt.cli.runner import Outcome, Requirement, outcomes
-from rtamt.cli.terminal import Progress, printed, table, use_color
+from rtamt.cli.terminal import Progress, printed, say, table, use_color
+from rtamt.errors import escaped
 from rtamt.language.units import format_duration
 
 if TYPE_CHECKING:
@@ -147,10 +149,10 @@ def run(args: argparse.Namespace) -> int:
                 complain(outcome.error)
             if args.json and not args.quiet:
                 progress.clear()
-                print(_as_json(outcome, rows[outcome.requirement]), flush=True)
+                say(_as_json(outcome, rows[outcome.requirement]), flush=True)
             progress.bar(len(found), pairs, outcome.trace)
     if not args.json and not args.quiet and any(not outcome.error for outcome in found):
-        print(_as_table(requirements, found, color))
+        say(_as_table(requirements, found, color), color=color)
     results = [outcome.result for outcome in found if outcome.result is not None]
     if args.output is not None and len(results) == len(found):
         if args.output.lower().endswith(".mcap"):
@@ -183,8 +185,8 @@ def _as_json(outcome: Outcome, requirement: Requirement) -> str:
     written = requirement.written
     more = {"description": written.description, "severity": written.severity} if written.explicit else {}
     if outcome.error:
-        return json.dumps({**row, "error": outcome.error})
-    return json.dumps(
+        return json_text({**row, "error": outcome.error})
+    return json_text(
         {
             **row,
             "satisfied": outcome.verdict == "satisfied",
@@ -212,7 +214,7 @@ def _as_table(requirements: Sequence[Requirement], found: Sequence[Outcome], col
     else:
         spec = requirements[0].spec
         title = f"{spec.name}: {printed(spec.formula)}" if spec.name else printed(spec.formula)
-        text = f"{title}\n\n{table([row[1:] for row in rows], right=(1, 2, 3), kinds=kinds, color=color)}"
+        text = f"{escaped(title)}\n\n{table([row[1:] for row in rows], right=(1, 2, 3), kinds=kinds, color=color)}"
     notes = dict.fromkeys(f"note: {outcome.trace}: {note}" for outcome in found for note in outcome.notes)
     if notes:
         text += "\n\n" + "\n".join(notes)
@@ -230,12 +232,8 @@ def _write(requirements: Sequence[Requirement], results: Sequence[Result], path:
         names = ["robustness"]
     times = np.unique(np.concatenate([result.signal.times for result in results]))
     rows = zip(map(stamp_text, times), *(_cells(result.signal, times) for result in results), strict=True)
-    try:
-        with open(path, "w", encoding="utf-8", newline="") as file:
-            file.write(f"{','.join(['time', *names])}\n")
-            file.writelines(f"{','.join(row)}\n" for row in rows)
-    except OSError as error:
-        raise CommandError(f"cannot write '{path}': {error.strerror}") from None
+    lines = [",".join(["time", *names]), *(",".join(row) for row in rows)]
+    write_output(path, "".join(f"{line}\n" for line in lines))
 
 
 def _cells(signal: Signal, times: np.ndarray[Any, Any]) -> Iterator[str]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import json
 import os
 import re
 import sys
@@ -15,8 +16,10 @@ from typing import TYPE_CHECKING, Any, NoReturn
 import numpy as np
 
 from rtamt.cli.language import add_language_option, read_language
+from rtamt.cli.terminal import say
 from rtamt.engine.native import core
-from rtamt.errors import SpecificationError, StlError, UsageError
+from rtamt.errors import SpecificationError, StlError, UsageError, readable
+from rtamt.files import write_bytes, write_text
 from rtamt.language.lint import CODES
 from rtamt.language.units import UNITS, decimal
 from rtamt.readers.formats import METADATA, SUFFIXES
@@ -32,7 +35,7 @@ if TYPE_CHECKING:
 OK, VIOLATED, ERROR = 0, 1, 2
 
 NO_STAMPS = "dense time needs a column of time stamps: call it 'time', or name it with --time-column"
-INTERRUPTED, BROKEN_PIPE = 130, 141  # what a shell reports for a program ended by these signals
+INTERRUPTED = 130  # what a shell reports for a program that Ctrl-C ended
 
 _SPECIFICATION_SUFFIXES = (".stl",)
 #: Before an argument that is no option whatever it looks like; no argument of a process can have it.
@@ -64,6 +67,10 @@ class Parser(argparse.ArgumentParser):
     def error(self, message: str) -> NoReturn:
         """Raise :class:`UsageError`, with the way to the help."""
         raise UsageError(f"{message.replace(_NAME, '')}; see '{self.prog} --help'")
+
+    def _print_message(self, message: str, file: Any = None) -> None:
+        """Print help or version; argparse itself passes over what goes wrong then."""
+        say(message.rstrip("\n"), file=file)
 
     def read(self, argv: Sequence[str]) -> argparse.Namespace:
         """Parse arguments: options may stand anywhere before "--", and nothing after it is an option."""
@@ -203,7 +210,35 @@ def read_specification(args: argparse.Namespace, time: str = "discrete") -> Spec
 def complain(sentence: object) -> None:
     """Print one sentence on stderr, after what has gone to stdout."""
     sys.stdout.flush()
-    print(f"rtamt: {sentence}", file=sys.stderr, flush=True)
+    say(f"rtamt: {sentence}", file=sys.stderr, flush=True)
+
+
+def write_output(path: str, content: str | bytes) -> None:
+    """Write an output file, whole or not at all; what goes wrong is one sentence."""
+    try:
+        if isinstance(content, str):
+            write_text(path, content)
+        else:
+            write_bytes(path, content)
+    except OSError as error:
+        raise CommandError(f"cannot write '{path}': {error.strerror or error}") from None
+
+
+def json_text(value: Any, **options: Any) -> str:
+    r"""Return JSON; bytes of file names that are not UTF-8 are written out, since no JSON text can hold them.
+
+    >>> print(json_text({"trace": "caf\udce9.csv"}))
+    {"trace": "caf\\xe9.csv"}
+    """
+    return json.dumps(_readable(value), **options)
+
+
+def _readable(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {_readable(key): _readable(inner) for key, inner in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_readable(inner) for inner in value]
+    return readable(value) if isinstance(value, str) else value
 
 
 def json_number(value: float) -> float | str:

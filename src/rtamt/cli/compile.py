@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rtamt.cli.command import (
     OK,
     Command,
-    CommandError,
     add_specification_options,
     add_time_option,
     read_specification,
+    write_output,
 )
+from rtamt.cli.terminal import say
 from rtamt.errors import UsageError
 
 if TYPE_CHECKING:
@@ -49,13 +49,13 @@ def run(args: argparse.Namespace) -> int:
     spec = read_specification(args, args.time)
     program = spec.compile()
     if args.output is not None:
-        try:
-            size = Path(args.output).write_bytes(program.to_bytes())
-        except OSError as error:
-            raise CommandError(f"cannot write the program '{args.output}': {error.strerror}") from error
-        print(f"{args.output}: {len(program.instructions)} instructions, {size} bytes, {program.domain} time")
+        code = program.to_bytes()
+        write_output(args.output, code)
+        say(
+            f"{args.output}: {len(program.instructions)} instructions, {len(code)} bytes, {program.domain} time"
+        )
     if args.dump:
-        print(program.disassemble())
+        say(program.disassemble())
     return OK
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from rtamt.cli.command import OK, Command, Parser
+from rtamt.cli.terminal import say
 from rtamt.errors import UsageError, did_you_mean
 from rtamt.extras import library
 
@@ -46,7 +47,7 @@ def run(args: argparse.Namespace) -> int:
             f"{did_you_mean(args.shell, SHELLS)}"
         )
     shtab = library("shtab", "rtamt completion", "completion")
-    print(shtab.complete(_whole(shtab.FILE), shell=args.shell))
+    say(shtab.complete(_whole(shtab.FILE), shell=args.shell))
     return OK
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from typing import TYPE_CHECKING
 
 from rtamt.cli.arguments import result_of_one
@@ -13,9 +12,10 @@ from rtamt.cli.command import (
     CommandError,
     add_specification_options,
     add_time_option,
+    json_text,
 )
 from rtamt.cli.reading_options import add_instant_option, add_reading_options, instant
-from rtamt.cli.terminal import Progress
+from rtamt.cli.terminal import Progress, say
 from rtamt.errors import StlError
 
 if TYPE_CHECKING:
@@ -70,18 +70,18 @@ def run(args: argparse.Namespace) -> int:
     alone = len(explanations) == 1
     if args.json:
         for name, explanation in explanations.items():
-            print(_as_json({} if alone else {"requirement": name}, trace, explanation))
+            say(_as_json({} if alone else {"requirement": name}, trace, explanation))
     else:
         texts = (
             f"{explanation}" if alone else f"{name}: {explanation}"
             for name, explanation in explanations.items()
         )
-        print("\n\n".join(texts))
+        say("\n\n".join(texts))
     return OK if all(explanation.satisfied for explanation in explanations.values()) else VIOLATED
 
 
 def _as_json(of: dict[str, str], trace: str, explanation: Explanation) -> str:
-    return json.dumps({**of, "trace": trace, **explanation.to_dict()}, default=str)  # dates are texts
+    return json_text({**of, "trace": trace, **explanation.to_dict()}, default=str)  # dates are texts
 
 
 COMMAND = Command("explain", "tell which instants of which signals decide the verdict", configure, run)

@@ -7,8 +7,9 @@ import sys
 from typing import TYPE_CHECKING
 
 from rtamt.cli.command import OK, VIOLATED, Command, json_number
-from rtamt.cli.terminal import Progress, paint, use_color
+from rtamt.cli.terminal import Progress, paint, say, use_color
 from rtamt.errors import UsageError
+from rtamt.files import replacing
 
 if TYPE_CHECKING:
     import argparse
@@ -85,15 +86,16 @@ def run(args: argparse.Namespace) -> int:
             progress.show(f"simulation {evaluation.number + 1}, least robustness {least:.6g}")
             if args.json:
                 progress.clear()
-                print(_line(evaluation))
+                say(_line(evaluation))
 
         found = falsify(search.problem, progress=show, **settings)
     if not args.json:
-        print(paint(str(found), "bad" if found.falsified else "good", color))
+        say(paint(str(found), "bad" if found.falsified else "good", color), color=color)
     if args.plot:
         axes = found.plot()
         try:
-            axes.figure.savefig(args.plot, dpi=120)
+            with replacing(args.plot) as new:
+                axes.figure.savefig(new, dpi=120)
         except (OSError, ValueError) as error:
             raise UsageError(f"cannot write the picture '{args.plot}': {error}") from error
     return VIOLATED if found.falsified else OK

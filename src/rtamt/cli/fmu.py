@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from rtamt import fmi
 from rtamt.cli.command import OK, Command, add_specification_options, add_time_option, read_specification
+from rtamt.cli.terminal import say
 
 if TYPE_CHECKING:
     import argparse
@@ -39,9 +40,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     """Write the unit."""
     fmi.export(read_specification(args, args.time), args.output, version=args.fmi)
-    print(
-        f"{args.output}: FMI {args.fmi}.0, co-simulation, {Path(args.output).stat().st_size / 1024:.0f} KiB"
-    )
+    say(f"{args.output}: FMI {args.fmi}.0, co-simulation, {Path(args.output).stat().st_size / 1024:.0f} KiB")
     return OK
 
 

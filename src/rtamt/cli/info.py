@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
@@ -14,11 +13,12 @@ from rtamt.cli.command import (
     add_specification_options,
     add_time_option,
     is_trace,
+    json_text,
     read_specification,
 )
 from rtamt.cli.compiled import compiled, listing
 from rtamt.cli.reading_options import add_reading_options, recording
-from rtamt.cli.terminal import printed
+from rtamt.cli.terminal import printed, say
 from rtamt.compiler.plan import compile_program
 from rtamt.engine.native import core
 from rtamt.engine.user_operators import calls_of
@@ -92,7 +92,7 @@ def run(args: argparse.Namespace) -> int:
     if args.sql is not None or is_trace(args.spec):
         if args.sql is not None and args.spec is not None:
             raise CommandError(f"--sql reads a database; leave out '{args.spec}', or --sql")
-        print(recording(args, args.sql or args.spec))
+        say(str(recording(args, args.sql or args.spec)))
         return OK
     if args.spec is None:
         raise CommandError("name a requirement, a program or a recording; see 'rtamt info --help'")
@@ -101,14 +101,14 @@ def run(args: argparse.Namespace) -> int:
     if program is not None:
         if args.latex or args.json:
             raise UsageError(f"'{args.spec}' is a program: --latex and --json are for requirements")
-        print("\n".join(listing(program)))
+        say("\n".join(listing(program)))
         return OK
     spec = read_specification(args, args.time)
     if args.latex:
-        print(spec.formula.latex())
+        say(spec.formula.latex())
         return OK
     facts = gather(spec)
-    print(_as_json(facts) if args.json else "\n".join(_lines(facts)))
+    say(_as_json(facts) if args.json else "\n".join(_lines(facts)))
     return OK
 
 
@@ -234,7 +234,7 @@ def _lines(facts: Facts) -> Iterator[str]:
 
 def _as_json(facts: Facts) -> str:
     spec = facts.spec
-    return json.dumps(
+    return json_text(
         {
             "name": spec.name,
             "formula": printed(spec.formula),

@@ -19,6 +19,7 @@ from rtamt.cli.command import (
     read_specification,
     warn,
 )
+from rtamt.cli.terminal import say
 from rtamt.errors import StlError
 from rtamt.language.lint import RULES
 from rtamt.rewrite.check import check_bounds, check_online
@@ -67,7 +68,7 @@ def run(args: argparse.Namespace) -> int:
     if any(warnings) and args.strict:
         return VIOLATED
     if not args.quiet:
-        print(f"{len(files)} {'file is' if len(files) == 1 else 'files are'} right")
+        say(f"{len(files)} {'file is' if len(files) == 1 else 'files are'} right")
     return OK
 
 

@@ -26,7 +26,7 @@ from rtamt.cli.command import (
 )
 from rtamt.cli.live_view import Live
 from rtamt.cli.stdin_reader import STDIN, Samples
-from rtamt.cli.terminal import printed
+from rtamt.cli.terminal import printed, say
 from rtamt.errors import StlError, TraceError
 from rtamt.signals.arrays import TOLERANCE, Signal
 
@@ -112,6 +112,8 @@ def run(args: argparse.Namespace) -> int:
         else _watched(spec, args.tolerance, told, names)
     )
     samples = Samples(watched.monitor.input_names, args.time_column, dense=dense, unit=args.time_unit)
+    if sys.stdin is None:
+        raise CommandError(f"{STDIN} is closed: give one JSON object a line, or CSV with a header row")
     if sys.stdin.isatty():
         complain("reading samples from the terminal, one JSON object a line; Ctrl-D ends")
     code = OK
@@ -173,7 +175,7 @@ class Output:
             rest["satisfied"] = robustness > 0
         if parts:
             rest["requirements"] = {name: json_number(value) for name, value in parts.items()}
-        print(f'{{"time": {stamp}, {json.dumps(rest)[1:]}', flush=True)
+        say(f'{{"time": {stamp}, {json.dumps(rest)[1:]}', flush=True)
 
 
 class Watched:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from rtamt.cli.command import OK, Command
 from rtamt.cli.language import add_language_option, read_language
-from rtamt.cli.terminal import table, use_color
+from rtamt.cli.terminal import say, table, use_color
 from rtamt.errors import UsageError, did_you_mean
 from rtamt.language.operators import Bounds, Fixity
 from rtamt.language.units import UNITS
@@ -44,9 +44,9 @@ def run(args: argparse.Namespace) -> int:
     )
     rows = [("name", "written", "example", "meaning")]
     rows += [(op.name, _written(op), op.example, op.doc) for op in chosen]
-    print(_fitted(rows))
+    say(_fitted(rows))
     if not args.names:
-        print(f"\n{_notes(language)}")
+        say(f"\n{_notes(language)}")
     return OK
 
 

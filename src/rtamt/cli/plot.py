@@ -14,8 +14,9 @@ from rtamt.cli.command import (
     add_time_option,
 )
 from rtamt.cli.reading_options import add_instant_option, add_reading_options, instant
-from rtamt.cli.terminal import Progress
+from rtamt.cli.terminal import Progress, say
 from rtamt.errors import StlError
+from rtamt.files import replacing
 from rtamt.plot.figure import draw, matplotlib
 from rtamt.plot.scene import scene
 from rtamt.plot.tree import draw_tree
@@ -73,10 +74,11 @@ def run(args: argparse.Namespace) -> int:
         matplotlib("pyplot").show()
         return OK
     try:
-        figure.savefig(args.output, dpi=150)
+        with replacing(args.output) as new:
+            figure.savefig(new, dpi=150)
     except OSError as error:
         raise CommandError(f"cannot write '{args.output}': {error.strerror}") from None
-    print(f"{args.output}: {seen.verdict}")
+    say(f"{args.output}: {seen.verdict}")
     return OK
 
 

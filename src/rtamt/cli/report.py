@@ -12,11 +12,12 @@ from rtamt.cli.command import (
     add_specification_options,
     add_time_option,
     complain,
+    write_output,
 )
 from rtamt.cli.reading_options import add_instant_option, add_reading_options, instant, reading_of
 from rtamt.cli.reports.html import formulas, row
 from rtamt.cli.runner import outcomes
-from rtamt.cli.terminal import Progress
+from rtamt.cli.terminal import Progress, say
 from rtamt.errors import StlError
 from rtamt.plot.scene import scene
 from rtamt.report import Card, page
@@ -80,13 +81,9 @@ def run(args: argparse.Namespace) -> int:
                 cards[told] = Card.of(told, seen)
             rows.append(told)
             codes.append(CODES[outcome.verdict])
-    try:
-        with open(args.output, "w", encoding="utf-8", newline="\n") as file:
-            file.write(page("rtamt report", formulas(requirements), rows, cards))
-    except OSError as error:
-        raise CommandError(f"cannot write '{args.output}': {error.strerror}") from None
+    write_output(args.output, page("rtamt report", formulas(requirements), rows, cards))
     verdicts = [told.verdict for told in rows]
-    print(f"{args.output}: " + ", ".join(f"{verdicts.count(v)} {v}" for v in CODES if v in verdicts))
+    say(f"{args.output}: " + ", ".join(f"{verdicts.count(v)} {v}" for v in CODES if v in verdicts))
     return max(codes)
 
 

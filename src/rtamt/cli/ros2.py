@@ -6,6 +6,7 @@ import sys
 from typing import TYPE_CHECKING
 
 from rtamt.cli.command import OK, Command
+from rtamt.cli.terminal import say
 from rtamt.ros.options import add_options, options
 
 if TYPE_CHECKING:
@@ -70,7 +71,7 @@ def run(args: argparse.Namespace) -> int:
     participant = Participant(args.node or monitor.binding.name, types, quality)
     node = Node(monitor, participant, types, simulated=args.sim_time)
     for output in monitor.binding.outputs:
-        print(f"{output.name} on {output.topic}: {output.specification.formula}", file=sys.stderr, flush=True)
+        say(f"{output.name} on {output.topic}: {output.specification.formula}", file=sys.stderr, flush=True)
     node.run()
     return OK
 

@@ -1,13 +1,14 @@
-"""What the commands share about terminals: colour, aligned tables, a counter line for long work."""
+"""What the commands share about terminals: what they print, colour, aligned tables, a counter line for long work."""
 
 from __future__ import annotations
 
 import os
+import re
 import sys
 import time
 from typing import TYPE_CHECKING, TextIO
 
-from rtamt.errors import UsageError, did_you_mean
+from rtamt.errors import UsageError, did_you_mean, escaped
 from rtamt.language.printer import PAGE, to_text
 
 if TYPE_CHECKING:
@@ -19,6 +20,20 @@ COLOR_MODES = ("auto", "always", "never")
 
 #: What a cell of a table is about, to the code that a terminal takes for it.
 _CODES = {"good": "32", "bad": "31", "error": "33", "head": "1"}
+
+
+#: The codes that :func:`paint` writes.
+_PAINTED = re.compile(rf"(\x1b\[(?:0|{'|'.join(_CODES.values())})m)")
+
+
+def say(text: str = "", *, file: TextIO | None = None, color: bool = False, flush: bool = False) -> None:
+    """Print a text; every command prints with this, so that no name in it drives the terminal.
+
+    ``color``: whether there may be codes of :func:`paint` in it.
+    """
+    parts = _PAINTED.split(text) if color else [text]
+    parts[::2] = [escaped(part) for part in parts[::2]]
+    print("".join(parts), file=file, flush=flush)
 
 
 def use_color(mode: str, stream: TextIO) -> bool:
@@ -37,7 +52,7 @@ def paint(text: str, kind: str, color: bool) -> str:
     >>> paint("ok", "good", False)
     'ok'
     """
-    return f"\x1b[{_CODES[kind]}m{text}\x1b[0m" if color and kind else text
+    return f"\x1b[{_CODES[kind]}m{escaped(text)}\x1b[0m" if color and kind else text
 
 
 def printed(formula: Formula) -> str:
@@ -63,6 +78,7 @@ def table(
     trace  samples
     a.csv        7
     """
+    rows = [[escaped(cell).replace("\n", "\\n") for cell in row] for row in rows]
     widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
     lines = []
     for number, row in enumerate(rows):
@@ -99,7 +115,7 @@ class Progress:
         if self._live and time.monotonic() >= self._next:
             self._next = time.monotonic() + self.PAUSE
             self._shown = True
-            self._stream.write(f"\r\x1b[K{text}")
+            self._stream.write(f"\r\x1b[K{escaped(text)}")
             self._stream.flush()
 
     def bar(self, done: int, total: int, text: str) -> None:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import rtamt
 from rtamt import runtime
 from rtamt.errors import UsageError
+from rtamt.files import replacing
 from rtamt.fmi.description import Unit, description, identifier
 
 if TYPE_CHECKING:
@@ -72,7 +73,7 @@ def export(
         "resources/program.rtamt": code,
     }
     try:
-        with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
+        with replacing(path) as new, zipfile.ZipFile(new, "w", zipfile.ZIP_DEFLATED) as archive:
             for name, content in parts.items():
                 entry = zipfile.ZipInfo(name, _NO_TIME)
                 entry.external_attr = (0o755 if name.startswith("binaries/") else 0o644) << 16

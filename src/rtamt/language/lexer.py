@@ -21,6 +21,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from rtamt.errors import UsageError
 from rtamt.language.formula import Span
+from rtamt.language.units import NUMBER
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -33,8 +34,6 @@ NO_ARROW = "=>"
 PUNCTUATION = [*"( ) [ ] , : ; = @".split(), NO_ARROW]
 
 _WORD = r"[^\W\d][\w$]*|\$[\w$]*"
-_DIGITS = r"[0-9]+(?:_+[0-9]+)*"
-_NUMBER = rf"(?:{_DIGITS}(?:\.(?:{_DIGITS})?)?|\.{_DIGITS})(?:[eE][+-]?{_DIGITS})?"
 _NAME = rf"(?:{_WORD})(?:\.(?:{_WORD}))*"
 _SKIP = r"\s*(?:(?://[^\n]*|/\*[\s\S]*?\*/)\s*)*"
 
@@ -76,7 +75,7 @@ def _pattern(spellings: tuple[str, ...]) -> re.Pattern[str]:
     symbol = "|".join(re.escape(s) for s in sorted(symbols, key=lambda s: (-len(s), s)))
     # Something always matches after the skipped part: the expression never backtracks into a comment.
     return re.compile(
-        rf"{_SKIP}(?:(?P<name>{_NAME})|(?P<number>{_NUMBER})"
+        rf"{_SKIP}(?:(?P<name>{_NAME})|(?P<number>{NUMBER})"
         rf'|(?P<quoted>"(?:[^"]|"")*")|(?P<unclosed>/\*|")'
         rf"|(?P<symbol>{symbol})|(?P<end>\Z)|(?P<unknown>[\s\S]))"
     )

@@ -33,6 +33,12 @@ UNITS: Mapping[str, Fraction] = MappingProxyType(
 _DURATION = re.compile(r"\s*([^\s/A-Za-z]+(?:[eE][+-]?\d+)?)\s*(?:/\s*(\d+)\s*)?([A-Za-z]*)\s*")
 
 
+#: A number in formulas and durations: decimal, ASCII digits, with single underscores between them, as in Python.
+_DIGITS = r"[0-9]+(?:_[0-9]+)*"
+NUMBER = rf"(?:{_DIGITS}(?:\.(?:{_DIGITS})?)?|\.{_DIGITS})(?:[eE][+-]?{_DIGITS})?"
+_DECIMAL = re.compile(f"[+-]?{NUMBER}")
+
+
 @lru_cache(maxsize=1024)
 def exact(literal: str) -> Fraction:
     """Return the number that a decimal literal writes, without rounding.
@@ -42,6 +48,8 @@ def exact(literal: str) -> Fraction:
     >>> exact("0.1"), exact("1e-3")
     (Fraction(1, 10), Fraction(1, 1000))
     """
+    if _DECIMAL.fullmatch(literal) is None:
+        raise ValueError(f"{literal} is no decimal number")
     # A double first: 1e-999999999, or 0e-999999999, as a fraction would need a gigabyte.
     nearest = float(literal)
     if nearest == 0 and re.search("[1-9]", re.split("[eE]", literal)[0]) is None:

@@ -12,6 +12,7 @@ import numpy as np
 
 from rtamt.errors import TraceError, UsageError
 from rtamt.extras import library
+from rtamt.files import replacing
 from rtamt.readers.formats import BAG
 from rtamt.readers.rosbag import messages, open_reader
 from rtamt.ros.messages import DEFINITIONS, FLOAT_STAMPED, SATISFIED, VERDICT, VIOLATED
@@ -77,7 +78,8 @@ def write_mcap(source: str, path: str, findings: Iterable[Finding], recover: boo
                     taken = {connection.topic for connection in reader.connections}
                     for finding in findings:
                         _add(finding, writer, store, taken)
-                shutil.move(next(bag.glob("*.mcap")), path)
+                with replacing(path) as new:
+                    shutil.copyfile(next(bag.glob("*.mcap")), new)
         except OSError as error:
             raise TraceError(f"cannot write '{path}': {error.strerror or error}") from None
 

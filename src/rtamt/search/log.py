@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import UsageError
+from rtamt.files import write_text
 
 if TYPE_CHECKING:
     import os
@@ -90,7 +91,7 @@ def _read(path: Path, about: Mapping[str, Any]) -> list[Evaluation]:
         head, *lines = text.splitlines()
         if not text.endswith("\n"):  # the run was killed while it wrote
             lines = lines[:-1]
-            path.write_text("\n".join((head, *lines)) + "\n", encoding="utf-8")
+            write_text(path, "\n".join((head, *lines)) + "\n")
         before = json.loads(head)["search"]
         known = [Evaluation.from_json(json.loads(line)) for line in lines]
     except (ValueError, KeyError, TypeError, OSError) as error:

@@ -51,7 +51,7 @@ def test_monitor_ends_quietly_when_nobody_reads_on():
         process.stdout.close()
         process.stdin.write('{"x": 5}\n')
         process.stdin.close()
-        assert process.wait(timeout=60) == 141
+        assert process.wait(timeout=60) == 2
         assert process.stderr.read() == ""
 
 
@@ -76,3 +76,43 @@ def test_check_on_a_terminal_is_coloured(no_color, colored):
     os.close(leader)
     assert ("\x1b[32msatisfied\x1b[0m" in shown) == colored
     assert "satisfied" in shown
+
+
+def shell(command, folder):
+    """Run a line of shell in which ``rtamt`` is the command; return exit codes of the pipe's parts, stdout, stderr."""
+    codes = folder / "codes"
+    script = (
+        f'rtamt() {{ "{sys.executable}" -m rtamt "$@"; }}; {command}; echo "${{PIPESTATUS[@]}}" > "{codes}"'
+    )
+    done = subprocess.run(["bash", "-c", script], cwd=ROOT, capture_output=True, timeout=60, check=False)
+    return [int(code) for code in codes.read_text().split()], done.stdout, done.stderr
+
+
+CLOSED = b"rtamt: stdout is closed, so that nobody would see the answer; use > /dev/null\n"
+
+
+@pytest.mark.parametrize(
+    ("command", "code", "err"),
+    [
+        (f"rtamt check {SPEC} {TRACES[0]} >&-", 2, CLOSED),
+        ("rtamt --help >&-", 2, CLOSED),
+        (f"rtamt check {SPEC} {TRACES[0]} <&-", 0, b""),
+        ("rtamt monitor 'x >= 0' <&-", 2,
+         b"rtamt: stdin is closed: give one JSON object a line, or CSV with a header row\n"),
+        (f"rtamt check {SPEC} {TRACES[3]} 2>&-", 1, b""),
+        (f"rtamt check {SPEC} {TRACES[0]} >&- 2>&- <&-", 2, b""),
+        (f"rtamt check {SPEC} {TRACES[0]} > /dev/full", 2,
+         b"rtamt: cannot write the output: No space left on device\n"),
+        ("rtamt check --help > /dev/full", 2, b"rtamt: cannot write the output: No space left on device\n"),
+    ],
+)  # fmt: skip
+def test_a_closed_stream_never_exits_with_1_which_means_violated(tmp_path, command, code, err):
+    codes, out, told = shell(command, tmp_path)
+    assert (codes, told) == ([code], err)
+    assert b"Traceback" not in out
+
+
+def test_a_reader_that_goes_away_ends_the_command_with_2_and_without_a_word(tmp_path):
+    source = "for i in $(seq 20000); do echo '{\"x\": 1}'; done"
+    codes, out, told = shell(f"{source} | rtamt monitor 'x >= 0' --keep-going | head -1", tmp_path)
+    assert (codes[1:], out, told) == ([2, 0], b'{"time": 0.0, "robustness": 1.0}\n', b"")

@@ -95,7 +95,7 @@ def test_nothing_to_do_and_nowhere_to_write(run):
     assert run("compile", SPEC, "--period", "100ms", "-o", "nowhere/x.rtamt") == (
         2,
         "",
-        "rtamt: cannot write the program 'nowhere/x.rtamt': No such file or directory\n",
+        "rtamt: cannot write 'nowhere/x.rtamt': No such file or directory\n",
     )
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
-from rtamt.cli.command import CommandError
+from rtamt.cli.command import write_output
 from rtamt.cli.reports.html import as_html
 from rtamt.cli.reports.junit import as_junit
 from rtamt.cli.reports.sarif import as_sarif
@@ -25,11 +25,7 @@ def write_report(
     kind: str, path: str, requirements: Sequence[Requirement], outcomes: Sequence[Outcome]
 ) -> None:
     """Write the report of one kind."""
-    try:
-        with open(path, "w", encoding="utf-8", newline="\n") as file:
-            file.write(REPORTS[kind](requirements, outcomes))
-    except OSError as error:
-        raise CommandError(f"cannot write '{path}': {error.strerror}") from None
+    write_output(path, REPORTS[kind](requirements, outcomes))
 
 
 __all__ = ["REPORTS", "write_report"]

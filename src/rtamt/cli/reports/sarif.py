@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import json
 import os
 from pathlib import PurePath
 from typing import TYPE_CHECKING, Any
 from urllib.parse import quote
 
 import rtamt
-from rtamt.cli.command import json_number
+from rtamt.cli.command import json_number, json_text
 from rtamt.cli.reports.messages import sentence
 from rtamt.cli.terminal import printed
 
@@ -48,7 +47,7 @@ def as_sarif(requirements: Sequence[Requirement], outcomes: Sequence[Outcome]) -
             if not outcome.error
         ],
     }
-    return json.dumps({"$schema": _SCHEMA, "version": "2.1.0", "runs": [run]}, indent=2) + "\n"
+    return json_text({"$schema": _SCHEMA, "version": "2.1.0", "runs": [run]}, indent=2) + "\n"
 
 
 def _rule(requirement: Requirement) -> dict[str, Any]:
@@ -77,5 +76,5 @@ def _result(outcome: Outcome, number: int, requirements: Sequence[Requirement]) 
 
 
 def _location(path: str) -> dict[str, Any]:
-    uri = path if "://" in path else quote(PurePath(path).as_posix())
+    uri = path if "://" in path else quote(os.fsencode(PurePath(path).as_posix()))
     return {"physicalLocation": {"artifactLocation": {"uri": uri}}}

@@ -1,0 +1,75 @@
+"""Output files that are there as a whole or not at all."""
+
+from __future__ import annotations
+
+import os
+import secrets
+import stat
+from contextlib import contextmanager, suppress
+from typing import TYPE_CHECKING
+
+from rtamt.errors import readable
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+
+@contextmanager
+def replacing(path: str | os.PathLike[str]) -> Iterator[str]:
+    """Give a new file to write in the folder of ``path``; it takes the place of ``path`` when all has gone well.
+
+    Its permissions are those of the file that it replaces, and a link goes on pointing to where it did.
+    What is no file (a pipe, a terminal, ``/dev/stdout``) is written directly. Raises :class:`OSError`.
+    """
+    given = os.fspath(path)
+    known = _status(given)
+    if known is not None and not _is_plain(known):
+        yield given
+        return
+    target = os.path.realpath(given)
+    folder, name = os.path.split(target)
+    stem, suffix = os.path.splitext(name)  # what draws pictures goes by the suffix
+    new = os.path.join(folder, f".{stem[:100]}.{secrets.token_hex(4)}{suffix}")
+    if known is not None and not os.access(target, os.W_OK):
+        raise PermissionError(13, "Permission denied", given)
+    os.close(os.open(new, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o666))
+    try:
+        if known is not None:
+            os.chmod(new, stat.S_IMODE(known.st_mode))
+        yield new
+        os.replace(new, target)
+    except BaseException:
+        with suppress(FileNotFoundError):
+            os.unlink(new)
+        raise
+
+
+def write_text(path: str | os.PathLike[str], text: str) -> None:
+    """Write a text as UTF-8; raises :class:`OSError`."""
+    write_bytes(path, readable(text).encode())
+
+
+def write_bytes(path: str | os.PathLike[str], content: bytes) -> None:
+    """Write bytes; raises :class:`OSError`."""
+    with replacing(path) as new, open(new, "wb") as file:
+        file.write(content)
+
+
+def _status(path: str) -> os.stat_result | None:
+    try:
+        return os.stat(path)
+    except FileNotFoundError:
+        return None
+
+
+def _is_plain(known: os.stat_result) -> bool:
+    """Tell whether a path is a file, and not one that a standard stream of this process writes to."""
+    return stat.S_ISREG(known.st_mode) and not any(
+        os.path.samestat(known, stream) for stream in _standard_streams()
+    )
+
+
+def _standard_streams() -> Iterator[os.stat_result]:
+    for number in (1, 2):
+        with suppress(OSError):
+            yield os.fstat(number)
