@@ -15,7 +15,7 @@ from rtamt.errors import TraceError
 from rtamt.extras import library
 from rtamt.readers.formats import BAG, MCAP, METADATA
 from rtamt.readers.mcap import salvage
-from rtamt.readers.source import Field, Source, Table, reason
+from rtamt.readers.source import Field, Source, Table, printable, reason
 from rtamt.signals.arrays import is_number
 
 if TYPE_CHECKING:
@@ -82,8 +82,17 @@ def _reader(path: str) -> Any:
 
 def messages(reader: Any, connections: Sequence[Any] = ()) -> Iterator[tuple[Any, int, bytes]]:
     """Yield connections, times of recording and messages as bytes; raise :class:`TraceError` where a bag is damaged."""
-    with BAG.guard(str(reader.paths[0])):
-        yield from reader.messages(connections=connections)
+    path = str(reader.paths[0])
+    asked = {connection.topic for connection in connections}
+    with BAG.guard(path):
+        for message in reader.messages(connections=connections):
+            topic = message[0].topic
+            if asked and topic not in asked:  # the index is wrong
+                raise TraceError(
+                    f"'{path}' cannot be read as ROS bag: a message on {printable(str(topic))} is listed under "
+                    f"another topic; the file is damaged: copy or export it again"
+                )
+            yield message
 
 
 def _existing(path: str) -> Path:
