@@ -2,8 +2,13 @@
 
 from __future__ import annotations
 
+import contextlib
+import io
+import json
 import re
+import tempfile
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -13,6 +18,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 import rtamt
+from rtamt.cli import main
 from rtamt.errors import EvaluationError
 from rtamt.fmi.variables import variables_of
 from rtamt.language.formula import Apply, Formula, Var, fold
@@ -175,6 +181,49 @@ def test_program(drawn: tuple[str, list[Formula]], columns: dict[str, Any]) -> N
         assert len(values) == len(rows)
     for which in (0, 1):
         np.testing.assert_array_equal(known[which], np.minimum.reduce(known[2 + which :: 2]))
+
+
+@settings(max_examples=15)
+@given(several(unbounded_future=True), traces(), st.booleans(), st.booleans())
+def test_check(drawn: tuple[str, list[Formula]], columns: dict[str, Any], dense: bool, large: bool) -> None:
+    spec = rtamt.parse(drawn[0])
+    assume(spec.input_names)
+    domain = ("--time", "dense") if dense else ("--period", "1s")
+    with tempfile.TemporaryDirectory() as folder, pytest.MonkeyPatch.context() as patch:
+        patch.chdir(folder)
+        if large:
+            patch.setattr("rtamt.cli.runner.LARGE", 0)
+        Path("spec.stl").write_text(drawn[0], encoding="utf-8")
+        rows = zip(range(len(columns["x"])), columns["x"], columns["y"], strict=True)
+        Path("log.csv").write_text(
+            "t,x,y\n" + "".join(f"{t},{x},{y}\n" for t, x, y in rows), encoding="utf-8"
+        )
+        out, err = io.StringIO(), io.StringIO()
+        with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
+            code = main(["check", "spec.stl", "log.csv", "--json", *domain])
+    assume(code != 2)
+    told = [json.loads(line) for line in out.getvalue().splitlines()]
+    result = (
+        spec.evaluate(columns, period=1)
+        if not dense
+        else spec.evaluate(
+            {name: (np.arange(len(values), dtype=float), values) for name, values in columns.items()},
+            time="dense",
+        )
+    )
+    assert [float(row["robustness"]) for row in told] == [p.robustness for p in result.requirements.values()]
+    assert [row["satisfied"] for row in told] == [p.satisfied for p in result.requirements.values()]
+    assert min(float(row["robustness"]) for row in told) == result.robustness
+    assert code == (0 if result.satisfied else 1)
+
+
+def test_a_thousand_requirements_are_no_deep_recursion() -> None:
+    text = "\n".join(f"require R{i}: always(x >= {i % 7} -> eventually[0:1](y >= {i}))" for i in range(1000))
+    spec = rtamt.parse(text)
+    result = spec.evaluate({"x": [1.0, 2.0], "y": [1.0, 900.0]})
+    assert first_violation(result) == 0
+    assert min(part.robustness for part in result.requirements.values()) == result.robustness
+    assert len(str(spec).split(" and ")) == 1000
 
 
 CORPUS = sorted({case.formula for name in FILES for case in read(name)})

@@ -111,11 +111,15 @@ class Document:
 
         Raises :class:`UsageError` where there is none.
         """
-        named = {a.name: Requirement(a.name, a.formula, span=a.span) for a in self.assertions if a.name}
-        named.update((requirement.name, requirement) for requirement in self.requirements)
-        if name not in named:
+        if name not in self._named:
             raise UsageError(
-                f"there is no requirement '{name}'{did_you_mean(name, named)}; requirements are "
+                f"there is no requirement '{name}'{did_you_mean(name, self._named)}; requirements are "
                 f"{', '.join(requirement.name for requirement in self.requirements)}"
             )
-        return replace(self, requirements=(named[name],), selected=name)
+        return replace(self, requirements=(self._named[name],), selected=name)
+
+    @cached_property
+    def _named(self) -> dict[str, Requirement]:
+        """What :meth:`select` chooses from."""
+        named = {a.name: Requirement(a.name, a.formula, span=a.span) for a in self.assertions if a.name}
+        return {**named, **{requirement.name: requirement for requirement in self.requirements}}
