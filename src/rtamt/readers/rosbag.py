@@ -169,7 +169,8 @@ def _message(reader: Any, connection: Any, raw: Any) -> Any:
         part = path.is_file() and (path.parent / METADATA).is_file()
         hint = f"; the file is a part of a bag: give its folder, '{path.parent}'" if part else ""
         raise TraceError(
-            f"a message on {connection.topic} cannot be read as {connection.msgtype}: {reason(error)}{hint}"
+            f"a message on {printable(str(connection.topic))} cannot be read as "
+            f"{printable(str(connection.msgtype))}: {reason(error)}{hint}"
         ) from error
 
 
