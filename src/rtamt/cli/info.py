@@ -114,7 +114,7 @@ def run(args: argparse.Namespace) -> int:
 
 def _refuse_reading_options(args: argparse.Namespace) -> None:
     """Raise :class:`CommandError` at an option that says how a recording is read: there is none."""
-    for option in ("time_column", "time_unit", "name", "sheet", "query", "skip_nan", "resample"):
+    for option in ("time_column", "time_unit", "name", "sheet", "query", "skip_nan", "hold_for", "resample"):
         if getattr(args, option) not in (None, []):
             raise CommandError(
                 f"--{option.replace('_', '-')} is for recordings, and '{args.spec}' is a requirement or program"

@@ -37,6 +37,7 @@ class Reading:
     sheet: str | None = None
     query: str | None = None
     skip_nan: Sequence[str] = ()
+    hold_for: str | None = None
     resample: str | None = None
     how: str = "hold"
     recover: bool = False
@@ -66,6 +67,11 @@ def add_reading_options(parser: argparse.ArgumentParser) -> None:
         action="append",
         default=[],
         help="leave out the samples of a variable that are NaN, an error otherwise; may be given again",
+    )
+    parser.add_argument(
+        "--hold-for",
+        metavar="DURATION",
+        help="how long a value takes the place of samples that are left out; longer gaps are errors",
     )
     parser.add_argument(
         "--resample", metavar="DURATION", help="put all signals on one clock, a sample every so often"
@@ -109,6 +115,7 @@ def reading_of(args: argparse.Namespace, read: Collection[str], *, whole: bool) 
         args.sheet,
         args.query,
         tuple(args.skip_nan),
+        args.hold_for,
         args.resample,
         args.how,
         args.recover,
@@ -131,7 +138,7 @@ def recording(args: argparse.Namespace, source: str) -> Trace:
     """Return all that is in a recording, read and put on one clock as the options say."""
     with opened(source, args.sheet, args.query, args.recover) as found:
         units = None if args.time_unit is None else {TIME: args.time_unit}
-        wanted = choice(args.time_column, None, _names_of(args.name), units, args.skip_nan)
+        wanted = choice(args.time_column, None, _names_of(args.name), units, args.skip_nan, args.hold_for)
         trace = trace_of(found, wanted)
     return trace if args.resample is None else trace.resample(args.resample, args.how)
 
@@ -156,7 +163,7 @@ def choice_for(specs: Sequence[Specification], trace: str, reading: Reading) -> 
         for spec in specs:
             names = {**columns_of(spec), **names}
     skipped = [name for name in reading.skip_nan if name in columns]
-    return replace(choice(reading.time, columns or None, names, units, skipped), gaps=gaps)
+    return replace(choice(reading.time, columns or None, names, units, skipped, reading.hold_for), gaps=gaps)
 
 
 def on_clock(data: Trace, spec: Specification, trace: str, reading: Reading) -> Trace:

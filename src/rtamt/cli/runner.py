@@ -169,7 +169,7 @@ def _in_chunks(requirement: Requirement, trace: str, reading: Reading) -> list[O
             None if part.first_violation is None else _told(part.first_violation, chunks.dated),
             part.samples,
             part.period,
-            notes=tuple(chunks.losses),
+            notes=chunks.losses,
             seconds=seconds,
         )
         for row, part in zip(rows, found.requirements.values(), strict=True)
@@ -255,14 +255,15 @@ class _Chunks:
         self._counts: Counter[str] = Counter()
         self.dated = False
         self.last: Trace | None = None
-        self.losses: dict[str, None] = {}
+        #: What the last chunk says, which is about all before it, too.
+        self.losses: tuple[str, ...] = ()
 
     def __iter__(self) -> Iterator[Trace]:
         for chunk in self._chunks:
             if self.last is not None:
                 self._counts.update({name: len(self.last[name].values) for name in self.last})
             self.last = chunk
-            self.losses.update(dict.fromkeys(chunk.losses))
+            self.losses = chunk.losses
             self.dated = isinstance(chunk.start, np.datetime64)
             yield chunk
 

@@ -11,13 +11,15 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rtamt.errors import TraceError, did_you_mean, shown
+from rtamt.readers.gaps import Gaps
 from rtamt.readers.timestamps import Clock, guess_field
 from rtamt.signals.arrays import TIME, is_number
 from rtamt.signals.ticks import NANOSECOND, TimeScale
-from rtamt.signals.trace import Channel, Trace, in_seconds, show_time
+from rtamt.signals.trace import Channel, Trace, in_seconds
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
+    from fractions import Fraction
 
     from rtamt.readers.source import Field, Raw, Source, Table
 
@@ -31,6 +33,8 @@ class Choice:
     names: Mapping[str, str] = dataclasses.field(default_factory=dict)
     units: Mapping[str, str] = dataclasses.field(default_factory=dict)
     skip_nan: tuple[str, ...] = ()
+    #: Seconds for which a value takes the place of samples that are left out.
+    hold_for: Fraction | None = None
     #: Whether a value may be missing; discrete time needs one of every signal at every sample.
     gaps: bool = True
 
@@ -60,14 +64,15 @@ def trace_of(source: Source, choice: Choice) -> Trace:
     for selection in select(source, choice):
         raws = selection.table.load(selection.fields)
         clock = clock_of(source, selection, choice)
-        made, left_out, skipped = _channels(source, selection, clock, raws, choice)
+        gaps = _gaps(source, selection, choice)
+        made, left_out = _channels(source, selection, clock, raws, choice, gaps)
         notes += [] if clock is None else [note for note in clock.notes if note not in notes]
         channels.update(made)
         if choice.columns is None:
             taken = {clock.field if clock else None, *(f for _, f in selection.signals)}
             left_out += [f.column for f in selection.table.fields if f.kind == "text" and f not in taken]
         notes += [] if not left_out else [f"left out, not numbers: {', '.join(left_out)}"]
-        losses += skipped
+        losses += [loss for each in gaps.values() for loss in each.losses()]
     if choice.columns is not None:  # in the caller's order, whatever the tables'
         channels = {name: channels[name] for name in choice.columns if name in channels}
     channels = _one_kind(channels, source.name)
@@ -75,16 +80,17 @@ def trace_of(source: Source, choice: Choice) -> Trace:
 
 
 def chunks_of(source: Source, choice: Choice) -> Iterator[Trace]:
-    """Read a source in chunks: traces that follow one another."""
+    """Read a source in chunks: traces that follow one another; what is noted in one is about all so far."""
     (selection,) = select(source, choice)
     assert selection.table.chunks is not None
     clock = clock_of(source, selection, choice)
+    gaps = _gaps(source, selection, choice)
     before = 0
     for raws in selection.table.chunks(selection.fields):
-        made, _, skipped = _channels(source, selection, clock, raws, choice, before)
+        made, _ = _channels(source, selection, clock, raws, choice, gaps, before)
         before += len(raws[0]) if raws else 0
         notes = (*source.notes, *(() if clock is None else clock.notes))
-        losses = (*source.losses, *skipped)
+        losses = (*source.losses, *(loss for each in gaps.values() for loss in each.losses()))
         yield Trace(made, source=source.name, notes=notes, losses=losses, origin=source.origin)
 
 
@@ -236,20 +242,25 @@ def clock_of(source: Source, selection: Selection, choice: Choice) -> Clock | No
     return Clock(selection.clock, unit, guessed, source.name)
 
 
+def _gaps(source: Source, selection: Selection, choice: Choice) -> dict[str, Gaps]:
+    return {name: Gaps(name, source.name, choice.hold_for) for name, _ in selection.signals}
+
+
 def _channels(
     source: Source,
     selection: Selection,
     clock: Clock | None,
     raws: Sequence[Raw],
     choice: Choice,
+    gaps: Mapping[str, Gaps],
     before: int = 0,
-) -> tuple[dict[str, Channel], list[str], list[str]]:
-    """Return the signals of a table, the columns that were left out, and a note for each with NaN left out."""
+) -> tuple[dict[str, Channel], list[str]]:
+    """Return the signals of a table, and the columns that were left out."""
     times = None
     if clock is not None:
         times = clock.times(raws[0], before)
     values = raws if clock is None else raws[1:]
-    made, left_out, notes = {}, [], []
+    made, left_out = {}, []
     for (name, field), raw in zip(selection.signals, values, strict=True):
         try:
             numbers, missing = numbers_of(raw, field, source.name, before)
@@ -261,8 +272,11 @@ def _channels(
         mine = times
         if field.skip_nan and np.isnan(numbers).any():
             nan = np.isnan(numbers)
-            notes.append(_skipped(name, nan, times, before))
+            gaps[name].skip(nan, times, before)
             missing = nan if missing is None else missing | nan
+        if choice.hold_for is not None:
+            absent = np.zeros(len(numbers), dtype=bool) if missing is None else missing
+            numbers, missing = gaps[name].hold(numbers, absent, times, before)
         if missing is not None and missing.any():
             row = before + int(missing.argmax())
             if not choice.gaps:
@@ -286,13 +300,7 @@ def _channels(
     if times is not None and TIME in (choice.columns or ()) and TIME not in choice.names:
         # The formula reads the time; in discrete time the engine gives it.
         made[TIME] = Channel(times, in_seconds(times), "s", TIME)
-    return made, left_out, notes
-
-
-def _skipped(name: str, nan: Any, times: Any, before: int) -> str:
-    count, first = int(nan.sum()), int(nan.argmax())
-    where = f"sample {before + first}" if times is None else show_time(times[first])
-    return f"left out, NaN: {count:,} sample{'s' * (count != 1)} of {name}, the first at {where}"
+    return made, left_out
 
 
 def numbers_of(raw: Raw, field: Field, source: str, before: int = 0) -> tuple[Any, Any]:

@@ -11,11 +11,13 @@ from rtamt.readers import frames
 from rtamt.readers.assemble import Choice, chunks_of, trace_of
 from rtamt.readers.formats import FORMATS, format_of
 from rtamt.readers.sql import is_url, open_sql
+from rtamt.settings import positive_period
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
 
     from rtamt.readers.source import Source
+    from rtamt.settings import Duration
     from rtamt.signals.trace import Trace
 
 
@@ -29,6 +31,7 @@ def read(
     sheet: str | None = None,
     query: str | None = None,
     skip_nan: Iterable[str] = (),
+    hold_for: Duration | None = None,
     recover: bool = False,
 ) -> Trace:
     r"""Read a recording; ``Specification.evaluate`` and ``update_many`` take what comes out.
@@ -48,8 +51,9 @@ def read(
 
     A value that is missing (an empty cell, null, pandas' NaN) is no sample: the signal then has a
     clock of its own. Any other NaN stays, and an evaluation that reads it is an error; for the signals
-    in ``skip_nan`` it is a missing value, too. What was guessed or left out is in ``Trace.notes``, and
-    printed with it; what a verdict has to do without is in ``Trace.losses``, too.
+    in ``skip_nan`` it is a missing value, too. ``hold_for``: how long, in seconds or as text such as
+    ``"500ms"``, the value before may take the place of samples that are missing; one that is missing for
+    longer is an error. What was guessed or left out is in ``Trace.notes``, and printed with it; what a verdict has to do without is in ``Trace.losses``, too.
 
     Raises :class:`TraceError` where the data is wrong or columns cannot be told apart, and
     :class:`UsageError` where a library is missing: ``pip install 'rtamt[data]'``.
@@ -71,7 +75,7 @@ def read(
       v  2 samples, 0 s to 2 s
     """
     with opened(source, sheet, query, recover) as found:
-        return trace_of(found, choice(time, columns, names, units, skip_nan))
+        return trace_of(found, choice(time, columns, names, units, skip_nan, hold_for))
 
 
 def scan(
@@ -84,6 +88,7 @@ def scan(
     sheet: str | None = None,
     query: str | None = None,
     skip_nan: Iterable[str] = (),
+    hold_for: Duration | None = None,
 ) -> Iterator[Trace]:
     r"""Read a recording in chunks, in memory that does not grow with its length; arguments as for :func:`read`.
 
@@ -104,7 +109,7 @@ def scan(
     with opened(source, sheet, query) as found:
         if any(table.chunks is None for table in found.tables) or len(found.tables) != 1:
             raise UsageError(f"{found.name} cannot be read in chunks; read it whole with rtamt.read")
-        yield from chunks_of(found, choice(time, columns, names, units, skip_nan))
+        yield from chunks_of(found, choice(time, columns, names, units, skip_nan, hold_for))
 
 
 def choice(
@@ -113,6 +118,7 @@ def choice(
     names: Mapping[str, str] | None,
     units: Mapping[str, str] | None,
     skip_nan: Iterable[str] = (),
+    hold_for: Duration | None = None,
 ) -> Choice:
     """Return the arguments of :func:`read` as one record."""
     for argument, given in (("columns", columns), ("skip_nan", skip_nan)):
@@ -124,6 +130,7 @@ def choice(
         dict(names or {}),
         dict(units or {}),
         tuple(skip_nan),
+        None if hold_for is None else positive_period(hold_for, "longest time for which a value is held"),
     )
 
 

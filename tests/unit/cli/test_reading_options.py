@@ -1,5 +1,7 @@
 """One set of reading options for every command that reads a recording; the instant of ``--at``."""
 
+import json
+
 import pytest
 import sqlalchemy
 
@@ -60,6 +62,28 @@ def test_nan_is_skipped_and_the_rest_put_on_one_clock(commands, write, run):
         run("check", MENDED, "log.csv", "--skip-nan", "y").err
         == "rtamt: --skip-nan y: no formula reads 'y'\n"
     )
+
+
+def test_what_is_left_out_and_held_is_in_every_report(commands, write, run, tmp_path):
+    write("log.csv", "time,x\n0,5\n0.5,nan\n1,nan\n1.5,4\n")
+    held = ["left out, NaN: 2 samples of x, the first at 0.5 s",
+            "held: 2 samples of x, the first at 0.5 s, the oldest value for 1 s"]  # fmt: skip
+    options = ("log.csv", "--skip-nan", "x", "--hold-for", "1s")
+    for time in ("discrete", "dense"):
+        answer = run(
+            "check", "always(x >= 3)", *options, "--time", time, "--json", "--junit", "j", "--html", "h"
+        )
+        assert (answer.code, json.loads(answer.out)["notes"]) == (0, held)
+        assert all(note in (tmp_path / name).read_text() for name in "jh" for note in held)
+        assert all(
+            f"note: log.csv: {note}" in run("check", "x >= 3", *options, "--time", time).out for note in held
+        )
+    for answer in commands("always(x >= 3)", *options[:-1], "500ms").values():
+        assert (answer.code, answer.err) == (
+            2,
+            "rtamt: 'x' of log.csv has no sample from 0 s to 1 s (sample 2), longer than the 500 ms for which "
+            "a value is held: fill the gap, or hold it for longer (hold_for=, on the command line --hold-for)\n",
+        )
 
 
 def test_a_nan_that_no_line_of_text_tells_is_mended_by_an_option(run, tmp_path):

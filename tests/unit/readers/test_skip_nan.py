@@ -2,8 +2,11 @@
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 import rtamt
+from rtamt.readers import csv
 from tests.unit.readers.test_formats import ulog
 
 NAN = float("nan")
@@ -73,3 +76,64 @@ def test_messages(skip, error, message):
     with pytest.raises(error) as failure:
         rtamt.read({"time": [0, 1], "speed": [1, 2]}, skip_nan=skip)
     assert str(failure.value) == message
+
+
+@pytest.mark.parametrize("unit", ["s", "ms", "dates"])
+@given(
+    gaps=st.lists(st.booleans(), min_size=1, max_size=12),
+    chunk=st.integers(1, 4),
+    periods=st.integers(1, 5),
+)
+def test_a_value_is_held_for_as_long_as_is_said_whatever_the_chunks(
+    tmp_path_factory, unit, gaps, chunk, periods
+):
+    path = tmp_path_factory.getbasetemp() / f"held_{unit}.csv"
+    stamps = {
+        "s": [repr(i / 10) for i in range(len(gaps))],
+        "ms": [str(1_700_000_000_000 + i * 100) for i in range(len(gaps))],
+        "dates": [f"2026-01-01T00:00:{i // 10:02d}.{i % 10}" for i in range(len(gaps))],
+    }[unit]
+    cells = ["nan" if gap and i % 2 else "" if gap else str(i) for i, gap in enumerate(gaps)]
+    path.write_text("time,x\n" + "".join(f"{t},{x}\n" for t, x in zip(stamps, cells, strict=True)))
+    options = {"columns": ["x"], "skip_nan": ["x"], "hold_for": f"{periods * 100}ms"}
+    expected, last, too_old = [], None, False
+    for i, gap in enumerate(gaps):
+        last = last if gap else i
+        too_old |= last is not None and i - last > periods
+        expected += [] if last is None else [float(last)]
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(csv, "BLOCK", chunk)
+        if too_old:
+            for read in (lambda: rtamt.read(path, **options), lambda: list(rtamt.scan(path, **options))):
+                with pytest.raises(rtamt.TraceError, match=r"^'x' of .* has no sample from .* value is held"):
+                    read()
+        else:
+            parts = list(rtamt.scan(path, **options))
+            whole = rtamt.read(path, **options)
+            assert whole["x"].values.tolist() == expected
+            assert [value for part in parts for value in part["x"].values] == expected
+            assert parts[-1].losses == whole.losses
+            held = sum(gaps) - (len(gaps) - len(expected))
+            assert any(f"held: {held} sample" in loss for loss in whole.losses) == (held > 0)
+
+
+def test_a_value_that_is_held_for_too_long_is_an_error_in_both_time_domains(tmp_path):
+    path = tmp_path / "log.csv"
+    path.write_text("time,x\n0,1\n1,nan\n2,nan\n3,5\n")
+    for time in ("discrete", "dense"):
+        spec = rtamt.parse("always(x >= 2)", time=time)
+        trace = rtamt.read(path, skip_nan=["x"], hold_for=2)
+        assert spec.evaluate(trace).robustness == -1
+        assert rtamt.first_violation(spec.evaluate(trace)) == 0
+    with pytest.raises(rtamt.TraceError) as error:
+        rtamt.read(path, skip_nan=["x"], hold_for="1s")
+    assert str(error.value) == (
+        f"'x' of {path} has no sample from 0 s to 2 s (sample 2), longer than the 1 s for which a value is held: "
+        f"fill the gap, or hold it for longer (hold_for=, on the command line --hold-for)"
+    )
+    with pytest.raises(
+        rtamt.UsageError, match="the longest time for which a value is held is 0; it must be positive"
+    ):
+        rtamt.read(path, hold_for=0)
+    with pytest.raises(rtamt.TraceError, match="which takes time stamps"):
+        rtamt.read({"x": [1, None]}, hold_for=1)
