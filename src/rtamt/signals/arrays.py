@@ -18,6 +18,7 @@ import numpy as np
 from rtamt.errors import TraceError, UsageError, did_you_mean, shown, with_article
 from rtamt.language.units import format_duration
 from rtamt.signals.datetimes import nanoseconds_of
+from rtamt.signals.stamps import check_frame
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Sequence
@@ -179,6 +180,8 @@ def columns_of(
     keys = _keys(data)
     if is_mapping(data):
         refuse_unknown(keys, names, known)
+    else:
+        check_frame(data, TIME, names)
     columns = {name: _column(data, keys, name) for name in names}
     times = stamps(data[TIME]) if TIME in keys else None
     return times, columns, _common_length(columns, times, data, keys)

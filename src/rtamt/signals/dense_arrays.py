@@ -12,6 +12,7 @@ from rtamt.errors import TraceError
 from rtamt.language.units import format_duration
 from rtamt.signals import arrays
 from rtamt.signals.arrays import Signal
+from rtamt.signals.stamps import check_frame
 from rtamt.signals.ticks import sequence_of
 
 if TYPE_CHECKING:
@@ -105,6 +106,7 @@ def columns_of(data: Any, names: Sequence[str], known: Collection[str] = ()) -> 
                 "expected a mapping from variable to (times, values), such as {'x': ([0.0, 1.5], [3, 4])}, "
                 f"got {type(data).__name__}"
             )
+        check_frame(data, arrays.TIME, names)
         data = {name: data[name] for name in (*names, arrays.TIME) if name in data.columns}
     arrays.refuse_unknown(list(data), names, known)
     stamped = arrays.TIME in data and arrays.TIME not in names

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import re
 from types import MappingProxyType
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
+from rtamt.errors import TraceError
 from rtamt.language.units import UNITS
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Collection, Mapping
 
 #: What a column of time stamps is called, in any case, perhaps with a unit: ``Time [ms]``, ``time_ms``.
 NAMES = ("time", "t", "timestamp", "stamp", "datetime")
@@ -80,3 +81,33 @@ def may_be_stamps(name: str) -> bool:
         or name.lower() in _UNITS
         or any(word.endswith(("time", "timestamp")) for word in words)
     )
+
+
+def check_frame(frame: Any, time: str, names: Collection[str]) -> None:
+    """Raise :class:`TraceError` where a frame may tell time elsewhere than in its column ``time``.
+
+    What evaluates a frame reads that column alone; ``names``: the variables that it reads. Which column else
+    it is, and in what unit, is for :func:`rtamt.read` to find out.
+    """
+    others = [str(column) for column in frame.columns if column != time and column not in names]
+    if time in frame.columns:
+        found = [column for column in others if is_stamps(split_unit(column)[0])]
+    else:
+        found = [column for column in others if _may_tell_time(column, frame[column])]
+        index = getattr(frame, "index", None)
+        name = str(getattr(index, "name", None) or "index")
+        if type(index).__name__ in ("DatetimeIndex", "TimedeltaIndex", "PeriodIndex") or is_stamps(name):
+            found.append(name)
+    if found:
+        listing = ", ".join(f"'{column}'" for column in found)
+        raise TraceError(
+            f"the frame may have its time stamps in {listing}, but only '{time}' is read here: read the frame with "
+            f"rtamt.read, which takes other columns and units",
+            variable=time,
+        )
+
+
+def _may_tell_time(column: str, values: Any) -> bool:
+    name, _ = split_unit(column)
+    kind = str(getattr(values, "dtype", "")).lower()
+    return is_stamps(name) or may_be_stamps(name) or kind.startswith(("date", "time", "duration", "period"))

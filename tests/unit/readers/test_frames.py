@@ -205,3 +205,38 @@ def test_messages(call, message):
     with pytest.raises(rtamt.StlError) as error:
         call()
     assert str(error.value) == message
+
+
+@pytest.mark.parametrize("time", ["discrete", "dense"])
+@pytest.mark.parametrize(
+    ("frame", "named"),
+    [
+        (pd.DataFrame({"time_ms": [0, 500], "x": [1, -1]}), "'time_ms'"),
+        (pl.DataFrame({"time_ms": [0, 500], "x": [1, -1]}), "'time_ms'"),
+        (pl.DataFrame({"when": DATES[:2], "x": [1, -1]}), "'when'"),
+        (pd.DataFrame({"sim_time": [0, 500], "x": [1, -1]}), "'sim_time'"),
+        (pd.DataFrame({"x": [1, -1]}, index=pd.DatetimeIndex(DATES[:2])), "'index'"),
+        (pd.DataFrame({"time": [0, 1], "t [ms]": [0, 500], "x": [1, -1]}), "'t [ms]'"),
+    ],
+)
+def test_a_frame_that_is_evaluated_directly_is_not_taken_to_have_no_time(frame, named, time):
+    spec = rtamt.parse("always(x >= 0)", time=time)
+    sentence = (
+        f"the frame may have its time stamps in {named}, but only 'time' is read here: read the frame with "
+        f"rtamt.read, which takes other columns and units"
+    )
+    for evaluate in (spec.evaluate, lambda data: rtamt.check_stream(spec, [data])):
+        with pytest.raises(rtamt.TraceError) as error:
+            evaluate(frame)
+        assert str(error.value) == sentence
+
+
+def test_a_frame_whose_columns_tell_no_time_is_samples_one_period_apart():
+    for library in (pd, pl):
+        spec = rtamt.parse("always[0:1](x + lap_time >= 0)")
+        assert (
+            spec.evaluate(
+                library.DataFrame({"x": [1.0, 2.0], "lap_time": [3.0, -4.0], "y": [0, 0]})
+            ).robustness
+            == -2
+        )
