@@ -167,7 +167,7 @@ def data_of(case: Case) -> dict[str, Any]:
         return {"time": [float(i * case.seconds) for i in range(n)], **case.signals}
     nanoseconds = int(case.seconds * 10**9)
     return {
-        name: (np.array([t * nanoseconds for t, _ in samples], np.int64), [v for _, v in samples])
+        name: (np.array([t * nanoseconds for t, _ in samples], "m8[ns]"), [v for _, v in samples])
         for name, samples in case.signals.items()
     }
 

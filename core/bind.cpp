@@ -331,10 +331,10 @@ NB_MODULE(_core, m) {
             },
             nb::arg("program"), nb::arg("names"), nb::arg("ignored") = nb::none(),
             nb::arg("calls") = nb::list())
-        .def("tell", &DenseMonitor::tell, nb::arg("signal"), nb::arg("scale"),
-             nb::arg("rate").none(),
-             "Say how update() tells time: in seconds of so many ticks, or (None) by integers that "
-             "are ticks; and of which class its answers are, with which scale.")
+        .def("tell", &DenseMonitor::tell, nb::arg("signal"), nb::arg("scale"), nb::arg("rate"),
+             nb::arg("whole") = false,
+             "Say how update() tells time: in numbers of so many ticks, or in integers alone; and "
+             "of which class its answers are, with which scale.")
         .def("push", &DenseMonitor::push, nb::arg("columns"),
              "Take a chunk, times and values of each input; return what became known of the first "
              "output, times and values.")

@@ -30,8 +30,11 @@ template <class Item>
 // Times stay this far from the ends of their range, so that bounds can be added to them.
 constexpr double farthest = 0x1p62;
 
-// Up to here a product of doubles is within half a tick of the truth.
-constexpr double near = 0x1p51;
+// Up to here a product of doubles is within half a tick of the truth; NEAR in ticks.py.
+constexpr double near = 0x1p50;
+
+// Up to here every integer is a double.
+constexpr double exact = 0x1p53;
 
 // The tick of a time far from 0, where doubles are further apart than ticks: that of the shortest
 // decimal that prints it (tick_of in ticks.py says why).
@@ -123,14 +126,15 @@ DenseMonitor::DenseMonitor(Program program, const std::vector<nb::str>& names,
       results_(executor_.program().outputs.size()), spare_(results_.size()),
       until_(results_.size()), counts_(names.size()) {}
 
-void DenseMonitor::tell(const nb::type_object& signal, const nb::object& scale,
-                        std::optional<double> rate) {
+void DenseMonitor::tell(const nb::type_object& signal, const nb::object& scale, double rate,
+                        bool whole) {
     gate_.require_idle();
     scale_slot_ = slot_of(signal, "_scale");
     events_slot_ = slot_of(signal, "_events");
     signal_ = signal;
     scale_ = scale;
-    rate_ = rate.value_or(0.0);
+    rate_ = rate;
+    whole_ = whole;
     nothing_ = signal_of({});
     if (!nothing_.is_valid()) throw nb::python_error();
     told_ = true;
@@ -185,6 +189,7 @@ template <class Values>
 bool DenseMonitor::read(PyObject* time, const Values& values) noexcept {
     const bool told = told_;
     const double rate = rate_;
+    const bool whole = whole_;
     const auto tick = told ? read_time(time) : std::nullopt;
     if (!tick) return gate_.refuse("time") != nullptr;
     for (double& value : row_)
@@ -201,33 +206,36 @@ bool DenseMonitor::read(PyObject* time, const Values& values) noexcept {
         std::ranges::copy(row.values(), row_.begin());
     }
     time_ = *tick;
-    return (told == told_ && rate == rate_ && aim()) || gate_.refuse("time") != nullptr;
+    return (told == told_ && rate == rate_ && whole == whole_ && aim()) ||
+           gate_.refuse("time") != nullptr;
 }
 
-// The tick of a plain time: of a float or an int in seconds, rounded to the nearest and halves to
-// the even one; or of an integer of another kind, in ticks.
+// The tick of a plain time: of a float or an int, rounded to the nearest and halves to the even
+// one; where times are whole, of an integer of any kind, without a double in between.
 std::optional<std::int64_t> DenseMonitor::read_time(PyObject* time) const noexcept {
-    if (rate_ != 0.0) {
-        double seconds = 0.0;
-        if (PyFloat_Check(time)) {
-            seconds = PyFloat_AS_DOUBLE(time);
-        } else if (PyLong_CheckExact(time)) {
-            seconds = PyLong_AsDouble(time);
-            if (PyErr_Occurred() != nullptr && !forget_no_number()) return std::nullopt;
-        } else {
-            return std::nullopt;
-        }
-        const double tick = std::nearbyint(seconds * rate_);
-        if (!(std::fabs(tick) < farthest)) return std::nullopt;
-        return std::fabs(tick) < near ? static_cast<std::int64_t>(tick)
-                                      : far_tick(seconds, static_cast<std::int64_t>(rate_));
+    const double rate = rate_; // a time may run Python code
+    if (whole_) {
+        if (PyBool_Check(time) || PyIndex_Check(time) == 0) return std::nullopt;
+        const nb::object index = nb::steal(PyNumber_Index(time));
+        const std::int64_t number = index.is_valid() ? PyLong_AsLongLong(index.ptr()) : -1;
+        if (number == -1 && PyErr_Occurred() != nullptr && !forget_no_number()) return std::nullopt;
+        if (!(std::fabs(static_cast<double>(number)) * rate < farthest)) return std::nullopt;
+        return number * static_cast<std::int64_t>(rate);
     }
-    if (PyLong_Check(time) || PyIndex_Check(time) == 0) return std::nullopt;
-    const nb::object index = nb::steal(PyNumber_Index(time));
-    const std::int64_t tick = index.is_valid() ? PyLong_AsLongLong(index.ptr()) : -1;
-    if (tick == -1 && PyErr_Occurred() != nullptr && !forget_no_number()) return std::nullopt;
-    if (!(std::fabs(static_cast<double>(tick)) < farthest)) return std::nullopt;
-    return tick;
+    double number = 0.0;
+    if (PyFloat_Check(time)) {
+        number = PyFloat_AS_DOUBLE(time);
+    } else if (PyLong_CheckExact(time)) {
+        number = PyLong_AsDouble(time);
+        if (PyErr_Occurred() != nullptr && !forget_no_number()) return std::nullopt;
+        if (!(std::fabs(number) < exact)) return std::nullopt;
+    } else {
+        return std::nullopt;
+    }
+    const double tick = std::nearbyint(number * rate);
+    if (!(std::fabs(tick) < farthest)) return std::nullopt;
+    return std::fabs(tick) < near ? static_cast<std::int64_t>(tick)
+                                  : far_tick(number, static_cast<std::int64_t>(rate));
 }
 
 // Answers what is wrong, or null.

@@ -45,10 +45,10 @@ class DenseMonitor {
     DenseMonitor(Program program, const std::vector<nb::str>& names, const nb::object& ignored,
                  std::shared_ptr<Calls> calls, Exceptions exceptions);
 
-    // How update() tells time until the next reset(): in seconds of so many ticks, or by integers
-    // of whatever kind that are ticks. It answers with objects of this class, whose `_scale` is the
-    // given one and whose `_events` are bytes: the times, then the values; both are slots of it.
-    void tell(const nb::type_object& signal, const nb::object& scale, std::optional<double> rate);
+    // How update() tells time until the next reset(): in numbers of so many ticks, a whole number
+    // below 2^53; `whole`: in integers alone. It answers with objects of this class, whose `_scale`
+    // is the given one and whose `_events` are bytes: the times, then the values; both are slots.
+    void tell(const nb::type_object& signal, const nb::object& scale, double rate, bool whole);
 
     // Any variables at one instant, by name: Named or InDict. What became known of the first
     // output; null, with a Python exception set, is a refusal.
@@ -103,7 +103,8 @@ class DenseMonitor {
     Py_ssize_t scale_slot_ = 0; // where answers keep their attributes
     Py_ssize_t events_slot_ = 0;
     bool told_ = false; // whether update() knows how time is told
-    double rate_ = 0.0; // ticks a second; 0: times are ticks
+    double rate_ = 1.0; // ticks in 1
+    bool whole_ = false;
 
     void transfer(Snapshot& snapshot);
     void require_output(std::size_t output) const;

@@ -151,7 +151,7 @@ def evaluate_all(
     # One program serves all that read the recording alike.
     alike: dict[Hashable, list[int]] = {}
     for number, (spec, question) in enumerate(zip(specs, questions, strict=True)):
-        alike.setdefault((question.time, question.step, spec.backend), []).append(number)
+        alike.setdefault((question.time, question.step, question.unit, spec.backend), []).append(number)
     results: dict[int, Result] = {}
     for numbers in alike.values():
         asked = {number: (specs[number], questions[number]) for number in numbers}

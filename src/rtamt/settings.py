@@ -49,6 +49,7 @@ class Reading(TypedDict, total=False):
     period: Duration | None
     resolution: Duration | None
     semantics: Semantics | None
+    time_unit: str | None
 
 
 def check_language(language: Language) -> None:

@@ -20,6 +20,7 @@ from rtamt.language.operators import STL, Language
 from rtamt.language.parser import parse_formula
 from rtamt.language.printer import to_text
 from rtamt.language.specfile import parse_document
+from rtamt.language.units import check_unit
 from rtamt.results import Result
 from rtamt.rewrite.check import check_bounds, check_dense
 from rtamt.rewrite.horizon import horizon
@@ -154,20 +155,21 @@ class Specification:
         tolerance: float = arrays.TOLERANCE,
         resolution: Duration | None = None,
         semantics: Semantics | None = None,
+        time_unit: str | None = None,
     ) -> Result:
         """Compute the robustness of a finished recording at every sample.
 
-        ``data``: a mapping (or frame) from variable to n numbers; ``"time"``: n stamps in seconds
-        (or datetimes), may be left out. ``period``: seconds, or text such as ``"100ms"``; by default
+        ``data``: a mapping (or frame) from variable to n numbers; ``"time"``: n stamps, may be left
+        out. Numbers are seconds, whatever holds them, or of the unit that ``time_unit`` names: ``"s"``, ``"ms"``,
+        ``"us"``, ``"ns"``; datetimes and timedeltas are what they are. Times come back as they were given:
+        seconds as floats, integers of a unit as integers, datetimes and timedeltas as those of numpy (in
+        UTC if they have a time zone). ``period``: seconds, or text such as ``"100ms"``; by default
         that of the specification, else the median gap of the stamps, else 1 s. ``tolerance``: the
         fraction of the period by which a gap between samples may miss it.
 
         With ``time="dense"`` signals change at any instant, each on its own clock: ``data`` maps a
-        variable to (times, values), or to a list of [time, value] pairs. Times are of one kind: numbers
-        of Python and floats are seconds; integers of numpy, alone, in a list or in an array, are
-        nanoseconds; datetimes and timedeltas are what they are, and come back as those of numpy (in UTC
-        if they have a time zone). ``resolution``: the length of a tick,
-        in which time is counted (default 1 ns); bounds must be multiples of it.
+        variable to (times, values), or to a list of [time, value] pairs. ``resolution``: the length of a
+        tick, in which time is counted (default 1 ns); bounds must be multiples of it.
 
         ``semantics``: as for :func:`parse`, by default that of the specification.
 
@@ -179,7 +181,7 @@ class Specification:
         >>> result.robustness, result.satisfied, result.signal.values
         (1.0, True, array([1., 1., 3.]))
         """
-        question = self.question(time, period, resolution, semantics)
+        question = self.question(time, period, resolution, semantics, time_unit)
         recording = question.record(data, self.input_names, self.declared, tolerance)
         self._check(question, recording)
         return Result(self, recording, self.signal_of(question.formula, recording), question.semantics)
@@ -190,11 +192,12 @@ class Specification:
         period: Duration | None = None,
         resolution: Duration | None = None,
         semantics: Semantics | None = None,
+        time_unit: str | None = None,
     ) -> Question:
         """Return what :meth:`evaluate` asks of a recording; arguments and errors are those of it."""
-        if time is None and period is None and resolution is None and semantics is None:
+        if time is None and period is None and resolution is None and semantics is None and time_unit is None:
             return self._own_question
-        return self._question(time, period, resolution, semantics)
+        return self._question(time, period, resolution, semantics, time_unit)
 
     @cached_property
     def _own_question(self) -> Question:
@@ -206,15 +209,17 @@ class Specification:
         period: Duration | None,
         resolution: Duration | None,
         semantics: Semantics | None,
+        time_unit: str | None = None,
     ) -> Question:
+        unit = None if time_unit is None else check_unit(time_unit)
         chosen = self._semantics(semantics)
         formula = self.judged(self.formula, chosen)
         if self._time(time) == "discrete":
-            return Question(formula, self.text, "discrete", self._period(period), chosen)
+            return Question(formula, self.text, "discrete", self._period(period), chosen, unit)
         tick = self._resolution(resolution)
         check_dense(formula, self.text)
         check_bounds(formula, tick, self.text, "resolution")
-        return Question(formula, self.text, "dense", tick, chosen)
+        return Question(formula, self.text, "dense", tick, chosen, unit)
 
     @overload
     def monitor(
@@ -225,6 +230,7 @@ class Specification:
         tolerance: float = arrays.TOLERANCE,
         semantics: Semantics | None = None,
         watch: str | Iterable[str] = (),
+        time_unit: str | None = None,
     ) -> Monitor: ...
 
     @overload
@@ -235,6 +241,7 @@ class Specification:
         resolution: Duration | None = None,
         semantics: Semantics | None = None,
         watch: str | Iterable[str] = (),
+        time_unit: str | None = None,
     ) -> DenseMonitor: ...
 
     def monitor(
@@ -246,6 +253,7 @@ class Specification:
         resolution: Duration | None = None,
         semantics: Semantics | None = None,
         watch: str | Iterable[str] = (),
+        time_unit: str | None = None,
     ) -> Monitor | DenseMonitor:
         """Return an online monitor; of dense time where that is asked for here or in :func:`parse`.
 
@@ -254,7 +262,8 @@ class Specification:
         ``"boolean"`` the monitor gives verdicts, +inf where the formula holds and -inf where it does
         not, also where the robustness is 0. ``watch``: names of sub-specifications, or formulas over
         the same variables, whose values ``monitor[name]`` is to tell beside the result; each is known
-        at its own horizon. Raises :class:`BoundError` for unbounded future.
+        at its own horizon. ``time_unit``: of times that are numbers, as in :meth:`evaluate`; what is
+        told comes in it too. Raises :class:`BoundError` for unbounded future.
 
         >>> import rtamt
         >>> monitor = rtamt.parse("always[0:200ms](x >= 3)").monitor(period="100ms")
@@ -279,6 +288,7 @@ class Specification:
             resolution=resolution,
             semantics=semantics,
             watch=names,
+            time_unit=time_unit,
         )
         if self._time(time) == "dense":
             return DenseMonitor(
@@ -289,6 +299,7 @@ class Specification:
                 known=self.declared,
                 watch=watched,
                 again=again,
+                unit=time_unit,
             )
         return Monitor(
             formula,
@@ -299,6 +310,7 @@ class Specification:
             known=self.declared,
             watch=watched,
             again=again,
+            unit=time_unit,
         )
 
     def compile(

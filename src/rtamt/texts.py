@@ -117,11 +117,13 @@ def load(path: str | os.PathLike[str], **settings: Unpack[Settings]) -> Specific
     return parse(text, **settings)
 
 
-def robustness(text: str, data: Any, **settings: Unpack[Settings]) -> float:
+def robustness(text: str, data: Any, *, time_unit: str | None = None, **settings: Unpack[Settings]) -> float:
     """Return the robustness of a recording at its first instant; settings and errors as for :func:`parse`.
+
+    ``time_unit``: of times that are numbers, by default seconds; see :meth:`Specification.evaluate`.
 
     >>> import rtamt
     >>> rtamt.robustness("eventually(x >= 3)", {"x": [1, 2, 5]})
     2.0
     """
-    return parse(text, **settings).evaluate(data).robustness
+    return parse(text, **settings).evaluate(data, time_unit=time_unit).robustness

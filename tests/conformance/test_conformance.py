@@ -159,7 +159,7 @@ def instant_by_instant(case: Case, monitor: Any, data: dict[str, Any]) -> None:
     for now, until in case.known:
         stamp = now * nanoseconds
         signal = monitor.update(
-            np.int64(stamp), **{name: at[name][stamp] for name in at if stamp in at[name]}
+            np.timedelta64(stamp, "ns"), **{name: at[name][stamp] for name in at if stamp in at[name]}
         )
         ticks += ticks_of(signal.times, case.seconds)
         values += signal.values.tolist()

@@ -50,8 +50,13 @@ WRONG: list[tuple[Any, str]] = [
         "'x' is no dense signal: give (times, values), or a list of [time, value] pairs",
     ),
     (
-        {"x": (np.array([0], np.int64), [1.0]), "y": [[0.0, 1.0]]},
-        "'y' tells time in seconds, but others in nanoseconds (integers of numpy): use one of them for all",
+        {"x": (np.array([0], "m8[ns]"), [1.0]), "y": [[0.0, 1.0]]},
+        "'y' tells time in seconds, but others in timedeltas: use one of them for all",
+    ),
+    (
+        {"x": (np.array([0], "m8"), [1.0]), "y": [[0.0, 1.0]]},
+        "the time of 'x' is a timedelta64 without a unit of fixed length at sample 0: give it one, such as "
+        "np.timedelta64(5, 'ms')",
     ),
     (
         {"x": [[1e30, 1.0]], "y": [[0.0, 1.0]]},
@@ -109,10 +114,13 @@ def test_nanoseconds_after_seconds(backend: str) -> None:
     monitor = rtamt.parse("x", backend=backend).monitor(time="dense")
     monitor.update(0.0, x=5.0)
     with pytest.raises(rtamt.TraceError) as info:
-        monitor.update(np.int64(10**9), x=5.0)
-    assert (
-        str(info.value)
-        == "'x' tells time in nanoseconds (integers of numpy), but others in seconds: use one of them for all"
+        monitor.update(np.timedelta64(10**9, "ns"), x=5.0)
+    assert str(info.value) == "'x' tells time in timedeltas, but others in seconds: use one of them for all"
+    with pytest.raises(rtamt.TraceError) as info:
+        monitor.update(np.int64(17 * 10**17), x=5.0)
+    assert str(info.value) == (
+        "the time of 'x' is 1700000000000000000 at sample 1, which is no number of seconds: if it counts "
+        "nanoseconds, say time_unit='ns'"
     )
     assert len(monitor.update(np.float64(1.0), x=5.0)) == 1
 
@@ -188,7 +196,7 @@ def test_a_value_that_does_not_exist_leaves_the_monitor_as_it_was() -> None:
 def test_exact_at_stamps_of_a_billion_seconds() -> None:
     start = 10**18
     x = (np.array([start, start + 1, start + 100_000_001]), [1.0, 0.0, 1.0])
-    result = rtamt.parse("once[100ms:100ms] x").evaluate({"x": x}, time="dense")
+    result = rtamt.parse("once[100ms:100ms] x").evaluate({"x": x}, time="dense", time_unit="ns")
     np.testing.assert_array_equal(result.signal.times, start + np.array([0, 100_000_000, 100_000_001]))
     np.testing.assert_array_equal(result.signal.values, [-INF, 1.0, 0.0])
 
@@ -235,9 +243,10 @@ def test_a_coarser_resolution_rounds_stamps_to_it() -> None:
 def test_times_that_ticks_cannot_hold_do_not_wrap(times: Any) -> None:
     message = "'x' has a time too far from 0 for ticks of 1 ns: subtract a start time, or choose a coarser resolution"
     spec = rtamt.parse("always[0:1](x >= 3)")
+    unit = "ns" if getattr(times, "dtype", np.dtype(object)).kind in "iu" else None
     for call in (
-        lambda: spec.evaluate({"x": (times, [5.0, 4.0])}, time="dense"),
-        lambda: spec.monitor(time="dense").update_many({"x": (times, [5.0, 4.0])}),
+        lambda: spec.evaluate({"x": (times, [5.0, 4.0])}, time="dense", time_unit=unit),
+        lambda: spec.monitor(time="dense", time_unit=unit).update_many({"x": (times, [5.0, 4.0])}),
     ):
         with pytest.raises(rtamt.TraceError) as info:
             call()

@@ -41,10 +41,7 @@ def by_definition(formula: Formula, trace: dict[str, Any]) -> list[tuple[int, fl
 
 
 def recording(formula: Formula, trace: dict[str, Any]) -> dense_evaluate.DenseRecording:
-    data = {
-        name: (np.array(trace[name][0], dtype=np.int64) * 10**9, trace[name][1])
-        for name in variables(formula)
-    }
+    data = {name: (np.array(trace[name][0], dtype=np.int64), trace[name][1]) for name in variables(formula)}
     return dense_evaluate.trace(data, variables(formula), TICK)
 
 
@@ -53,7 +50,7 @@ def by_engine(formula: Formula, trace: dict[str, Any]) -> list[tuple[int, float]
         signal = dense_evaluate.evaluate(desugar(formula), recording(formula, trace))
     except EvaluationError:
         return None
-    return stepped(signal.times // 10**9, signal.values)
+    return stepped(signal.times, signal.values)
 
 
 def read_by(formula: Formula, trace: dict[str, Any]) -> dict[str, Any]:
@@ -95,7 +92,7 @@ def test_online_and_finish_is_offline_and_never_late(backend: str, data: st.Data
         start = max(int(times[0]) for times, _ in trace.values())
         for update in data.draw(dense_chunkings(trace)):
             chunk = {
-                name: (np.array(times, dtype=np.int64) * 10**9, values)
+                name: (np.array(times, dtype=np.int64), values)
                 for name, (times, values) in update.items()
                 if name in trace
             }
@@ -104,13 +101,13 @@ def test_online_and_finish_is_offline_and_never_late(backend: str, data: st.Data
             except EvaluationError:
                 assume(False)
             last.update({name: int(times[-1]) for name, (times, _) in update.items() if len(times)})
-            told.extend(zip((signal.times // 10**9).tolist(), signal.values.tolist(), strict=True))
+            told.extend(zip(signal.times.tolist(), signal.values.tolist(), strict=True))
             if set(last) == set(trace):
                 until = min(last.values()) - int(depth)
                 if until >= start:
                     assert told[-1][0] == until
         rest = monitor.finish()
-        told.extend(zip((rest.times // 10**9).tolist(), rest.values.tolist(), strict=True))
+        told.extend(zip(rest.times.tolist(), rest.values.tolist(), strict=True))
         instants = [time for time, _ in told]
         assert instants == sorted(set(instants)), "no instant is told twice"
         assert stepped(*zip(*told, strict=True)) == expected
@@ -131,7 +128,7 @@ def test_a_failed_update_leaves_the_monitor_as_it_was(data: st.DataObject) -> No
         extreme = data.draw(st.sampled_from([0.0, -1.0, np.inf, -np.inf]))
         bad = {
             name: (
-                np.array([last.get(name, -50) + 1, last.get(name, -50) + 9], np.int64) * 10**9,
+                np.array([last.get(name, -50) + 1, last.get(name, -50) + 9], np.int64),
                 [extreme] * 2,
             )
             for name in trace
@@ -145,16 +142,13 @@ def test_a_failed_update_leaves_the_monitor_as_it_was(data: st.DataObject) -> No
                 with pytest.raises(EvaluationError):
                     monitor.update_many(bad)
                 assert monitor.memory >= before
-        chunk = {
-            name: (np.array(times, dtype=np.int64) * 10**9, values)
-            for name, (times, values) in update.items()
-        }
+        chunk = {name: (np.array(times, dtype=np.int64), values) for name, (times, values) in update.items()}
         try:
             signal = monitor.update_many({name: chunk[name] for name in chunk if name in trace})
         except EvaluationError:
             assume(False)
         last.update({name: int(times[-1]) for name, (times, _) in update.items() if len(times)})
-        told.extend(zip((signal.times // 10**9).tolist(), signal.values.tolist(), strict=True))
+        told.extend(zip(signal.times.tolist(), signal.values.tolist(), strict=True))
     rest = monitor.finish()
-    told.extend(zip((rest.times // 10**9).tolist(), rest.values.tolist(), strict=True))
+    told.extend(zip(rest.times.tolist(), rest.values.tolist(), strict=True))
     assert stepped(*zip(*told, strict=True)) == expected

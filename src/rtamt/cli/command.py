@@ -24,6 +24,7 @@ from rtamt.language.lint import CODES
 from rtamt.language.units import UNITS, decimal
 from rtamt.readers.formats import METADATA, SUFFIXES
 from rtamt.rewrite.semantics import SEMANTICS
+from rtamt.signals.datetimes import nanoseconds_of
 from rtamt.texts import load, parse
 
 if TYPE_CHECKING:
@@ -253,11 +254,11 @@ def json_number(value: float) -> float | str:
 def stamp_text(time: Any) -> str:
     """Return a time as text: a date, or seconds with every nanosecond.
 
-    >>> stamp_text(np.float64(0.1)), stamp_text(np.int64(1700000000100000001))
+    >>> stamp_text(np.float64(0.1)), stamp_text(np.timedelta64(1700000000100000001, "ns"))
     ('0.1', '1700000000.100000001')
     """
-    if isinstance(time, np.integer):
-        return str(decimal(Fraction(int(time), 10**9)))
+    if isinstance(time, np.timedelta64):
+        return str(decimal(Fraction(nanoseconds_of(time) or 0, 10**9)))
     return str(time) if isinstance(time, np.datetime64) else repr(float(time))
 
 

@@ -15,7 +15,7 @@ from rtamt.readers.dates import EXAMPLE, date_in
 from rtamt.readers.formats import is_bag
 from rtamt.readers.read import choice, opened
 from rtamt.ros.bags import columns_of
-from rtamt.signals.arrays import TIME, Recording, check_regular, infer_period, stamps
+from rtamt.signals.arrays import TIME, check_regular, infer_period, stamps
 
 if TYPE_CHECKING:
     import argparse
@@ -137,8 +137,9 @@ def _names_of(texts: Sequence[str]) -> dict[str, str]:
 def recording(args: argparse.Namespace, source: str) -> Trace:
     """Return all that is in a recording, read and put on one clock as the options say."""
     with opened(source, args.sheet, args.query, args.recover) as found:
-        units = None if args.time_unit is None else {TIME: args.time_unit}
-        wanted = choice(args.time_column, None, _names_of(args.name), units, args.skip_nan, args.hold_for)
+        wanted = choice(
+            args.time_column, None, _names_of(args.name), None, args.skip_nan, args.hold_for, args.time_unit
+        )
         trace = trace_of(found, wanted)
     return trace if args.resample is None else trace.resample(args.resample, args.how)
 
@@ -155,7 +156,6 @@ def read_for(specs: Sequence[Specification], trace: str, reading: Reading) -> Tr
 def choice_for(specs: Sequence[Specification], trace: str, reading: Reading) -> Choice:
     """Return which columns of a recording some requirements read, and how."""
     columns = dict.fromkeys(name for spec in specs for name in spec.input_names)
-    units = None if reading.unit is None else {TIME: reading.unit}
     # In discrete time a gap is an error, unless each signal has a clock of its own, or is resampled.
     gaps = specs[0].time == "dense" or is_bag(trace) or reading.resample is not None
     names = dict(reading.names)
@@ -163,7 +163,9 @@ def choice_for(specs: Sequence[Specification], trace: str, reading: Reading) -> 
         for spec in specs:
             names = {**columns_of(spec), **names}
     skipped = [name for name in reading.skip_nan if name in columns]
-    return replace(choice(reading.time, columns or None, names, units, skipped, reading.hold_for), gaps=gaps)
+    return replace(
+        choice(reading.time, columns or None, names, None, skipped, reading.hold_for, reading.unit), gaps=gaps
+    )
 
 
 def on_clock(data: Trace, spec: Specification, trace: str, reading: Reading) -> Trace:
@@ -180,7 +182,7 @@ def on_clock(data: Trace, spec: Specification, trace: str, reading: Reading) -> 
     if period is not None:
         return mine.resample(period, reading.how)
     try:
-        times = stamps(mine.on_one_clock(mine.names)[TIME])
+        times = stamps(mine.on_one_clock(mine.names)[TIME]).seconds
         check_regular(times, infer_period(times))
     except TraceError as error:
         raise TraceError(
@@ -211,9 +213,8 @@ def instant(at: str | None, result: Result) -> Any:
     """Return what ``--at`` says, as the recording tells time; None for its first instant."""
     if at is None:
         return None
-    trace = result.trace
-    kind = "seconds" if isinstance(trace, Recording) else trace.scale.kind
-    dated = kind == "datetimes" or (isinstance(trace, Recording) and trace.dated)
+    times = result.signal.times.dtype.kind
+    dated = times == "M"
     date = date_in(at)
     if (date is not None) != dated:
         has = f"dates: give one such as {EXAMPLE}" if dated else "seconds: give a number of them"
@@ -227,4 +228,4 @@ def instant(at: str | None, result: Result) -> Any:
         raise UsageError(
             f"--at is '{at}'; give seconds, a time with a unit such as 500ms, or a date such as {EXAMPLE}"
         ) from None
-    return np.int64(round(seconds * 10**9)) if kind == "nanoseconds" else float(seconds)
+    return np.timedelta64(round(seconds * 10**9), "ns") if times == "m" else float(seconds)

@@ -7,12 +7,13 @@ import time
 from collections import Counter
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, replace
+from decimal import Decimal
 from multiprocessing import get_context
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rtamt.cli.command import NO_STAMPS
+from rtamt.cli.command import NO_STAMPS, stamp_text
 from rtamt.cli.reading_options import choice_for, how_to_mend, on_clock, read_for
 from rtamt.errors import BoundError, StlError, TraceError
 from rtamt.readers.assemble import chunks_of
@@ -20,7 +21,6 @@ from rtamt.readers.formats import is_bag
 from rtamt.readers.read import opened
 from rtamt.readers.sql import is_url, shown
 from rtamt.signals.arrays import Recording
-from rtamt.signals.ticks import date_of
 from rtamt.verdicts.first_violation import first_violation
 from rtamt.verdicts.streaming import check_stream, check_streamable
 
@@ -64,7 +64,8 @@ class Requirement:
 class Outcome:
     """What came of one requirement over one recording, or the sentence that says why nothing did.
 
-    ``first_violation``: seconds, or a date; None where there is none. ``period``: None in dense time.
+    ``first_violation``: seconds (a decimal where a double cannot hold them), or a date; None where there is
+    none. ``period``: None in dense time.
     ``notes``: what the verdict has to do without (:attr:`Trace.losses`).
     ``seconds``: how long it took. ``result`` stays in the process that made it.
     """
@@ -73,7 +74,7 @@ class Outcome:
     trace: str
     verdict: str  # satisfied, violated or error
     robustness: float = float("nan")
-    first_violation: float | str | None = None
+    first_violation: float | str | Decimal | None = None
     samples: int = 0
     period: Fraction | None = None
     error: str = ""
@@ -166,7 +167,7 @@ def _in_chunks(requirement: Requirement, trace: str, reading: Reading) -> list[O
             shown(trace),
             "satisfied" if part.satisfied else "violated",
             part.robustness,
-            None if part.first_violation is None else _told(part.first_violation, chunks.dated),
+            None if part.first_violation is None else _told(part.first_violation),
             part.samples,
             part.period,
             notes=chunks.losses,
@@ -218,7 +219,7 @@ def _outcome(requirement: Requirement, trace: str, result: Result, data: Trace, 
         shown(trace),
         "satisfied" if satisfied else "violated",
         result.robustness,
-        None if violated is None else _told(violated, isinstance(data.start, np.datetime64)),
+        None if violated is None else _told(violated),
         _samples(recording),
         recording.period if isinstance(recording, Recording) else None,
         notes=data.losses,
@@ -238,13 +239,11 @@ def _samples(recording: Recording | DenseRecording) -> int:
     return len(np.unique(np.concatenate([ticks for ticks, _ in recording.columns.values()])))
 
 
-def _told(moment: Any, dated: bool) -> float | str:
-    """Return a time for reports: a date where the recording has dates (discrete time counts seconds), else seconds."""
-    if dated and not isinstance(moment, np.datetime64):
-        moment = date_of(moment)
+def _told(moment: Any) -> float | str | Decimal:
+    """Return a time for reports: a date where the recording has dates, else seconds, with all their digits."""
     if isinstance(moment, np.datetime64):
         return str(moment)
-    return moment / 1e9 if isinstance(moment, int) else float(moment)
+    return Decimal(stamp_text(moment)) if isinstance(moment, np.timedelta64) else float(moment)
 
 
 class _Chunks:
@@ -253,7 +252,6 @@ class _Chunks:
     def __init__(self, chunks: Iterator[Trace]) -> None:
         self._chunks = chunks
         self._counts: Counter[str] = Counter()
-        self.dated = False
         self.last: Trace | None = None
         #: What the last chunk says, which is about all before it, too.
         self.losses: tuple[str, ...] = ()
@@ -264,7 +262,6 @@ class _Chunks:
                 self._counts.update({name: len(self.last[name].values) for name in self.last})
             self.last = chunk
             self.losses = chunk.losses
-            self.dated = isinstance(chunk.start, np.datetime64)
             yield chunk
 
     def before(self, error: StlError) -> int:

@@ -104,8 +104,8 @@ class DenseMonitor:
         ignored: Collection[str] | None = None,
         calls: _Calls = ...,
     ) -> None: ...
-    def tell(self, signal: type, scale: Any, rate: float | None) -> None:
-        """Say how update() tells time: in seconds of so many ticks, or (None) by integers that are ticks.
+    def tell(self, signal: type, scale: Any, rate: float, whole: bool = False) -> None:
+        """Say how update() tells time: in numbers of so many ticks, or in integers alone (``whole``).
 
         Its answers are of the class ``signal``, their ``_scale`` is the given one and their ``_events``
         are bytes: the ticks, then the values.

@@ -16,7 +16,7 @@ from rtamt.language.undefined_value import undefined
 from rtamt.rewrite.desugar import desugar
 from rtamt.signals import arrays, dense_arrays
 from rtamt.signals.arrays import Signal
-from rtamt.signals.ticks import TimeScale, kind_of
+from rtamt.signals.ticks import TimeScale
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping, Sequence
@@ -65,22 +65,25 @@ def trace(
     tick: Fraction,
     known: Collection[str] = (),
     scale: TimeScale | None = None,
+    unit: str | None = None,
 ) -> DenseRecording:
     """Normalise a finished recording; the caller's data is never changed.
 
     ``data``: a mapping from variable to (times, values) or to a list of [time, value] pairs; with a
     key ``"time"`` all variables share its stamps. ``tick``: seconds. ``scale``: how the caller tells
-    time, by default found out from the first variable. Raises :class:`TraceError`.
+    time, by default found out from the first variable. ``unit``: of times that are numbers, by default
+    seconds. Raises :class:`TraceError`.
     """
     if not names:
         raise UsageError("the formula reads no variable, so in dense time nothing says when to evaluate it")
+    arrays.require_no_unit(data, unit)
     columns = dense_arrays.columns_of(data, names, known)
     for name in names:
         if name not in columns:
             raise arrays.missing_variable(name, [str(key) for key in getattr(data, "columns", data)])
         if not len(columns[name][0]):
             raise TraceError(f"'{name}' has no samples: give at least one", variable=name)
-    scale = scale or TimeScale(tick, kind_of(columns[names[0]][0]))
+    scale = scale or TimeScale.of(tick, [columns[name][0] for name in names], unit)
     samples = {name: dense_arrays.samples_of(columns[name], name, scale) for name in names}
     result = DenseRecording(samples, scale, arrays.units_of(data))
     if result.start > result.end:

@@ -16,15 +16,16 @@ from rtamt.engine.python_backend import Refused
 from rtamt.engine.user_operators import calls_of
 from rtamt.errors import TraceError, UsageError
 from rtamt.language.undefined_value import undefined
+from rtamt.language.units import check_unit
 from rtamt.rewrite.check import check_bounds, check_dense, check_online
 from rtamt.rewrite.desugar import desugar
 from rtamt.signals import arrays, dense_arrays
 from rtamt.signals.arrays import Signal
 from rtamt.signals.dense_arrays import TickSignal
-from rtamt.signals.ticks import NANOSECOND, TimeScale, kind_of
+from rtamt.signals.ticks import NANOSECOND, TimeScale
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Sequence
+    from collections.abc import Callable, Collection, Mapping, Sequence
     from fractions import Fraction
 
     from rtamt.errors import EvaluationError
@@ -63,6 +64,7 @@ class DenseMonitor(OnlineMonitor):
         watch: Sequence[Watched] = (),
         again: Callable[[], OnlineMonitor] | None = None,
         scale: TimeScale | None = None,
+        unit: str | None = None,
         parts: bool = False,
     ) -> None:
         for watched in (Watched("", formula, text), *watch):
@@ -77,6 +79,7 @@ class DenseMonitor(OnlineMonitor):
         self._depth = depth_of(formula)
         self._tick = resolution
         self._given_scale = scale
+        self._unit = None if unit is None else check_unit(unit)
         self._scale: TimeScale | None = None
         self._program = None
         if backend != "python":
@@ -116,10 +119,10 @@ class DenseMonitor(OnlineMonitor):
 
     @compiled("dense_update")
     def update(self, time: Any, /, **values: float) -> Signal:
-        """Take the values of any variables at one instant (seconds, integer ns, or a datetime).
+        """Take the values of any variables at one instant: seconds, numbers in ``time_unit=``, or a datetime.
 
-        Returns what became known. Raises :class:`TraceError` for wrong data and
-        :class:`EvaluationError` where an operation has no value; the monitor is then as it was.
+        Without values only the time is looked at. Returns what became known. Raises :class:`TraceError`
+        for wrong data and :class:`EvaluationError` where an operation has no value; the monitor is then as it was.
         """
         try:
             return self._update(time, values)  # type: ignore[no-any-return]
@@ -127,25 +130,31 @@ class DenseMonitor(OnlineMonitor):
             pass  # the long way takes it, or finds out what is wrong and says it
         except self._undefined as error:
             raise self._no_value(error, self._scale) from None
-        times = np.array([time]) if isinstance(time, (np.integer, np.datetime64)) else [time]
         flat = self._read_by_formula(values)
         for name in flat:
             if name not in self.input_names:
                 raise arrays.unknown_variable(name, self.input_names)
-        return self._take({name: (times, [value]) for name, value in flat.items()})
+        if not flat:
+            self._scale_of([[time]]).ticks([time], arrays.TIME)
+        return self._take({name: ([time], [value]) for name, value in flat.items()})
 
     def update_many(self, data: Any) -> Signal:
         """Take samples: a mapping from variable to (times, values), or to [time, value] pairs.
 
         Variables may be left out or have no samples. Returns and raises as :meth:`update` does.
         """
+        arrays.require_no_unit(data, self._unit)
         return self._take(dense_arrays.columns_of(data, self.input_names, self._known))
 
     @alone
     def finish(self) -> Signal:
         """Say that no more samples will come: every signal holds its last value. Returns the rest."""
+        return self._signal(self.rest())
+
+    def rest(self) -> Samples:
+        """Say that no more samples will come, and return the rest as ticks and values."""
         if self._finished:
-            return self._signal((np.empty(0, np.int64), np.empty(0)))
+            return np.empty(0, np.int64), np.empty(0)
         for name, last in zip(self.input_names, self._backend.last_times, strict=True):
             if last is None:
                 raise TraceError(
@@ -153,7 +162,7 @@ class DenseMonitor(OnlineMonitor):
                 )
         known = self._run(self._backend.finish, self._scale)
         self._finished = True
-        return self._signal(known)
+        return known
 
     def __getitem__(self, name: str) -> Signal:
         """Return what the last update made known of a formula that is watched (see ``Specification.monitor``).
@@ -196,35 +205,46 @@ class DenseMonitor(OnlineMonitor):
 
     # ---- the long way ----------------------------------------------------------------------------
 
+    def push(self, chunk: Mapping[str, Samples], scale: TimeScale) -> Samples:
+        """Take samples that are ticks and checked already; return what became known, ticks and values.
+
+        ``scale``: how the caller tells time, for messages and for what comes later.
+        """
+        empty = np.empty(0, np.int64), np.empty(0)
+        samples = [chunk.get(name, empty) for name in self.input_names]
+        known = self._run(lambda: self._backend.push(samples), scale)
+        if self._scale is not scale:
+            self._scale = scale
+            self._tell(scale)
+        return known
+
     @alone
     def _take(self, columns: dict[str, tuple[Any, Any]]) -> Signal:
         if self._finished:
             raise UsageError("the monitor has finished its trace; call reset() before the next sample")
-        given = [column for column in columns.values() if len(column[0])]
+        given = {name: column for name, column in columns.items() if len(column[0])}
         if not given and self._scale is None:
             return self._signal((np.empty(0, np.int64), np.empty(0)))
-        scale = self._scale or self._given_scale or TimeScale(self._tick, kind_of(given[0][0]))
-        chunk = self._chunk(columns, scale)
-        known = self._run(lambda: self._backend.push(chunk), scale)
-        if self._scale is None:
-            self._scale = scale
-            self._tell(scale)
-        return self._signal(known)
+        scale = self._scale_of([times for times, _ in given.values()])
+        return self._signal(self.push(self._chunk(columns, scale), scale))
+
+    def _scale_of(self, times: Sequence[Any]) -> TimeScale:
+        """Return how time is told from these times on."""
+        scale = self._scale or self._given_scale
+        return TimeScale.of(self._tick, times, self._unit) if scale is None else scale.widened(times)
 
     def _tell(self, scale: TimeScale) -> None:
         """Let the back end read plain times by itself."""
-        if scale.kind == "seconds" and (1 / scale.tick).denominator == 1:
-            self._backend.tell(TickSignal, scale, float(1 / scale.tick))
-        elif scale.kind == "nanoseconds" and scale.tick == NANOSECOND:
-            self._backend.tell(TickSignal, scale, None)
+        if scale.ticks_in_1 is not None:
+            self._backend.tell(TickSignal, scale, float(scale.ticks_in_1), scale.kind == "whole")
 
-    def _chunk(self, columns: dict[str, tuple[Any, Any]], scale: TimeScale) -> list[Samples]:
-        empty = (np.empty(0, np.int64), np.empty(0))
+    def _chunk(self, columns: dict[str, tuple[Any, Any]], scale: TimeScale) -> dict[str, Samples]:
         so_far = zip(self.input_names, self._backend.counts, self._backend.last_times, strict=True)
-        return [
-            dense_arrays.samples_of(columns[name], name, scale, count, last) if name in columns else empty
+        return {
+            name: dense_arrays.samples_of(columns[name], name, scale, count, last)
             for name, count, last in so_far
-        ]
+            if name in columns
+        }
 
     def _run(self, call: Callable[[], Samples], scale: TimeScale | None) -> Samples:
         """Call the back end; turn its failure into a sentence."""
@@ -243,5 +263,5 @@ class DenseMonitor(OnlineMonitor):
 
     def _signal(self, known: Samples) -> Signal:
         ticks, values = known
-        scale = self._scale or TimeScale(self._tick, "seconds")
+        scale = self._scale or self._given_scale or TimeScale.of(self._tick, [], self._unit)
         return Signal(scale.times(ticks), values)

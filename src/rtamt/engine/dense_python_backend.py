@@ -57,7 +57,7 @@ class PythonDenseMonitor:
         """The tick of the last sample of each input, or None."""
         return list(self._last)
 
-    def tell(self, signal: type, scale: TimeScale, rate: float | None) -> None:
+    def tell(self, signal: type, scale: TimeScale, rate: float, whole: bool = False) -> None:
         """Take note of nothing: every update goes the long way."""
 
     def update(self, *_: Any) -> Any:

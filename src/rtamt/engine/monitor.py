@@ -15,15 +15,24 @@ from rtamt.engine.native import compiled, core, core_monitor, culprit
 from rtamt.engine.online import OnlineMonitor, Watched, depth_of
 from rtamt.errors import TraceError, UsageError, shown
 from rtamt.language.undefined_value import at_sample, undefined
+from rtamt.language.units import UNITS, check_unit
 from rtamt.rewrite.check import check_bounds, check_online
 from rtamt.rewrite.desugar import desugar
 from rtamt.signals import arrays
-from rtamt.signals.arrays import Signal
+from rtamt.signals.arrays import Signal, Stamps, plain
+from rtamt.signals.counting import implausible, is_implausible
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Mapping, Sequence
 
+    from numpy.typing import NDArray
+
     from rtamt.language.formula import Formula
+
+
+#: How messages call what stamps are told in, by the kind of their dtype.
+_KINDS = {"f": "seconds", "M": "datetimes", "m": "timedeltas"}
+_NUMBERS = {"f": np.float64, "i": np.int64, "M": np.int64, "m": np.int64}
 
 
 class Monitor(OnlineMonitor):
@@ -46,7 +55,7 @@ class Monitor(OnlineMonitor):
     raises :class:`UsageError`.
     """
 
-    _remembered = ("_finished", "_news")
+    _remembered = ("_finished", "_news", "_told")
 
     def __init__(
         self,
@@ -59,6 +68,7 @@ class Monitor(OnlineMonitor):
         known: Collection[str] = (),
         watch: Sequence[Watched] = (),
         again: Callable[[], OnlineMonitor] | None = None,
+        unit: str | None = None,
     ) -> None:
         for watched in (Watched("", formula, text), *watch):
             check_bounds(watched.formula, period, watched.text)
@@ -73,6 +83,10 @@ class Monitor(OnlineMonitor):
         # What the last chunk made known, and how many samples there were then: after any other update
         # there are more.
         self._news: tuple[int, list[Signal]] = (0, [])
+        self._unit = None if unit is None else check_unit(unit)
+        # The stamps of the samples that may still have a value to come, and of the last one, where they are not
+        # told in seconds; those in seconds the back end has.
+        self._told: NDArray[Any] | None = None
         self._program = None
         if backend != "python":
             outputs = [desugar(formula) for formula in self._formulas]
@@ -87,7 +101,8 @@ class Monitor(OnlineMonitor):
         return core_monitor(self._program, float(self._period), self._tolerance)
 
     def _connect(self, backend: Any) -> None:
-        self._backend = backend
+        plain = self._unit is None and self._told is None
+        self._backend = backend if plain else _Apart(backend)
         self._update = backend.update
         self._step = backend.step
         self._refused: Any = python_backend.Refused if self._program is None else core().Refused
@@ -110,7 +125,7 @@ class Monitor(OnlineMonitor):
 
     @compiled("update")
     def update(self, time: float, /, **values: float) -> float | None:
-        """Take one sample: ``time`` in seconds and a number for every variable.
+        """Take one sample: ``time`` in seconds, or in ``time_unit=``, and a number for every variable.
 
         Returns ρ at ``time - horizon``; None until the horizon has passed. Raises
         :class:`TraceError` for wrong data and :class:`EvaluationError` where an operation has no
@@ -122,6 +137,19 @@ class Monitor(OnlineMonitor):
         >>> print(monitor.update(0.0, req=5, gnt=0), monitor.update(1.0, req=0, gnt=4))
         None 1.0
         """
+        if self._unit is None and self._told is None:
+            return self._take(time, values)
+        return self._take_told(time, values)
+
+    @alone
+    def _take_told(self, time: Any, values: dict[str, Any]) -> float | None:
+        """Take a sample whose time is not told in seconds."""
+        stamp = self._stamps([time])
+        robustness = self._take(float(stamp.seconds[0]), values)
+        self._remember(stamp.told)
+        return robustness
+
+    def _take(self, time: Any, values: dict[str, Any]) -> float | None:
         try:
             return self._update(time, values)  # type: ignore[no-any-return]
         except self._refused:
@@ -153,6 +181,19 @@ class Monitor(OnlineMonitor):
         >>> [monitor.step(5, 4), monitor.step(1, 4)]
         [1.0, 1.0]
         """
+        if self._unit is None and self._told is None:
+            return self._take_row(values)
+        return self._take_row_told(values)
+
+    @alone
+    def _take_row_told(self, values: tuple[float, ...]) -> float | None:
+        """Take a sample after those whose times are not told in seconds."""
+        later = self._later(1)
+        robustness = self._take_row(values)
+        self._remember(later)
+        return robustness
+
+    def _take_row(self, values: tuple[float, ...]) -> float | None:
         try:
             return self._step(*values)  # type: ignore[no-any-return]
         except self._refused:
@@ -190,13 +231,15 @@ class Monitor(OnlineMonitor):
         if self._finished:
             raise self._is_finished()
         samples = self.samples
-        times, columns = self._chunk(data)
-        before = self._backend.recent(min(self._oldest, samples))
+        (times, told), columns = self._chunk(data)
+        before = self._recent(min(self._oldest, samples))
         try:
             known = self._backend.push(times, columns, samples)
         except self._undefined as error:
             raise self._no_value(error) from None
-        stamps = np.concatenate((before, times))
+        if self._unit is not None or self._told is not None or (len(told) and told is not times):
+            self._remember(told)
+        stamps = np.concatenate((before, told)) if len(before) else told
         news = []
         for lag, values in zip(self._lags, known, strict=True):
             first = len(before) - min(lag, samples)
@@ -215,13 +258,13 @@ class Monitor(OnlineMonitor):
         Signal(times=array([2.]), values=array([3.]))
         """
         if self._finished:
-            return Signal(np.empty(0), np.empty(0))
+            return Signal(self._recent(0), np.empty(0))
         try:
             known = self._backend.finish()
         except self._undefined as error:
             raise self._no_value(error) from None
         self._finished = True
-        news = [Signal(self._backend.recent(len(values)), values) for values in known]
+        news = [Signal(self._recent(len(values)), values) for values in known]
         self._news = self.samples, news
         return news[0]
 
@@ -258,6 +301,9 @@ class Monitor(OnlineMonitor):
         self._backend.reset()
         self._finished = False
         self._news = (0, [])
+        if self._told is not None:
+            self._told = None
+            self._connect(self._backend.inner)
 
     @property
     def _last_time(self) -> float | None:
@@ -268,18 +314,76 @@ class Monitor(OnlineMonitor):
         last = self._last_time
         return 0.0 if last is None else last + float(self._period)
 
+    # ---- stamps that are not told in seconds -----------------------------------------------------
+
+    def _stamps(self, times: Any) -> Stamps:
+        """Return times that the caller gave; raise :class:`TraceError` where they are not of the kind of the first."""
+        stamps = arrays.stamps(times, self._unit)
+        self._require_alike(stamps)
+        return stamps
+
+    def _require_alike(self, stamps: Stamps) -> None:
+        if self._unit is None and self.samples:
+            before = "f" if self._told is None else self._told.dtype.kind
+            if stamps.told.dtype.kind != before:
+                raise TraceError(
+                    f"'{arrays.TIME}' is told in {_KINDS[stamps.told.dtype.kind]} at sample {self.samples}, but before "
+                    f"in {_KINDS[before]}: use one of them for all",
+                    variable=arrays.TIME,
+                    index=self.samples,
+                )
+
+    def _remember(self, told: NDArray[Any]) -> None:
+        first = self._told is None
+        whole = told if self._told is None else np.concatenate((self._told, told))
+        self._told = whole[-self._oldest - 1 :].copy()
+        if first:
+            self._connect(getattr(self._backend, "inner", self._backend))
+
+    def _recent(self, count: int) -> NDArray[Any]:
+        """Return the stamps of the last samples, as the caller tells time."""
+        if self._told is not None:
+            return self._told[len(self._told) - count :]
+        return np.array(self._backend.recent(count)) if count or self._unit is None else np.empty(0, np.int64)
+
+    def _later(self, count: int) -> NDArray[Any]:
+        """Return the stamps of samples that come one period after another, as the caller tells time."""
+        if self._told is None or not len(self._told):
+            start, dtype = Fraction(0), np.dtype(np.int64)
+        else:
+            start, dtype = (
+                Fraction(plain(self._told[-1:].view(_NUMBERS[self._told.dtype.kind])[0])),
+                self._told.dtype,
+            )
+            start += self._step_in_unit(dtype)
+        stamps = [start + i * self._step_in_unit(dtype) for i in range(count)]
+        if dtype.kind in "mM":
+            return np.array([round(stamp) for stamp in stamps], np.int64).view(dtype)
+        if dtype.kind == "i" and all(stamp.denominator == 1 for stamp in stamps):
+            return np.array([int(stamp) for stamp in stamps], np.int64)
+        return np.array([float(stamp) for stamp in stamps])
+
+    def _step_in_unit(self, dtype: np.dtype[Any]) -> Fraction:
+        return self._period / UNITS["ns" if dtype.kind in "mM" else self._unit or "s"]
+
     # ---- what goes wrong -------------------------------------------------------------------------
 
-    def _chunk(self, data: Any) -> tuple[arrays.FloatArray, list[arrays.FloatArray]]:
+    def _chunk(self, data: Any) -> tuple[Stamps, list[arrays.FloatArray]]:
         last = self._last_time
-        times, columns, n = arrays.columns_of(data, self.input_names, self._known)
-        if times is None:
+        stamps, columns, n = arrays.columns_of(data, self.input_names, self._known, self._unit)
+        if stamps is None:
             times = np.array(self._next_time() + float(self._period) * np.arange(n), dtype=np.float64)
+            stamps = Stamps(times, times if self._unit is None and self._told is None else self._later(n))
+        elif n:
+            self._require_alike(stamps)
+        else:
+            stamps = Stamps(stamps.seconds, self._recent(0))
+        times = stamps.seconds
         arrays.check_increasing(times, last, self.samples)
         arrays.check_regular(times, self._period, self._tolerance, last, self.samples)
         for name, column in columns.items():
             arrays.check_numbers(name, column, times, self.samples)
-        return times, [columns[name] for name in self.input_names]
+        return stamps, [columns[name] for name in self.input_names]
 
     def _is_finished(self) -> UsageError:
         return UsageError("the monitor has finished its trace; call reset() before the next sample")
@@ -302,6 +406,16 @@ class Monitor(OnlineMonitor):
         return undefined(formula, at_sample(error.args[1], error.time))
 
 
+class _Apart:
+    """A back end that the quick way in does not see: the times of its samples have to be read first."""
+
+    def __init__(self, inner: Any) -> None:
+        self.inner = inner
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self.inner, name)
+
+
 def read_time(time: Any, index: int, last: float | None) -> float:
     """Return a sample's time stamp; raise :class:`TraceError` for one that no sample can have."""
     stamp = arrays.number_of(time)
@@ -309,6 +423,8 @@ def read_time(time: Any, index: int, last: float | None) -> float:
         raise TraceError(
             f"time is {shown(time)} at sample {index}, expected a number of seconds", variable="time"
         )
+    if is_implausible(time):
+        raise implausible("time", index, time)
     if not isfinite(stamp):
         raise TraceError(f"time is {stamp} at sample {index}: give a finite number of seconds")
     if last is not None and stamp <= last:

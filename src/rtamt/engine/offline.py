@@ -28,7 +28,7 @@ class Question:
     """A formula whose predicates are judged already, and the clock by which recordings are read.
 
     ``text``: what the formula was parsed from. ``step``: the sampling period in seconds (None: that of
-    the stamps), in dense time the length of a tick.
+    the stamps), in dense time the length of a tick. ``unit``: of times that are numbers (None: seconds).
     """
 
     formula: Formula
@@ -36,6 +36,7 @@ class Question:
     time: str
     step: Fraction | None
     semantics: str | Judge
+    unit: str | None = None
 
     def record(
         self, data: Any, names: Sequence[str], known: Collection[str], tolerance: float
@@ -46,8 +47,8 @@ class Question:
         """
         if self.time == "dense":
             assert self.step is not None
-            return dense_evaluate.trace(data, names, self.step, known)
-        return arrays.trace(data, names, self.step, known, tolerance)
+            return dense_evaluate.trace(data, names, self.step, known, unit=self.unit)
+        return arrays.trace(data, names, self.step, known, tolerance, self.unit)
 
     def check(self, recording: Recording) -> None:
         """Raise :class:`BoundError` where an interval is no multiple of the recording's period."""
@@ -89,7 +90,9 @@ class Evaluators:
             if evaluator is None:
                 evaluator = self._discrete[key] = Evaluator(formulas, period)
             columns = evaluator(recording)
-        return [Signal(times, values) for values in columns]
+        stamps = times if recording.told is None else recording.told.view()
+        stamps.flags.writeable = False
+        return [Signal(stamps, values) for values in columns]
 
     def _events(self, formulas: tuple[Formula, ...], recording: DenseRecording) -> list[Signal]:
         tick, inputs = recording.scale.tick, tuple(recording.columns)

@@ -17,6 +17,7 @@ from rtamt.engine.gate import Gate, alone, in_use
 from rtamt.reference.discrete import ReferenceMonitor, history
 from rtamt.rewrite.horizon import horizon
 from rtamt.signals import arrays
+from rtamt.signals.counting import is_implausible
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -112,6 +113,8 @@ class PythonMonitor:
         """Take one sample with a value for every variable."""
         if set(values) != set(self._names):
             raise Refused("variables")
+        if is_implausible(time):
+            raise Refused("time")
         return self._take(_number(time), {name: _number(values[name]) for name in self._names})
 
     def update_pairs(self, time: float, pairs: Sequence[tuple[str, float]]) -> float | None:

@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from rtamt.signals.datetimes import nanoseconds_of
+
 if TYPE_CHECKING:
     from rtamt.language.formula import Formula
 
@@ -125,4 +127,6 @@ class Explanation:
 def _plain(value: Any) -> Any:
     if isinstance(value, np.datetime64):
         return str(value)
+    if isinstance(value, np.timedelta64):
+        return nanoseconds_of(value)
     return str(value) if isinstance(value, float) and not isfinite(value) else value

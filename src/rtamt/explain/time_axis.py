@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from datetime import datetime
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -18,7 +17,6 @@ from rtamt.reference import dense as dense_reference
 from rtamt.reference import discrete as reference
 from rtamt.rewrite.desugar import desugar
 from rtamt.signals.arrays import TOLERANCE, Recording, is_number, stamps
-from rtamt.signals.ticks import kind_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -116,10 +114,11 @@ class DiscreteTimeline(Timeline):
     def cell(self, at: Any) -> int:
         """See :class:`Timeline`."""
         times = self._recording.times
-        seconds = (
-            stamps([at])[0] if self._recording.dated and isinstance(at, datetime | np.datetime64) else at
-        )
-        if is_number(seconds):
+        try:
+            seconds: Any = stamps([at], self._recording.unit).seconds[0]
+        except StlError:
+            seconds = None
+        if is_number(seconds) and math.isfinite(seconds):
             nearest = int(np.abs(times - float(seconds)).argmin())
             if abs(float(times[nearest]) - float(seconds)) <= TOLERANCE * float(self.period):
                 return nearest
@@ -131,14 +130,11 @@ class DiscreteTimeline(Timeline):
 
     def time(self, cell: int) -> Any:
         """See :class:`Timeline`."""
-        return float(self._recording.times[cell])
+        return self._recording.stamp(cell)
 
     def show(self, cell: int) -> str:
         """See :class:`Timeline`."""
-        seconds = float(self._recording.times[cell])
-        if self._recording.dated:
-            return str(np.datetime64(round(seconds * 1e3), "ms"))
-        return f"{seconds:.15g} s"
+        return self._recording.show(cell)
 
     @property
     def last(self) -> int:
@@ -203,9 +199,7 @@ class DenseTimeline(Timeline):
         """See :class:`Timeline`."""
         scale = self._recording.scale
         try:
-            moments = [at] if scale.kind != "nanoseconds" else np.array([at])
-            kind = "seconds" if scale.kind == "units" else scale.kind
-            found = int(scale.ticks(moments, "at")[0]) - self._start if kind_of(moments) == kind else -1
+            found = int(scale.widened([[at]]).ticks([at], "at")[0]) - self._start
         except (StlError, TypeError, ValueError):
             found = -1
         if 0 <= found <= self._last:
@@ -219,8 +213,7 @@ class DenseTimeline(Timeline):
         """See :class:`Timeline`."""
         if cell >= NEVER // 2:
             return None
-        time = self._recording.scale.times(np.array([cell + self._start], np.int64))[0]
-        return time.item() if self._recording.scale.kind in ("seconds", "nanoseconds") else time
+        return self._recording.scale.time(cell + self._start)
 
     def show(self, cell: int) -> str:
         """See :class:`Timeline`."""

@@ -13,6 +13,7 @@ ns    1/1 000 000 000
 from __future__ import annotations
 
 import re
+from decimal import Decimal
 from fractions import Fraction
 from functools import lru_cache
 from math import isfinite
@@ -29,6 +30,9 @@ if TYPE_CHECKING:
 UNITS: Mapping[str, Fraction] = MappingProxyType(
     {"s": Fraction(1), "ms": Fraction(1, 10**3), "us": Fraction(1, 10**6), "ns": Fraction(1, 10**9)}
 )
+
+#: Digits that people read in a duration.
+_LONGEST = 40
 
 _DURATION = re.compile(r"\s*([^\s/A-Za-z]+(?:[eE][+-]?\d+)?)\s*(?:/\s*(\d+)\s*)?([A-Za-z]*)\s*")
 
@@ -137,5 +141,11 @@ def format_duration(seconds: Fraction) -> str:
         unit, size = next(
             ((u, size) for u, size in UNITS.items() if abs(seconds) >= size), ("ns", UNITS["ns"])
         )
-        return f"{decimal(seconds / size)} {unit}"
+        return f"{_short(seconds / size)} {unit}"
     return f"{decimal(seconds) or seconds} s"
+
+
+def _short(number: Fraction) -> str:
+    """Return a decimal as it is, or six digits of one that has too many to read."""
+    text = str(decimal(number))
+    return text if len(text) <= _LONGEST else f"{Decimal(number.numerator) / Decimal(number.denominator):.6g}"

@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rtamt.signals.arrays import Recording
-from rtamt.signals.ticks import date_of
+from rtamt.signals.arrays import Recording, stamps
 
 if TYPE_CHECKING:
     from rtamt.engine.dense_evaluate import DenseRecording
@@ -31,7 +30,7 @@ class Clock:
         if isinstance(recording, Recording):
             first = float(recording.times[0])
             if recording.dated:
-                return Clock(date_of(first), recording)
+                return Clock(recording.stamps[0], recording)
             return Clock(first if abs(first) > _FAR else 0.0, recording)
         start = recording.scale.times(np.array([recording.start], np.int64))[0]
         if isinstance(start, np.datetime64):
@@ -43,9 +42,8 @@ class Clock:
         """Return times, as signals and explanations tell them, as positions."""
         recording = self.recording
         if isinstance(recording, Recording):
-            zero = recording.times[0] if self.origin else 0.0
-            seconds: FloatArray = np.subtract(times, zero, dtype=np.float64)
-            return seconds
+            seconds = stamps(times, recording.unit).seconds
+            return seconds - recording.times[0] if self.origin else seconds
         return self.ticked(recording.scale.ticks(times, "time"))
 
     def ticked(self, ticks: Any) -> FloatArray:

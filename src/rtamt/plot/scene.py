@@ -178,7 +178,7 @@ class _Painter:
     def _recorded(self, name: str) -> Line:
         trace, clock = self._result.trace, self._clock
         if isinstance(trace, Recording):
-            return Line(name, clock.positions(trace.times), trace.columns[name], trace.units.get(name, ""))
+            return Line(name, clock.positions(trace.stamps), trace.columns[name], trace.units.get(name, ""))
         ticks, values = trace.columns[name]
         positions = clock.ticked(ticks)
         if positions[-1] < clock.end:  # the last value holds

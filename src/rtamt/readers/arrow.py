@@ -138,8 +138,7 @@ def _raw(column: Any) -> Raw:
         column = column.cast("float64")
     missing = column.is_null().to_numpy() if column.null_count else None
     if kind.startswith(("timestamp", "date", "duration")):
-        raw = column.to_numpy()
-        return raw.astype(f"{raw.dtype.kind}8[ns]")  # type: ignore[no-any-return]
+        return column.to_numpy()  # type: ignore[no-any-return]
     if kind == "bool":
         column = column.cast("uint8")
     elif kind in {"null", "string", "large_string"} or not _is_plain(column):

@@ -342,6 +342,8 @@ def _one_kind(channels: dict[str, Channel], source: str) -> dict[str, Channel]:
     return {
         name: c
         if c.times is None or c.times.dtype.kind != "f"
-        else Channel(TimeScale(NANOSECOND, "seconds").ticks(c.times, name), c.values, c.unit, c.column)
+        else dataclasses.replace(
+            c, times=TimeScale(NANOSECOND, "seconds").ticks(c.times, name).view("m8[ns]")
+        )
         for name, c in channels.items()
     }

@@ -16,8 +16,6 @@ from rtamt.readers.source import Field, Source, Table
 from rtamt.signals import dense_arrays
 from rtamt.signals.arrays import TIME
 from rtamt.signals.stamps import is_stamps, split_unit
-from rtamt.signals.ticks import kind_of as kind_of_times
-from rtamt.signals.ticks import sequence_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -98,9 +96,7 @@ def _dict(data: Mapping[Any, Any]) -> Source:
         for name, samples in data.items():
             times, values = dense_arrays.split(samples, str(name))
             columns = {TIME: _array(times, TIME), str(name): _array(values, str(name))}
-            # As everywhere: integers of numpy are nanoseconds, other numbers seconds.
-            in_ns = kind_of_times(sequence_of(times, TIME)) == "nanoseconds"
-            shared = table_of(columns, TIME, {TIME: "ns"} if in_ns else None)
+            shared = table_of(columns, TIME)
             assert shared.clock is not None
             # Each has a column of stamps of its own, which nobody asks for by its name.
             tables.append(Table(shared.fields[1:], shared.load, clock=shared.clock))
@@ -145,7 +141,7 @@ def _pandas_column(series: Any) -> Raw:
     missing = series.isna().to_numpy()
     kind = series.dtype.kind
     if kind in "Mm":
-        return series.to_numpy(dtype=f"{kind}8[ns]")  # type: ignore[no-any-return]
+        return series.to_numpy()  # type: ignore[no-any-return]
     if kind in "fiub":
         values = series.to_numpy(dtype=np.float64, na_value=np.nan) if missing.any() else series.to_numpy()
     else:
@@ -166,10 +162,9 @@ def _polars_column(series: Any) -> Raw:
     kind = type(series.dtype).__name__
     if kind == "Datetime":
         zoned = series if series.dtype.time_zone is None else series.dt.convert_time_zone("UTC")
-        return zoned.dt.replace_time_zone(None).to_numpy().astype("datetime64[ns]")  # type: ignore[no-any-return]
+        return zoned.dt.replace_time_zone(None).to_numpy()  # type: ignore[no-any-return]
     if kind in {"Date", "Duration"}:
-        raw = series.to_numpy()
-        return raw.astype(f"{raw.dtype.kind}8[ns]")  # type: ignore[no-any-return]
+        return series.to_numpy()  # type: ignore[no-any-return]
     if not series.dtype.is_numeric() and kind != "Boolean":
         return np.array([*series.to_list(), None], dtype=object)[:-1]
     if missing is None and kind != "Decimal":

@@ -7,11 +7,13 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import UsageError
+from rtamt.language.units import check_unit
 from rtamt.readers import frames
 from rtamt.readers.assemble import Choice, chunks_of, trace_of
 from rtamt.readers.formats import FORMATS, format_of
 from rtamt.readers.sql import is_url, open_sql
 from rtamt.settings import positive_period
+from rtamt.signals.arrays import TIME
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
@@ -25,6 +27,7 @@ def read(
     source: Any,
     *,
     time: str | None = None,
+    time_unit: str | None = None,
     columns: Iterable[str] | None = None,
     names: Mapping[str, str] | None = None,
     units: Mapping[str, str] | None = None,
@@ -43,9 +46,10 @@ def read(
     are to be called otherwise than their columns, from the name to the column:
     ``{"v": "battery_status[1].voltage_v"}``. ``time``: the column of time stamps, ``""`` for none; by
     default the one called time, t, timestamp, stamp or datetime, perhaps with a unit (``Time [ms]``,
-    ``time_ms``), else the one column of dates. ``units``: from column to unit, where the source does
-    not say it; ``"time"`` stands for the column of time stamps, which otherwise are seconds, or, where
-    they are integers too large for that, ms, us or ns since 1970. ``sheet``: of an Excel workbook that
+    ``time_ms``), else the one column of dates. ``time_unit``: of stamps that are numbers (``"s"``, ``"ms"``,
+    ``"us"``, ``"ns"``); by default what their column says, else seconds, or, where they are too large
+    for that, ms, us or ns since 1970. ``units``: from column to unit, where the source does not say it.
+    ``sheet``: of an Excel workbook that
     has several. ``recover``: read an MCAP file that was cut off or is damaged up to the damage, an
     error otherwise; flight logs are always read that far.
 
@@ -76,13 +80,14 @@ def read(
       v  2 samples, 0 s to 2 s
     """
     with opened(source, sheet, query, recover) as found:
-        return trace_of(found, choice(time, columns, names, units, skip_nan, hold_for))
+        return trace_of(found, choice(time, columns, names, units, skip_nan, hold_for, time_unit))
 
 
 def scan(
     source: Any,
     *,
     time: str | None = None,
+    time_unit: str | None = None,
     columns: Iterable[str] | None = None,
     names: Mapping[str, str] | None = None,
     units: Mapping[str, str] | None = None,
@@ -110,7 +115,7 @@ def scan(
     with opened(source, sheet, query) as found:
         if any(table.chunks is None for table in found.tables) or len(found.tables) != 1:
             raise UsageError(f"{found.name} cannot be read in chunks; read it whole with rtamt.read")
-        yield from chunks_of(found, choice(time, columns, names, units, skip_nan, hold_for))
+        yield from chunks_of(found, choice(time, columns, names, units, skip_nan, hold_for, time_unit))
 
 
 def choice(
@@ -120,6 +125,7 @@ def choice(
     units: Mapping[str, str] | None,
     skip_nan: Iterable[str] = (),
     hold_for: Duration | None = None,
+    time_unit: str | None = None,
 ) -> Choice:
     """Return the arguments of :func:`read` as one record."""
     for argument, given in (("columns", columns), ("skip_nan", skip_nan)):
@@ -129,7 +135,7 @@ def choice(
         time,
         None if columns is None else tuple(columns),
         dict(names or {}),
-        dict(units or {}),
+        dict(units or {}) if time_unit is None else {**(units or {}), TIME: check_unit(time_unit)},
         tuple(skip_nan),
         None if hold_for is None else positive_period(hold_for, "longest time for which a value is held"),
     )

@@ -16,6 +16,7 @@ from rtamt.errors import TraceError, shown
 from rtamt.language.units import UNITS
 from rtamt.readers.dates import EXAMPLE, DateError, Dates, is_date
 from rtamt.signals.arrays import is_number
+from rtamt.signals.datetimes import in_nanoseconds
 from rtamt.signals.stamps import is_stamps, may_be_stamps, unit_called, unit_of
 from rtamt.signals.ticks import NANOSECOND, TimeScale
 
@@ -81,7 +82,7 @@ class Clock:
         self._unit = self._named_unit(said)
         #: The first stamp, where its size told the unit.
         self._first: Any = None
-        #: Whether numbers become int64 nanoseconds, and not float64 seconds; None before the first.
+        #: Whether numbers become timedelta64 of nanoseconds, and not float64 seconds; None before the first.
         self._exact: bool | None = None
         #: Reads objects that are dates, once the first of them was one.
         self._dates: Dates | None = None
@@ -99,16 +100,18 @@ class Clock:
         return unit
 
     def times(self, raw: Raw, before: int = 0) -> NDArray[Any]:
-        """Return the next stamps as times: float64 seconds, int64 nanoseconds or datetime64[ns].
+        """Return the next stamps as times: float64 seconds, timedelta64[ns] or datetime64[ns].
 
         ``before``: how many stamps there were before. Raises :class:`TraceError` at one that is missing
         or is no time.
         """
         raw = self._plain(raw, before)
+        if raw.dtype.kind in "mM":
+            raw = in_nanoseconds(raw, self.field.column, self._source)
         if raw.dtype.kind == "M":
-            return raw.astype("datetime64[ns]")
+            return raw
         if raw.dtype.kind == "m":
-            raw, unit = raw.astype("timedelta64[ns]").astype(np.int64), "ns"
+            raw, unit = raw.view(np.int64), "ns"
         else:
             unit = self._unit_of(raw, before)
         size = UNITS[unit]
@@ -121,9 +124,10 @@ class Clock:
             return raw.astype(np.float64) / float(1 / size)
         named = f"'{self.field.column}'"
         try:
-            return TimeScale(NANOSECOND, "units", size).ticks(raw, self.field.column)
+            ticks = TimeScale(NANOSECOND, "units", size).ticks(raw, self.field.column)
         except TraceError as error:
             raise TraceError(str(error).replace(named, f"{named} of {self._source}", 1)) from None
+        return ticks.view("m8[ns]")
 
     def _unit_of(self, raw: Raw, before: int) -> str:
         """Return the unit of numbers, by the size of the first where nothing names it; all must be alike."""
@@ -140,7 +144,7 @@ class Clock:
                 raise TraceError(
                     f"the time column '{self.field.column}' of {self._source} is {self._first} at first and "
                     f"{raw[i]} at sample {before + i}, too large for {unit}: give its unit ({', '.join(UNITS)}) with "
-                    f"units={{'time': ...}}, or on the command line --time-unit"
+                    f"time_unit=, or on the command line --time-unit"
                 )
         return unit
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from decimal import Decimal
 from fractions import Fraction
 
 from rtamt.errors import BoundError, SpecificationError
@@ -24,7 +25,8 @@ def check_bounds(
 
     ``what`` is how the message calls the period: in dense time it is the resolution.
 
-    >>> from fractions import Fraction
+    >>> from decimal import Decimal
+    from fractions import Fraction
     >>> from rtamt.language.parser import parse_formula
     >>> check_bounds(parse_formula("always[0:1] x"), Fraction(1, 10))
     """
@@ -50,13 +52,18 @@ def check_bounds(
                 )
             if count > most:
                 raise BoundError(
-                    f"{format_duration(bound)} is {float(count):.3g} {steps} of {format_duration(period)}, "
+                    f"{format_duration(bound)} is {_short(count)} {steps} of {format_duration(period)}, "
                     f"more than can be counted; shorten the bound, leave it open with inf, or choose {longer}",
                     text,
                     node.interval.span or node.span,
                 )
     if not discrete:
         _check_sums(spelled_out(formula), period, text)
+
+
+def _short(count: int) -> str:
+    """Return a number that may be beyond every double with three digits."""
+    return f"{float(count):.3g}" if count < 10**300 else f"{Decimal(count):.3g}"
 
 
 def _check_sums(formula: Formula, tick: Fraction, text: str | None) -> None:
@@ -72,7 +79,7 @@ def _check_sums(formula: Formula, tick: Fraction, text: str | None) -> None:
             far += node.interval.begin if node.interval.end is None else node.interval.end
             if far > farthest:
                 raise BoundError(
-                    f"the bounds from here inwards add up to {format_duration(far)}, {float(far / tick):.3g} ticks "
+                    f"the bounds from here inwards add up to {format_duration(far)}, {_short(int(far / tick))} ticks "
                     f"of {format_duration(tick)}, more than can be counted; shorten them, or choose a coarser "
                     f"resolution",
                     text,

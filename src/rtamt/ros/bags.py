@@ -132,7 +132,7 @@ def _free(topic: str, taken: set[str]) -> str:
 
 def _points(signal: Signal) -> Sequence[tuple[int, float]]:
     times = signal.times
-    exact = times if times.dtype.kind == "i" else np.rint(times.astype(np.float64) * 1e9)
+    exact = times if times.dtype.kind in "mM" else np.rint(times.astype(np.float64) * 1e9)
     return list(zip(exact.astype(np.int64).tolist(), signal.values.tolist(), strict=True))
 
 

@@ -6,8 +6,6 @@ from collections import deque
 from fractions import Fraction
 from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
-import numpy as np
-
 from rtamt.engine.dense_monitor import DenseMonitor
 from rtamt.engine.monitor import Monitor
 from rtamt.engine.online import Watched
@@ -310,9 +308,9 @@ class DenseWatch(Watch):
         super().__init__(outputs, topic_of, None)
         first, *_ = every = [watched for pair in self.formulas for watched in pair]
         backend = outputs[0].specification.backend
-        # A tick is a nanosecond, so that what comes out needs no conversion.
+        # Stamps are integers of nanoseconds, and so are ticks: what comes out needs no conversion.
         self._monitor: DenseMonitor = DenseMonitor(
-            first.formula, text=first.text, resolution=NANOSECOND, backend=backend, watch=every
+            first.formula, text=first.text, resolution=NANOSECOND, backend=backend, watch=every, unit="ns"
         )
         self._start: int | None = None
         self._held: deque[tuple[int, dict[str, float]]] = deque(maxlen=HELD)
@@ -340,8 +338,8 @@ class DenseWatch(Watch):
         return {name: values[name] for name in self.names if name in values}
 
     def _update(self, stamp: int, values: dict[str, float], wanted: Container[str] | None) -> list[Record]:
-        # An integer of numpy means nanoseconds. All outputs are known up to the same instant.
-        if not len(self._monitor.update(np.int64(stamp), **values)):
+        # All outputs are known up to the same instant.
+        if not len(self._monitor.update(stamp, **values)):
             return []
         self._points = points = self._monitor.points()
         if self._start is None:

@@ -24,7 +24,8 @@ from rtamt.rtamt_api.formulas import Formulas
 from rtamt.rtamt_api.online import OnlineSpecification, require_past
 from rtamt.rtamt_api.options import Language, Semantics, sampling
 from rtamt.signals import arrays
-from rtamt.signals.ticks import NANOSECOND, TimeScale, all_integers
+from rtamt.signals.counting import all_integers
+from rtamt.signals.ticks import NANOSECOND, TimeScale
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Sequence

@@ -126,7 +126,7 @@ class StlDiscreteTimeOfflineSpecification(ExplainedSpecification, DiscreteTimeSp
         """Return the stamps as given, and the trace in seconds, whatever the gaps between its samples."""
         keys = dataset if isinstance(dataset, Mapping) else getattr(dataset, "columns", ())
         columns = {key: dataset[key] for key in keys}
-        stamps = arrays.stamps(columns[TIME]) if TIME in columns else None
+        stamps = arrays.array(columns[TIME], TIME) if TIME in columns else None
         if stamps is not None:
             columns[TIME] = stamps * float(UNITS[self._unit])
         trace = arrays.trace(columns or dataset, self._inputs, self._period, tuple(columns), inf)

@@ -6,18 +6,19 @@ import dataclasses
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass
-from datetime import datetime
+from datetime import datetime, timedelta
 from fractions import Fraction
 from functools import reduce
 from math import isnan
 from numbers import Real
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from rtamt.errors import TraceError, UsageError, did_you_mean, shown, with_article
-from rtamt.language.units import format_duration
-from rtamt.signals.datetimes import nanoseconds_of
+from rtamt.language.units import UNITS, check_unit, decimal, format_duration
+from rtamt.signals.counting import all_integers, integers, quotients, refuse_implausible
+from rtamt.signals.datetimes import has_length, in_nanoseconds, nanoseconds_of, no_length, out_of_reach
 from rtamt.signals.stamps import check_frame
 
 if TYPE_CHECKING:
@@ -32,6 +33,9 @@ TIME = "time"
 
 #: How far, as a fraction of the period, the gap between two samples may be from the period.
 TOLERANCE = 0.1
+
+
+_MOMENTS = (datetime, timedelta, np.datetime64, np.timedelta64)
 
 
 class Clocked(ABC):
@@ -59,9 +63,10 @@ class Clocked(ABC):
 
 
 class Signal:
-    """Values over time: ``times`` in seconds, ``values``; float64 arrays of the same length.
+    """Values over time: ``times`` and ``values``, arrays of the same length.
 
-    In dense time a point for every change and one at the end; times come as the caller gave them.
+    Times come as the caller gave them: float64 seconds, numbers in the unit of ``time_unit=``, datetime64 or
+    timedelta64. In dense time there is a point for every change and one at the end.
     The times of a discrete recording are shared by its signals and cannot be written.
 
     >>> import rtamt
@@ -78,7 +83,7 @@ class Signal:
 
     @property
     def times(self) -> NDArray[Any]:
-        """When: seconds, or in dense time what the caller tells time in."""
+        """When: seconds, or what else the caller tells time in."""
         return self._times
 
     @property
@@ -94,7 +99,7 @@ class Signal:
         >>> monitor.update(0.5, x=5.0).points()
         [(0.5, 2.0)]
         """
-        times = self.times.tolist() if self.times.dtype.kind in "fi" else self.times
+        times = self.times.tolist() if self.times.dtype.kind in "fi" else self.times  # dates stay numpy's
         return list(zip(times, self.values.tolist(), strict=True))
 
     def __len__(self) -> int:
@@ -108,18 +113,56 @@ class Signal:
 class Recording:
     """A finished recording in discrete time: one column of ``len(times)`` samples for each variable."""
 
+    #: Seconds; of dates, since 1970.
     times: FloatArray
     columns: Mapping[str, FloatArray]
     period: Fraction
     #: Whether the period was taken from the time stamps.
     inferred: bool = False
-    #: Whether the time stamps were dates; ``times`` are seconds since 1970 then.
-    dated: bool = False
+    #: The time stamps as the caller tells time; None where that is in seconds.
+    told: NDArray[Any] | None = None
+    #: Of time stamps that are numbers of something other than seconds.
+    unit: str | None = None
     #: The units of the variables whose source tells them.
     units: Mapping[str, str] = dataclasses.field(default_factory=dict)
 
     def __len__(self) -> int:
         return len(self.times)
+
+    @property
+    def stamps(self) -> NDArray[Any]:
+        """The time stamps as the caller tells time."""
+        return self.times if self.told is None else self.told
+
+    @property
+    def dated(self) -> bool:
+        """Whether the time stamps are dates."""
+        return self.stamps.dtype.kind == "M"
+
+    def stamp(self, sample: int) -> Any:
+        """Return a time stamp: a number of Python, or a date or duration of numpy."""
+        return plain(self.stamps[sample])
+
+    def show(self, sample: int) -> str:
+        """Return a time stamp for a sentence."""
+        stamp = self.stamp(sample)
+        if isinstance(stamp, np.datetime64):
+            return str(stamp.astype("M8[ms]")) if stamp == stamp.astype("M8[ms]") else str(stamp)
+        if isinstance(stamp, np.timedelta64):
+            return f"{decimal(int(stamp.astype(np.int64)) * UNITS['ns'])} s"
+        return f"{stamp:.15g} s" if self.unit is None else f"{stamp} {self.unit}"
+
+
+class Stamps(NamedTuple):
+    """Time stamps in seconds, and as the caller tells time: in the same seconds, in a unit, as dates or durations."""
+
+    seconds: FloatArray
+    told: NDArray[Any]
+
+
+def plain(time: Any) -> Any:
+    """Return a number of numpy as one of Python; a date stays, which Python may not have."""
+    return time if isinstance(time, np.datetime64 | np.timedelta64) else time.item()
 
 
 def trace(
@@ -128,32 +171,35 @@ def trace(
     period: Fraction | None,
     known: Collection[str] = (),
     tolerance: float = TOLERANCE,
+    unit: str | None = None,
 ) -> Recording:
     """Normalise a finished recording; the caller's data is never changed.
 
     ``data``: a mapping, or anything with columns (a pandas or polars frame), from variable to n
     numbers; ``"time"`` (n stamps, seconds or datetimes) is optional. ``names`` are the variables the
     formula reads, ``known`` others that may be there. Without a ``period`` (seconds) it is taken
-    from the stamps. Raises :class:`TraceError`.
+    from the stamps. ``unit``: of stamps that are numbers, by default seconds. Raises :class:`TraceError`.
     """
     check_tolerance(tolerance)
-    times, columns, n = columns_of(data, names, known)
+    stamped, columns, n = columns_of(data, names, known, unit)
     if n == 0:
         raise TraceError("the trace is empty: give at least one sample")
-    inferred = False
-    if times is None:
+    inferred, told = False, None
+    if stamped is None:
         period = period or Fraction(1)
         times = np.arange(n, dtype=np.float64)
         if period != 1:
             times *= float(period)
     else:
+        times = stamped.seconds
+        told = None if stamped.told is times else stamped.told
         check_increasing(times)
         inferred = period is None
         period = period or infer_period(times)
         check_regular(times, period, tolerance)
     for name, column in columns.items():
         check_numbers(name, column, times)
-    return Recording(times, columns, period, inferred, _dated(data), units_of(data))
+    return Recording(times, columns, period, inferred, told, unit, units_of(data))
 
 
 def units_of(data: Any) -> Mapping[str, str]:
@@ -161,20 +207,11 @@ def units_of(data: Any) -> Mapping[str, str]:
     return data.units if isinstance(data, Clocked) else {}
 
 
-def _dated(data: Any) -> bool:
-    """Tell whether the time stamps of a recording are dates."""
-    if data.__class__ is dict and TIME not in data:
-        return False
-    if isinstance(data, Clocked):
-        return isinstance(data.start, np.datetime64)
-    first = next(iter(data[TIME]), None) if TIME in _keys(data) else None
-    return isinstance(first, datetime | np.datetime64)
-
-
 def columns_of(
-    data: Any, names: Sequence[str], known: Collection[str] = ()
-) -> tuple[FloatArray | None, dict[str, FloatArray], int]:
+    data: Any, names: Sequence[str], known: Collection[str] = (), unit: str | None = None
+) -> tuple[Stamps | None, dict[str, FloatArray], int]:
     """Return the time stamps (None if there are none), a column for each name, and their common length."""
+    require_no_unit(data, unit)
     if data.__class__ is not dict and isinstance(data, Clocked):
         data = data.on_one_clock(names)
     keys = _keys(data)
@@ -183,8 +220,19 @@ def columns_of(
     else:
         check_frame(data, TIME, names)
     columns = {name: _column(data, keys, name) for name in names}
-    times = stamps(data[TIME]) if TIME in keys else None
+    times = stamps(data[TIME], unit) if TIME in keys else None
     return times, columns, _common_length(columns, times, data, keys)
+
+
+def require_no_unit(data: Any, unit: str | None) -> None:
+    """Raise :class:`UsageError` where a unit of time is given for data that knows its own."""
+    if unit is not None:
+        check_unit(unit)
+        if isinstance(data, Clocked):
+            raise UsageError(
+                "a trace that was read knows its unit of time: give time_unit= to rtamt.read, "
+                "not to what takes the trace"
+            )
 
 
 def is_mapping(data: Any) -> bool:
@@ -229,41 +277,74 @@ def number_of(value: Any) -> float | None:
     """Return a real number as a double; None for what is none, or too large for one."""
     if value.__class__ is float:
         return value
-    if not isinstance(value, (Real, np.bool_)):
-        return None
+    if isinstance(value, np.timedelta64) or not isinstance(value, (Real, np.bool_)):
+        return None  # numpy derives its durations from its integers
     try:
         return float(value)
     except (OverflowError, TypeError):
         return None
 
 
-def stamps(values: Any) -> FloatArray:
-    """Return time stamps as seconds: numbers are seconds, datetimes count from 1970."""
-    raw = np.asarray(values)
-    if raw.dtype.kind == "O" and any(isinstance(value, datetime) for value in raw.flat):
-        raw = _since_1970(raw)
+def stamps(values: Any, unit: str | None = None) -> Stamps:
+    """Return time stamps in seconds and as they are told: numbers are seconds, or of ``unit``; dates count from 1970.
+
+    Raises :class:`TraceError` for what is no time; a time that is none (NaN, NaT) is NaN seconds.
+    """
+    try:
+        raw = np.ma.asanyarray(values)
+    except (TypeError, ValueError):  # lists of different lengths, for numpy
+        raise _not_numbers(values, TIME, 0) from None
+    if raw.dtype.kind == "O" and any(isinstance(value, _MOMENTS) for value in raw.flat):
+        raw = _moments(raw)
     if raw.dtype.kind in "mM":
-        missing = np.isnat(raw)
-        nanoseconds = raw.astype(f"{raw.dtype.kind}8[ns]").astype(np.int64)
-        raw = np.where(missing, np.nan, nanoseconds / 1e9)
-    return array(raw, TIME)
-
-
-def _since_1970(raw: NDArray[Any]) -> FloatArray:
-    """Return datetimes as seconds; those without a time zone as they stand, as in dense time."""
-    zones: dict[bool, int] = {}
-    seconds = np.full(raw.size, np.nan)
-    for i, value in enumerate(raw.flat):
-        if not isinstance(value, datetime):
+        if unit is not None:
             raise TraceError(
-                f"'{TIME}' is {shown(value)} at sample {i}, expected a datetime like the others",
+                f"'{TIME}' is {raw.flat[0]} at sample 0, expected a number of {unit}, which is what time_unit= says",
+                variable=TIME,
+                index=0,
+            )
+        told = in_nanoseconds(np.ma.asanyarray(raw).filled(np.array("NaT", raw.dtype)[()]), TIME)
+        seconds = quotients(told.view(np.int64), 1, 10**9)
+        seconds[np.isnat(told)] = np.nan
+        return Stamps(seconds, told)
+    numbers = array(values, TIME)
+    if unit is None:
+        refuse_implausible(raw, TIME)
+        return Stamps(numbers, numbers)
+    size = UNITS[unit]
+    if not raw.size or (raw.dtype.kind in "iuO" and all_integers(raw)):
+        try:
+            whole = integers(raw)
+        except OverflowError:
+            raise TraceError(f"'{TIME}' has an integer that 64 bits cannot hold", variable=TIME) from None
+        return Stamps(quotients(whole, *size.as_integer_ratio()), whole)
+    return Stamps(numbers / float(1 / size), numbers)
+
+
+def _moments(raw: NDArray[Any]) -> NDArray[Any]:
+    """Return dates, or times since a start, in nanoseconds; without a time zone as they stand, as in dense time."""
+    zones: dict[bool, int] = {}
+    kinds: dict[str, int] = {}
+    found = np.full(raw.size, np.iinfo(np.int64).min)  # NaT
+    for i, value in enumerate(raw.flat):
+        kind = "m" if isinstance(value, timedelta | np.timedelta64) else "M"
+        kinds.setdefault(kind, i)
+        if not isinstance(value, _MOMENTS) or len(kinds) > 1:
+            raise TraceError(
+                f"'{TIME}' is {shown(value)} at sample {i}, expected a {'datetime' if 'M' in kinds else 'timedelta'} "
+                f"like the others",
                 variable=TIME,
                 index=i,
             )
+        if isinstance(value, np.timedelta64) and not has_length(value):
+            raise no_length(TIME, i)
         moment = nanoseconds_of(value)
-        if moment is not None:
-            zones.setdefault(value.tzinfo is not None, i)
-            seconds[i] = moment / 1e9
+        if moment is None:
+            continue
+        if abs(moment) >= 2**63:
+            raise out_of_reach(TIME, i, value, kind)
+        zones.setdefault(getattr(value, "tzinfo", None) is not None, i)
+        found[i] = moment
     if len(zones) > 1:
         raise TraceError(
             f"'{TIME}' has a time zone at sample {zones[True]} and none at sample {zones[False]}: "
@@ -271,7 +352,7 @@ def _since_1970(raw: NDArray[Any]) -> FloatArray:
             variable=TIME,
             index=max(zones.values()),
         )
-    return seconds
+    return found.view(f"{next(iter(kinds))}8[ns]")
 
 
 def check_numbers(name: str, column: FloatArray, times: FloatArray, first: int = 0) -> None:
@@ -436,11 +517,11 @@ def field_of(value: Any, head: str, path: Sequence[str], index: int) -> Any:
 
 
 def _common_length(
-    columns: Mapping[str, FloatArray], times: FloatArray | None, data: Any, keys: Sequence[str]
+    columns: Mapping[str, FloatArray], times: Stamps | None, data: Any, keys: Sequence[str]
 ) -> int:
     lengths = {name: len(column) for name, column in columns.items()}
     if times is not None:
-        lengths = {TIME: len(times), **lengths}
+        lengths = {TIME: len(times.seconds), **lengths}
     if not lengths:  # a formula without variables still needs instants
         lengths = {key: len(data[key]) for key in keys}
     if len(set(lengths.values())) > 1:

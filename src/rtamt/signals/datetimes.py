@@ -1,16 +1,104 @@
-"""Dates and times of Python, numpy and pandas as nanoseconds, without a double in between."""
+"""Dates and times of Python, numpy and pandas as integers, without a double in between."""
 
 from __future__ import annotations
 
 from datetime import datetime, timedelta, timezone
-from typing import Any
+from fractions import Fraction
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from rtamt.errors import TraceError
 from rtamt.language.units import UNITS
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
 
 _EPOCH = datetime(1970, 1, 1)
 _ZONED_EPOCH = _EPOCH.replace(tzinfo=timezone.utc)
+
+#: Seconds in each unit in which numpy counts time; years and months have no fixed length.
+_LENGTHS = MappingProxyType(
+    {
+        **{
+            unit: Fraction(seconds) for unit, seconds in (("W", 604800), ("D", 86400), ("h", 3600), ("m", 60))
+        },
+        **UNITS,
+        **{unit: Fraction(1, 10**digits) for unit, digits in (("ps", 12), ("fs", 15), ("as", 18))},
+    }
+)
+
+#: Years and months further from 1970 than this are beyond every tick; as days they would wrap.
+_FARTHEST_YEAR = 10**12
+
+
+def has_length(time: Any) -> bool:
+    """Tell whether the unit of a ``timedelta64`` (an array or one) is as long everywhere, and is there at all.
+
+    >>> has_length(np.timedelta64(5, "ms")), has_length(np.timedelta64(5)), has_length(np.timedelta64(5, "Y"))
+    (True, False, False)
+    """
+    return np.datetime_data(time.dtype)[0] in _LENGTHS
+
+
+def counts_of(dated: NDArray[Any]) -> tuple[NDArray[np.int64], Fraction]:
+    """Return dates or times since a start, none of them NaT, as integers, and the seconds in 1 of them.
+
+    Raises :class:`OverflowError` for years that days cannot count.
+
+    >>> counts_of(np.array(["1970-01-02"], "M8[h]"))
+    (array([24]), Fraction(3600, 1))
+    """
+    unit, count = np.datetime_data(dated.dtype)
+    if unit not in _LENGTHS:
+        if len(dated) and max(abs(int(n)) for n in dated.view(np.int64)) * count > _FARTHEST_YEAR:
+            raise OverflowError
+        dated, unit, count = dated.astype("M8[D]"), "D", 1
+    return dated.view(np.int64), _LENGTHS[unit] * count
+
+
+def in_nanoseconds(dated: NDArray[Any], name: str, source: str = "") -> NDArray[Any]:
+    """Return dates or times since a start, of any unit, in nanoseconds.
+
+    ``name``: of what has them, for messages; ``source``: where it was read. Raises :class:`TraceError` for what
+    64 bits cannot hold, such as the year 9999, and for timedeltas without a unit.
+    """
+    kind, where = dated.dtype.kind, f" of {source}" if source else ""
+    if kind == "m" and not has_length(dated):
+        raise no_length(name, 0)
+    target = f"{kind}8[ns]"
+    present = dated[~np.isnat(dated)]
+    try:
+        numbers, length = counts_of(present)
+        most = min(2**63 - 1, int((2**63 - 1) * UNITS["ns"] / length))
+        wrong = np.flatnonzero((numbers > most) | (numbers < -most))
+    except OverflowError:
+        wrong = np.array([0])
+    if not len(wrong):
+        return dated.astype(target)
+    index = int(np.flatnonzero(~np.isnat(dated))[wrong[0]])
+    raise out_of_reach(name, index, dated[index], kind, where)
+
+
+def out_of_reach(name: str, index: int, time: Any, kind: str, where: str = "") -> TraceError:
+    """Return the error for a time beyond the nanoseconds that 64 bits hold."""
+    held = "dates from 1677-09-22 to 2262-04-11" if kind == "M" else "292 years"
+    return TraceError(
+        f"'{name}'{where} is {time} at sample {index}, which nanoseconds in 64 bits cannot reach: they hold {held}",
+        variable=name,
+        index=index,
+    )
+
+
+def no_length(name: str, index: int) -> TraceError:
+    """Return the error for a ``timedelta64`` that does not say how long it is."""
+    return TraceError(
+        f"the time of '{name}' is a timedelta64 without a unit of fixed length at sample {index}: "
+        f"give it one, such as np.timedelta64(5, 'ms')",
+        variable=name,
+        index=index,
+    )
 
 
 def nanoseconds_of(time: Any) -> int | None:
@@ -27,10 +115,8 @@ def nanoseconds_of(time: Any) -> int | None:
     if isinstance(time, np.datetime64 | np.timedelta64):
         if np.isnat(time):
             return None
-        unit, _ = np.datetime_data(time.dtype)
-        size = "ns" if unit in ("ns", "ps", "fs", "as") else "us" if unit in ("us", "ms") else "s"
-        code = time.dtype.kind
-        return int(time.astype(f"{code}8[{size}]").astype(np.int64)) * int(UNITS[size] / UNITS["ns"])
+        numbers, length = counts_of(np.array([time]))
+        return round(int(numbers[0]) * length / UNITS["ns"])
     since: timedelta = time
     if isinstance(time, datetime):
         since = time - (_EPOCH if time.tzinfo is None else _ZONED_EPOCH)

@@ -53,7 +53,7 @@ class TickSignal(Signal):
         if rate is None or len(self._events) != 16:
             return super().points()
         tick, value = _ONE(self._events)
-        return [(tick / rate, value)]
+        return [(tick / rate, value)]  # of two integers: rounded once
 
     @property
     def times(self) -> NDArray[Any]:

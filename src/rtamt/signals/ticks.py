@@ -1,34 +1,53 @@
 """Dense time is counted in int64 ticks; here is how a caller's times become ticks, and ticks times again.
 
-====================================================  ==================  =========================
-what a time is                                        kind                what comes back
-====================================================  ==================  =========================
-a number of Python, a float of numpy                  ``"seconds"``       float64
-an integer of numpy: alone, in a list, in an array    ``"nanoseconds"``   int64
-a datetime, ``numpy.datetime64``, ``pandas.Timestamp``  ``"datetimes"``   datetime64
-the same with a time zone                             ``"zoned"``         datetime64, in UTC
-a timedelta, ``numpy.timedelta64``                    ``"timedeltas"``    timedelta64
-a number in a unit that was agreed on before          ``"units"``         int where whole, else float
-====================================================  ==================  =========================
+======================================================  ==================  ==========================
+what a time is                                          kind                what comes back
+======================================================  ==================  ==========================
+a number, of seconds                                    ``"seconds"``       float64
+an integer, of the unit in ``time_unit=``               ``"whole"``         int64 where whole, else float64
+any other number, of the unit in ``time_unit=``         ``"numbers"``       float64
+a datetime, ``numpy.datetime64``, ``pandas.Timestamp``  ``"datetimes"``     datetime64
+the same with a time zone                               ``"zoned"``         datetime64, in UTC
+a timedelta, ``numpy.timedelta64``                      ``"timedeltas"``    timedelta64
+a number of RTAMT's classes, in their unit              ``"units"``         int where whole, else float
+======================================================  ==================  ==========================
+
+Numbers are seconds whatever holds them: lists, arrays, frames, integers or not. Counted once on the way in and
+divided once on the way out, both rounded to the nearest: a double that has not more digits than a tick comes back
+as it was, and so does every other double that is the nearest to its own tick.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from datetime import datetime, timedelta
 from fractions import Fraction
-from numbers import Integral, Rational
+from numbers import Rational
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from rtamt.errors import TraceError, shown
-from rtamt.language.units import UNITS, decimal, format_duration
+from rtamt.language.units import UNITS, check_unit, decimal, format_duration
 from rtamt.signals import arrays
-from rtamt.signals.datetimes import nanoseconds_of
+from rtamt.signals.counting import (
+    DOUBLES,
+    FARTHEST,
+    NEAR,
+    all_integers,
+    counted,
+    integers,
+    quotients,
+    refuse_implausible,
+    rescaled,
+    tick_of,
+)
+from rtamt.signals.datetimes import counts_of, has_length, nanoseconds_of, no_length
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from numpy.typing import NDArray
 
     from rtamt.signals.arrays import FloatArray
@@ -38,25 +57,23 @@ if TYPE_CHECKING:
 #: One tick, unless the caller chooses another: a nanosecond.
 NANOSECOND = UNITS["ns"]
 
-#: Stamps stay this far from the ends of int64, so that bounds can be added to them.
-FARTHEST = 2**62
-
-#: Up to here a product of doubles is within half a tick of the truth.
-NEAR = 2**51
+#: What :func:`kinds_of` calls a ``timedelta64`` that does not say how long it is.
+NO_LENGTH = "no length"
 
 #: How messages call the kinds.
 KINDS = MappingProxyType(
     {
         "seconds": "seconds",
-        "nanoseconds": "nanoseconds (integers of numpy)",
         "datetimes": "datetimes",
         "zoned": "datetimes with a time zone",
         "timedeltas": "timedeltas",
-        "units": "numbers",
+        **dict.fromkeys(("whole", "numbers", "units"), "numbers"),
     }
 )
 
-_OF_DTYPE = {"i": "nanoseconds", "u": "nanoseconds", "M": "datetimes", "m": "timedeltas"}
+_OF_DTYPE = {"M": "datetimes", "m": "timedeltas"}
+#: The kinds whose times are numbers in a unit that was agreed on.
+_IN_UNITS = ("whole", "numbers", "units")
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,22 +81,49 @@ class TimeScale:
     """How the caller tells time, and how long a tick is.
 
     ``tick``: seconds. ``kind``: a row of the module's table. ``unit``: seconds in one of the caller's
-    numbers, for the kinds that are numbers of Python.
+    numbers, for the kinds that are numbers.
     """
 
     tick: Fraction
     kind: str
     unit: Fraction = UNITS["s"]
-    #: ``tick / unit`` as two doubles: an online answer must not wait for fractions.
-    _ratio: tuple[float, float] = field(init=False, repr=False, compare=False)
+    #: ``tick / unit``: an online answer must not wait for fractions.
+    _ratio: tuple[int, int] = field(init=False, repr=False, compare=False)
     #: By what ticks are divided to be the caller's times; None where they are told in another way.
-    rate: float | None = field(init=False, repr=False, compare=False)
+    rate: int | None = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
         numerator, denominator = (self.tick / self.unit).as_integer_ratio()
-        object.__setattr__(self, "_ratio", (float(numerator), float(denominator)))
-        divided = self.kind == "seconds" and numerator == 1
-        object.__setattr__(self, "rate", float(denominator) if divided else None)
+        object.__setattr__(self, "_ratio", (numerator, denominator))
+        divided = self.kind in ("seconds", "numbers") and numerator == 1
+        object.__setattr__(self, "rate", denominator if divided else None)
+
+    @staticmethod
+    def of(tick: Fraction, times: Iterable[Any], unit: str | None = None) -> TimeScale:
+        """Return how some sequences of times tell time; ``unit``: what the caller says of their numbers."""
+        if unit is None:
+            return TimeScale(tick, next((kind_of(some) for some in times if len(some)), "seconds"))
+        return TimeScale(
+            tick, "whole" if all(map(all_integers, times)) else "numbers", UNITS[check_unit(unit)]
+        )
+
+    @staticmethod
+    def in_ticks(tick: Fraction) -> TimeScale:
+        """Return the scale of times that are ticks already."""
+        return TimeScale(tick, "whole", tick)
+
+    def widened(self, times: Iterable[Any]) -> TimeScale:
+        """Return the scale that tells these times as well: after numbers that are no integers, no time is one."""
+        if self.kind == "whole" and not all(map(all_integers, times)):
+            return replace(self, kind="numbers")
+        return self
+
+    @property
+    def ticks_in_1(self) -> int | None:
+        """The ticks in one of the caller's numbers, where a double can multiply with them, else None."""
+        numerator, denominator = self._ratio
+        quick = self.kind in ("seconds", "numbers", "whole") and numerator == 1 and denominator < DOUBLES
+        return denominator if quick else None
 
     def ticks(self, times: Any, name: str, first: int = 0) -> TickArray:
         """Return times as ticks, rounded to the nearest; raise :class:`TraceError` where that cannot be.
@@ -94,16 +138,16 @@ class TimeScale:
                 if found is not None:
                     return found
             self._require_kind(times, name, first)
-            if self.kind in ("seconds", "units"):
+            if self.kind == "seconds" or self.kind in _IN_UNITS:
                 return self._of_numbers(times, name, first)
-            if self.kind == "nanoseconds":
-                return _rescaled(_integers(times), NANOSECOND / self.tick)
             return self._of_dates(times, name, first)
         except OverflowError:
             raise self.too_far(name) from None
 
     def _plain(self, numbers: FloatArray) -> TickArray | None:
         """Return the ticks of seconds that do not decrease and are near 0; None where there are others."""
+        if max(self.tick.as_integer_ratio()) >= DOUBLES:
+            return None
         rate, whole = float(self.tick.denominator), float(self.tick.numerator)
         bound = NEAR * whole / rate
         # In order, all are as near as the first and the last; NaN is in no order.
@@ -116,10 +160,12 @@ class TimeScale:
 
     def _require_kind(self, times: Any, name: str, first: int) -> None:
         kinds = kinds_of(times)
-        if self.kind == "units":
-            kinds = {("seconds" if kind == "nanoseconds" else kind): i for kind, i in kinds.items()}
+        if NO_LENGTH in kinds:
+            raise no_length(name, first + kinds[NO_LENGTH])
+        if self.kind in _IN_UNITS:
             if set(kinds) - {"seconds"}:
                 raise self._not_numbers(times, name, first)
+            return
         if self.kind == "zoned" and isinstance(times, np.ndarray) and times.dtype.kind == "M":
             return  # as times() tells them: in UTC
         if len(kinds) > 1:
@@ -131,7 +177,7 @@ class TimeScale:
                 index=first + j,
             )
         for kind in kinds:
-            if self.kind not in ("units", kind):
+            if self.kind != kind:
                 raise TraceError(
                     f"'{name}' tells time in {KINDS[kind]}, but others in {KINDS[self.kind]}: "
                     f"use one of them for all",
@@ -142,47 +188,58 @@ class TimeScale:
         ratio = self.unit / self.tick
         if not _are_numbers(times):
             raise self._not_numbers(times, name, first)
+        if self.kind == "seconds":
+            refuse_implausible(times, name, first)
         exact = _exact(times)
         if exact.all():
-            return _rescaled(_integers(times), ratio)
-        numbers = np.asarray(times).astype(np.float64)
+            return rescaled(integers(times), ratio)
+        with np.errstate(over="ignore"):  # a longdouble may be beyond every double
+            numbers = np.asarray(times).astype(np.float64)
         finite = np.isfinite(numbers)
         if not finite.all():
             i = int((~finite).argmax())
-            raise not_finite(name, first + i, float(numbers[i]))
-        ticks = _counted(numbers, ratio)
+            raise not_finite(name, first + i, times[i])
+        ticks = counted(numbers, ratio)
         if exact.any():  # an integer is exact, whatever stands beside it
-            ticks[exact] = _rescaled(
-                _integers([t for t, is_exact in zip(times, exact.tolist(), strict=True) if is_exact]), ratio
+            ticks[exact] = rescaled(
+                integers([t for t, is_exact in zip(times, exact.tolist(), strict=True) if is_exact]), ratio
             )
         return ticks
 
     def _of_dates(self, times: Any, name: str, first: int) -> TickArray:
-        dated = np.asarray(times)
-        if dated.dtype.kind not in "mM":
+        dtypes = {getattr(time, "dtype", None) for time in times} if isinstance(times, list) else set()
+        if isinstance(times, list) and (len(dtypes) != 1 or None in dtypes):
+            # Each by itself: numpy would round, or wrap, what it brings to one unit.
             moments = [nanoseconds_of(time) for time in times]
             missing = [i for i, moment in enumerate(moments) if moment is None]
             if missing:
                 raise not_finite(name, first + missing[0], times[missing[0]])
-            return _rescaled(np.array(moments, dtype=object), NANOSECOND / self.tick)
+            return rescaled(np.array(moments, dtype=object), NANOSECOND / self.tick)
+        dated = np.asarray(times)
+        if dated.dtype.kind == "O":
+            return self._of_dates(list(times), name, first)
         absent = np.isnat(dated)
         if absent.any():
             i = int(absent.argmax())
             raise not_finite(name, first + i, dated[i])
-        unit, count = np.datetime_data(dated.dtype)
-        if unit not in UNITS:  # days and longer in seconds, which are exact; picoseconds and shorter in ns
-            unit, count = ("ns" if unit in ("ps", "fs", "as") else "s"), 1
-            dated = dated.astype(f"{dated.dtype.kind}8[{unit}]")
-        return _rescaled(dated.astype(np.int64), UNITS[unit] * count / self.tick)
+        numbers, length = counts_of(dated)
+        return rescaled(numbers, length / self.tick)
 
     def _not_numbers(self, times: Any, name: str, first: int) -> TraceError:
         i, time = next((i, time) for i, time in enumerate(times) if not arrays.is_number(time))
-        expected = "a number" if self.kind == "units" else "a number of seconds or a datetime"
+        expected = "a number" if self.kind == "units" else f"a number of {self._unit_name}"
+        if self.kind == "seconds":
+            expected += " or a datetime"
         return TraceError(
             f"the time of '{name}' is {shown(time)} at sample {first + i}, expected {expected}",
             variable=name,
             index=first + i,
         )
+
+    @property
+    def _unit_name(self) -> str:
+        unit = next((name for name, size in UNITS.items() if size == self.unit), "s")
+        return "seconds" if unit == "s" else unit
 
     def too_far(self, name: str) -> TraceError:
         """Return the error for a time that ticks cannot hold."""
@@ -194,27 +251,40 @@ class TimeScale:
 
     def times(self, ticks: TickArray) -> NDArray[Any]:
         """Return ticks as the caller tells time, in the type that the module's table says."""
-        if self.kind == "seconds":
-            # One division by a whole number rounds once: 300 ms come back as 0.3.
-            numerator, denominator = self._ratio
-            return (ticks if numerator == 1 else ticks * numerator) / denominator
+        if self.kind in ("seconds", "numbers"):
+            return quotients(ticks, *self._ratio)
+        if self.kind == "whole":
+            return self._whole(ticks)
         if self.kind == "units":
-            scaled = [tick * self.tick / self.unit for tick in ticks.tolist()]
-            numbers = [int(t) if t.denominator == 1 else float(t) for t in scaled]
-            return np.array(numbers, dtype=object)
-        if self.kind == "nanoseconds":
-            return _rescaled(ticks, self.tick / NANOSECOND)
+            return np.array([self._in_units(tick) for tick in ticks.tolist()], dtype=object)
         farthest = int(np.abs(ticks).max(initial=0)) * self.tick
         fits = [unit for unit, size in UNITS.items() if farthest / size < FARTHEST]
         unit = fits[-1]  # the finest that holds them
         dtype = f"{'m' if self.kind == 'timedeltas' else 'M'}8[{unit}]"
-        return _rescaled(ticks, self.tick / UNITS[unit]).astype(dtype)
+        return rescaled(ticks, self.tick / UNITS[unit]).astype(dtype)
+
+    def _whole(self, ticks: TickArray) -> NDArray[Any]:
+        """Return ticks as integers, unless there are instants between two of them."""
+        numerator, denominator = self._ratio
+        if self.tick < self.unit and (ticks % denominator).any():
+            return quotients(ticks, numerator, denominator)
+        try:
+            return rescaled(ticks, Fraction(numerator, denominator), 2**63)
+        except OverflowError:
+            return quotients(ticks, numerator, denominator)
+
+    def _in_units(self, tick: int) -> int | float:
+        time = tick * self.tick / self.unit
+        return int(time) if time.denominator == 1 else float(time)
+
+    def time(self, tick: int) -> Any:
+        """Return one tick as the caller tells time: a number of Python, or a date or duration of numpy."""
+        times = self.times(np.array([tick], dtype=np.int64))
+        return times[0] if times.dtype.kind in "mM" else times.tolist()[0]
 
     def show(self, tick: int) -> str:
         """Return a tick for a message."""
-        time = self.times(np.array([tick], dtype=np.int64))[0]
-        if self.kind == "nanoseconds":
-            return f"{time} ns"
+        time = self.time(tick)
         if self.kind in ("datetimes", "zoned"):
             return str(time)
         unit = next((name for name, size in UNITS.items() if size == self.unit), "s")
@@ -230,7 +300,10 @@ def kind_of(times: Any) -> str:
 def kinds_of(times: Any) -> dict[str, int]:
     """Return the kinds of times that there are, each with the index of its first; what is no time is a number."""
     if isinstance(times, np.ndarray) and times.dtype.kind != "O":
-        return {_OF_DTYPE.get(times.dtype.kind, "seconds"): 0} if len(times) else {}
+        kind = _OF_DTYPE.get(times.dtype.kind, "seconds")
+        if kind == "timedeltas" and not has_length(times):
+            kind = NO_LENGTH
+        return {kind: 0} if len(times) else {}
     found: dict[str, int] = {}
     plain = (float, int)
     for i, time in enumerate(times):
@@ -241,10 +314,10 @@ def kinds_of(times: Any) -> dict[str, int]:
 
 
 def _kind_of_one(time: Any) -> str:
-    if isinstance(time, np.timedelta64 | timedelta):
-        return "timedeltas"  # before integers: numpy derives its own from them
-    if isinstance(time, np.integer):
-        return "nanoseconds"
+    if isinstance(time, np.timedelta64):
+        return "timedeltas" if has_length(time) or np.isnat(time) else NO_LENGTH
+    if isinstance(time, timedelta):
+        return "timedeltas"
     if isinstance(time, datetime):
         return "datetimes" if time.tzinfo is None else "zoned"
     return "datetimes" if isinstance(time, np.datetime64) else "seconds"
@@ -262,11 +335,6 @@ def sequence_of(times: Any, name: str) -> Any:
     return np.asarray(times) if is_array and not zoned else list(times)
 
 
-def all_integers(times: Any) -> bool:
-    """Tell whether every one of some times is an integer, of Python or of numpy."""
-    return all(isinstance(time, Integral) for time in times)
-
-
 def _are_numbers(times: Any) -> bool:
     if isinstance(times, np.ndarray) and times.dtype.kind in "fiub":
         return True
@@ -281,78 +349,6 @@ def _exact(times: Any) -> NDArray[np.bool_]:
     if types <= {float} or types <= {int}:
         return np.full(len(times), types != {float})
     return np.array([isinstance(time, Rational) for time in times])
-
-
-def _integers(times: Any) -> NDArray[Any]:
-    """Return integers and fractions as an array of int64 if that can be, else of objects."""
-    if isinstance(times, np.ndarray) and times.dtype.kind == "i":
-        return times.astype(np.int64)
-    if set(map(type, times)) <= {int}:
-        return np.array(times, dtype=np.int64)
-    return np.array([Fraction(int(time.numerator), int(time.denominator)) for time in times], dtype=object)
-
-
-def _rescaled(numbers: NDArray[Any], ratio: Fraction) -> TickArray:
-    """Return whole numbers times a ratio, rounded to the nearest (ties to even), without a double in between.
-
-    Raises :class:`OverflowError` beyond :data:`FARTHEST`.
-    """
-    if not len(numbers):
-        return np.empty(0, np.int64)
-    largest = max(abs(int(numbers.min())), abs(int(numbers.max())))
-    if largest * ratio >= FARTHEST:
-        raise OverflowError
-    if numbers.dtype == np.object_ or largest * ratio.numerator >= FARTHEST:
-        return np.array([round(Fraction(number) * ratio) for number in numbers.tolist()], dtype=np.int64)
-    if ratio.denominator == 1:
-        return np.array(numbers * ratio.numerator, dtype=np.int64)
-    whole, rest = np.divmod(numbers * ratio.numerator, ratio.denominator)
-    twice = 2 * rest
-    up = (twice > ratio.denominator) | ((twice == ratio.denominator) & (whole % 2 == 1))
-    return np.array(whole + up, dtype=np.int64)
-
-
-def _counted(numbers: FloatArray, ratio: Fraction) -> TickArray:
-    """Return finite doubles times a ratio, rounded to the nearest; far from 0 as :func:`tick_of` does."""
-    with np.errstate(over="ignore"):
-        scaled = np.rint(numbers * float(ratio.numerator) / float(ratio.denominator))
-    far = np.abs(scaled) >= NEAR
-    if not far.any():
-        return scaled.astype(np.int64)
-    if np.abs(scaled).max() >= FARTHEST:
-        raise OverflowError
-    ticks = scaled.astype(np.int64)
-    if ratio.denominator != 1:
-        return ticks
-    rate = ratio.numerator
-    whole = np.trunc(numbers)
-    rest = numbers - whole
-    exact = np.rint(rest * rate).astype(np.int64)
-    for grid in reversed(_grids(rate)):
-        steps = np.rint(rest * grid)
-        exact = np.where(whole + steps / grid == numbers, steps.astype(np.int64) * (rate // grid), exact)
-    ticks[far] = (whole.astype(np.int64) * rate + exact)[far]
-    return ticks
-
-
-def tick_of(number: float, rate: int) -> int:
-    """Return a number times the ticks in 1, far from 0: the tick of the shortest decimal that prints it.
-
-    There doubles are further apart than ticks. So that 1700000000.1 is one tenth after a whole second,
-    and not 99 999 905 ns, which would miss every bound of 100 ms by a hair.
-    """
-    whole = int(number)
-    rest = number - whole
-    for grid in _grids(rate):
-        steps = round(rest * grid)
-        if whole + steps / grid == number:
-            return whole * rate + steps * (rate // grid)
-    return whole * rate + round(rest * rate)
-
-
-def _grids(rate: int) -> tuple[int, ...]:
-    # Stamps may be as much as 1 024 ticks apart from the next double, so three digits are in doubt.
-    return (rate // 1000, rate // 100, rate // 10) if rate % 1000 == 0 else ()
 
 
 def date_of(seconds: float) -> np.datetime64:

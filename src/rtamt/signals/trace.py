@@ -18,7 +18,7 @@ import numpy as np
 
 from rtamt.errors import TraceError, UsageError, did_you_mean
 from rtamt.language.units import duration
-from rtamt.signals.arrays import TIME, Clocked, Signal
+from rtamt.signals.arrays import TIME, Clocked, Signal, stamps
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator, Mapping, Sequence
@@ -37,9 +37,9 @@ HOW = ("hold", "linear")
 class Channel:
     """One signal of a trace.
 
-    ``times``: n strictly increasing stamps, float64 seconds, int64 nanoseconds or datetime64[ns];
-    None where the source has none. ``values``: n numbers, float64. ``unit``: of the values, as the
-    source writes it. ``column``: what the source calls the signal.
+    ``times``: n strictly increasing stamps, float64 seconds, or, where a double cannot hold them,
+    timedelta64[ns], or datetime64[ns]; None where the source has none. ``values``: n numbers, float64.
+    ``unit``: of the values, as the source writes it. ``column``: what the source calls the signal.
     """
 
     times: Times | None
@@ -182,7 +182,7 @@ class Trace(Clocked):
     # ---- for the engine --------------------------------------------------------------------------
 
     def on_one_clock(self, names: Collection[str]) -> dict[str, Any]:
-        """Return what discrete time reads: n values for each name, and ``"time"`` in seconds.
+        """Return what discrete time reads: n values for each name, and ``"time"``.
 
         Raises :class:`TraceError` where the signals do not share a clock.
         """
@@ -192,7 +192,7 @@ class Trace(Clocked):
         result: dict[str, Any] = {name: channel.values for name, channel in channels.items()}
         times = next((channel.times for channel in clocks.values()), None)
         if times is not None:
-            return {TIME: in_seconds(times), **result}
+            return {TIME: times, **result}
         return result or {name: channel.values for name, channel in self._channels.items()}
 
     def on_own_clocks(self, names: Collection[str]) -> dict[str, tuple[Times, FloatArray]]:
@@ -335,20 +335,18 @@ def _passed_over(name: str, places: NDArray[np.intp], count: int) -> list[str]:
 
 def in_seconds(times: Times) -> FloatArray:
     """Return times as float64 seconds; datetimes count from 1970."""
-    if times.dtype.kind == "M":
-        times = times.astype("datetime64[ns]").astype(np.int64)
-    return times / 1e9 if times.dtype.kind in "iu" else np.asarray(times, dtype=np.float64)
+    return stamps(times).seconds
 
 
 def show_time(time: Any) -> str:
     """Return one time for people: seconds, nanoseconds or a date.
 
-    >>> show_time(np.float64(2.5)), show_time(np.int64(7))
+    >>> show_time(np.float64(2.5)), show_time(np.timedelta64(7, "ns"))
     ('2.5 s', '7 ns')
     """
     if isinstance(time, np.datetime64):
         return str(time).rstrip("0").rstrip(".") if "." in str(time) else str(time)
-    return f"{time} ns" if isinstance(time, np.integer) else f"{time:.12g} s"
+    return f"{time.astype(np.int64)} ns" if isinstance(time, np.timedelta64) else f"{time:.12g} s"
 
 
 def _extent(channel: Channel) -> str:
@@ -361,9 +359,9 @@ def _extent(channel: Channel) -> str:
 
 def _exact(time: Any) -> Fraction:
     """Return a time in seconds: a float means the shortest decimal that prints it."""
-    if isinstance(time, np.datetime64):
-        return Fraction(int(time.astype("datetime64[ns]").astype(np.int64)), 10**9)
-    return Fraction(int(time), 10**9) if isinstance(time, np.integer) else Fraction(repr(float(time)))
+    if isinstance(time, np.datetime64 | np.timedelta64):
+        return Fraction(int(time.astype(np.int64)), 10**9)
+    return Fraction(repr(float(time)))
 
 
 def _grid(start: Fraction, step: Fraction, count: int, dtype: np.dtype[Any]) -> Times:
@@ -380,7 +378,7 @@ def _grid(start: Fraction, step: Fraction, count: int, dtype: np.dtype[Any]) -> 
             f"the period {step} s is no whole number of nanoseconds, in which the stamps are counted"
         )
     stamps = int(first) + int(each) * np.arange(count, dtype=np.int64)
-    return stamps.astype("datetime64[ns]") if dtype.kind == "M" else stamps
+    return stamps.astype(dtype)
 
 
 def _plain(gaps: Times) -> FloatArray:

@@ -22,8 +22,6 @@ if TYPE_CHECKING:
     from rtamt.language.formula import Formula
     from rtamt.language.operators import Operator
 
-_NANOSECONDS = 10**9
-
 
 def has_dense_meaning(op: Operator) -> bool:
     """Tell whether an operator means something in dense time, too."""
@@ -67,7 +65,7 @@ def _at(steps: tuple[list[int], list[float]], instants: list[int]) -> list[float
 
 
 def _ticks(trace: dict[str, Any]) -> dict[str, Any]:
-    return {name: (np.asarray(t, np.int64) * _NANOSECONDS, values) for name, (t, values) in trace.items()}
+    return {name: (np.asarray(t, np.int64), values) for name, (t, values) in trace.items()}
 
 
 def _fast_is_the_dense_definition(case: Case, draw: Callable[[Any], Any]) -> None:
@@ -79,7 +77,7 @@ def _fast_is_the_dense_definition(case: Case, draw: Callable[[Any], Any]) -> Non
     got: Any
     try:
         signal = dense_evaluate.evaluate(formula, recording)
-        got = _stepped(signal.times // _NANOSECONDS, signal.values)
+        got = _stepped(signal.times, signal.values)
     except EvaluationError as error:
         check_own_code(error)
         got = None
@@ -108,7 +106,7 @@ def _dense_online_is_offline(case: Case, draw: Callable[[Any], Any]) -> None:
                 assume(False)
                 raise
             for signal in told:
-                times += (signal.times // _NANOSECONDS).tolist()
+                times += signal.times.astype(np.int64).tolist()
                 values += signal.values.tolist()
             if times != sorted(set(times)) or not _same_steps(case, _stepped(times, values), expected):
                 law = f"online and finish is offline, in dense time ({backend})"

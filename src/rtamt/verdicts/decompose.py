@@ -98,7 +98,10 @@ def anchor(formula: Formula) -> Anchored:
 
 
 class _Facts(NamedTuple):
-    """Of a sub-formula: whether it reads a variable, whether it looks ahead, and that through a connective."""
+    """Of a sub-formula: whether it reads a variable or other instants, looks ahead, and that through a connective.
+
+    What reads neither is a constant, which needs no recording.
+    """
 
     reads: bool
     looks_ahead: bool
@@ -113,7 +116,8 @@ def _facts(node: Formula, below: tuple[_Facts, ...]) -> _Facts:
         below_ahead or node.op.tense is Tense.FUTURE or (node.op.definition is None and has_future(node))
     )
     joins = looks_ahead and node.op.tense is Tense.NONE and set(node.op.operands) == {Sort.FORMULA}
-    return _Facts(any(each.reads for each in below), looks_ahead, joins)
+    reads = node.op.tense is not Tense.NONE or any(each.reads for each in below)
+    return _Facts(reads, looks_ahead, joins)
 
 
 def _ahead(node: Formula) -> Leaf:

@@ -12,7 +12,7 @@ from rtamt.language.formula import Const, Var
 from rtamt.language.operators import STL
 from rtamt.rewrite.desugar import desugar
 from rtamt.signals.arrays import Recording
-from rtamt.signals.ticks import TimeScale, kind_of
+from rtamt.signals.ticks import TimeScale
 from rtamt.verdicts.decompose import Anchored, Leaf, anchor
 
 if TYPE_CHECKING:
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from rtamt.language.formula import Formula
     from rtamt.results import Result
-    from rtamt.signals.arrays import Signal
+    from rtamt.signals.arrays import FloatArray
     from rtamt.specification import Specification
 
     Positions = NDArray[np.int64]
@@ -43,18 +43,22 @@ def first_violation(result: Result) -> Any:
         return None
     spec, recording = result.specification, result.trace
     anchored = anchor(spec.judged(spec.formula, "boolean"))
+    discrete = isinstance(recording, Recording)
     unit = recording.period if isinstance(recording, Recording) else recording.scale.tick
-    trackers = [Tracker(leaf, unit, not isinstance(recording, Recording)) for leaf in anchored.leaves]
+    trackers = [Tracker(leaf, unit, not discrete) for leaf in anchored.leaves]
     for tracker in trackers:
         formula = together(tracker.leaf.formula, tuple(recording.columns))
         if isinstance(recording, Recording):
             signal = spec.signal_of(formula, recording)
-            tracker.take(np.arange(len(signal)), signal)
+            tracker.take(np.arange(len(signal)), signal.values)
         else:
             signal = spec.signal_of(formula, settled(recording, formula))
-            tracker.take(ticks_of(signal, unit) - recording.start, signal)
+            tracker.take(signal.times - recording.start, signal.values)
         tracker.finish()
-    return violation_of(spec, anchored, trackers, result.signal.times[0])
+    position = violation_of(spec, anchored, trackers)
+    if isinstance(recording, Recording):
+        return recording.stamp(position)
+    return recording.scale.time(recording.start + position)
 
 
 def together(formula: Formula, names: Sequence[str]) -> Formula:
@@ -67,33 +71,29 @@ def together(formula: Formula, names: Sequence[str]) -> Formula:
     return STL["and"](formula, STL["or"](Const(float("inf")), everything))
 
 
-def ticks_of(signal: Signal, tick: Fraction) -> Positions:
-    """Return the times of a dense robustness signal in ticks."""
-    return TimeScale(tick, kind_of(signal.times)).ticks(signal.times, "robustness")
-
-
 def settled(recording: DenseRecording, formula: Formula) -> DenseRecording:
-    """Return a recording whose last values hold until the past windows of a formula have slid on over them."""
+    """Return a recording, in ticks, whose last values hold until the past windows of a formula have slid over them."""
     end = recording.end + reach(desugar(formula), recording.scale.tick) + 1
     columns = {
         name: (np.append(ticks, end), np.append(values, values[-1]))
         for name, (ticks, values) in recording.columns.items()
     }
-    return DenseRecording(columns, recording.scale)
+    return DenseRecording(columns, TimeScale.in_ticks(recording.scale.tick))
 
 
-def violation_of(spec: Specification, anchored: Anchored, trackers: Sequence[Tracker], first: Any) -> Any:
-    """Return the earliest violation among the parts that must all hold; ``trackers``: of the leaves, in order."""
+def violation_of(spec: Specification, anchored: Anchored, trackers: Sequence[Tracker]) -> int:
+    """Return the earliest position at which one of the parts that must all hold is violated.
+
+    ``trackers``: of the leaves, in order.
+    """
     found = []
     for part in anchored.conjuncts():
         leaf = anchored.leaf(part)
         if leaf is not None and leaf.reduce == "min":
             found += [t.violated for t in trackers if t.leaf == leaf and t.violated is not None]
         elif not value_of(spec, part, trackers) > 0:
-            found.append(first)
-    first_of_all = min(found)
-    # numpy's numbers are for arrays; a date of nanoseconds has no counterpart in Python.
-    return first_of_all if isinstance(first_of_all, np.datetime64) else first_of_all.item()
+            found.append(0)
+    return min(found)
 
 
 def value_of(spec: Specification, skeleton: Formula, trackers: Sequence[Tracker]) -> float:
@@ -114,35 +114,30 @@ class Tracker:
         self._begin = int(leaf.begin / unit)
         self._end = None if leaf.end is None else int(leaf.end / unit)
         self._dense = dense
-        self._first: Any = None
-        self._pending: tuple[int, Any, float] | None = None
+        self._pending: tuple[int, float] | None = None
         self.value = float("-inf") if leaf.reduce == "max" else float("inf")
-        #: The earliest instant of the window at which the value is below 0.
-        self.violated: Any = None
+        #: The earliest position of the window at which the value is below 0.
+        self.violated: int | None = None
 
-    def take(self, positions: Positions, signal: Signal) -> None:
+    def take(self, positions: Positions, values: FloatArray) -> None:
         """Take what became known of the leaf's formula."""
         if not len(positions):
             return
-        times, values = signal.times, signal.values
-        if self._pending is None:
-            self._first = times[0]
-        else:
-            position, time, value = self._pending
-            positions = np.concatenate(([position], positions))
-            times, values = np.concatenate(([time], times)), np.concatenate(([value], values))
-        self._reduce(positions[:-1], positions[1:], times, values)
-        self._pending = (int(positions[-1]), times[-1], float(values[-1]))
+        if self._pending is not None:
+            position, value = self._pending
+            positions, values = np.concatenate(([position], positions)), np.concatenate(([value], values))
+        self._reduce(positions[:-1], positions[1:], values)
+        self._pending = (int(positions[-1]), float(values[-1]))
 
     def finish(self) -> None:
         """Take the last value: nothing comes after it."""
         if self._pending is not None:
-            position, time, value = self._pending
+            position, value = self._pending
             stop = max(position, self._begin) + 1 if self._dense else position + 1
-            self._reduce(np.array([position]), np.array([stop]), np.array([time]), np.array([value]))
+            self._reduce(np.array([position]), np.array([stop]), np.array([value]))
             self._pending = None
 
-    def _reduce(self, starts: Positions, stops: Positions, times: Any, values: Any) -> None:
+    def _reduce(self, starts: Positions, stops: Positions, values: FloatArray) -> None:
         inside = stops > self._begin
         if self._end is not None:
             inside &= starts <= self._end
@@ -158,13 +153,4 @@ class Tracker:
             self.value = max(self.value, float(found.max()))
         below = found < 0
         if self.violated is None and below.any():
-            i = where[int(below.argmax())]
-            late = starts[i] >= self._begin
-            self.violated = times[i] if late else _later(self._first, self.leaf.begin)
-
-
-def _later(time: Any, seconds: Fraction) -> Any:
-    """Return a time some seconds later, in its own kind."""
-    if isinstance(time, np.datetime64):
-        return time + np.timedelta64(int(seconds * 10**9), "ns")
-    return time + (int(seconds * 10**9) if isinstance(time, np.integer) else float(seconds))
+            self.violated = max(int(starts[where[int(below.argmax())]]), self._begin)

@@ -2,7 +2,7 @@
 
 import json
 from dataclasses import FrozenInstanceError, replace
-from datetime import datetime
+from datetime import datetime, timedelta
 
 import numpy as np
 import pytest
@@ -144,7 +144,8 @@ def test_it_cannot_be_changed():
     ("times", "at", "start"),
     [
         ([10.0, 10.1, 10.2], 10.1, 10.1),
-        (np.array([10, 20, 30]) * 10**6, 20_000_000, 20_000_000),
+        (np.array([10, 20, 30]), 20, 20.0),
+        (np.array([10, 20, 30], "m8[ms]"), timedelta(milliseconds=20), np.timedelta64(20_000_000, "ns")),
         (
             np.array(["2024-01-01", "2024-01-02", "2024-01-03"], "datetime64[ns]"),
             datetime(2024, 1, 2),
@@ -179,7 +180,7 @@ def test_an_instant_that_was_not_recorded(at, time, message):
 
 def test_a_recording_of_too_many_ticks():
     data = {"x": (np.array([0, 2**60]), [1, 2])}
-    result = rtamt.parse("x").evaluate(data, time="dense")
+    result = rtamt.parse("x").evaluate(data, time="dense", time_unit="ns")
     with pytest.raises(UsageError) as caught:
         result.explain()
     assert str(caught.value) == (

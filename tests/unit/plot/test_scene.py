@@ -61,7 +61,7 @@ def test_dense_stretches_are_exact_and_the_last_value_holds():
     ("stamps", "origin", "told"),
     [
         (np.array([0, 2, 5], "datetime64[s]"), np.datetime64(0, "ns"), "1970-01-01 00:00:02"),
-        (np.array([10**18, 10**18 + 2 * 10**9, 10**18 + 5 * 10**9]), 1e9, "1000000002 s"),
+        (np.array([10**18, 10**18 + 2 * 10**9, 10**18 + 5 * 10**9], "m8[ns]"), 1e9, "1000000002 s"),
         ([0.0, 2.0, 5.0], 0.0, "2 s"),
         (np.array([0, 2, 5], "timedelta64[s]"), 0.0, "2 s"),
     ],

@@ -58,8 +58,9 @@ def test_signals_begin_where_all_of_them_have_begun():
 
 def test_nanoseconds_since_1970_stay_exact():
     epoch = 1_700_000_000_123_456_789
-    trace = rtamt.read({"x": (np.array([epoch, epoch + 10, epoch + 20]), [0, 1, 2])})
+    trace = rtamt.read({"x": (np.array([epoch, epoch + 10, epoch + 20]), [0, 1, 2])}, time_unit="ns")
     assert trace["x"].times.tolist() == [epoch, epoch + 10, epoch + 20]
+    assert trace["x"].times.dtype == "m8[ns]"
     fine = trace.resample("5ns", how="linear")
     assert fine["x"].times.tolist() == [epoch + 5 * i for i in range(5)]
     assert fine["x"].values.tolist() == [0, 0.5, 1, 1.5, 2]
@@ -103,7 +104,7 @@ def test_without_stamps_samples_are_one_period_apart_and_dense_time_says_what_it
         (lambda _: rtamt.read({"x": [1]}).hold(), "'x' has no time stamps, so that it cannot be put on another clock"),
         (lambda _: rtamt.read({"x": ([0.0], [1]), "y": ([5.0], [1])}).resample(1, how="linear"),
          "the signals have no instant in common"),
-        (lambda _: rtamt.read({"x": (np.array([2**60]), [1])}).resample(Fraction(1, 3)),
+        (lambda _: rtamt.read({"x": (np.array([2**60]), [1])}, time_unit="ns").resample(Fraction(1, 3)),
          "the period 1/3 s is no whole number of nanoseconds, in which the stamps are counted"),
     ],
 )  # fmt: skip
@@ -116,9 +117,9 @@ def test_messages(call, message):
 @given(strategies.dense_traces(), st.sampled_from((1, 2, 3)))
 def test_law_a_resampled_or_held_signal_is_the_dense_one_at_those_instants(trace, step):
     """``hold`` is what dense time means by a signal: the value of the last sample."""
-    read = rtamt.read(trace)
+    read = rtamt.read(trace, time_unit="ns")
     spec = rtamt.parse("x + y")
-    dense = spec.evaluate(trace, time="dense").signal
+    dense = spec.evaluate(trace, time="dense", time_unit="ns").signal
     for held in (read.resample(Fraction(step, 10**9)), read.hold()):
         result = spec.evaluate(held, period="1ns", tolerance=1e9).signal.values
         times = np.rint(held["x"].times * 1e9)

@@ -52,12 +52,15 @@ def test_first_violation_and_values_by_hand(text, violated):
 
 def test_dense_first_violation_is_in_the_times_of_the_recording():
     ns = np.array([10**18, 10**18 + 5, 10**18 + 9])
-    for times, expected in (
-        ([0.0, 0.5, 0.9], 0.5),
-        (ns, 10**18 + 5),
-        (ns.astype("M8[ns]"), ns[1:2].astype("M8[ns]")[0]),
+    for times, unit, expected in (
+        ([0.0, 0.5, 0.9], None, 0.5),
+        (ns, "ns", 10**18 + 5),
+        (ns.astype("M8[ns]"), None, ns[1:2].astype("M8[ns]")[0]),
+        (ns.astype("m8[ns]"), None, ns[1:2].astype("m8[ns]")[0]),
     ):
-        result = rtamt.parse("always(x >= 3)").evaluate({"x": (times, [5, 2, 1])}, time="dense")
+        result = rtamt.parse("always(x >= 3)").evaluate(
+            {"x": (times, [5, 2, 1])}, time="dense", time_unit=unit
+        )
         assert first_violation(result) == expected
     result = rtamt.parse("always[0.2:0.3](x >= 3)").evaluate(
         {"x": ([1.0, 1.1, 1.9], [5, 2, 1])}, time="dense"

@@ -13,7 +13,9 @@ if TYPE_CHECKING:
 def moment(outcome: Outcome) -> str:
     """Return when a requirement was first violated; "" where it was not."""
     when = outcome.first_violation
-    return "" if when is None else when if isinstance(when, str) else f"{when:.12g} s"
+    if when is None or isinstance(when, str):
+        return when or ""
+    return f"{str(when).removesuffix('.0')} s"  # as it was recorded, to its last digit
 
 
 def sentence(outcome: Outcome, requirement: Requirement) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from decimal import Decimal
 from pathlib import PurePath
 from typing import TYPE_CHECKING, Any
 from urllib.parse import quote
@@ -57,7 +58,7 @@ def _rule(requirement: Requirement) -> dict[str, Any]:
 
 
 def _result(outcome: Outcome, number: int, requirements: Sequence[Requirement]) -> dict[str, Any]:
-    violated = outcome.verdict == "violated"
+    violated, when = outcome.verdict == "violated", outcome.first_violation
     result = {
         "ruleId": outcome.requirement,
         "ruleIndex": number,
@@ -67,7 +68,7 @@ def _result(outcome: Outcome, number: int, requirements: Sequence[Requirement]) 
         "locations": [_location(outcome.trace)],
         "properties": {
             "robustness": json_number(outcome.robustness),
-            "firstViolation": outcome.first_violation,
+            "firstViolation": float(when) if isinstance(when, Decimal) else when,
         },
     }
     if os.path.isfile(requirements[number].given):
