@@ -105,7 +105,9 @@ class STLParseException(RTAMTException):
 
 
 def caret(text: str, span: Span) -> str:
-    """Return the line of ``text`` in which ``span`` starts, with carets under the span.
+    r"""Return the line of ``text`` in which ``span`` starts, with carets under the span.
+
+    A line ends at ``\n``, ``\r\n`` or ``\r``.
 
     >>> from rtamt.language.formula import Span
     >>> print(caret("a >= ) b", Span(5, 6)))
@@ -114,11 +116,10 @@ def caret(text: str, span: Span) -> str:
              ^
     """
     start = min(span.start, len(text))
-    line_start = text.rfind("\n", 0, start) + 1
-    line_end = text.find("\n", start)
-    if line_end < 0:
-        line_end = len(text)
-    number = text.count("\n", 0, start) + 1
+    line_start = max(text.rfind("\n", 0, start), text.rfind("\r", 0, start)) + 1
+    ends = [end for end in (text.find("\n", start), text.find("\r", start)) if end >= 0]
+    line_end = min(ends, default=len(text))
+    number = 1 + sum(text.count(end, 0, line_start) for end in "\r\n") - text.count("\r\n", 0, line_start)
     # A machine may have written a line of a million characters: show what lies around the place.
     shown_from = max(line_start, start - _SHOWN) if start - line_start > _SHOWN + 10 else line_start
     shown_to = min(line_end, start + _SHOWN) if line_end - start > _SHOWN + 10 else line_end

@@ -35,7 +35,7 @@ PUNCTUATION = [*"( ) [ ] , : ; = @".split(), NO_ARROW]
 
 _WORD = r"[^\W\d][\w$]*|\$[\w$]*"
 _NAME = rf"(?:{_WORD})(?:\.(?:{_WORD}))*"
-_SKIP = r"\s*(?:(?://[^\n]*|/\*[\s\S]*?\*/)\s*)*"
+_SKIP = r"\s*(?:(?://[^\n\r]*|/\*[\s\S]*?\*/)\s*)*"
 
 #: A name that needs no quotes: a word, or words joined by dots.
 NAME = re.compile(_NAME)
@@ -82,9 +82,10 @@ def _pattern(spellings: tuple[str, ...]) -> re.Pattern[str]:
 
 
 def tokenize(text: str, language: Language) -> Sequence[Token]:
-    """Split a text into tokens; the last one is of kind ``end``.
+    r"""Split a text into tokens; the last one is of kind ``end``.
 
-    What is no part of the language becomes a token of kind ``unknown`` or ``unclosed``, for the
+    A comment that begins with ``//`` ends where its line does: at ``\n``, ``\r\n`` or ``\r``, and at no other
+    character. What is no part of the language becomes a token of kind ``unknown`` or ``unclosed``, for the
     parser to complain about when it gets there. Raises :class:`UsageError` if ``text`` is no text.
 
     >>> from rtamt.language.operators import STL
@@ -101,6 +102,8 @@ def tokenize(text: str, language: Language) -> Sequence[Token]:
             break
         start, end = match.span(group)
         add(new(Token, (kind, text[start:end], start, end)))
+        if kind == "unclosed":
+            break  # nothing can be read after it; each further one would be sought an end for to the last character
     # The end is where the last token ends: a caret under a blank line would tell nobody anything.
     last = tokens[-1].end if tokens else 0
     tokens.append(Token("end", "", last, last))

@@ -65,10 +65,9 @@ def warnings_of(document: Document) -> tuple[LintWarning, ...]:
 
 
 def _nodes(document: Document) -> Iterator[Apply]:
-    for assertion in document.assertions:
-        for node in postorder(assertion.formula):
-            if isinstance(node, Apply):
-                yield node
+    for node in postorder(*(assertion.formula for assertion in document.assertions)):
+        if isinstance(node, Apply):
+            yield node
 
 
 def _operands(document: Document, sort: Sort) -> Iterator[tuple[Formula, str]]:

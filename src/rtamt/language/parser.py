@@ -35,6 +35,10 @@ if TYPE_CHECKING:
     from collections.abc import Collection, Mapping
 
 
+#: Characters of the longest message: what it quotes may be a name or number of any length.
+_LONGEST = 600
+
+
 class FormulaParser:
     """A place in a text, and one method for each production of the grammar."""
 
@@ -49,6 +53,7 @@ class FormulaParser:
         self.used: set[str] = set()
         self._depth = 0
         self._sign = sign(language)
+        self._slashes = scope.slashes  # as many as a declared name has
 
     # ---- moving --------------------------------------------------------------------------------
 
@@ -74,7 +79,9 @@ class FormulaParser:
     def error(
         self, message: str, span: Span, kind: type[SpecificationError] = ParseError
     ) -> SpecificationError:
-        """Return an error that points at the text."""
+        """Return an error that points at the text; of what it quotes from there, a message shows the ends."""
+        if len(message) > _LONGEST:
+            message = f"{message[: _LONGEST // 2]} … {message[-_LONGEST // 2 :]}"
         return kind(message, self.text, span)
 
     # ---- productions ---------------------------------------------------------------------------
@@ -234,12 +241,12 @@ class FormulaParser:
         free = topic and self.scope.variables is None
         last = self._after_slash(first if topic else first + 1)
         ends: list[int] = []
-        while last and (topic or len(ends) < self.scope.slashes):
+        while last and (topic or len(ends) < self._slashes):
             ends.append(last)
             last = self._after_slash(last + 1)
         if free:
             return ends[-1]
-        for end in reversed(ends[: self.scope.slashes]):
+        for end in reversed(ends[: self._slashes]):
             if self.text[start : self.tokens[end].end] in self.scope:
                 return end
         return ends[-1] if topic else first

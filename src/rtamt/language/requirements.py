@@ -28,16 +28,16 @@ class RequirementParser(FormulaParser):
 
     def __init__(self, text: str, language: Language, unit: str, scope: Scope) -> None:
         super().__init__(text, language, unit, scope)
-        self._imports: list[Import] = []
+        self._imports: dict[str, Import] = {}
         self._definitions = dict(scope.definitions)
         self._explicit: list[Requirement] = []
-        self._names: list[Span] = []  # where the name of each stands
+        self._names: dict[str, Span] = {}  # where the name of each stands
 
     def _requirement(self) -> None:
         """``requirement = "require" , id , [ text ] , [ "severity" , word ] , ":" , expression``."""
         start = self.next().start
         span, name = self._id_span(), self._id()
-        if name in self._definitions or any(known.name == name for known in self._explicit):
+        if name in self._definitions or name in self._names:
             raise self.error(f"'{name}' is the name of another requirement or definition", span)
         description = unquoted(self.next().text) if self.token.kind == "quoted" else ""
         severity: Severity = "error"
@@ -58,7 +58,7 @@ class RequirementParser(FormulaParser):
                 formula.span or whole,
             )
         self._explicit.append(Requirement(name, formula, description, severity, True, whole))
-        self._names.append(span)
+        self._names[name] = span
 
     def _id_span(self) -> Span:
         """Return where the name of a requirement stands."""
@@ -80,11 +80,11 @@ class RequirementParser(FormulaParser):
 
     def _requirements(self, assertions: tuple[Assertion, ...]) -> tuple[Requirement, ...]:
         """Return what must hold, in the order of the text."""
-        read = {name for assertion in assertions for name in variables(assertion.formula)}
-        for requirement, span in zip(self._explicit, self._names, strict=True):
-            if requirement.name in read:
+        read = set(variables(*(assertion.formula for assertion in assertions)))
+        for name, span in self._names.items():
+            if name in read:
                 raise self.error(
-                    f"'{requirement.name}' is the name of a variable; give the requirement another one", span
+                    f"'{name}' is the name of a variable; give the requirement another one", span
                 )
         if self._explicit:
             return tuple(self._explicit)
@@ -102,7 +102,7 @@ class RequirementParser(FormulaParser):
 
     def _requires(self) -> bool:
         """Tell whether a requirement stands here: ``require`` where a variable of this name could not."""
-        if not self._word("require") or any(known.name == "require" for known in self._imports):
+        if not self._word("require") or "require" in self._imports:
             return False
         if self._plain_name(1) or self._at(1).kind == "number":
             return self._at(2).text != "="  # a declaration whose type is missing

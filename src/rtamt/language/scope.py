@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from functools import cached_property
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
@@ -32,12 +31,12 @@ class Scope:
         declared = self.variables or ()
         return name in declared or name.split(".", 1)[0] in declared
 
-    @cached_property
+    @property
     def names(self) -> tuple[str, ...]:
         """Every declared name."""
         return (*(self.variables or ()), *self.constants, *self.definitions)
 
-    @cached_property
+    @property
     def slashes(self) -> int:
         """The largest number of slashes in a declared name."""
         return max((name.count("/") for name in self.names), default=0)

@@ -105,7 +105,7 @@ class _DocumentParser(RequirementParser):
             assertions,
             self._requirements(assertions),
             name,
-            tuple(self._imports),
+            tuple(self._imports.values()),
             tuple(self._declarations.values()),
             MappingProxyType(self._topics),
             MappingProxyType(self._constants),
@@ -134,9 +134,9 @@ class _DocumentParser(RequirementParser):
         if not self.accept("import"):
             raise self._expected(f"'import' after 'from {module.text}'")
         name = self._taken("the name of a class")
-        if any(known.name == name.text for known in self._imports):
+        if name.text in self._imports:
             raise self.error(f"'{name.text}' is imported twice", name.span)
-        self._imports.append(Import(module.text, name.text))
+        self._imports[name.text] = Import(module.text, name.text)
         self.accept(";")
         return True
 
@@ -149,10 +149,11 @@ class _DocumentParser(RequirementParser):
         if constant or role:
             self.next()
         type_name = self.next()
-        if type_name.text not in self._types():
-            hint = did_you_mean(type_name.text, self._types())
+        if not self._is_type(type_name):
+            types = (*TYPES, *self._imports)
+            hint = did_you_mean(type_name.text, types)
             raise self.error(
-                f"'{type_name.text}' is not a type{hint or '; types are ' + ', '.join(self._types())}"
+                f"'{type_name.text}' is not a type{hint or '; types are ' + ', '.join(types[:20])}"
                 f"{'' if hint else ', and classes that are imported'}",
                 type_name.span,
             )
@@ -210,8 +211,9 @@ class _DocumentParser(RequirementParser):
         if not self.accept("("):
             raise self._expected("'(' after '@ topic'")
         name = self._taken("the name of a variable")
-        known = [*self._given, *(d.name for d in self._declarations.values() if d.kind == "var")]
-        if name.text not in known:
+        declared = self._declarations.get(name.text)
+        if name.text not in self._given and (declared is None or declared.kind != "var"):
+            known = [*self._given, *(d.name for d in self._declarations.values() if d.kind == "var")]
             hint = did_you_mean(name.text, known) or "; declare it before its topic"
             raise self.error(f"'{name.text}' is not a declared variable{hint}", name.span, NameInFormulaError)
         if name.text in self._topics:
@@ -239,6 +241,8 @@ class _DocumentParser(RequirementParser):
     def _assertions(self, variables: tuple[str, ...]) -> tuple[Assertion, ...]:
         """``assertion , { separator , assertion } , [ ";" ]``."""
         pending = self._names_to_come()
+        names = dict.fromkeys(variables) or None  # of which a member is found at once
+        self._slashes = Scope(self._constants, self._definitions, names).slashes
         found: list[Assertion] = []
         while self.token.kind != "end":
             required = self._requires()
@@ -246,7 +250,7 @@ class _DocumentParser(RequirementParser):
                 raise self.error(
                     "declarations and annotations stand before the first formula", self.token.span
                 )
-            self.scope = Scope(self._constants, self._definitions, variables or None, pending)
+            self.scope = Scope(self._constants, self._definitions, names, pending)
             name: str | None
             if required:
                 self._requirement()
@@ -263,6 +267,7 @@ class _DocumentParser(RequirementParser):
                 if name is not None:
                     del pending[name]
                     self._definitions[name] = formula
+                    self._slashes = max(self._slashes, name.count("/"))
             # A formula without a name may go on in the next line: there the semicolon must be written.
             ended = self._begins_a_line() and (name or self._requires())
             if self.token.kind != "end" and not (self.accept(";") or ended):
@@ -275,7 +280,8 @@ class _DocumentParser(RequirementParser):
         return tuple(found)
 
     def _begins_a_line(self) -> bool:
-        return "\n" in self.text[self.tokens[self.index - 1].end : self.token.start]
+        between = self.text[self.tokens[self.index - 1].end : self.token.start]
+        return "\n" in between or "\r" in between
 
     def _assertion_name(self) -> str | None:
         """``[ name , "=" ]``."""
@@ -297,7 +303,7 @@ class _DocumentParser(RequirementParser):
         return {n: f"'{n}' is only defined further down; move its definition up" for n in names}
 
     def _check_new(self, name: str, token: Token) -> None:
-        if name in self._definitions or any(known.name == name for known in self._explicit):
+        if name in self._definitions or name in self._names:
             raise self.error(f"'{name}' is defined twice", token.span)
         if name in self._constants:
             raise self.error(f"'{name}' is a constant already", token.span)
@@ -309,12 +315,12 @@ class _DocumentParser(RequirementParser):
 
     # ---- looking ahead ---------------------------------------------------------------------------
 
-    def _types(self) -> tuple[str, ...]:
-        return (*TYPES, *(known.name for known in self._imports))
+    def _is_type(self, token: Token) -> bool:
+        return token.text in TYPES or token.text in self._imports
 
     def _plain_type(self, ahead: int) -> bool:
         """Tell whether a type and a name stand that far ahead; the name may be ``S``, the type may not."""
-        typed = self._at(ahead).text in self._types() or self._plain_name(ahead)
+        typed = self._is_type(self._at(ahead)) or self._plain_name(ahead)
         return typed and self._at(ahead).kind == "name" and self._at(ahead + 1).kind in ("name", "quoted")
 
     def _declares(self) -> bool:
@@ -324,7 +330,7 @@ class _DocumentParser(RequirementParser):
             return False
         if (first.text in _ROLES or first.text == "const") and self._plain_type(1):
             return True
-        if first.text in self._types():
+        if self._is_type(first):
             return self._at(1).kind in ("name", "quoted")
         # Two names in a row are a declaration of unknown type if no formula could go on after them.
         if self.language.opening(first.text) is not None or not (self._plain_name(0) and self._plain_name(1)):

@@ -58,8 +58,8 @@ def test_comments_and_white_space_are_skipped(text):
 
 def test_what_follows_a_comment_is_never_read_out_of_it():
     assert kinds("x // a\n?") == ["name", "unknown", "end"]
-    assert kinds("x /* a") == ["name", "unclosed", "name", "end"]
-    assert kinds('"x') == ["unclosed", "name", "end"]
+    assert kinds("x /* a") == ["name", "unclosed", "end"]
+    assert kinds('"x') == ["unclosed", "end"]
 
 
 def test_places():
