@@ -27,6 +27,9 @@ WRITTEN = {"s": r"\(s\)", "ms": "ms", "us": "us", "ns": "ns"}
 EPOCH = dt.datetime(2026, 3, 1, 12)
 
 
+ABOUT_CLOCKS = "may hold the time|unit of the|too large"
+
+
 @dataclass(frozen=True)
 class Asked:
     """A table, and how it is read: what the options of the command line say."""
@@ -156,7 +159,7 @@ def streamed(asked):
             return sentence(error)
 
 
-@settings(max_examples=60, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=100, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(asked=tables())
 def test_every_entry_point_reads_a_table_alike_or_rejects_it_alike(asked, tmp_path, capsys, monkeypatch):
     monkeypatch.chdir(tmp_path)
@@ -173,23 +176,15 @@ def test_every_entry_point_reads_a_table_alike_or_rejects_it_alike(asked, tmp_pa
         "polars": evaluated(asked, pl.DataFrame(asked.columns(), strict=False)),
         "arrow": evaluated(asked, pa.Table.from_pandas(frame)),
     }
-    if asked.time == "dense":
-        del answers["chunks"]
     numbers = {name: answer for name, answer in answers.items() if isinstance(answer, float)}
     assert len(set(numbers.values())) <= 1, answers
-    about_clocks = {
-        a
-        for a in answers.values()
-        if isinstance(a, str) and re.search("may hold the time|unit of the|too large", a)
-    }
+    if asked.time == "discrete" and asked.period is None:
+        # A bound may be no multiple of what the monitor assumes, or the stamps are another period apart.
+        del answers["CSV on stdin"], answers["JSON on stdin"]
     missing = any(row[-2] is None for row in asked.rows)
+    about_clocks = {a for a in answers.values() if isinstance(a, str) and re.search(ABOUT_CLOCKS, a)}
     if about_clocks and not missing:
         assert about_clocks == set(answers.values()), answers
-    if not missing and asked.time == "discrete" and asked.period is None:
-        del (
-            answers["CSV on stdin"],
-            answers["JSON on stdin"],
-        )  # they may need --period, as the next test has it
     if not missing:
         assert len(numbers.keys() & answers.keys()) in (0, len(answers)), answers
 
