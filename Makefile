@@ -29,10 +29,13 @@ test: test-python test-cpp test-install ## everything that can be tested
 test-python: $(VENV)/.core $(VENV)/.group-test $(VENV)/.apt ## Python: laws, units, messages, doctests
 	$(RUN) -m pytest
 
-test-cpp: $(VENV)/.group-build ## C++: the core alone, under the address and undefined-behaviour sanitizers
+test-cpp: $(VENV)/.group-build ## C++: the core alone, under the address, undefined-behaviour and thread sanitizers
 	$(WITH_VENV) cmake --preset asan
 	$(WITH_VENV) cmake --build --preset asan
 	$(WITH_VENV) ctest --preset asan --no-tests=error
+	$(WITH_VENV) cmake --preset tsan
+	$(WITH_VENV) cmake --build --preset tsan
+	$(WITH_VENV) ctest --preset tsan --no-tests=error
 
 test-install: $(VENV)/.made ## `pip install .` in an empty environment, and a check with what it installed
 	rm -rf build/install
@@ -90,9 +93,12 @@ fuzz: $(VENV)/.core $(VENV)/.group-test $(VENV)/.group-build ## look for input t
 	@command -v clang++ >/dev/null || { echo "error: make fuzz needs Clang; install it as root: apt-get install clang" >&2; exit 1; }
 	$(WITH_VENV) cmake --preset fuzz
 	$(WITH_VENV) cmake --build --preset fuzz
-	mkdir -p build/fuzz/found
-	build/fuzz/tests/fuzz/fuzz_program build/fuzz/found tests/fuzz/corpus/program -artifact_prefix=build/fuzz/ \
-	    -max_total_time=$(FUZZ_SECONDS) -timeout=10 -rss_limit_mb=1024 -malloc_limit_mb=512 -print_final_stats=1
+	for target in program state; do \
+	    mkdir -p build/fuzz/found/$$target && \
+	    build/fuzz/tests/fuzz/fuzz_$$target build/fuzz/found/$$target tests/fuzz/corpus/$$target \
+	        -artifact_prefix=build/fuzz/ -max_total_time=$(FUZZ_SECONDS) -timeout=10 -rss_limit_mb=1024 \
+	        -malloc_limit_mb=512 -print_final_stats=1 || exit 1; \
+	done
 	$(RUN) -m pytest tests/fuzz --hypothesis-profile=fuzz --timeout=0
 
 clean: ## remove all that was made here, .venv too

@@ -30,6 +30,7 @@ namespace {
 
 constexpr const char* out_of_memory = "There is not enough memory.";
 constexpr const char* no_monitor = "There is no monitor: it was not created.";
+constexpr const char* no_place = "The place for the result is null: pass an address.";
 
 // Calls `work` and answers its status; `say` takes the sentence of a failure.
 template <class Work, class Say>
@@ -76,6 +77,21 @@ template <class Work>
     return undefined && status == RTAMT_OK ? RTAMT_UNDEFINED : status;
 }
 
+// Memory of the caller's that is to hold so many items.
+template <class Item>
+[[nodiscard]] std::span<Item> items(Item* memory, std::size_t count, const char* what) {
+    if (memory == nullptr && count != 0) {
+        throw std::invalid_argument(std::string(what) + " are null: pass the address of " +
+                                    std::to_string(count) + ", or the number 0.");
+    }
+    return {memory, count};
+}
+
+template <class Item>
+void put(Item* place, Item item) noexcept {
+    if (place != nullptr) *place = item;
+}
+
 [[nodiscard]] std::span<const std::uint8_t> bytes(const void* memory, std::size_t size) noexcept {
     return {static_cast<const std::uint8_t*>(memory), memory == nullptr ? 0 : size};
 }
@@ -102,10 +118,13 @@ uint32_t rtamt_abi(void) {
 
 rtamt_status rtamt_create(const void* program, size_t size, rtamt_monitor** monitor, char* message,
                           size_t room) {
-    if (monitor == nullptr) return RTAMT_REFUSED;
+    const auto say = [&](const char* sentence) { copy_message(sentence, message, room); };
+    if (monitor == nullptr) {
+        say(no_place);
+        return RTAMT_REFUSED;
+    }
     *monitor = nullptr;
-    return guarded([&] { *monitor = new rtamt_monitor(bytes(program, size)); },
-                   [&](const char* sentence) { copy_message(sentence, message, room); });
+    return guarded([&] { *monitor = new rtamt_monitor(bytes(program, size)); }, say);
 }
 
 void rtamt_destroy(rtamt_monitor* monitor) { // NOLINT(misc-const-correctness): the C API
@@ -116,56 +135,64 @@ const char* rtamt_message(const rtamt_monitor* monitor) {
     return monitor == nullptr ? no_monitor : monitor->shown;
 }
 
-void rtamt_failure(const rtamt_monitor* monitor, uint32_t* instruction, int64_t* step) {
-    *instruction = monitor->failure.instruction;
-    *step = monitor->failure.step;
+rtamt_status rtamt_failure(const rtamt_monitor* monitor, uint32_t* instruction, int64_t* step) {
+    if (monitor == nullptr) return RTAMT_REFUSED;
+    put(instruction, monitor->failure.instruction);
+    put(step, monitor->failure.step);
+    return RTAMT_OK;
 }
 
 rtamt_domain rtamt_time(const rtamt_monitor* monitor) {
+    if (monitor == nullptr) return RTAMT_NO_DOMAIN;
     return static_cast<rtamt_domain>(monitor->monitor.program().domain);
 }
 
 const char* rtamt_name(const rtamt_monitor* monitor) {
-    return monitor->monitor.metadata().name.c_str();
+    return monitor == nullptr ? nullptr : monitor->monitor.metadata().name.c_str();
 }
 
 const char* rtamt_formula(const rtamt_monitor* monitor) {
-    return monitor->monitor.metadata().formula.c_str();
+    return monitor == nullptr ? nullptr : monitor->monitor.metadata().formula.c_str();
 }
 
-void rtamt_period(const rtamt_monitor* monitor, int64_t* numerator, int64_t* denominator) {
-    *numerator = monitor->monitor.metadata().numerator;
-    *denominator = monitor->monitor.metadata().denominator;
+rtamt_status rtamt_period(const rtamt_monitor* monitor, int64_t* numerator, int64_t* denominator) {
+    if (monitor == nullptr) return RTAMT_REFUSED;
+    put(numerator, monitor->monitor.metadata().numerator);
+    put(denominator, monitor->monitor.metadata().denominator);
+    return RTAMT_OK;
 }
 
 uint32_t rtamt_inputs(const rtamt_monitor* monitor) {
-    return monitor->monitor.program().inputs;
+    return monitor == nullptr ? 0 : monitor->monitor.program().inputs;
 }
 
 uint32_t rtamt_outputs(const rtamt_monitor* monitor) {
+    if (monitor == nullptr) return 0;
     return static_cast<uint32_t>(monitor->monitor.program().outputs.size());
 }
 
 uint32_t rtamt_parameters(const rtamt_monitor* monitor) {
+    if (monitor == nullptr) return 0;
     return static_cast<uint32_t>(monitor->monitor.metadata().parameters.size());
 }
 
 const char* rtamt_input(const rtamt_monitor* monitor, uint32_t input) {
-    return name_in(monitor->monitor.metadata().inputs, input);
+    return monitor == nullptr ? nullptr : name_in(monitor->monitor.metadata().inputs, input);
 }
 
 const char* rtamt_output(const rtamt_monitor* monitor, uint32_t output) {
-    return name_in(monitor->monitor.metadata().outputs, output);
+    return monitor == nullptr ? nullptr : name_in(monitor->monitor.metadata().outputs, output);
 }
 
 const char* rtamt_parameter(const rtamt_monitor* monitor, uint32_t parameter) {
-    const auto& parameters = monitor->monitor.metadata().parameters;
-    return parameter < parameters.size() ? parameters[parameter].name.c_str() : nullptr;
+    if (parameter >= rtamt_parameters(monitor)) return nullptr;
+    return monitor->monitor.metadata().parameters[parameter].name.c_str();
 }
 
 int64_t rtamt_lag(const rtamt_monitor* monitor, uint32_t output) {
+    if (output >= rtamt_outputs(monitor)) return -1;
     const rtamt::Program& program = monitor->monitor.program();
-    return output < program.outputs.size() ? program.instructions[program.outputs[output]].lag : -1;
+    return program.instructions[program.outputs[output]].lag;
 }
 
 double rtamt_parameter_value(const rtamt_monitor* monitor, uint32_t parameter) {
@@ -179,52 +206,66 @@ rtamt_status rtamt_set_parameter(rtamt_monitor* monitor, uint32_t parameter, dou
 
 rtamt_status rtamt_step(rtamt_monitor* monitor, const double* values, size_t count, double* known,
                         size_t outputs) {
-    return attempt(monitor, [&](Monitor& self) { self.step({values, count}, {known, outputs}); });
+    return attempt(monitor, [&](Monitor& self) {
+        self.step(items(values, count, "The values of the sample"),
+                  items(known, outputs, "The places for the outputs"));
+    });
 }
 
 rtamt_status rtamt_push(rtamt_monitor* monitor, const rtamt_sample* samples, size_t count) {
-    return attempt(monitor, [&](Monitor& self) { self.push({samples, count}); });
+    return attempt(monitor,
+                   [&](Monitor& self) { self.push(items(samples, count, "The samples")); });
 }
 
 rtamt_status rtamt_finish(rtamt_monitor* monitor) {
     return attempt(monitor, [](Monitor& self) { self.finish(); });
 }
 
-void rtamt_reset(rtamt_monitor* monitor) {
-    if (monitor != nullptr) monitor->monitor.reset();
+rtamt_status rtamt_reset(rtamt_monitor* monitor) {
+    return attempt(monitor, [](Monitor& self) { self.reset(); });
 }
 
 size_t rtamt_told(const rtamt_monitor* monitor, uint32_t output, const int64_t** steps,
                   const double** values) {
     if (output >= rtamt_outputs(monitor)) return 0;
     const rtamt::dense::Events told = monitor->monitor.runner().told(output);
-    *steps = told.times;
-    *values = told.values;
+    put(steps, told.times);
+    put(values, told.values);
     return told.count;
 }
 
 int rtamt_known_until(const rtamt_monitor* monitor, uint32_t output, int64_t* step) {
+    if (monitor == nullptr) return -1;
     if (output >= rtamt_outputs(monitor)) return 0;
     const auto until = monitor->monitor.runner().known_until(output);
-    if (until) *step = *until;
+    if (until) put(step, *until);
     return until ? 1 : 0;
 }
 
 int64_t rtamt_sample_count(const rtamt_monitor* monitor) {
-    return monitor->monitor.samples();
+    return monitor == nullptr ? -1 : monitor->monitor.samples();
 }
 
 rtamt_status rtamt_clone(rtamt_monitor* monitor, rtamt_monitor** copy) {
-    return attempt(monitor, [&](Monitor& self) { *copy = new rtamt_monitor(self); });
+    return attempt(monitor, [&](Monitor& self) {
+        if (copy == nullptr) throw std::invalid_argument(no_place);
+        *copy = nullptr;
+        *copy = new rtamt_monitor(self);
+    });
 }
 
 rtamt_status rtamt_save(rtamt_monitor* monitor, void* state, size_t room, size_t* size) {
     return attempt(monitor, [&](Monitor& self) {
+        if (size == nullptr) throw std::invalid_argument(no_place);
         const auto saved = self.save();
         *size = saved.size();
-        if (state != nullptr && room >= saved.size()) {
-            std::memcpy(state, saved.data(), saved.size());
+        if (state == nullptr) return;
+        if (room < saved.size()) {
+            throw std::invalid_argument("The state takes " + std::to_string(saved.size()) +
+                                        " bytes, and there is room for " + std::to_string(room) +
+                                        ": make room for all of them.");
         }
+        std::memcpy(state, saved.data(), saved.size());
     });
 }
 

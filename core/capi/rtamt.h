@@ -13,6 +13,11 @@
  *
  * A call that fails leaves the monitor as it was. There is no global state: monitors are
  * independent of each other, and each may be used by one thread at a time. Nothing is thrown.
+ *
+ * A null pointer is an error like any other: RTAMT_REFUSED for a null monitor, for null memory with
+ * a size that is not 0, and for a null place that a result must go to. Functions that return no
+ * status answer a null monitor as they answer for what does not exist: NULL, 0, NaN or -1. A place
+ * that a result need not go to may be null, as it says there.
  */
 #ifndef RTAMT_H
 #define RTAMT_H
@@ -43,7 +48,11 @@ typedef enum rtamt_status {
 } rtamt_status;
 
 /* The values of the domain byte of a program. */
-typedef enum rtamt_domain { RTAMT_DISCRETE = 0, RTAMT_DENSE = 1 } rtamt_domain;
+typedef enum rtamt_domain {
+    RTAMT_DISCRETE = 0,
+    RTAMT_DENSE = 1,
+    RTAMT_NO_DOMAIN = -1 /* of a null monitor */
+} rtamt_domain;
 
 typedef struct rtamt_monitor rtamt_monitor;
 
@@ -72,8 +81,9 @@ RTAMT_API void rtamt_destroy(rtamt_monitor* monitor);
 RTAMT_API const char* rtamt_message(const rtamt_monitor* monitor);
 
 /* After RTAMT_UNDEFINED: the instruction without a value, and the index of the sample, or in dense
- * time the tick. */
-RTAMT_API void rtamt_failure(const rtamt_monitor* monitor, uint32_t* instruction, int64_t* step);
+ * time the tick; either place may be null. */
+RTAMT_API rtamt_status rtamt_failure(const rtamt_monitor* monitor, uint32_t* instruction,
+                                     int64_t* step);
 
 /* ---- what the program says of itself --------------------------------------------------------- */
 
@@ -81,8 +91,10 @@ RTAMT_API rtamt_domain rtamt_time(const rtamt_monitor* monitor);
 RTAMT_API const char* rtamt_name(const rtamt_monitor* monitor);    /* may be empty */
 RTAMT_API const char* rtamt_formula(const rtamt_monitor* monitor); /* as text */
 
-/* Seconds of a step, exact: the sampling period, in dense time the length of a tick. */
-RTAMT_API void rtamt_period(const rtamt_monitor* monitor, int64_t* numerator, int64_t* denominator);
+/* Seconds of a step, exact: the sampling period, in dense time the length of a tick; either place
+ * may be null. */
+RTAMT_API rtamt_status rtamt_period(const rtamt_monitor* monitor, int64_t* numerator,
+                                    int64_t* denominator);
 
 RTAMT_API uint32_t rtamt_inputs(const rtamt_monitor* monitor);
 RTAMT_API uint32_t rtamt_outputs(const rtamt_monitor* monitor);
@@ -123,18 +135,19 @@ RTAMT_API rtamt_status rtamt_push(rtamt_monitor* monitor, const rtamt_sample* sa
 RTAMT_API rtamt_status rtamt_finish(rtamt_monitor* monitor);
 
 /* Forgets the trace; parameters stay. */
-RTAMT_API void rtamt_reset(rtamt_monitor* monitor);
+RTAMT_API rtamt_status rtamt_reset(rtamt_monitor* monitor);
 
 /* What the last rtamt_push or rtamt_finish made known of an output: answers how many values, and
  * where their steps (indices of samples, in dense time ticks from which on the value holds) and the
- * values themselves are, valid until the next call. */
+ * values themselves are, valid until the next call; either place may be null. */
 RTAMT_API size_t rtamt_told(const rtamt_monitor* monitor, uint32_t output, const int64_t** steps,
                             const double** values);
 
-/* Answers 1 and the last step at which an output is known, or 0 if it is not known anywhere. */
+/* Answers 1 and the last step at which an output is known, or 0 if it is not known anywhere, and -1
+ * for a null monitor; the place may be null. */
 RTAMT_API int rtamt_known_until(const rtamt_monitor* monitor, uint32_t output, int64_t* step);
 
-/* Discrete time: how many samples came. */
+/* Discrete time: how many samples came; -1 for a null monitor. */
 RTAMT_API int64_t rtamt_sample_count(const rtamt_monitor* monitor);
 
 /* ---- state ----------------------------------------------------------------------------------- */
@@ -142,8 +155,9 @@ RTAMT_API int64_t rtamt_sample_count(const rtamt_monitor* monitor);
 /* Another monitor in the same state. */
 RTAMT_API rtamt_status rtamt_clone(rtamt_monitor* monitor, rtamt_monitor** copy);
 
-/* Writes the state, parameters included, if `room` is enough; `size` is how many bytes it takes.
- * The bytes are for this version of the library on this kind of machine. */
+/* Writes the state, parameters included; `size` becomes how many bytes it takes. With a null state
+ * it asks for the size alone; a state with less room is refused, and nothing is written. The bytes
+ * are for this version of the library on this kind of machine. */
 RTAMT_API rtamt_status rtamt_save(rtamt_monitor* monitor, void* state, size_t room, size_t* size);
 
 /* Takes over a state that a monitor of the same program has saved; a damaged one is refused, and a

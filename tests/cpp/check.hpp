@@ -1,6 +1,8 @@
 // A test program in fifty lines: TEST defines a test, CHECK counts and reports, main runs them all.
 #pragma once
 
+#include <atomic>
+#include <cstddef>
 #include <exception>
 #include <iostream>
 #include <string>
@@ -12,8 +14,8 @@ namespace check {
 
 struct Report {
     std::vector<std::pair<std::string_view, void (*)()>> tests;
-    std::size_t checks = 0;
-    std::size_t failures = 0;
+    std::atomic<std::size_t> checks = 0; // by threads, too
+    std::atomic<std::size_t> failures = 0;
 };
 
 inline Report& report() {

@@ -165,4 +165,42 @@ inline Program carried(rtamt::Domain domain = rtamt::Domain::discrete) {
     return program;
 }
 
+// Every kernel of discrete time with a state at once, over two inputs.
+inline Program everything() {
+    Builder builder;
+    const auto x = builder.input();
+    const auto y = builder.input();
+    const auto until = builder.binary(Opcode::until, x, y, 5, 4);
+    const auto window = builder.unary(Opcode::slide_max, x, 4, 3);
+    const auto since = builder.binary(Opcode::since, x, y, 0, 0);
+    const auto running = builder.unary(Opcode::run_min, since, 0, 0);
+    const auto before = builder.unary(Opcode::shift, running, 2, 0, -9.0);
+    const auto both = builder.pointwise(Opcode::min, until, builder.later(window, 1));
+    const auto ratio = builder.pointwise(Opcode::div, both, builder.later(before, 4));
+    builder.output(builder.unary(Opcode::slide_min, ratio, 3, 6));
+    Program program = builder.program();
+    program.note = note_of({1, 10, "", "everything", {"x", "y"}, {"robustness"}, {}, {}});
+    return program;
+}
+
+// Every kernel of dense time at once, over two inputs.
+inline Program everything_dense() {
+    Builder builder;
+    const auto x = builder.input();
+    const auto y = builder.input();
+    const auto until = builder.binary(Opcode::until, x, y, 5, 5);
+    const auto window = builder.unary(Opcode::slide_max, x, 4, 4);
+    const auto late = builder.later(window, 1);
+    const auto since = builder.binary(Opcode::since, x, y, 0, 0);
+    const auto running = builder.unary(Opcode::run_min, since, 0, 0);
+    const auto before = builder.unary(Opcode::shift, running, 2, 0, -9.0);
+    const auto both = builder.pointwise(Opcode::min, until, late);
+    const auto all = builder.pointwise(Opcode::add, both, builder.later(before, 5));
+    builder.output(builder.pointwise(Opcode::abs, all));
+    Program program = builder.program();
+    program.domain = rtamt::Domain::dense;
+    program.note = note_of({1, 1000, "", "everything", {"x", "y"}, {"robustness"}, {}, {}});
+    return program;
+}
+
 } // namespace programs

@@ -7,8 +7,12 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <memory>
+#include <string>
+#include <utility>
+#include <vector>
 
 using Bytes = std::vector<std::uint8_t>;
 using Row = std::array<double, 2>;
@@ -43,25 +47,6 @@ Bytes save(const Handle& monitor) {
     Bytes state(size);
     CHECK(rtamt_save(monitor.get(), state.data(), size, &size) == RTAMT_OK);
     return state;
-}
-
-// Every kernel of discrete time with a state at once, over two inputs.
-programs::Program everything() {
-    using rtamt::Opcode;
-    programs::Builder builder;
-    const auto x = builder.input();
-    const auto y = builder.input();
-    const auto until = builder.binary(Opcode::until, x, y, 5, 4);
-    const auto window = builder.unary(Opcode::slide_max, x, 4, 3);
-    const auto since = builder.binary(Opcode::since, x, y, 0, 0);
-    const auto running = builder.unary(Opcode::run_min, since, 0, 0);
-    const auto before = builder.unary(Opcode::shift, running, 2, 0, -9.0);
-    const auto both = builder.pointwise(Opcode::min, until, builder.later(window, 1));
-    const auto ratio = builder.pointwise(Opcode::div, both, builder.later(before, 4));
-    builder.output(builder.unary(Opcode::slide_min, ratio, 3, 6));
-    programs::Program program = builder.program();
-    program.note = programs::note_of({1, 10, "", "everything", {"x", "y"}, {"robustness"}, {}, {}});
-    return program;
 }
 
 bool same(const Row& a, const Row& b) {
@@ -112,6 +97,65 @@ TEST(what_is_no_program_is_refused_with_a_sentence_cut_to_the_room) {
     CHECK(rtamt_step(nullptr, nullptr, 0, nullptr, 0) == RTAMT_REFUSED);
     CHECK(rtamt_message(nullptr) == std::string("There is no monitor: it was not created."));
     rtamt_destroy(nullptr);
+}
+
+TEST(null_pointers_and_wrong_sizes_are_refused_by_every_function) {
+    using Call = std::function<rtamt_status(rtamt_monitor*)>;
+    const Handle monitor = example();
+    (void)step(monitor, {3.0, 1.0});
+    const Bytes before = save(monitor);
+    Row row{1.0, 1.0};
+    std::size_t size = 0;
+    std::array<std::uint8_t, 8> little{};
+    const std::vector<std::pair<Call, std::string>> wrong{
+        {[&](auto* self) { return rtamt_step(self, nullptr, 2, row.data(), 2); },
+         "The values of the sample are null: pass the address of 2, or the number 0."},
+        {[&](auto* self) { return rtamt_step(self, row.data(), 2, nullptr, 2); },
+         "The places for the outputs are null: pass the address of 2, or the number 0."},
+        {[&](auto* self) { return rtamt_step(self, nullptr, 0, nullptr, 0); },
+         "Sample 1 has the wrong number of values: expected 2 (a, b), got 0."},
+        {[&](auto* self) { return rtamt_push(self, nullptr, 1); },
+         "The samples are null: pass the address of 1, or the number 0."},
+        {[&](auto* self) { return rtamt_clone(self, nullptr); },
+         "The place for the result is null: pass an address."},
+        {[&](auto* self) { return rtamt_save(self, nullptr, 0, nullptr); },
+         "The place for the result is null: pass an address."},
+        {[&](auto* self) { return rtamt_save(self, little.data(), little.size(), &size); },
+         "The state takes " + std::to_string(before.size()) +
+             " bytes, and there is room for 8: make room for all of them."},
+        {[&](auto* self) { return rtamt_restore(self, nullptr, 9); },
+         "This is not a state of a monitor, or it was damaged on the way."},
+    };
+    for (const auto& [call, sentence] : wrong) {
+        CHECK(call(monitor.get()) == RTAMT_REFUSED);
+        CHECK(rtamt_message(monitor.get()) == sentence);
+        CHECK(call(nullptr) == RTAMT_REFUSED);
+        CHECK(save(monitor) == before);
+    }
+    CHECK(size == before.size() && little == decltype(little){});
+    const std::vector<Call> without{
+        [](auto* self) { return rtamt_failure(self, nullptr, nullptr); },
+        [](auto* self) { return rtamt_period(self, nullptr, nullptr); },
+        [&](auto* self) { return rtamt_step(self, row.data(), 2, nullptr, 0); },
+        [](auto* self) { return rtamt_finish(self); },
+        [](auto* self) { return rtamt_reset(self); },
+        [](auto* self) { return rtamt_set_parameter(self, 0, 1.0); },
+    };
+    for (const Call& call : without)
+        CHECK(call(monitor.get()) == RTAMT_OK && call(nullptr) == RTAMT_REFUSED);
+    CHECK(rtamt_time(nullptr) == RTAMT_NO_DOMAIN && rtamt_sample_count(nullptr) == -1);
+    CHECK(rtamt_name(nullptr) == nullptr && rtamt_formula(nullptr) == nullptr);
+    CHECK(rtamt_inputs(nullptr) == 0 && rtamt_input(nullptr, 0) == nullptr);
+    CHECK(rtamt_outputs(nullptr) == 0 && rtamt_output(nullptr, 0) == nullptr);
+    CHECK(rtamt_parameters(nullptr) == 0 && rtamt_parameter(nullptr, 0) == nullptr);
+    CHECK(rtamt_lag(nullptr, 0) == -1 && std::isnan(rtamt_parameter_value(nullptr, 0)));
+    CHECK(rtamt_told(nullptr, 0, nullptr, nullptr) == 0);
+    CHECK(rtamt_told(monitor.get(), 0, nullptr, nullptr) == 0);
+    CHECK(rtamt_known_until(nullptr, 0, nullptr) == -1);
+    CHECK(rtamt_known_until(monitor.get(), 0, nullptr) == 0);
+    std::array<char, 99> message{};
+    CHECK(rtamt_create(nullptr, 0, nullptr, message.data(), message.size()) == RTAMT_REFUSED);
+    CHECK(message.data() == std::string("The place for the result is null: pass an address."));
 }
 
 TEST(samples_in_robustness_out) {
@@ -253,7 +297,7 @@ TEST(no_damaged_state_is_restored) {
 }
 
 TEST(a_forged_state_with_a_right_checksum_is_refused_or_does_no_harm) {
-    const Bytes bytes = programs::bytes_of(everything());
+    const Bytes bytes = programs::bytes_of(programs::everything());
     std::size_t refused = 0;
     std::size_t taken = 0;
     for (const int cut : {0, 1, 4, 6, 11, 12}) {

@@ -53,28 +53,6 @@ Bytes save(const Handle& monitor) {
     return state;
 }
 
-// Every kernel of dense time at once, over two inputs.
-programs::Program everything() {
-    using rtamt::Opcode;
-    programs::Builder builder;
-    const auto x = builder.input();
-    const auto y = builder.input();
-    const auto until = builder.binary(Opcode::until, x, y, 5, 5);
-    const auto window = builder.unary(Opcode::slide_max, x, 4, 4);
-    const auto late = builder.later(window, 1);
-    const auto since = builder.binary(Opcode::since, x, y, 0, 0);
-    const auto running = builder.unary(Opcode::run_min, since, 0, 0);
-    const auto before = builder.unary(Opcode::shift, running, 2, 0, -9.0);
-    const auto both = builder.pointwise(Opcode::min, until, late);
-    const auto all = builder.pointwise(Opcode::add, both, builder.later(before, 5));
-    builder.output(builder.pointwise(Opcode::abs, all));
-    programs::Program program = builder.program();
-    program.domain = rtamt::Domain::dense;
-    program.note =
-        programs::note_of({1, 1000, "", "everything", {"x", "y"}, {"robustness"}, {}, {}});
-    return program;
-}
-
 rtamt_sample sample(int i) {
     return {i / 2 * 2 + i % 2, static_cast<double>(i * 5 % 7) - 3.0, i % 2 == 0 ? 0U : 1U};
 }
@@ -139,11 +117,11 @@ TEST(a_refused_sample_leaves_the_monitor_as_it_was) {
 
 TEST(a_state_is_saved_restored_and_cloned_anywhere_in_a_trace) {
     for (int cut = 0; cut < 14; ++cut) {
-        const Handle monitor = create(everything());
+        const Handle monitor = create(programs::everything_dense());
         for (int i = 0; i < cut; ++i)
             (void)push(monitor, {sample(i)});
         const Bytes state = save(monitor);
-        const Handle other = create(everything());
+        const Handle other = create(programs::everything_dense());
         (void)push(other, {{-4, 9.0, 0}});
         CHECK(rtamt_restore(other.get(), state.data(), state.size()) == RTAMT_OK);
         rtamt_monitor* copied = nullptr;
@@ -162,7 +140,7 @@ TEST(a_state_is_saved_restored_and_cloned_anywhere_in_a_trace) {
 }
 
 TEST(no_damaged_state_is_restored) {
-    const Handle monitor = create(everything());
+    const Handle monitor = create(programs::everything_dense());
     for (int i = 0; i < 11; ++i)
         (void)push(monitor, {sample(i)});
     const Bytes state = save(monitor);
@@ -176,7 +154,7 @@ TEST(no_damaged_state_is_restored) {
 }
 
 TEST(a_forged_state_with_a_right_checksum_is_refused_or_does_no_harm) {
-    const programs::Program program = everything();
+    const programs::Program program = programs::everything_dense();
     std::size_t refused = 0;
     std::size_t taken = 0;
     for (const int cut : {0, 1, 2, 5, 11, 12}) {
