@@ -12,6 +12,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <type_traits>
 
 namespace rtamt::discrete {
 
@@ -61,10 +62,21 @@ struct Log { // of a to the base b
     static constexpr bool partial = true;
     static double of(double a, double b) noexcept { return std::log(a) / std::log(b); }
 };
+
+// Of 0.0 and -0.0, which 1/x tells apart, 0.0 is the larger, whatever the order of the operands.
+// One order answers the one and the other order the other; all other results have the same bits.
 template <class Algebra>
 struct Join {
     static constexpr bool partial = false;
-    static double of(double a, double b) noexcept { return Algebra::join(a, b); }
+    static double of(double a, double b) noexcept {
+        const auto first = std::bit_cast<std::uint64_t>(Algebra::join(a, b));
+        const auto second = std::bit_cast<std::uint64_t>(Algebra::join(b, a));
+        if constexpr (std::is_same_v<Algebra, Max>) {
+            return std::bit_cast<double>(first & second);
+        } else {
+            return std::bit_cast<double>(first | second);
+        }
+    }
 };
 struct HoldsGreater {
     static constexpr bool partial = false;

@@ -68,6 +68,24 @@ TEST(comparisons_differ_at_equality_only) {
     CHECK((outputs[2] == Signal{-inf, inf, inf, -inf}));
 }
 
+TEST(the_zero_that_min_and_max_choose_does_not_hang_on_the_order_of_operands) {
+    const std::vector<Signal> columns{{0.0, -0.0, 0.0, -0.0, -1.0}, {-0.0, 0.0, 0.0, -0.0, 0.0}};
+    for (const bool swapped : {false, true}) {
+        Builder builder;
+        const auto a = builder.input();
+        const auto b = builder.input();
+        const auto one = builder.constant(1.0);
+        for (const Opcode opcode : {Opcode::min, Opcode::max}) {
+            const auto chosen = builder.pointwise(opcode, swapped ? b : a, swapped ? a : b);
+            builder.output(builder.pointwise(Opcode::div, one, chosen));
+        }
+        std::vector<Signal> outputs;
+        CHECK(!ways::offline(builder.program(), columns, 5, outputs));
+        CHECK((outputs[0] == Signal{-inf, -inf, inf, -inf, -1.0}));
+        CHECK((outputs[1] == Signal{inf, inf, inf, -inf, inf}));
+    }
+}
+
 TEST(every_partial_operation_reports_the_sample_where_it_makes_nan) {
     struct Case {
         Opcode opcode;

@@ -197,12 +197,13 @@ def holds_ne(x: Array, y: Array) -> Array:
 
 
 def _smaller(x: Array, y: Array) -> Array:
-    # Written out, because numpy leaves open which of 0.0 and -0.0 is the smaller, and 1/x tells them apart.
-    return np.where(x < y, x, y)
+    # Written out, because numpy leaves open which of 0.0 and -0.0 is the smaller, and 1/x tells them apart:
+    # -0.0 is, whatever the order of the operands.
+    return np.where((x < y) | ((x == y) & np.signbit(x)), x, y)
 
 
 def _larger(x: Array, y: Array) -> Array:
-    return np.where(x > y, x, y)
+    return np.where((x > y) | ((x == y) & ~np.signbit(x)), x, y)
 
 
 def and_(x: Array, y: Array) -> Array:

@@ -11,6 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy import inf, nan
 
+import rtamt
 from rtamt.language import definitions as d
 from rtamt.language.formula import Const, Interval, Var
 from rtamt.language.operators import STL, Bounds, Sort
@@ -222,3 +223,20 @@ def test_arithmetic_is_that_of_the_c_library_and_silent(op, data):
         apart = op.definition(*(np.repeat(o, 9) for o in operands))
     # One at a time or many at once: the same bits, whatever vector unit there is.
     np.testing.assert_array_equal(apart, np.repeat(together, 9))
+
+
+@pytest.mark.parametrize("backend", ["cpp", "python"])
+@pytest.mark.parametrize(
+    ("function", "expected"), [("min", [-inf, -inf, inf, -inf]), ("max", [inf, inf, inf, -inf])]
+)
+def test_the_zero_that_min_and_max_choose_does_not_hang_on_the_order_of_operands(
+    function: str, expected: list[float], backend: str
+) -> None:
+    x, y = [0.0, -0.0, 0.0, -0.0], [-0.0, 0.0, 0.0, -0.0]
+    for operands in ("x, y", "y, x"):
+        spec = rtamt.parse(f"1 / {function}({operands})", backend=backend)
+        discrete = spec.evaluate({"time": [0, 1, 2, 3], "x": x, "y": y}).signal
+        assert discrete.values.tolist() == expected
+        for first in range(4):
+            dense = spec.evaluate({"x": ([0.0], x[first:][:1]), "y": ([0.0], y[first:][:1])}, time="dense")
+            assert dense.robustness == expected[first]
