@@ -33,9 +33,23 @@ if TYPE_CHECKING:
 #: Characters of a long line that are shown on each side of a place.
 _SHOWN = 60
 
+#: A word that is longer than any path or name should be.
+_PAGES = re.compile(r"\S{600,}")
+
+
+def _abbreviated(word: re.Match[str]) -> str:
+    text = word.group()
+    return f"{text[:_SHOWN]}… (abbreviated: {len(text)} characters) …{text[-_SHOWN:]}"
+
 
 class StlError(Exception):
-    """Base of every exception raised on purpose by this library."""
+    """Base of every exception raised on purpose by this library.
+
+    A word of the message that has pages, such as a number of a million digits, is abbreviated.
+    """
+
+    def __init__(self, message: object = "", *more: object) -> None:
+        super().__init__(_PAGES.sub(_abbreviated, message) if isinstance(message, str) else message, *more)
 
 
 class SpecificationError(StlError):
@@ -46,7 +60,7 @@ class SpecificationError(StlError):
 
     def __init__(self, message: str, text: str | None = None, span: Span | None = None) -> None:
         super().__init__(message, text, span)
-        self.message = message
+        self.message: str = self.args[0]
         self.text = text
         self.span = span
 
@@ -150,10 +164,21 @@ def placed(error: StlError, where: str) -> StlError:
 def shown(value: object) -> str:
     """Return a value as a message shows it: as Python writes it, and never pages of it.
 
-    >>> shown("abc"), len(shown(10**400))
-    ("'abc'", 40)
+    >>> shown("abc"), len(shown(10**400)), shown(10**10_000)
+    ("'abc'", 40, '<an int of about 10001 digits>')
     """
-    return reprlib.repr(value)
+    return _AS_SHOWN.repr(value)
+
+
+class _Repr(reprlib.Repr):
+    def repr_int(self, x: int, level: int) -> str:
+        digits = int(x.bit_length() * 0.30103) + 1
+        if digits > 4000:  # Python itself writes none with more than 4300
+            return f"<an int of about {digits} digits>"
+        return super().repr_int(x, level)
+
+
+_AS_SHOWN = _Repr()
 
 
 def with_article(noun: str) -> str:

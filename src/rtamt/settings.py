@@ -94,7 +94,7 @@ def positive_period(period: Duration, what: str = "sampling period") -> Fraction
     """Return a sampling period, or ``what`` else it is, in seconds, exact."""
     exact = duration(period)
     if exact <= 0:
-        raise UsageError(f"the {what} is {period!r}; it must be positive")
+        raise UsageError(f"the {what} is {shown(period)}; it must be positive")
     return exact
 
 

@@ -21,7 +21,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from rtamt.compiler.metadata import Metadata, damaged
-from rtamt.errors import UsageError
+from rtamt.errors import UsageError, shown
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -166,7 +166,7 @@ class Program:
         return body + struct.pack("<I", zlib.crc32(body))
 
     @staticmethod
-    def from_bytes(code: bytes) -> Program:
+    def from_bytes(code: bytes | bytearray | memoryview) -> Program:
         """Read what ``to_bytes`` of a program with metadata wrote; raise :class:`UsageError` for anything else.
 
         >>> import rtamt
@@ -174,6 +174,12 @@ class Program:
         >>> Program.from_bytes(program.to_bytes()).disassemble() == program.disassemble()
         True
         """
+        if not isinstance(code, (bytes, bytearray, memoryview)):
+            raise UsageError(
+                f"expected the bytes of a program, as to_bytes() returns them, got {shown(code)}; "
+                f"read them from a file with open(..., 'rb')"
+            )
+        code = bytes(code)
         if len(code) < _HEADER.size + _CHECKSUM or not code.startswith(MAGIC):
             raise damaged(f"it does not begin with '{MAGIC.decode()}'")
         _, version, domain, _, size, inputs, outputs, length, _ = _HEADER.unpack_from(code)

@@ -35,10 +35,6 @@ if TYPE_CHECKING:
     from collections.abc import Collection, Mapping
 
 
-#: Characters of the longest message: what it quotes may be a name or number of any length.
-_LONGEST = 600
-
-
 class FormulaParser:
     """A place in a text, and one method for each production of the grammar."""
 
@@ -79,9 +75,7 @@ class FormulaParser:
     def error(
         self, message: str, span: Span, kind: type[SpecificationError] = ParseError
     ) -> SpecificationError:
-        """Return an error that points at the text; of what it quotes from there, a message shows the ends."""
-        if len(message) > _LONGEST:
-            message = f"{message[: _LONGEST // 2]} … {message[-_LONGEST // 2 :]}"
+        """Return an error that points at the text."""
         return kind(message, self.text, span)
 
     # ---- productions ---------------------------------------------------------------------------

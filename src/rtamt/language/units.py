@@ -21,7 +21,7 @@ from numbers import Rational, Real
 from types import MappingProxyType
 from typing import TYPE_CHECKING, SupportsFloat
 
-from rtamt.errors import UsageError
+from rtamt.errors import UsageError, shown
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -74,6 +74,10 @@ def check_unit(unit: str) -> str:
     return unit
 
 
+#: Durations up to here, and from one over it, are doubles too.
+_EXTREME = Fraction(10) ** 290
+
+
 def duration(value: str | SupportsFloat, unit: str = "s") -> Fraction:
     """Return a duration in seconds, exact.
 
@@ -102,10 +106,15 @@ def duration(value: str | SupportsFloat, unit: str = "s") -> Fraction:
         else:
             raise TypeError(value)
     except (ValueError, TypeError, ZeroDivisionError):
-        shown = f"'{value}'" if isinstance(value, str) else repr(value)
-        raise UsageError(f"{shown} is not a duration; write for example '100ms', '1/3s' or 5") from None
+        raise UsageError(
+            f"{shown(value)} is not a duration; write for example '100ms', '1/3s' or 5"
+        ) from None
     if number < 0:
-        raise UsageError(f"a duration may not be negative, got {value}")
+        raise UsageError(f"a duration may not be negative, got {shown(value)}")
+    if number > _EXTREME or 0 < number < 1 / _EXTREME:
+        raise UsageError(
+            f"the duration {shown(value)} is beyond what can be counted in seconds; check its unit"
+        )
     return number * UNITS[unit]
 
 

@@ -4,9 +4,11 @@ from fractions import Fraction
 
 import pytest
 
+import rtamt
 from rtamt.compiler.plan import compile_plan, compile_program
-from rtamt.compiler.program import OPCODES
+from rtamt.compiler.program import OPCODES, Program
 from rtamt.engine.native import core
+from rtamt.errors import UsageError
 from rtamt.language.parser import parse_formula
 from rtamt.rewrite.desugar import desugar
 
@@ -68,3 +70,19 @@ def test_memory_is_told_before_it_runs() -> None:
     ]:
         program = compile_program((desugar(parse_formula(text)),), ONE)
         assert doubles <= core().memory(program.to_bytes()) / 8 <= 1.25 * doubles
+
+
+@pytest.mark.parametrize("code", [None, 3, "RTAMTPRG", ["RTAMTPRG"]])
+def test_what_is_no_bytes_is_no_program_and_the_message_says_so(code: object) -> None:
+    with pytest.raises(UsageError) as caught:
+        Program.from_bytes(code)  # type: ignore[arg-type]
+    assert str(caught.value) == (
+        f"expected the bytes of a program, as to_bytes() returns them, got {code!r}; "
+        f"read them from a file with open(..., 'rb')"
+    )
+
+
+@pytest.mark.parametrize("kind", [bytes, bytearray, memoryview])
+def test_a_program_is_read_from_all_that_holds_bytes(kind: type) -> None:
+    program = rtamt.parse("x >= 3").compile()
+    assert Program.from_bytes(kind(program.to_bytes())).to_bytes() == program.to_bytes()
