@@ -50,7 +50,7 @@ class Row {
   private:
     static constexpr std::size_t few = 16;
     std::size_t size_;
-    std::array<double, few> few_; // NOLINT(cppcoreguidelines-pro-type-member-init): filled above
+    std::array<double, few> few_{};
     std::unique_ptr<double[]> many_;
 };
 

@@ -93,8 +93,9 @@ Bits dense_run(const std::vector<std::uint8_t>& bytes) {
             bits.push_back(std::bit_cast<std::uint64_t>(values[i]));
     };
     for (int i = 0; i < samples; ++i) {
-        const std::array<rtamt_sample, 2> both{rtamt_sample{2 * i, row(i)[0], 0},
-                                               rtamt_sample{2 * i + i % 2, row(i)[1], 1}};
+        const std::int64_t tick = std::int64_t{2} * i;
+        const std::array<rtamt_sample, 2> both{rtamt_sample{tick, row(i)[0], 0},
+                                               rtamt_sample{tick + i % 2, row(i)[1], 1}};
         CHECK(rtamt_push(monitor, both.data(), both.size()) == RTAMT_OK);
         read();
     }
@@ -140,7 +141,7 @@ TEST(threads_take_turns_with_a_monitor) {
     std::int64_t taken = 0;
     (void)at_once([&](int thread) {
         for (int i = 0; i < samples; ++i) {
-            const std::lock_guard<std::mutex> guard(turn);
+            const std::scoped_lock guard(turn);
             double known = 0.0;
             if (rtamt_step(monitor, row(i + thread).data(), 2, &known, 1) == RTAMT_OK) ++taken;
         }

@@ -64,7 +64,7 @@ Bytes save(rtamt_monitor* monitor) {
 }
 
 // Whatever is not taken is refused in a sentence, and changes nothing.
-bool taken(rtamt_monitor* monitor, rtamt_status status) {
+bool taken(const rtamt_monitor* monitor, rtamt_status status) {
     if (status == RTAMT_OK) return true;
     const std::string_view said = rtamt_message(monitor);
     expect(!said.empty() && said.back() == '.');
