@@ -44,7 +44,8 @@ class Numbers {
 
     Numbers()
         : accepted_(nb::make_tuple(nb::module_::import_("numbers").attr("Real"),
-                                   nb::module_::import_("numpy").attr("bool_"))) {}
+                                   nb::module_::import_("numpy").attr("bool_"))),
+          duration_(nb::module_::import_("numpy").attr("timedelta64")) {}
 
     // False for what is no number, for one that no double holds, and for NaN. What the object
     // itself raises stays set.
@@ -61,13 +62,20 @@ class Numbers {
 
   private:
     nb::object accepted_;
+    nb::object duration_; // of numpy, which derives it from its integers
+
+    [[nodiscard]] PyTypeObject* duration() const noexcept {
+        return reinterpret_cast<PyTypeObject*>(duration_.ptr());
+    }
 
     [[nodiscard]] bool convert(PyObject* object, double& value) const noexcept {
         if (!PyFloat_Check(object) && !PyLong_Check(object)) {
             const int real = PyObject_IsInstance(object, accepted_.ptr());
-            if (real <= 0) return false;
+            if (real <= 0 || PyObject_TypeCheck(object, duration()) != 0) return false;
         }
         value = PyFloat_AsDouble(object);
+        // Of a long double it may be an overflow: the long way finds out.
+        if (std::isinf(value) && !PyFloat_Check(object)) return false;
         return value != -1.0 || PyErr_Occurred() == nullptr || forget_no_number();
     }
 };

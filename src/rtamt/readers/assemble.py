@@ -308,7 +308,13 @@ def numbers_of(raw: Raw, field: Field, source: str, before: int = 0) -> tuple[An
     missing = np.ma.getmaskarray(raw) if np.ma.isMaskedArray(raw) else None
     plain = raw.data if isinstance(raw, np.ma.MaskedArray) else np.asarray(raw)
     if plain.dtype.kind in "fiub":
-        return np.array(plain, dtype=np.float64), missing
+        with np.errstate(over="ignore"):
+            numbers = np.array(plain, dtype=np.float64)
+        if plain.dtype.kind == "f" and plain.dtype.itemsize > 8:
+            beyond = np.flatnonzero(np.isinf(numbers) & ~np.isinf(plain))
+            if len(beyond):
+                raise _no_number(plain[beyond[0]], field, source, before + int(beyond[0]))
+        return numbers, missing
     if plain.dtype.kind != "O":
         raise _no_number(plain[0] if len(plain) else plain.dtype, field, source, before)
     absent = np.array([value is None for value in plain], dtype=bool)

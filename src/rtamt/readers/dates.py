@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rtamt.signals.datetimes import nanoseconds_of
+from rtamt.signals.datetimes import has_length, nanoseconds_of
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -114,6 +114,8 @@ class Dates:
         self._be("m" if since else "M", i)
         if isinstance(value, date) and not isinstance(value, datetime):
             value = datetime(value.year, value.month, value.day)
+        if isinstance(value, np.timedelta64) and not has_length(value):
+            raise DateError(i, "a timedelta64 without a unit of fixed length: give it one, such as 'ms'")
         nanoseconds = nanoseconds_of(value)
         if nanoseconds is None:
             return int(np.iinfo(np.int64).min)

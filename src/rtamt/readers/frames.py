@@ -14,7 +14,7 @@ from rtamt.errors import TraceError
 from rtamt.readers.dates import is_date
 from rtamt.readers.source import Field, Source, Table
 from rtamt.signals import dense_arrays
-from rtamt.signals.arrays import TIME
+from rtamt.signals.arrays import TIME, as_array
 from rtamt.signals.stamps import is_stamps, split_unit
 
 if TYPE_CHECKING:
@@ -77,7 +77,10 @@ def _check_lengths(columns: Mapping[str, Raw]) -> None:
 
 
 def _array(values: Any, name: str) -> Raw:
-    raw = values if isinstance(values, np.ma.MaskedArray) else np.asarray(values)
+    try:
+        raw = values if isinstance(values, np.ma.MaskedArray) else as_array(values)
+    except (TypeError, ValueError):  # lists of different lengths, for numpy
+        raise TraceError(f"'{name}' cannot be read as a sequence of numbers", variable=name) from None
     if raw.dtype.kind in "US" and not isinstance(values, np.ndarray):
         raw = np.asarray(values, dtype=object)  # numpy would make text of numbers beside a text
     if raw.ndim != 1:
@@ -168,7 +171,7 @@ def _polars_column(series: Any) -> Raw:
     if not series.dtype.is_numeric() and kind != "Boolean":
         return np.array([*series.to_list(), None], dtype=object)[:-1]
     if missing is None and kind != "Decimal":
-        return series.to_numpy()  # type: ignore[no-any-return]
+        return as_array(series)
     values = np.array([0.0 if value is None else float(value) for value in series.to_list()])
     return values if missing is None else np.ma.masked_array(values, missing)
 

@@ -160,6 +160,11 @@ class Clock:
                 f"the time column '{self.field.column}' of {self._source} is empty at sample "
                 f"{before + int(missing.argmax())}"
             )
+        if raw.dtype.kind not in "fiubmMO" and len(raw):
+            raise self._no_time(raw[0], before, "expected a number")
+        if raw.dtype.kind == "f" and raw.dtype.itemsize > 8:
+            with np.errstate(over="ignore"):  # what is beyond every double is no finite time
+                raw = raw.astype(np.float64)
         return raw.data if isinstance(raw, np.ma.MaskedArray) else raw
 
     def _of_objects(self, values: list[Any], before: int) -> Raw:

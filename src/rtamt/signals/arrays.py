@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from datetime import datetime, timedelta
 from fractions import Fraction
 from functools import reduce
-from math import isnan
+from math import isinf, isnan
 from numbers import Real
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -253,19 +253,40 @@ def array(values: Any, name: str, first: int = 0) -> FloatArray:
     try:
         if isinstance(values, np.ma.MaskedArray) and values.mask.any():
             values = np.ma.filled(values.astype(np.float64), np.nan)  # a masked value is a missing one
-        raw = np.asarray(values)
+        raw = as_array(values)
         # numpy would read the text "1.5" as a number and None as NaN; both are more likely mistakes.
         numeric = raw.dtype.kind in "fiub" or (raw.dtype.kind == "O" and all(map(is_number, raw.flat)))
         if raw.ndim == 0 or not numeric:
             raise _not_numbers(values, name, first)
-        result = np.array(raw, dtype=np.float64, order="C")
+        with np.errstate(over="ignore"):
+            result = np.array(raw, dtype=np.float64, order="C")
     except (TypeError, ValueError):
         raise _not_numbers(values, name, first) from None
     if raw.ndim != 1:
         raise TraceError(
             f"'{name}' has {raw.ndim} dimensions, expected 1: give one number a sample", variable=name
         )
+    if (
+        raw.dtype.kind == "f"
+        and raw.dtype.itemsize > 8
+        and not np.array_equal(np.isinf(raw), np.isinf(result))
+    ):
+        raise _not_numbers(values, name, first)  # a longdouble beyond every double
     return result
+
+
+def as_array(values: Any) -> NDArray[Any]:
+    """Return values as an array of numpy, of objects where numpy has no type for them or would bring them to one."""
+    if isinstance(values, (list, tuple)) and any(
+        isinstance(value, np.datetime64 | np.timedelta64) for value in values
+    ):
+        return np.fromiter(values, dtype=object, count=len(values))  # to one unit, in which years may wrap
+    try:
+        return np.asarray(values)
+    except (TypeError, ValueError):
+        raise
+    except Exception:  # noqa: BLE001 - a library's own: polars has integers of 128 bits
+        return np.fromiter(values, dtype=object, count=len(values))
 
 
 def is_number(value: Any) -> bool:
@@ -280,9 +301,11 @@ def number_of(value: Any) -> float | None:
     if isinstance(value, np.timedelta64) or not isinstance(value, (Real, np.bool_)):
         return None  # numpy derives its durations from its integers
     try:
-        return float(value)
+        number = float(value)
     except (OverflowError, TypeError):
         return None
+    # A longdouble beyond every double is finite itself.
+    return None if isinf(number) and value not in (number, -number) else number
 
 
 def stamps(values: Any, unit: str | None = None) -> Stamps:
@@ -291,7 +314,7 @@ def stamps(values: Any, unit: str | None = None) -> Stamps:
     Raises :class:`TraceError` for what is no time; a time that is none (NaN, NaT) is NaN seconds.
     """
     try:
-        raw = np.ma.asanyarray(values)
+        raw = values if isinstance(values, np.ma.MaskedArray) else as_array(values)
     except (TypeError, ValueError):  # lists of different lengths, for numpy
         raise _not_numbers(values, TIME, 0) from None
     if raw.dtype.kind == "O" and any(isinstance(value, _MOMENTS) for value in raw.flat):
@@ -303,7 +326,9 @@ def stamps(values: Any, unit: str | None = None) -> Stamps:
                 variable=TIME,
                 index=0,
             )
-        told = in_nanoseconds(np.ma.asanyarray(raw).filled(np.array("NaT", raw.dtype)[()]), TIME)
+        told = in_nanoseconds(
+            np.where(np.ma.getmaskarray(raw), np.array("NaT", raw.dtype), np.asarray(raw)), TIME
+        )
         seconds = quotients(told.view(np.int64), 1, 10**9)
         seconds[np.isnat(told)] = np.nan
         return Stamps(seconds, told)

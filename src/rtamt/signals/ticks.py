@@ -326,13 +326,16 @@ def _kind_of_one(time: Any) -> str:
 def sequence_of(times: Any, name: str) -> Any:
     """Return times as an array or a list; raise :class:`TraceError` where they are no sequence."""
     is_array = hasattr(times, "__array__")
-    if not hasattr(times, "__iter__") or (is_array and np.ndim(times) != 1):
+    if not hasattr(times, "__iter__") or (is_array and arrays.as_array(times).ndim != 1):
         raise TraceError(
             f"the times of '{name}' are {shown(times)}, expected a sequence of times", variable=name
         )
     # As a list, times of pandas keep their zones.
     zoned = getattr(getattr(times, "dtype", None), "tz", None) is not None
-    return np.asarray(times) if is_array and not zoned else list(times)
+    if isinstance(times, np.ma.MaskedArray) and times.mask.any():  # a masked time is a missing one
+        absent: Any = np.nan if times.dtype.kind in "fiub" else np.array("NaT", times.dtype)
+        return np.where(np.ma.getmaskarray(times), absent, np.asarray(times))
+    return arrays.as_array(times) if is_array and not zoned else list(times)
 
 
 def _are_numbers(times: Any) -> bool:

@@ -227,6 +227,8 @@ class _DiscreteStream(_Stream):
         if not n:
             return
         if not self.monitors:
+            if stamps is not None:
+                arrays.check_increasing(stamps.seconds)
             if self._period is None:
                 self._period = Fraction(1) if stamps is None else arrays.infer_period(stamps.seconds)
             check_bounds(self.spec.formula, self._period, self.spec.text)

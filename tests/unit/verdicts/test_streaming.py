@@ -192,3 +192,71 @@ def test_datetimes_with_a_time_zone_in_chunks():
     streamed = rtamt.check_stream(spec, chunks)
     same(streamed, spec.evaluate({"x": (moments, [5, 4, 1, 0])}))
     assert str(streamed.first_violation).startswith("2024-05-01T10:00:02")
+
+
+#: Parts that read no variable: what they mean depends on where windows end.
+FREE = (
+    "once[500ms:500ms] false",
+    "eventually[300ms:1s] true",
+    "always[5:9] false",
+    "(true since[100ms:300ms] false)",
+    "historically[200ms:inf] false",
+    "always[0:inf] true",
+    "true",
+    "eventually false",
+    "(2 > 1)",
+)
+
+
+@pytest.mark.parametrize("time", ["discrete", "dense"])
+@settings(max_examples=40)
+@given(data=st.data())
+def test_law_parts_that_read_no_variable_are_parts_like_others(time, data):
+    free = data.draw(st.sampled_from(FREE))
+    other = data.draw(st.sampled_from(("always(x >= 3)", "eventually[0:300ms](x >= 3)", "x >= 3")))
+    shape = st.sampled_from(
+        ("{0} or {1}", "{0} and {1}", "{1} -> {0}", "always({0} or {1})", "not {0} and {1}")
+    )
+    text = data.draw(shape).format(free, other)
+    # Below another operator unbounded future needs the whole recording.
+    n = data.draw(st.integers(1, 8))
+    recording = {
+        "time": [i / 10 for i in range(n)],
+        "x": data.draw(st.lists(st.sampled_from([1.0, 3.0, 4.0]), min_size=n, max_size=n)),
+    }
+    spec = rtamt.parse(text, time=time, period="100ms" if time == "discrete" else None)
+    result = spec.evaluate(recording)
+    violated = first_violation(result)
+    assert (violated is None) == result.satisfied
+    assert result.satisfied == spec.evaluate(recording, semantics="boolean").satisfied
+    cut = data.draw(st.integers(0, n))
+    chunks = [
+        {name: column[part] for name, column in recording.items()} for part in (slice(cut), slice(cut, None))
+    ]
+    try:
+        streamed = rtamt.check_stream(spec, chunks)
+    except rtamt.BoundError:
+        return
+    same(streamed, result)
+
+
+def test_the_right_answer_beside_a_window_over_a_constant():
+    text = "once[500ms:500ms] false or always(x >= 3)"
+    times = [i / 10 for i in range(9)]
+    for values, violated in (([5] * 9, None), ([5, 5, 5, 1, 5, 5, 5, 5, 5], 0.0)):
+        for time in ("discrete", "dense"):
+            spec = rtamt.parse(text, time=time)
+            result = spec.evaluate({"time": times, "x": values})
+            assert first_violation(result) == violated
+            same(rtamt.check_stream(spec, [{"time": times, "x": values}]), result)
+    alone = rtamt.parse("historically[0:1] false").evaluate({"time": [0, 1]})
+    assert first_violation(alone) == 0
+
+
+@pytest.mark.parametrize("bound", ["1e300", "1e9"])
+def test_a_bound_beyond_every_trace_is_rejected_where_it_stands(bound):
+    with pytest.raises(rtamt.BoundError) as error:
+        rtamt.parse(f"once[0:{bound}](x > 0)", time="dense")
+    assert str(error.value).splitlines()[-1].strip() == "^" * (len(bound) + 4)
+    assert "more than can be counted" in error.value.message
+    assert len(error.value.message) < 200
