@@ -14,14 +14,16 @@ namespace rtamt::discrete {
 class Clock {
   public:
     // A gap may differ from the period by `tolerance` periods. A strict clock refuses any other
-    // gap; one that is not counts it as a violation. The last `history` times are remembered.
+    // gap, and the same time again; one that is not counts them as violations. The last `history`
+    // times are remembered.
     Clock(double period, double tolerance, bool strict, std::size_t history)
         : stamps_(period, history), period_(period), slack_(tolerance * period), strict_(strict) {}
 
     // Whether the next sample may come at this time.
     [[nodiscard]] bool accepts(double time) const noexcept {
         if (!std::isfinite(time)) return false;
-        return stamps_.count() == 0 || (time > stamps_.last() && (!strict_ || even(time)));
+        if (stamps_.count() == 0) return true;
+        return strict_ ? time > stamps_.last() && even(time) : time >= stamps_.last();
     }
 
     // A sample came at a time that was accepted.

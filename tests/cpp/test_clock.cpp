@@ -43,6 +43,18 @@ TEST(lenient_clock_counts_a_gap_out_of_tolerance) {
     CHECK(clock.accepts(0.0));
 }
 
+TEST(lenient_clock_takes_the_same_time_again_and_counts_it) {
+    Clock clock(2.0, 0.25, false, 2);
+    clock.advance(10.0);
+    CHECK(clock.accepts(10.0) && !clock.accepts(9.5));
+    clock.advance(10.0);
+    CHECK(clock.violations() == 1);
+    CHECK(clock.stamps().count() == 2 && clock.stamps().last() == 10.0);
+    Clock strict(2.0, 2.0, true, 1);
+    strict.advance(10.0);
+    CHECK(!strict.accepts(10.0));
+}
+
 TEST(ticks_start_at_zero_and_do_not_drift) {
     Clock clock(0.1, 0.5, true, 1);
     clock.tick(1);

@@ -370,9 +370,9 @@ ONLINE = {
     "text": (1, [("x", "a")], "'x' is 'a' at sample 1, expected a number"),
     "None": (1, [("x", None)], "'x' is None at sample 1, expected a number"),
     "time": (
-        0,
+        -1,
         [("x", 1.0)],
-        "time does not increase at sample 1: 0 s comes after 0 s; sort the samples and drop repeated stamps",
+        "time does not increase at sample 1: -1 s comes after 0 s; sort the samples and drop repeated stamps",
     ),
     "no time": (None, [("x", 1.0)], "time is None at sample 1, expected a number of seconds"),
     "infinite time": (

@@ -416,8 +416,11 @@ class _Apart:
         return getattr(self.inner, name)
 
 
-def read_time(time: Any, index: int, last: float | None) -> float:
-    """Return a sample's time stamp; raise :class:`TraceError` for one that no sample can have."""
+def read_time(time: Any, index: int, last: float | None, *, again: bool = False) -> float:
+    """Return a sample's time stamp; raise :class:`TraceError` for one that no sample can have.
+
+    ``again``: whether it may be the same as the ``last`` one.
+    """
     stamp = arrays.number_of(time)
     if stamp is None:
         raise TraceError(
@@ -427,7 +430,7 @@ def read_time(time: Any, index: int, last: float | None) -> float:
         raise implausible("time", index, time)
     if not isfinite(stamp):
         raise TraceError(f"time is {stamp} at sample {index}: give a finite number of seconds")
-    if last is not None and stamp <= last:
+    if last is not None and (stamp < last or (stamp == last and not again)):
         raise arrays.not_increasing(index, stamp, last)
     return stamp
 

@@ -186,7 +186,7 @@ class PythonMonitor:
         last = self._last_time
         if time is None:
             time = last + self._period if self._stamps else 0.0
-        if not isfinite(time) or time <= last:
+        if not isfinite(time) or time < last or (self._strict and time == last):
             raise Refused("time")
         off = self._off(last, time)
         if off and self._strict:

@@ -11,7 +11,7 @@ from rtamt.engine.dense_monitor import DenseMonitor
 from rtamt.engine.gate import alone
 from rtamt.engine.online import Watched
 from rtamt.errors import NameInFormulaError, StlError, TraceError, UsageError, shown
-from rtamt.language.formula import Apply, Var, folds, postorder, variables
+from rtamt.language.formula import Apply, Var, folds, outermost, postorder, variables
 from rtamt.language.operators import Tense
 from rtamt.language.printer import EXCERPT, canonical
 from rtamt.language.units import UNITS
@@ -51,7 +51,7 @@ class DenseTimeSpecification(Formulas):
         sampling(sampling_period, unit, tolerance)
 
     def _check(self, formula: Formula, text: str) -> None:
-        check_dense(formula, text)
+        # Operators that dense time does not have are read, as by RTAMT: only their values do not exist.
         check_bounds(formula, NANOSECOND, text, "resolution")
         for node in postorder(formula):
             if isinstance(node, Var) and node.name == arrays.TIME:
@@ -81,7 +81,9 @@ class DenseTimeSpecification(Formulas):
 def _is_watchable(node: Formula, reads: Collection[str]) -> bool:
     """Tell whether a node by itself is past, and reads nothing but ``reads``."""
     if isinstance(node, Apply):
-        return node.op.tense is not Tense.FUTURE and (node.op.definition is not None or not has_future(node))
+        op = node.op
+        past = op.tense is not Tense.FUTURE and (op.definition is not None or not has_future(node))
+        return past and not op.discrete_only
     return not isinstance(node, Var) or node.name in reads
 
 
@@ -135,6 +137,7 @@ class StlDenseTimeOfflineSpecification(ExplainedSpecification, DenseTimeSpecific
         self, part: Formula, columns: dict[str, Samples], scale: TimeScale
     ) -> tuple[DenseRecording, list[list[float]]]:
         """Return what a part of the specification is evaluated over, and its points."""
+        check_dense(part, self._parsed_document.text)
         read = tuple(dict.fromkeys((*variables(self._result), *variables(part))))
         held = {name: columns[name] for name in read if name in columns}
         recording = dense_evaluate.trace(held, read, NANOSECOND, scale=scale)
@@ -165,6 +168,16 @@ class StlDenseTimeOnlineSpecification(OnlineSpecification, DenseTimeSpecificatio
         self._watched: tuple[Formula, ...] = ()  # by it
         self._given: dict[str, Samples] = {}  # by the latest update
         self._whole = True  # whether all times so far were integers
+
+    @raises_rtamt
+    def pastify(self) -> None:
+        """Rewrite the formulas into past operators; see :class:`OnlineSpecification`.
+
+        Raises :class:`RTAMTException` also where a formula has an operator that dense time does not have.
+        """
+        for formula in outermost([*self._formulas.values()]):
+            check_dense(formula, self._parsed_document.text)
+        super().pastify()
 
     @raises_rtamt
     @alone
@@ -261,6 +274,7 @@ class StlDenseTimeOnlineSpecification(OnlineSpecification, DenseTimeSpecificatio
     def _require_monitor(self) -> DenseMonitor:
         if self._monitor is None:
             formula, text = self._result, self._parsed_document.text
+            check_dense(formula, text)
             require_past(formula, text)
             backend = "cpp" if is_compiled() else "python"
             # Of variables that the result does not read, samples need not come.

@@ -50,9 +50,10 @@ class StlDiscreteTimeOnlineSpecification(OnlineSpecification, DiscreteTimeSpecif
     def update(self, timestamp: float, dataset: Iterable[tuple[str, Any]]) -> Any:
         """Take one sample and return the robustness.
 
-        ``timestamp`` in :attr:`unit`, later than the one before; ``dataset``: pairs of a name and a
-        number (or an object, where the specification reads fields). A variable that is left out keeps
-        its value. Returns a float, or the object of :attr:`out_var` with the robustness in its field.
+        ``timestamp`` in :attr:`unit`, no earlier than the one before: the same one again is a further
+        sample, whose gap counts in :attr:`sampling_violation_counter`. ``dataset``: pairs of a name and a
+        number (or an object, where the specification reads fields). A variable that is left out keeps its
+        value. Returns a float, or the object of :attr:`out_var` with the robustness in its field.
         Raises :class:`RTAMTException` for wrong data, and the monitor is then as it was.
         """
         try:
@@ -182,7 +183,7 @@ class StlDiscreteTimeOnlineSpecification(OnlineSpecification, DiscreteTimeSpecif
         """Find out why the monitor took no sample, and say it."""
         index = monitor.samples
         last = self._seconds(monitor.last_time) if index else None
-        time = read_time(self._seconds(timestamp), index, last)
+        time = read_time(self._seconds(timestamp), index, last, again=True)
         for name in self._inputs:
             if index == 0 and name not in numbers:
                 return TraceError(

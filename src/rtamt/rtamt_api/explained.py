@@ -4,11 +4,16 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from rtamt.errors import UsageError
+from rtamt.language.formula import Var, variables
+from rtamt.language.printer import canonical
 from rtamt.rewrite.semantics import lower, semantics_of
 from rtamt.rtamt_api.backends import is_compiled
 from rtamt.rtamt_api.failures import raises_rtamt
 from rtamt.rtamt_api.formulas import Formulas
+from rtamt.signals.arrays import Recording
 
 if TYPE_CHECKING:
     from rtamt.engine.dense_evaluate import DenseRecording
@@ -16,7 +21,15 @@ if TYPE_CHECKING:
     from rtamt.language.document import Document
     from rtamt.language.formula import Formula
     from rtamt.rewrite.semantics import Judge
-    from rtamt.signals.arrays import Recording
+
+
+class Explainer:
+    """What RTAMT keeps of an explanation; ours is what ``explain`` returns."""
+
+    def __init__(self) -> None:
+        #: From the canonical text of the formula, of its predicates and of their variables to where they make it
+        #: fail: ``[[first, last], ...]``, numbers of samples, in dense time times. Empty where it holds.
+        self.explanations: dict[str, list[list[Any]]] = {}
 
 
 class ExplainedSpecification(Formulas):
@@ -24,11 +37,13 @@ class ExplainedSpecification(Formulas):
 
     def __init__(self) -> None:
         super().__init__()
+        self.explainer = Explainer()
         self._evaluated: tuple[Formula, Recording | DenseRecording, str | Judge] | None = None
 
     def _parsed(self, document: Document) -> None:
         super()._parsed(document)
         self._evaluated = None
+        self.explainer = Explainer()
 
     def _remember(self, formula: Formula, recording: Recording | DenseRecording) -> None:
         """Keep what was evaluated, and under which semantics, until it is to be explained."""
@@ -40,7 +55,8 @@ class ExplainedSpecification(Formulas):
 
         ``at``: an instant; by default the first. The answer prints as sentences and is data:
         ``.critical``, ``.implicant``, ``.to_dict()``. Times are seconds in discrete time, and in
-        :attr:`unit` in dense time. Raises :class:`RTAMTException` before the first ``evaluate``.
+        :attr:`unit` in dense time. ``explainer.explanations`` is set as well, as by RTAMT. Raises
+        :class:`RTAMTException` before the first ``evaluate``.
 
         >>> import rtamt
         >>> spec = rtamt.StlDiscreteTimeOfflineSpecification()
@@ -60,7 +76,7 @@ class ExplainedSpecification(Formulas):
             raise UsageError("there is nothing to explain yet; call evaluate() first")
         formula, recording, semantics = self._evaluated
         roles = self.var_io_dict
-        return explain(
+        found = explain(
             formula,
             recording,
             backend="cpp" if is_compiled() else "python",
@@ -68,3 +84,24 @@ class ExplainedSpecification(Formulas):
             text=self._parsed_document.text,
             semantics=lambda predicate: lower(predicate, semantics, roles),
         )
+        self.explainer.explanations = _places(formula, recording, found)
+        return found
+
+
+def _places(
+    formula: Formula, recording: Recording | DenseRecording, explanation: Explanation
+) -> dict[str, list[list[Any]]]:
+    """Return where the predicates and variables of an implicant make a formula fail, by canonical text."""
+
+    def place(time: Any) -> Any:
+        return int(np.searchsorted(recording.times, time)) if isinstance(recording, Recording) else time
+
+    if explanation.satisfied:
+        return {}
+    at = place(explanation.time)
+    found: dict[str, list[list[Any]]] = {canonical(formula): [[at, at]]}
+    for stretch in explanation.implicant:
+        where = [place(stretch.start), stretch.end if stretch.end is None else place(stretch.end)]
+        for part in dict.fromkeys((stretch.formula, *map(Var, variables(stretch.formula)))):
+            found.setdefault(canonical(part), []).append(where)
+    return found

@@ -298,14 +298,23 @@ def test_unbounded_future_cannot_be_pastified():
 
 
 @pytest.mark.parametrize("name", ["prev", "next", "rise", "fall"])
-def test_what_counts_samples_is_refused_with_its_place(name):
-    assert said(declared, f"y or {name}(x)") == (
+@pytest.mark.parametrize("use", ["evaluate", "update", "final_update", "pastify"])
+def test_what_counts_samples_is_read_and_has_no_value(name, use):
+    spec = declared(f"y or {name}(x)")
+    dataset = () if use == "pastify" else (["x", [[0, 1], [1, 2]]], ["y", [[0, 1], [1, 2]]])
+    assert said(getattr(spec, use), *dataset) == (
         f"'{name}' means one sample away, which dense time does not have; "
         f"use a window such as once[0:1], or discrete time\n"
         f"  line 1, column 6:\n"
         f"    y or {name}(x)\n"
         f"         {'^' * len(f'{name}(x)')}"
     )
+
+
+def test_an_assertion_that_counts_samples_does_not_keep_the_others_from_being_watched():
+    spec = declared("a = prev(x); once(x)")
+    assert spec.update(["x", [[0, 1], [1, 2]]]) == [[0, 1.0], [1, 2.0]]
+    assert said(spec.get_value, "a").startswith("'previous(x)' is no part of what is watched")
 
 
 def test_a_bound_finer_than_a_nanosecond_is_refused():
