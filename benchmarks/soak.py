@@ -145,7 +145,7 @@ def dense(hours: float) -> None:
             old = kept.get(name, (np.empty(0, np.int64), np.empty(0)))
             kept[name] = (np.concatenate((old[0], times)), np.concatenate((old[1], values)))
         until = round(told_times[-1] * 1e9)
-        offline = spec.evaluate(kept).signal
+        offline = spec.evaluate(kept, time_unit="ns").signal
         online_times = np.concatenate((carried[0], np.rint(np.array(told_times) * 1e9).astype(np.int64)))
         online_values = np.concatenate((carried[1], told_values))
         wanted = changes(offline.times, offline.values, known, until)
