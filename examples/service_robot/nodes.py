@@ -210,7 +210,7 @@ class ControllerNode(Component):
         self.reference.publish(message)
 
 
-class Judge:
+class PredicateSemantics:
     """Says which specification has fallen, and names the component that fell first."""
 
     def __init__(self) -> None:
@@ -269,7 +269,12 @@ def state(message: PoseArray) -> State:
     return State(np.array([robot.position.x, robot.position.y, heading]), agents)
 
 
-NODES = {"perception": PerceptionNode, "planner": PlannerNode, "controller": ControllerNode, "judge": Judge}
+NODES = {
+    "perception": PerceptionNode,
+    "planner": PlannerNode,
+    "controller": ControllerNode,
+    "judge": PredicateSemantics,
+}
 
 
 def main() -> None:

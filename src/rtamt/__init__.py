@@ -19,7 +19,7 @@ from rtamt.errors import (
 )
 from rtamt.language.operators import STL
 from rtamt.results import Result
-from rtamt.signals.arrays import Signal
+from rtamt.signals.signal import Signal
 from rtamt.specification import Specification
 from rtamt.texts import load, parse, robustness
 

@@ -14,23 +14,25 @@ from typing import TYPE_CHECKING, Any, TypeVar
 from rtamt.engine.offline import Evaluators
 from rtamt.errors import StlError, UsageError, placed, shown
 from rtamt.results import Result
-from rtamt.signals.arrays import TOLERANCE, Recording, is_number
+from rtamt.signals.arrays import is_number
+from rtamt.signals.discrete import DiscreteTrace
+from rtamt.signals.regular import TOLERANCE
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Hashable, Iterator, Sequence
 
     from typing_extensions import Unpack
 
-    from rtamt.engine.dense_evaluate import DenseRecording
-    from rtamt.engine.offline import Question
+    from rtamt.engine.offline import Query
     from rtamt.settings import Reading
+    from rtamt.signals.dense import DenseTrace
     from rtamt.specification import Specification
 
 
 #: Samples from which on the engine lets other threads run: `many` in core/python/arrays.hpp.
 LONG = 4096
 
-AnyRecording = TypeVar("AnyRecording", bound="Recording | DenseRecording")
+AnyRecording = TypeVar("AnyRecording", bound="DiscreteTrace | DenseTrace")
 
 
 # ---- many recordings -----------------------------------------------------------------------------
@@ -144,47 +146,47 @@ def evaluate_all(
     >>> [result.robustness for result in rtamt.evaluate_all(specs, {"x": [5, 2], "y": [0, 2]})]
     [-1.0, 1.0]
     """
-    questions = []
+    queries = []
     for number, spec in enumerate(specs):
         with _place(number):
-            questions.append(spec.question(**reading))
+            queries.append(spec.query(**reading))
     # One program serves all that read the recording alike.
     alike: dict[Hashable, list[int]] = {}
-    for number, (spec, question) in enumerate(zip(specs, questions, strict=True)):
-        alike.setdefault((question.time, question.step, question.unit, spec.backend), []).append(number)
+    for number, (spec, query) in enumerate(zip(specs, queries, strict=True)):
+        alike.setdefault((query.time, query.step, query.unit, spec.backend), []).append(number)
     results: dict[int, Result] = {}
     for numbers in alike.values():
-        asked = {number: (specs[number], questions[number]) for number in numbers}
+        asked = {number: (specs[number], queries[number]) for number in numbers}
         results.update(_evaluate_alike(asked, data, tolerance))
     return [results[number] for number in range(len(specs))]
 
 
-_Asked = dict[int, tuple["Specification", "Question"]]
+_Asked = dict[int, tuple["Specification", "Query"]]
 
 
 def _evaluate_alike(asked: _Asked, data: Any, tolerance: float) -> Iterator[tuple[int, Result]]:
-    """Yield numbers and results of questions that read the recording by the same clock."""
+    """Yield numbers and results of queries that read the recording by the same clock."""
     names = tuple(dict.fromkeys(name for spec, _ in asked.values() for name in spec.input_names))
     known = {name for spec, _ in asked.values() for name in spec.declared}
-    spec, question = next(iter(asked.values()))
-    whole = question.record(data, names, known, tolerance)
-    parts: Iterable[tuple[Recording | DenseRecording, list[int]]] = [(whole, list(asked))]
-    if not isinstance(whole, Recording):
+    spec, query = next(iter(asked.values()))
+    whole = query.record(data, names, known, tolerance)
+    parts: Iterable[tuple[DiscreteTrace | DenseTrace, list[int]]] = [(whole, list(asked))]
+    if not isinstance(whole, DiscreteTrace):
         parts = _together(asked, whole)
     else:
-        for number, (_, question) in asked.items():
+        for number, (_, query) in asked.items():
             with _place(number):
-                question.check(whole)
+                query.check(whole)
     evaluators = Evaluators(spec.backend)
     for recording, numbers in parts:
         formulas = tuple(asked[number][1].formula for number in numbers)
         for number, signal in zip(numbers, evaluators(formulas, recording), strict=True):
-            spec, question = asked[number]
-            yield number, Result(spec, _of(whole, spec.input_names), signal, question.semantics)
+            spec, query = asked[number]
+            yield number, Result(spec, _of(whole, spec.input_names), signal, query.semantics)
 
 
-def _together(asked: _Asked, whole: DenseRecording) -> Iterator[tuple[DenseRecording, list[int]]]:
-    """Yield the parts of a dense recording that one program can run over, and whose questions each answers.
+def _together(asked: _Asked, whole: DenseTrace) -> Iterator[tuple[DenseTrace, list[int]]]:
+    """Yield the parts of a dense recording that one program can run over, and whose queries each answers.
 
     A recording begins and ends with the signals that a formula reads.
     """

@@ -12,16 +12,17 @@ from rtamt.language.formula import variables
 from rtamt.language.grammar import is_number
 from rtamt.rewrite.check import check_bounds, check_dense
 from rtamt.rewrite.semantics import boolean, no_verdict
-from rtamt.signals.arrays import Recording, Signal
+from rtamt.signals.discrete import DiscreteTrace
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from matplotlib.figure import Figure
 
-    from rtamt.engine.dense_evaluate import DenseRecording
     from rtamt.explain.report import Explanation
-    from rtamt.rewrite.semantics import Judge
+    from rtamt.rewrite.semantics import PredicateSemantics
+    from rtamt.signals.dense import DenseTrace
+    from rtamt.signals.signal import Signal
     from rtamt.specification import Specification
 
 
@@ -35,11 +36,11 @@ class Result:
     """
 
     specification: Specification
-    trace: Recording | DenseRecording
+    trace: DiscreteTrace | DenseTrace
     #: ρ at every sample, in dense time at every change and at the end: ``.times`` and ``.values``.
     signal: Signal
     #: What predicates were worth: a name, or the function that was given.
-    semantics: str | Judge = "standard"
+    semantics: str | PredicateSemantics = "standard"
 
     def __repr__(self) -> str:
         of = self.specification.name or self.specification.formula
@@ -63,7 +64,7 @@ class Result:
         specs = self.specification.requirements
         if len(specs) == 1:
             return MappingProxyType(dict.fromkeys(specs, self))
-        formulas = tuple(spec.judged(spec.formula, self.semantics) for spec in specs.values())
+        formulas = tuple(spec.apply_semantics(spec.formula, self.semantics) for spec in specs.values())
         signals = self.specification.signals_of(formulas, self.trace)
         return MappingProxyType(
             {
@@ -122,7 +123,7 @@ class Result:
             backend=spec.backend,
             at=at,
             text=spec.text,
-            semantics=lambda predicate: spec.judged(predicate, self.semantics),
+            semantics=lambda predicate: spec.apply_semantics(predicate, self.semantics),
         )
 
     def plot(self, at: Any = None, *, rows: int = 6, figure: Figure | None = None) -> Figure:
@@ -187,11 +188,11 @@ class Result:
                     f"'{name}' reads '{variable}', which the formula does not{did_you_mean(variable, names)}; "
                     f"the recording was read for {', '.join(names)} only"
                 )
-        if isinstance(self.trace, Recording):
+        if isinstance(self.trace, DiscreteTrace):
             check_bounds(formula, self.trace.period, name)
         else:
             check_dense(formula, name)
             check_bounds(formula, self.trace.scale.tick, name, "resolution")
         if not is_number(formula):
-            formula = self.specification.judged(formula, self.semantics)
+            formula = self.specification.apply_semantics(formula, self.semantics)
         return self.specification.signal_of(formula, self.trace)

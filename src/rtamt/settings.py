@@ -13,7 +13,7 @@ from rtamt.errors import UsageError, did_you_mean, shown
 from rtamt.language.formula import variables
 from rtamt.language.operators import Language
 from rtamt.language.units import duration
-from rtamt.rewrite.semantics import ROLES, Judge
+from rtamt.rewrite.semantics import ROLES, PredicateSemantics
 from rtamt.signals.arrays import is_number
 
 if TYPE_CHECKING:
@@ -25,7 +25,7 @@ TIMES = ("discrete", "dense")
 #: Seconds, or text with a unit, such as ``"100ms"``.
 Duration: TypeAlias = str | float | Fraction
 #: A name, a member of an enumeration whose text is a name, or a function of a predicate and roles.
-Semantics: TypeAlias = str | Enum | Judge
+Semantics: TypeAlias = str | Enum | PredicateSemantics
 
 
 class Settings(TypedDict, total=False):

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Literal, overload
 from rtamt.compiler import standalone
 from rtamt.engine.dense_monitor import DenseMonitor
 from rtamt.engine.monitor import Monitor
-from rtamt.engine.offline import Evaluators, Question
+from rtamt.engine.offline import Evaluators, Query
 from rtamt.engine.online import Watched
 from rtamt.language.formula import Formula, variables
 from rtamt.language.grammar import is_number
@@ -25,21 +25,21 @@ from rtamt.results import Result
 from rtamt.rewrite.check import check_bounds, check_dense
 from rtamt.rewrite.horizon import horizon
 from rtamt.rewrite.pastify import pastify
-from rtamt.rewrite.semantics import lower, semantics_of
+from rtamt.rewrite.semantics import apply_semantics, semantics_of
 from rtamt.settings import names_of, positive_period, time_domain
-from rtamt.signals import arrays
-from rtamt.signals.arrays import Recording
+from rtamt.signals.discrete import DiscreteTrace
+from rtamt.signals.regular import TOLERANCE
 from rtamt.signals.ticks import NANOSECOND
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
     from rtamt.compiler.program import Program
-    from rtamt.engine.dense_evaluate import DenseRecording
     from rtamt.language.document import Document
-    from rtamt.rewrite.semantics import Judge
+    from rtamt.rewrite.semantics import PredicateSemantics
     from rtamt.settings import Duration, Semantics
-    from rtamt.signals.arrays import Signal
+    from rtamt.signals.dense import DenseTrace
+    from rtamt.signals.signal import Signal
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -60,7 +60,7 @@ class Specification:
     language: Language = STL
     time: str = "discrete"
     resolution: Fraction = NANOSECOND
-    semantics: str | Judge = "standard"
+    semantics: str | PredicateSemantics = "standard"
     #: From a variable to ``"input"`` or ``"output"``: what the text declares, and what was given.
     roles: Mapping[str, str] = field(default_factory=dict)
 
@@ -132,7 +132,7 @@ class Specification:
     @property
     def horizon(self) -> float:
         """Seconds after t at which ρ at t is known online; inf if never. The paper's Definition 3."""
-        depth = horizon(self.judged(self.formula), self.period or Fraction(1))
+        depth = horizon(self.apply_semantics(self.formula), self.period or Fraction(1))
         return float("inf") if depth is None else float(depth)
 
     def pastified(self, period: Duration | None = None) -> Formula:
@@ -152,7 +152,7 @@ class Specification:
         *,
         time: str | None = None,
         period: Duration | None = None,
-        tolerance: float = arrays.TOLERANCE,
+        tolerance: float = TOLERANCE,
         resolution: Duration | None = None,
         semantics: Semantics | None = None,
         time_unit: str | None = None,
@@ -181,45 +181,45 @@ class Specification:
         >>> result.robustness, result.satisfied, result.signal.values
         (1.0, True, array([1., 1., 3.]))
         """
-        question = self.question(time, period, resolution, semantics, time_unit)
-        recording = question.record(data, self.input_names, self.declared, tolerance)
-        self._check(question, recording)
-        return Result(self, recording, self.signal_of(question.formula, recording), question.semantics)
+        query = self.query(time, period, resolution, semantics, time_unit)
+        recording = query.record(data, self.input_names, self.declared, tolerance)
+        self._check(query, recording)
+        return Result(self, recording, self.signal_of(query.formula, recording), query.semantics)
 
-    def question(
+    def query(
         self,
         time: str | None = None,
         period: Duration | None = None,
         resolution: Duration | None = None,
         semantics: Semantics | None = None,
         time_unit: str | None = None,
-    ) -> Question:
+    ) -> Query:
         """Return what :meth:`evaluate` asks of a recording; arguments and errors are those of it."""
         if time is None and period is None and resolution is None and semantics is None and time_unit is None:
-            return self._own_question
-        return self._question(time, period, resolution, semantics, time_unit)
+            return self._own_query
+        return self._query_of(time, period, resolution, semantics, time_unit)
 
     @cached_property
-    def _own_question(self) -> Question:
-        return self._question(None, None, None, None)
+    def _own_query(self) -> Query:
+        return self._query_of(None, None, None, None)
 
-    def _question(
+    def _query_of(
         self,
         time: str | None,
         period: Duration | None,
         resolution: Duration | None,
         semantics: Semantics | None,
         time_unit: str | None = None,
-    ) -> Question:
+    ) -> Query:
         unit = None if time_unit is None else check_unit(time_unit)
         chosen = self._semantics(semantics)
-        formula = self.judged(self.formula, chosen)
+        formula = self.apply_semantics(self.formula, chosen)
         if self._time(time) == "discrete":
-            return Question(formula, self.text, "discrete", self._period(period), chosen, unit)
+            return Query(formula, self.text, "discrete", self._period(period), chosen, unit)
         tick = self._resolution(resolution)
         check_dense(formula, self.text)
         check_bounds(formula, tick, self.text, "resolution")
-        return Question(formula, self.text, "dense", tick, chosen, unit)
+        return Query(formula, self.text, "dense", tick, chosen, unit)
 
     @overload
     def monitor(
@@ -227,7 +227,7 @@ class Specification:
         *,
         time: Literal["discrete"] | None = None,
         period: Duration | None = None,
-        tolerance: float = arrays.TOLERANCE,
+        tolerance: float = TOLERANCE,
         semantics: Semantics | None = None,
         watch: str | Iterable[str] = (),
         time_unit: str | None = None,
@@ -249,7 +249,7 @@ class Specification:
         *,
         time: str | None = None,
         period: Duration | None = None,
-        tolerance: float = arrays.TOLERANCE,
+        tolerance: float = TOLERANCE,
         resolution: Duration | None = None,
         semantics: Semantics | None = None,
         watch: str | Iterable[str] = (),
@@ -277,10 +277,10 @@ class Specification:
         >>> print(monitor.update(0.0, req=5, gnt=2), monitor["asked"], monitor["gnt - req"])
         None 2.0 -3.0
         """
-        formula = self.judged(self.formula, self._semantics(semantics))
+        formula = self.apply_semantics(self.formula, self._semantics(semantics))
         names = names_of(watch)
         watched = [self._watched(name, semantics) for name in names]
-        again = partial(
+        factory = partial(
             self.monitor,
             time=time,
             period=period,
@@ -296,9 +296,9 @@ class Specification:
                 text=self.text,
                 resolution=self._resolution(resolution),
                 backend=self.backend,
-                known=self.declared,
+                declared=self.declared,
                 watch=watched,
-                again=again,
+                factory=factory,
                 unit=time_unit,
             )
         return Monitor(
@@ -307,9 +307,9 @@ class Specification:
             period=self._period(period) or Fraction(1),
             tolerance=tolerance,
             backend=self.backend,
-            known=self.declared,
+            declared=self.declared,
             watch=watched,
-            again=again,
+            factory=factory,
             unit=time_unit,
         )
 
@@ -337,10 +337,12 @@ class Specification:
         step = self._resolution(resolution) if domain == "dense" else self._period(period) or Fraction(1)
         chosen = self._semantics(semantics)
         several = self.requirements if len(self.requirements) > 1 else {}
-        parts = {name: (one.formula, one.judged(one.formula, chosen)) for name, one in several.items()}
+        parts = {
+            name: (one.formula, one.apply_semantics(one.formula, chosen)) for name, one in several.items()
+        }
         return standalone.carried_program(
             self.formula,
-            judged=self.judged(self.formula, chosen),
+            applied=self.apply_semantics(self.formula, chosen),
             parts=parts,
             period=step,
             domain=domain,
@@ -348,24 +350,24 @@ class Specification:
             name=self.name,
         )
 
-    def judged(self, formula: Formula, semantics: str | Judge | None = None) -> Formula:
+    def apply_semantics(self, formula: Formula, semantics: str | PredicateSemantics | None = None) -> Formula:
         """Return the formula whose robustness is the value of ``formula`` under a semantics.
 
         ``semantics``: by default that of the specification; see :func:`rtamt.rewrite.semantics.lower`.
         """
         chosen = self._semantics(semantics)
         if not isinstance(chosen, str):
-            return lower(formula, chosen, self.roles)
-        judged = self._lowered.get((formula, chosen))
-        if judged is None:
-            judged = self._lowered[formula, chosen] = lower(formula, chosen, self.roles)
-        return judged
+            return apply_semantics(formula, chosen, self.roles)
+        applied = self._lowered.get((formula, chosen))
+        if applied is None:
+            applied = self._lowered[formula, chosen] = apply_semantics(formula, chosen, self.roles)
+        return applied
 
-    def signal_of(self, formula: Formula, trace: Recording | DenseRecording) -> Signal:
+    def signal_of(self, formula: Formula, trace: DiscreteTrace | DenseTrace) -> Signal:
         """Return the robustness signal of any formula over a normalised recording."""
         return self.signals_of((formula,), trace)[0]
 
-    def signals_of(self, formulas: tuple[Formula, ...], trace: Recording | DenseRecording) -> list[Signal]:
+    def signals_of(self, formulas: tuple[Formula, ...], trace: DiscreteTrace | DenseTrace) -> list[Signal]:
         """Return the robustness signals of formulas over a normalised recording, all from one program."""
         return self._evaluators(formulas, trace)
 
@@ -392,7 +394,7 @@ class Specification:
     def _watched(self, name: str, semantics: Semantics | None) -> Watched:
         formula = self.named(name)
         if not is_number(formula):
-            formula = self.judged(formula, self._semantics(semantics))
+            formula = self.apply_semantics(formula, self._semantics(semantics))
         return Watched(name, formula, name if self._known(name) is None else self.text)
 
     def _known(self, name: str) -> Formula | None:
@@ -406,11 +408,11 @@ class Specification:
     def _lowered(self) -> dict[tuple[Formula, str], Formula]:
         return {}
 
-    def _check(self, question: Question, recording: Recording | DenseRecording) -> None:
-        if isinstance(recording, Recording):  # many recordings have the same period
-            key = (question.formula, recording.period.as_integer_ratio())  # fractions are slow to hash
+    def _check(self, query: Query, recording: DiscreteTrace | DenseTrace) -> None:
+        if isinstance(recording, DiscreteTrace):  # many recordings have the same period
+            key = (query.formula, recording.period.as_integer_ratio())  # fractions are slow to hash
             if key not in self._checked:
-                question.check(recording)
+                query.check(recording)
                 self._checked.add(key)
 
     @cached_property
@@ -435,7 +437,7 @@ class Specification:
     def _resolution(self, resolution: Duration | None) -> Fraction:
         return self.resolution if resolution is None else positive_period(resolution, "resolution")
 
-    def _semantics(self, semantics: Semantics | None) -> str | Judge:
+    def _semantics(self, semantics: Semantics | None) -> str | PredicateSemantics:
         return self.semantics if semantics is None else semantics_of(semantics)
 
     def __reduce__(self) -> tuple[Any, ...]:
@@ -444,13 +446,13 @@ class Specification:
         given = {name: v for name, v in self.document.constants.items() if name not in declared}
         names = ("period", "unit", "backend", "language", "time", "resolution", "semantics")
         settings = {name: getattr(self, name) for name in names}
-        return _again, (self.text, given, {**settings, "roles": dict(self.roles)}, self.document.selected)
+        return _factory, (self.text, given, {**settings, "roles": dict(self.roles)}, self.document.selected)
 
     def __str__(self) -> str:
         return to_text(self.formula, self.language)
 
 
-def _again(
+def _factory(
     text: str, constants: Mapping[str, float], settings: dict[str, Any], selected: str | None
 ) -> Specification:
     document = parse_document(text, language=settings["language"], unit=settings["unit"], constants=constants)

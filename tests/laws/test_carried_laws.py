@@ -17,22 +17,22 @@ from rtamt.engine.dense_monitor import DenseMonitor
 from rtamt.engine.monitor import Monitor
 from rtamt.errors import EvaluationError
 from rtamt.language.formula import Apply, Const, Formula, fold, variables
-from rtamt.rewrite.semantics import SEMANTICS, boolean, lower
+from rtamt.rewrite.semantics import SEMANTICS, apply_semantics, boolean
 from tests import capi
 from tests.strategies import dense_chunkings, dense_traces, formulas, traces
 
 ONE = Fraction(1)
 
 
-def carried(formula: Formula, domain: str = "discrete", judged: Formula | None = None) -> bytes:
-    return carried_program(formula, period=ONE, domain=domain, judged=judged).to_bytes()
+def carried(formula: Formula, domain: str = "discrete", applied: Formula | None = None) -> bytes:
+    return carried_program(formula, period=ONE, domain=domain, applied=applied).to_bytes()
 
 
 def draw_judged(data: st.DataObject, formula: Formula) -> Formula:
     """Return the formula under any semantics, any of its variables being inputs."""
     inputs = data.draw(st.sets(st.sampled_from(("x", "y"))))
     roles = {name: "input" for name in variables(formula) if name in inputs}
-    return lower(formula, data.draw(st.sampled_from(tuple(SEMANTICS))), roles)
+    return apply_semantics(formula, data.draw(st.sampled_from(tuple(SEMANTICS))), roles)
 
 
 def bits(values: Any) -> list[int]:
@@ -51,7 +51,7 @@ def test_samples_in_the_same_bits_out(data: st.DataObject) -> None:
     formula, columns = data.draw(formulas()), data.draw(traces(infinite=True))
     rows = rows_of(formula, columns)
     judged = draw_judged(data, formula)
-    code = carried(formula, judged=judged)
+    code = carried(formula, applied=judged)
     here, there, truth = Monitor(judged), capi.Monitor(code), Monitor(boolean(formula))
     cut = data.draw(st.integers(0, len(rows)))
     for i, row in enumerate(rows):

@@ -17,6 +17,7 @@ from rtamt.language.formula import Formula, variables
 from rtamt.reference import dense as dense_reference
 from rtamt.rewrite.desugar import desugar
 from rtamt.rewrite.horizon import horizon
+from rtamt.signals.dense import DenseTrace, record_dense
 from tests.strategies import dense_chunkings, dense_traces, formulas
 
 TICK = Fraction(1)
@@ -40,9 +41,9 @@ def by_definition(formula: Formula, trace: dict[str, Any]) -> list[tuple[int, fl
     return stepped(steps.times, steps.values)
 
 
-def recording(formula: Formula, trace: dict[str, Any]) -> dense_evaluate.DenseRecording:
+def recording(formula: Formula, trace: dict[str, Any]) -> DenseTrace:
     data = {name: (np.array(trace[name][0], dtype=np.int64), trace[name][1]) for name in variables(formula)}
-    return dense_evaluate.trace(data, variables(formula), TICK)
+    return record_dense(data, variables(formula), TICK)
 
 
 def by_engine(formula: Formula, trace: dict[str, Any]) -> list[tuple[int, float]] | None:

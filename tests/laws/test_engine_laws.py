@@ -23,7 +23,7 @@ from rtamt.reference import discrete as reference
 from rtamt.rewrite.desugar import desugar
 from rtamt.rewrite.horizon import horizon
 from rtamt.rewrite.semantics import boolean
-from rtamt.signals import arrays
+from rtamt.signals.discrete import record_discrete
 from tests.oracle import zero
 from tests.oracle.boolean import satisfied
 from tests.strategies import chunkings, formulas, traces
@@ -47,7 +47,7 @@ def by_definition(formula: Formula, columns: dict[str, Any], period: Fraction = 
 
 def by_engine(formula: Formula, columns: dict[str, Any], period: Fraction = ONE) -> np.ndarray | None:
     used = {name: columns[name] for name in columns}
-    trace = arrays.trace(used, tuple(used), period)
+    trace = record_discrete(used, tuple(used), period)
     try:
         return Evaluator((desugar(formula),), period)(trace)[0]
     except EvaluationError:

@@ -18,7 +18,6 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from rtamt.engine import dense_evaluate
 from rtamt.errors import EvaluationError
 from rtamt.explain.explain import explain
 from rtamt.language.formula import Apply, Const, Formula, Interval, Var, postorder, variables
@@ -26,7 +25,8 @@ from rtamt.language.operators import STL
 from rtamt.language.records import Sort
 from rtamt.reference import dense as dense_reference
 from rtamt.reference import discrete as reference
-from rtamt.signals import arrays
+from rtamt.signals.dense import record_dense
+from rtamt.signals.discrete import record_discrete
 from tests.oracle import boolean
 from tests.oracle.dense_grid import on_grid
 from tests.strategies import dense_traces, formulas, traces
@@ -70,7 +70,7 @@ class Discrete:
         self.formula = formula
         self.data = data
         self.size = self.recorded = len(next(iter(data.values())))
-        self.recording = arrays.trace(data, tuple(data), ONE)
+        self.recording = record_discrete(data, tuple(data), ONE)
 
     def value(self, formula: Formula, columns: dict[str, Any], cell: int) -> float:
         return float(reference.evaluate(formula, columns, self.size, ONE)[cell])
@@ -99,7 +99,7 @@ class Dense:
         bounds = [n.interval for n in postorder(formula) if isinstance(n, Apply) and n.interval is not None]
         self.size = self.recorded + sum(int(i.end or i.begin) for i in bounds) + 2
         told = {name: (times.astype(float), values) for name, (times, values) in self.data.items()}
-        self.recording = dense_evaluate.trace(told, tuple(told), ONE)
+        self.recording = record_dense(told, tuple(told), ONE)
 
     def value(self, formula: Formula, columns: dict[str, Any], cell: int) -> float:
         events = {}
@@ -350,7 +350,7 @@ def test_signals_may_do_anything_outside_the_implicant(data: Any, seed: int) -> 
     signals_of = tuple(variables(formula))
     columns = data.draw(traces(signals_of, min_size=2, max_size=14))
     n = len(columns[signals_of[0]])
-    explanation = explain(formula, arrays.trace(columns, signals_of, ONE))
+    explanation = explain(formula, record_discrete(columns, signals_of, ONE))
     random = np.random.default_rng(seed)
     for _ in range(5):
         changed = {name: random.integers(-4, 5, n) / 2 for name in signals_of}

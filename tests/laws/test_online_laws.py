@@ -27,7 +27,7 @@ from tests.strategies import chunkings, dense_chunkings, dense_traces, formulas,
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from rtamt.signals.arrays import Signal
+    from rtamt.signals.signal import Signal
 
 ONE = Fraction(1)
 NAMES = ("x", "y")

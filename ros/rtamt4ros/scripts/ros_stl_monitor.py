@@ -21,7 +21,7 @@ from rtamt import load
 from rtamt.errors import StlError
 from rtamt.ros.binding import MessageType
 from rtamt.ros.options import options, parser
-from rtamt.ros.publisher import DIAGNOSTICS, Outbox
+from rtamt.ros.publisher import DIAGNOSTICS, Publisher
 from rtamt.ros.report import Level
 
 PROGRAM = "ros_stl_monitor.py"
@@ -42,7 +42,7 @@ class Node:
         self.monitor = monitor
         self.lock = threading.Lock()
         self.simulated = rospy.get_param("/use_sim_time", False)
-        self.outbox = Outbox(monitor.binding, MessageType.load, stamp)
+        self.outbox = Publisher(monitor.binding, MessageType.load, stamp)
         self.heard = monitor.wanted = set()  # topics that somebody listens to: nothing is made for the others
         self.publishers = {topic: self.publisher(topic, cls) for topic, cls in self.outbox.topics.items()}
         self.diagnostics = self.on_diagnostics()

@@ -24,7 +24,7 @@ from rtamt.ros.binding import MessageType
 from rtamt.ros.dds.participant import Quality
 from rtamt.ros.monitor import PAUSE
 from rtamt.ros.options import DEFAULTS, options, parser
-from rtamt.ros.publisher import DIAGNOSTICS, Outbox, diagnostic
+from rtamt.ros.publisher import DIAGNOSTICS, Publisher, diagnostic
 
 PROGRAM = "ros_stl_monitor"
 DIAGNOSTICS_EVERY = 1.0  # seconds of wall time
@@ -43,7 +43,7 @@ class Monitor(Node):
         }
         self.monitor = options(arguments, chosen).monitor()
         quality = self.quality()
-        self.outbox = Outbox(self.monitor.binding, MessageType.load, stamp, lambda level: bytes([level]))
+        self.outbox = Publisher(self.monitor.binding, MessageType.load, stamp, lambda level: bytes([level]))
         # Who asks for less hears a reliable publisher, too; not the other way round.
         offered = QoSProfile(
             depth=quality.depth, reliability=ReliabilityPolicy.RELIABLE, durability=quality.durability

@@ -56,7 +56,7 @@ def _rows(spec: Specification, text: str, label: str, taken: Counter[str]) -> Re
     )
 
 
-def judged(given: list[Requirement]) -> list[Requirement]:
+def each_requirement(given: list[Requirement]) -> list[Requirement]:
     """Return every requirement of every specification: what has a row of its own."""
     return [row for requirement in given for row in requirement.rows or (requirement,)]
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rtamt.cli.arguments import judged, requirements_and_traces, variables_of
+from rtamt.cli.arguments import each_requirement, requirements_and_traces, variables_of
 from rtamt.cli.bag import write_bag
 from rtamt.cli.command import (
     ERROR,
@@ -39,7 +39,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
     from rtamt.results import Result
-    from rtamt.signals.arrays import Signal
+    from rtamt.signals.signal import Signal
 
 _DESCRIPTION = """\
 Evaluate recordings against requirements, every requirement over every recording: the robustness at the
@@ -133,7 +133,7 @@ def run(args: argparse.Namespace) -> int:
     for each in [] if args.quiet else given:
         warn(each.spec, each.given, args.ignore)
     _check_output(args.output, given, traces)
-    requirements = judged(given)
+    requirements = each_requirement(given)
     rows = {requirement.label: requirement for requirement in requirements}
     pairs = len(requirements) * len(traces)
     if args.jobs is not None and args.jobs < 1:

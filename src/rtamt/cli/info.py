@@ -126,7 +126,7 @@ def gather(spec: Specification) -> Facts:
     dense = spec.time == "dense"
     step = spec.resolution if dense else spec.period or Fraction(1)
     facts = Facts(spec, step)
-    judged = spec.judged(spec.formula)
+    applied = spec.apply_semantics(spec.formula)
     try:
         check_online(spec.formula, spec.text)
         facts = replace(facts, horizon=horizon(spec.formula, step), pastified=_pastified(spec, step))
@@ -134,7 +134,7 @@ def gather(spec: Specification) -> Facts:
             check_bounds(spec.formula, step, spec.text)
     except BoundError as error:
         return replace(facts, offline_only=error.message)
-    program = compile_program((desugar(judged),), step, spec.input_names, domain=spec.time)
+    program = compile_program((desugar(applied),), step, spec.input_names, domain=spec.time)
     unknown = dense or spec.backend == "python"
     memory = None if unknown else int(core().memory(program.code(), calls_of(program)))
     return replace(facts, program=program, memory=memory)

@@ -28,7 +28,8 @@ from rtamt.cli.live_view import Live
 from rtamt.cli.stdin_reader import STDIN, Samples
 from rtamt.cli.terminal import printed, say
 from rtamt.errors import StlError, TraceError
-from rtamt.signals.arrays import TOLERANCE, Signal
+from rtamt.signals.regular import TOLERANCE
+from rtamt.signals.signal import Signal
 
 if TYPE_CHECKING:
     import argparse

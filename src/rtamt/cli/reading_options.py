@@ -15,7 +15,8 @@ from rtamt.readers.dates import EXAMPLE, date_in
 from rtamt.readers.formats import is_bag
 from rtamt.readers.read import choice, opened
 from rtamt.ros.bags import columns_of
-from rtamt.signals.arrays import TIME, check_regular, infer_period, stamps
+from rtamt.signals.arrays import TIME, stamps
+from rtamt.signals.regular import check_regular, infer_period
 
 if TYPE_CHECKING:
     import argparse

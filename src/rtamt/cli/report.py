@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rtamt.cli.arguments import judged, requirements_and_traces, variables_of
+from rtamt.cli.arguments import each_requirement, requirements_and_traces, variables_of
 from rtamt.cli.check import CODES
 from rtamt.cli.command import (
     Command,
@@ -60,7 +60,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     """Evaluate every requirement over every trace, write the page."""
     given, traces = requirements_and_traces(args, "report")
-    requirements = judged(given)
+    requirements = each_requirement(given)
     reading = reading_of(args, variables_of(requirements), whole=True)
     rows: list[Row] = []
     cards: dict[Row, Card] = {}

@@ -20,7 +20,7 @@ from rtamt.readers.assemble import chunks_of
 from rtamt.readers.formats import is_bag
 from rtamt.readers.read import opened
 from rtamt.readers.sql import is_url, shown
-from rtamt.signals.arrays import Recording
+from rtamt.signals.discrete import DiscreteTrace
 from rtamt.verdicts.first_violation import first_violation
 from rtamt.verdicts.streaming import check_stream, check_streamable
 
@@ -29,9 +29,9 @@ if TYPE_CHECKING:
     from fractions import Fraction
 
     from rtamt.cli.reading_options import Reading
-    from rtamt.engine.dense_evaluate import DenseRecording
     from rtamt.language.document import Requirement as Written
     from rtamt.results import Result
+    from rtamt.signals.dense import DenseTrace
     from rtamt.signals.trace import Trace
     from rtamt.specification import Specification
     from rtamt.verdicts.streaming import StreamResult
@@ -221,7 +221,7 @@ def _outcome(requirement: Requirement, trace: str, result: Result, data: Trace, 
         result.robustness,
         None if violated is None else _told(violated),
         _samples(recording),
-        recording.period if isinstance(recording, Recording) else None,
+        recording.period if isinstance(recording, DiscreteTrace) else None,
         notes=data.losses,
         seconds=time.perf_counter() - begin,
         result=result,
@@ -232,9 +232,9 @@ def _failed(requirement: Requirement, trace: str, error: str, begin: float) -> O
     return Outcome(requirement.label, shown(trace), "error", error=error, seconds=time.perf_counter() - begin)
 
 
-def _samples(recording: Recording | DenseRecording) -> int:
+def _samples(recording: DiscreteTrace | DenseTrace) -> int:
     """Return the number of samples; in dense time that of the instants at which any variable has one."""
-    if isinstance(recording, Recording):
+    if isinstance(recording, DiscreteTrace):
         return len(recording)
     return len(np.unique(np.concatenate([ticks for ticks, _ in recording.columns.values()])))
 

@@ -31,16 +31,16 @@ def carried_program(
     *,
     period: Fraction,
     domain: str,
-    judged: Formula | None = None,
+    applied: Formula | None = None,
     parts: Mapping[str, tuple[Formula, Formula]] | None = None,
     text: str | None = None,
     name: str | None = None,
 ) -> Program:
     """Compile a requirement for carriers: outputs :data:`OUTPUTS`, its named constants as parameters.
 
-    ``period``: seconds of a step, as for ``compile_program``. ``judged``: the formula whose robustness is
+    ``period``: seconds of a step, as for ``compile_program``. ``applied``: the formula whose robustness is
     told, where a semantics says so; the verdict is that of ``formula`` all the same. ``parts``: by name the
-    formula and the judged formula of each of several requirements. ``text``: what errors point at. A
+    formula and the applied formula of each of several requirements. ``text``: what errors point at. A
     constant that is also the bound of an interval decides how long windows are, and is no parameter.
 
     >>> from fractions import Fraction
@@ -61,7 +61,7 @@ def carried_program(
         raise UsageError("the formula reads no variable, so in dense time nothing says when to evaluate it")
     structural = _bounds(formula)
     values: dict[str, float] = {}
-    pairs = {"": (formula, judged or formula)} | {f".{name}": pair for name, pair in (parts or {}).items()}
+    pairs = {"": (formula, applied or formula)} | {f".{name}": pair for name, pair in (parts or {}).items()}
     lowered = [desugar(each) for own, worth in pairs.values() for each in (worth, boolean(own))]
     told = [_with_parameters(each, structural, values) for each in lowered]
     program = compile_program(told, period, inputs, domain=domain, parameters=values)

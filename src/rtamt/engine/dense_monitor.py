@@ -20,8 +20,8 @@ from rtamt.language.units import check_unit
 from rtamt.rewrite.check import check_bounds, check_dense, check_online
 from rtamt.rewrite.desugar import desugar
 from rtamt.signals import arrays, dense_arrays
-from rtamt.signals.arrays import Signal
 from rtamt.signals.dense_arrays import TickSignal
+from rtamt.signals.signal import Signal
 from rtamt.signals.ticks import NANOSECOND, TimeScale
 
 if TYPE_CHECKING:
@@ -60,9 +60,9 @@ class DenseMonitor(OnlineMonitor):
         text: str | None = None,
         resolution: Fraction = NANOSECOND,
         backend: str = "cpp",
-        known: Collection[str] = (),
+        declared: Collection[str] = (),
         watch: Sequence[Watched] = (),
-        again: Callable[[], OnlineMonitor] | None = None,
+        factory: Callable[[], OnlineMonitor] | None = None,
         scale: TimeScale | None = None,
         unit: str | None = None,
         parts: bool = False,
@@ -71,7 +71,7 @@ class DenseMonitor(OnlineMonitor):
             check_dense(watched.formula, watched.text)
             check_bounds(watched.formula, resolution, watched.text, "resolution")
             check_online(watched.formula, watched.text)
-        super().__init__(formula, watch, known, again)
+        super().__init__(formula, watch, declared, factory)
         if not self.input_names:
             raise UsageError(
                 "the formula reads no variable, so in dense time nothing says when to evaluate it"
@@ -144,7 +144,7 @@ class DenseMonitor(OnlineMonitor):
         Variables may be left out or have no samples. Returns and raises as :meth:`update` does.
         """
         arrays.require_no_unit(data, self._unit)
-        return self._take(dense_arrays.columns_of(data, self.input_names, self._known))
+        return self._take(dense_arrays.columns_of(data, self.input_names, self._declared))
 
     @alone
     def finish(self) -> Signal:

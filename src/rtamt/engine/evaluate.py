@@ -20,7 +20,8 @@ if TYPE_CHECKING:
     from rtamt.compiler.plan import Scan
     from rtamt.compiler.program import Program
     from rtamt.language.formula import Formula
-    from rtamt.signals.arrays import FloatArray, Recording
+    from rtamt.signals.arrays import FloatArray
+    from rtamt.signals.discrete import DiscreteTrace
 
 
 class Evaluator:
@@ -33,7 +34,7 @@ class Evaluator:
         self._longest = longest_bound(self._formulas, period)
         self._plans: dict[int, Plan] = {}
 
-    def __call__(self, trace: Recording) -> list[FloatArray]:
+    def __call__(self, trace: DiscreteTrace) -> list[FloatArray]:
         """Return the robustness of each formula at each of the n samples of the trace."""
         n = len(trace)
         # A trace longer than every bound needs no clipping, so that one plan serves all such traces.
@@ -68,7 +69,7 @@ def longest_bound(formulas: Sequence[Formula], period: Fraction) -> int:
 def run(
     program: Program,
     columns: Mapping[str, FloatArray],
-    trace: Recording,
+    trace: DiscreteTrace,
     plan: Plan,
     asked: Sequence[Formula],
 ) -> list[FloatArray]:
@@ -86,7 +87,7 @@ def run(
     return values
 
 
-def defined(scan: Scan, operands: list[FloatArray], trace: Recording, plan: Plan) -> FloatArray:
+def defined(scan: Scan, operands: list[FloatArray], trace: DiscreteTrace, plan: Plan) -> FloatArray:
     """Return the values of a user's operator of unbounded future, by its definition."""
     values = defined_column(scan.meaning, trace.period, operands)
     wrong = np.flatnonzero(np.isnan(values))

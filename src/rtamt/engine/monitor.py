@@ -19,8 +19,17 @@ from rtamt.language.units import UNITS, check_unit
 from rtamt.rewrite.check import check_bounds, check_online
 from rtamt.rewrite.desugar import desugar
 from rtamt.signals import arrays
-from rtamt.signals.arrays import Signal, Stamps, plain
+from rtamt.signals.arrays import Stamps, plain
 from rtamt.signals.counting import implausible, is_implausible
+from rtamt.signals.regular import (
+    TOLERANCE,
+    check_increasing,
+    check_regular,
+    check_tolerance,
+    irregular,
+    not_increasing,
+)
+from rtamt.signals.signal import Signal
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Mapping, Sequence
@@ -63,18 +72,18 @@ class Monitor(OnlineMonitor):
         *,
         text: str | None = None,
         period: Fraction = Fraction(1),
-        tolerance: float = arrays.TOLERANCE,
+        tolerance: float = TOLERANCE,
         backend: str = "cpp",
-        known: Collection[str] = (),
+        declared: Collection[str] = (),
         watch: Sequence[Watched] = (),
-        again: Callable[[], OnlineMonitor] | None = None,
+        factory: Callable[[], OnlineMonitor] | None = None,
         unit: str | None = None,
     ) -> None:
         for watched in (Watched("", formula, text), *watch):
             check_bounds(watched.formula, period, watched.text)
             check_online(watched.formula, watched.text)
-        arrays.check_tolerance(tolerance)
-        super().__init__(formula, watch, known, again)
+        check_tolerance(tolerance)
+        super().__init__(formula, watch, declared, factory)
         self._period = period
         self._tolerance = tolerance
         self._depths = [depth_of(formula, period) for formula in self._formulas]
@@ -370,7 +379,7 @@ class Monitor(OnlineMonitor):
 
     def _chunk(self, data: Any) -> tuple[Stamps, list[arrays.FloatArray]]:
         last = self._last_time
-        stamps, columns, n = arrays.columns_of(data, self.input_names, self._known, self._unit)
+        stamps, columns, n = arrays.columns_of(data, self.input_names, self._declared, self._unit)
         if stamps is None:
             times = np.array(self._next_time() + float(self._period) * np.arange(n), dtype=np.float64)
             stamps = Stamps(times, times if self._unit is None and self._told is None else self._later(n))
@@ -379,8 +388,8 @@ class Monitor(OnlineMonitor):
         else:
             stamps = Stamps(stamps.seconds, self._recent(0))
         times = stamps.seconds
-        arrays.check_increasing(times, last, self.samples)
-        arrays.check_regular(times, self._period, self._tolerance, last, self.samples)
+        check_increasing(times, last, self.samples)
+        check_regular(times, self._period, self._tolerance, last, self.samples)
         for name, column in columns.items():
             arrays.check_numbers(name, column, times, self.samples)
         return stamps, [columns[name] for name in self.input_names]
@@ -397,7 +406,7 @@ class Monitor(OnlineMonitor):
         period = float(self._period)
         if last is None or abs(time - last - period) <= self._tolerance * period:
             return in_use()  # what was wrong is so no more
-        return arrays.irregular(index, time, last, self._period, self._tolerance)
+        return irregular(index, time, last, self._period, self._tolerance)
 
     def _no_value(self, error: Any) -> Exception:
         """Name the sub-formula and the instant of a value that does not exist."""
@@ -431,7 +440,7 @@ def read_time(time: Any, index: int, last: float | None, *, again: bool = False)
     if not isfinite(stamp):
         raise TraceError(f"time is {stamp} at sample {index}: give a finite number of seconds")
     if last is not None and (stamp < last or (stamp == last and not again)):
-        raise arrays.not_increasing(index, stamp, last)
+        raise not_increasing(index, stamp, last)
     return stamp
 
 

@@ -11,20 +11,21 @@ from rtamt.errors import BoundError
 from rtamt.reference import dense as dense_reference
 from rtamt.reference import discrete as reference
 from rtamt.rewrite.check import check_bounds
-from rtamt.signals import arrays
-from rtamt.signals.arrays import Recording, Signal
+from rtamt.signals.dense import record_dense
+from rtamt.signals.discrete import DiscreteTrace, record_discrete
+from rtamt.signals.signal import Signal
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Sequence
     from fractions import Fraction
 
-    from rtamt.engine.dense_evaluate import DenseRecording
     from rtamt.language.formula import Formula
-    from rtamt.rewrite.semantics import Judge
+    from rtamt.rewrite.semantics import PredicateSemantics
+    from rtamt.signals.dense import DenseTrace
 
 
 @dataclass(frozen=True, slots=True)
-class Question:
+class Query:
     """A formula whose predicates are judged already, and the clock by which recordings are read.
 
     ``text``: what the formula was parsed from. ``step``: the sampling period in seconds (None: that of
@@ -35,22 +36,22 @@ class Question:
     text: str
     time: str
     step: Fraction | None
-    semantics: str | Judge
+    semantics: str | PredicateSemantics
     unit: str | None = None
 
     def record(
-        self, data: Any, names: Sequence[str], known: Collection[str], tolerance: float
-    ) -> Recording | DenseRecording:
-        """Normalise a finished recording of the variables ``names``; ``known``: others that may be there.
+        self, data: Any, names: Sequence[str], declared: Collection[str], tolerance: float
+    ) -> DiscreteTrace | DenseTrace:
+        """Normalise a finished recording of the variables ``names``; ``declared``: others that may be there.
 
         Raises :class:`TraceError`.
         """
         if self.time == "dense":
             assert self.step is not None
-            return dense_evaluate.trace(data, names, self.step, known, unit=self.unit)
-        return arrays.trace(data, names, self.step, known, tolerance, self.unit)
+            return record_dense(data, names, self.step, declared, unit=self.unit)
+        return record_discrete(data, names, self.step, declared, tolerance, self.unit)
 
-    def check(self, recording: Recording) -> None:
+    def check(self, recording: DiscreteTrace) -> None:
         """Raise :class:`BoundError` where an interval is no multiple of the recording's period."""
         try:
             check_bounds(self.formula, recording.period, self.text)
@@ -72,13 +73,13 @@ class Evaluators:
         self._discrete: dict[Any, Evaluator] = {}
         self._dense: dict[Any, dense_evaluate.Evaluator] = {}
 
-    def __call__(self, formulas: tuple[Formula, ...], recording: Recording | DenseRecording) -> list[Signal]:
+    def __call__(self, formulas: tuple[Formula, ...], recording: DiscreteTrace | DenseTrace) -> list[Signal]:
         """Return the robustness signal of each formula over a recording, all from one program."""
-        if isinstance(recording, Recording):
+        if isinstance(recording, DiscreteTrace):
             return self._samples(formulas, recording)
         return self._events(formulas, recording)
 
-    def _samples(self, formulas: tuple[Formula, ...], recording: Recording) -> list[Signal]:
+    def _samples(self, formulas: tuple[Formula, ...], recording: DiscreteTrace) -> list[Signal]:
         times, period = recording.times.view(), recording.period
         times.flags.writeable = False  # all signals of a recording share its times
         if self._backend == "python":
@@ -94,7 +95,7 @@ class Evaluators:
         stamps.flags.writeable = False
         return [Signal(stamps, values) for values in columns]
 
-    def _events(self, formulas: tuple[Formula, ...], recording: DenseRecording) -> list[Signal]:
+    def _events(self, formulas: tuple[Formula, ...], recording: DenseTrace) -> list[Signal]:
         tick, inputs = recording.scale.tick, tuple(recording.columns)
         if self._backend == "python":
             steps = [dense_reference.evaluate(f, recording.columns, tick) for f in formulas]

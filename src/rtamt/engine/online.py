@@ -44,8 +44,8 @@ class OnlineMonitor(ABC):
         self,
         formula: Formula,
         watch: Sequence[Watched],
-        known: Collection[str],
-        again: Callable[[], OnlineMonitor] | None,
+        declared: Collection[str],
+        factory: Callable[[], OnlineMonitor] | None,
     ) -> None:
         self.input_names: tuple[str, ...] = variables(formula)
         for watched in watch:
@@ -58,8 +58,8 @@ class OnlineMonitor(ABC):
                     )
         self._formulas = (formula, *(watched.formula for watched in watch))
         self._output_of = {watched.name: output for output, watched in enumerate(watch, 1)}
-        self._known = frozenset(known)
-        self._again = again
+        self._declared = frozenset(declared)
+        self._factory = factory
         self._gate = Gate()  # what takes more than one step is done alone
         self._finished = False
 
@@ -76,7 +76,7 @@ class OnlineMonitor(ABC):
     @property
     def _unread(self) -> frozenset[str]:
         """Declared variables that the formula does not read, which an update may hold."""
-        return self._known - {head for name in self.input_names for head in (name, name.split(".")[0])}
+        return self._declared - {head for name in self.input_names for head in (name, name.split(".")[0])}
 
     def _output(self, name: str) -> int:
         output = self._output_of.get(name)
@@ -91,7 +91,7 @@ class OnlineMonitor(ABC):
     def _read_by_formula(self, values: Mapping[str, Any]) -> dict[str, Any]:
         """Return what the formula reads: objects taken apart, declared variables it does not read left out."""
         heads = {name.split(".")[0] for name in self.input_names}
-        flat = {k: v for k, v in values.items() if k in self.input_names or k not in self._known | heads}
+        flat = {k: v for k, v in values.items() if k in self.input_names or k not in self._declared | heads}
         for name in self.input_names:
             head, *path = name.split(".")
             if path and name not in values and head in values:
@@ -119,9 +119,9 @@ class OnlineMonitor(ABC):
         return self.__copy__()
 
     def __reduce__(self) -> tuple[Any, ...]:
-        if self._again is None:
+        if self._factory is None:
             raise UsageError("only a monitor that Specification.monitor() has made can be pickled")
-        return _resumed, (self._again, self._state())
+        return _resumed, (self._factory, self._state())
 
     @alone
     def _state(self) -> tuple[Any, ...]:
@@ -158,8 +158,8 @@ def depth_of(formula: Formula, period: Fraction = Fraction(1)) -> Fraction:
     return depth
 
 
-def _resumed(again: Callable[[], OnlineMonitor], state: tuple[Any, ...]) -> OnlineMonitor:
-    monitor = again()
-    monitor._again = again
+def _resumed(factory: Callable[[], OnlineMonitor], state: tuple[Any, ...]) -> OnlineMonitor:
+    monitor = factory()
+    monitor._factory = factory
     monitor._resume(state)
     return monitor

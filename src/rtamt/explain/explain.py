@@ -20,15 +20,15 @@ from rtamt.explain.time_axis import timeline
 from rtamt.language.formula import postorder
 from rtamt.language.printer import PAGE, to_text
 from rtamt.rewrite.semantics import boolean, no_verdict
-from rtamt.signals.arrays import Recording
+from rtamt.signals.discrete import DiscreteTrace
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-    from rtamt.engine.dense_evaluate import DenseRecording
     from rtamt.explain.minimise import Interval
     from rtamt.explain.structure import Leaf
     from rtamt.language.formula import Formula
+    from rtamt.signals.dense import DenseTrace
 
 #: How many places are tried for one that overturns the verdict alone.
 _TRIED = 64
@@ -36,7 +36,7 @@ _TRIED = 64
 
 def explain(
     formula: Formula,
-    recording: Recording | DenseRecording,
+    recording: DiscreteTrace | DenseTrace,
     *,
     backend: str = "cpp",
     at: Any = None,
@@ -59,7 +59,7 @@ class _Explainer:
     def __init__(
         self,
         formula: Formula,
-        recording: Recording | DenseRecording,
+        recording: DiscreteTrace | DenseTrace,
         backend: str,
         text: str | None,
         semantics: Callable[[Formula], Formula],
@@ -67,7 +67,7 @@ class _Explainer:
         self._formula = formula
         self._text = text
         self._line = timeline(recording, backend)
-        self._dense = not isinstance(recording, Recording)
+        self._dense = not isinstance(recording, DiscreteTrace)
         self._structure = Structure.of(formula, self._line.period if self._dense else None)
         leaves = self._structure.leaves
         predicates = [leaf.formula for leaf in leaves.values()]

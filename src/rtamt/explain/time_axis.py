@@ -9,14 +9,16 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rtamt.engine import dense_evaluate, evaluate
-from rtamt.engine.dense_evaluate import DenseRecording
 from rtamt.errors import StlError, UsageError, shown
 from rtamt.explain.instants import NEVER, Steps
 from rtamt.language.formula import Apply, postorder
 from rtamt.reference import dense as dense_reference
 from rtamt.reference import discrete as reference
 from rtamt.rewrite.desugar import desugar
-from rtamt.signals.arrays import TOLERANCE, Recording, is_number, stamps
+from rtamt.signals.arrays import is_number, stamps
+from rtamt.signals.dense import DenseTrace
+from rtamt.signals.discrete import DiscreteTrace
+from rtamt.signals.regular import TOLERANCE
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -74,7 +76,7 @@ class Timeline(ABC):
 class DiscreteTimeline(Timeline):
     """Cells are samples."""
 
-    def __init__(self, recording: Recording, backend: str) -> None:
+    def __init__(self, recording: DiscreteTrace, backend: str) -> None:
         self._recording = recording
         self._backend = backend
         self.period = recording.period
@@ -90,14 +92,14 @@ class DiscreteTimeline(Timeline):
 
         def run(signals: Mapping[str, Steps]) -> list[Steps]:
             columns = {name: self._samples(steps) for name, steps in signals.items()}
-            recording = Recording(self._recording.times, columns, self.period)
+            recording = DiscreteTrace(self._recording.times, columns, self.period)
             if evaluator is None:
                 return self._evaluated(formulas, recording)
             return [Steps.of_samples(values) for values in evaluator(recording)]
 
         return run
 
-    def _evaluated(self, formulas: Sequence[Formula], recording: Recording) -> list[Steps]:
+    def _evaluated(self, formulas: Sequence[Formula], recording: DiscreteTrace) -> list[Steps]:
         if self._backend == "python":
             start = float(recording.times[0])
             values = [
@@ -149,7 +151,7 @@ class DiscreteTimeline(Timeline):
 class DenseTimeline(Timeline):
     """Cells are ticks, from the recording's start on for ever: the last values hold."""
 
-    def __init__(self, recording: DenseRecording, backend: str) -> None:
+    def __init__(self, recording: DenseTrace, backend: str) -> None:
         self._recording = recording
         self._backend = backend
         self._start = recording.start
@@ -185,7 +187,7 @@ class DenseTimeline(Timeline):
 
         def evaluated(columns: Mapping[str, Samples]) -> list[Samples]:
             nonlocal compiled
-            recording = DenseRecording(_held(columns, after), self._recording.scale)
+            recording = DenseTrace(_held(columns, after), self._recording.scale)
             if self._backend == "python":
                 steps = (dense_reference.evaluate(f, recording.columns, self.period) for f in formulas)
                 return [(step.times, step.values) for step in steps]
@@ -246,9 +248,9 @@ class DenseTimeline(Timeline):
         return grain or 1
 
 
-def timeline(recording: Recording | DenseRecording, backend: str) -> Timeline:
+def timeline(recording: DiscreteTrace | DenseTrace, backend: str) -> Timeline:
     """Return the cells of a recording."""
-    if isinstance(recording, Recording):
+    if isinstance(recording, DiscreteTrace):
         return DiscreteTimeline(recording, backend)
     return DenseTimeline(recording, backend)
 

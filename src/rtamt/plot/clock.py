@@ -7,11 +7,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rtamt.signals.arrays import Recording, stamps
+from rtamt.signals.arrays import stamps
+from rtamt.signals.discrete import DiscreteTrace
 
 if TYPE_CHECKING:
-    from rtamt.engine.dense_evaluate import DenseRecording
     from rtamt.signals.arrays import FloatArray
+    from rtamt.signals.dense import DenseTrace
 
 #: Stamps that start later than this many seconds are told from their start on.
 _FAR = 1e5
@@ -22,12 +23,12 @@ class Clock:
     """Positions are seconds after ``origin``: a date, or a number of seconds (0, unless stamps start far from it)."""
 
     origin: float | np.datetime64
-    recording: Recording | DenseRecording
+    recording: DiscreteTrace | DenseTrace
 
     @staticmethod
-    def of(recording: Recording | DenseRecording) -> Clock:
+    def of(recording: DiscreteTrace | DenseTrace) -> Clock:
         """Return the clock of a recording."""
-        if isinstance(recording, Recording):
+        if isinstance(recording, DiscreteTrace):
             first = float(recording.times[0])
             if recording.dated:
                 return Clock(recording.stamps[0], recording)
@@ -41,14 +42,14 @@ class Clock:
     def positions(self, times: Any) -> FloatArray:
         """Return times, as signals and explanations tell them, as positions."""
         recording = self.recording
-        if isinstance(recording, Recording):
+        if isinstance(recording, DiscreteTrace):
             seconds = stamps(times, recording.unit).seconds
             return seconds - recording.times[0] if self.origin else seconds
         return self.ticked(recording.scale.ticks(times, "time"))
 
     def ticked(self, ticks: Any) -> FloatArray:
         """Return ticks of dense time as positions."""
-        assert not isinstance(self.recording, Recording)
+        assert not isinstance(self.recording, DiscreteTrace)
         zero = self.recording.start if self.origin else 0
         tick = self.recording.scale.tick  # nearly always 1/n: one division rounds once
         seconds: FloatArray = (np.asarray(ticks, np.int64) - zero) * float(tick.numerator) / tick.denominator
@@ -72,14 +73,14 @@ class Clock:
     @property
     def end(self) -> float:
         """The last instant that was recorded."""
-        if isinstance(self.recording, Recording):
+        if isinstance(self.recording, DiscreteTrace):
             return self.position(self.recording.times[-1])
         return float(self.ticked([self.recording.end])[0])
 
     @property
     def start(self) -> float:
         """The first instant at which the formula is evaluated."""
-        if isinstance(self.recording, Recording):
+        if isinstance(self.recording, DiscreteTrace):
             return self.position(self.recording.times[0])
         return float(self.ticked([self.recording.start])[0])
 

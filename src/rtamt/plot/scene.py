@@ -15,7 +15,7 @@ from rtamt.plot.clock import Clock
 from rtamt.plot.lines import Line, Range, ranges
 from rtamt.plot.panels import groups
 from rtamt.rewrite.semantics import boolean, is_predicate
-from rtamt.signals.arrays import Recording
+from rtamt.signals.discrete import DiscreteTrace
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from rtamt.explain.report import Explanation, Stretch
     from rtamt.language.formula import Formula
     from rtamt.results import Result
-    from rtamt.signals.arrays import Signal
+    from rtamt.signals.signal import Signal
 
 #: Sub-formulas that are shown at most; of a larger formula those next to its top.
 _MOST = 200
@@ -124,7 +124,7 @@ class _Painter:
         self._spec = result.specification
         self._explanation = result.explain(at)
         self._clock = Clock.of(result.trace)
-        self._dense = not isinstance(result.trace, Recording)
+        self._dense = not isinstance(result.trace, DiscreteTrace)
 
     def scene(self) -> Scene:
         formulas = _sub_formulas(self._spec.formula)
@@ -148,7 +148,7 @@ class _Painter:
         spec, trace = self._spec, self._result.trace
         text = predicate_text(formula, spec.text)
         names = [a.name for a in spec.document.assertions if a.name and a.formula == formula]
-        line = self._line(text, spec.signal_of(spec.judged(formula, self._result.semantics), trace))
+        line = self._line(text, spec.signal_of(spec.apply_semantics(formula, self._result.semantics), trace))
         truth = self._line(text, spec.signal_of(boolean(formula), trace))
         operands = _operands(formula)
         numbers = tuple(places[operand] for operand in operands if operand in places)
@@ -177,7 +177,7 @@ class _Painter:
 
     def _recorded(self, name: str) -> Line:
         trace, clock = self._result.trace, self._clock
-        if isinstance(trace, Recording):
+        if isinstance(trace, DiscreteTrace):
             return Line(name, clock.positions(trace.stamps), trace.columns[name], trace.units.get(name, ""))
         ticks, values = trace.columns[name]
         positions = clock.ticked(ticks)
@@ -191,7 +191,7 @@ class _Painter:
     def _because(self, stretches: Sequence[Stretch]) -> tuple[Range, ...]:
         """Return the stretches as they are drawn, within the recording."""
         half = 0.0
-        if isinstance(self._result.trace, Recording):
+        if isinstance(self._result.trace, DiscreteTrace):
             half = float(self._result.trace.period) / 2
         clock = self._clock
         found = dict.fromkeys(

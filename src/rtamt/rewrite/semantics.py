@@ -30,7 +30,7 @@ from rtamt.rewrite.desugar import rebuilt, spelled_out
 Roles: TypeAlias = Mapping[str, str]
 
 #: What judges predicates: from a predicate and the roles of its variables to what stands in its place.
-Judge: TypeAlias = Callable[[Formula, Roles], Formula]
+PredicateSemantics: TypeAlias = Callable[[Formula, Roles], Formula]
 
 ROLES = ("input", "output")
 
@@ -50,7 +50,7 @@ def truth(predicate: Formula) -> Formula:
 
 
 def standard(predicate: Formula, _roles: Roles) -> Formula:
-    """Judge by robustness: a predicate is worth its ordinary value.
+    """PredicateSemantics by robustness: a predicate is worth its ordinary value.
 
     To the letter of relative robustness a predicate without variables (3 >= 2) would be infinite here
     too, because no variables are a subset of none that are fixed; but this one is the definition itself.
@@ -82,7 +82,7 @@ class Relative:
 _INPUTS, _OUTPUTS = (frozenset({role}) for role in ROLES)
 
 #: Every semantics that has a name.
-SEMANTICS: Mapping[str, Judge] = MappingProxyType(
+SEMANTICS: Mapping[str, PredicateSemantics] = MappingProxyType(
     {
         "standard": standard,
         "output_robustness": Relative(measured=_OUTPUTS, fixed=_INPUTS),
@@ -94,7 +94,7 @@ SEMANTICS: Mapping[str, Judge] = MappingProxyType(
 )
 
 
-def semantics_of(semantics: object) -> str | Judge:
+def semantics_of(semantics: object) -> str | PredicateSemantics:
     """Return the name in :data:`SEMANTICS` of a semantics, or the function that it is.
 
     Dashes are as good as underscores, and a member of an enumeration as good as its text.
@@ -113,11 +113,11 @@ def semantics_of(semantics: object) -> str | Judge:
     return name
 
 
-def lower(formula: Formula, semantics: str | Judge, roles: Roles) -> Formula:
+def apply_semantics(formula: Formula, semantics: str | PredicateSemantics, roles: Roles) -> Formula:
     """Return the formula whose robustness is the value of ``formula`` under a semantics.
 
     ``semantics``: a name in :data:`SEMANTICS`, or a function that is called as
-    ``judge(predicate, roles)`` for every predicate. ``roles``: those that are known; a variable without
+    ``semantics(predicate, roles)`` for every predicate. ``roles``: those that are known; a variable without
     one is an output, and a field has the role of its variable. The result reads the same variables in
     the same order, and computes the operands of every predicate, so that an operation on numbers that
     has no value (0/0) is an error under every semantics.
@@ -127,11 +127,11 @@ def lower(formula: Formula, semantics: str | Judge, roles: Roles) -> Formula:
 
     >>> from rtamt.language.parser import parse_formula
     >>> formula = parse_formula("always(req >= 3 -> gnt >= 3)")
-    >>> lower(formula, "output_robustness", {"req": "input"})
+    >>> apply_semantics(formula, "output_robustness", {"req": "input"})
     <formula always(req >= 3 -> gnt >= 3)>
     """
-    judge = SEMANTICS[semantics] if isinstance(semantics, str) else semantics
-    if judge is standard:
+    semantics = SEMANTICS[semantics] if isinstance(semantics, str) else semantics
+    if semantics is standard:
         return formula
     formula = spelled_out(formula)  # what an operator of the user's stands for may hold predicates
     all_roles = MappingProxyType({name: role_of(name, roles) for name in variables(formula)})
@@ -140,7 +140,7 @@ def lower(formula: Formula, semantics: str | Judge, roles: Roles) -> Formula:
     def step(node: Formula, below: tuple[tuple[Formula, Formula], ...]) -> tuple[Formula, Formula]:
         """Return the node read as a number, and read as a formula."""
         if id(node) in predicates:
-            return node, _judged(node, judge, all_roles)
+            return node, _apply_to_predicate(node, semantics, all_roles)
         if not isinstance(node, Apply):
             return node, node
         args = tuple(
@@ -159,7 +159,7 @@ def boolean(formula: Formula) -> Formula:
     >>> str(boolean(parse_formula("always(x >= 3)")))
     'always(x >= 3)'
     """
-    return lower(formula, "boolean", {})
+    return apply_semantics(formula, "boolean", {})
 
 
 def no_verdict(error: EvaluationError) -> EvaluationError:
@@ -202,37 +202,38 @@ def _predicates(formula: Formula) -> set[int]:
     return found
 
 
-def _judged(predicate: Formula, judge: Judge, roles: Roles) -> Formula:
+def _apply_to_predicate(predicate: Formula, semantics: PredicateSemantics, roles: Roles) -> Formula:
     """Return what a semantics puts in the place of a predicate, which still reads what the predicate reads."""
     try:
-        judged = judge(predicate, roles)
+        applied = semantics(predicate, roles)
     except StlError:
         raise
     except Exception as error:
         raise EvaluationError(
-            f"the semantics {_name(judge)} failed for the predicate '{excerpt(predicate)}': {type(error).__name__}: "
+            f"the semantics {_name(semantics)} failed for the predicate '{excerpt(predicate)}': "
+            f"{type(error).__name__}: "
             f"{error}; it is called with a predicate and the roles, and returns a formula"
         ) from error
-    if not isinstance(judged, Formula):
+    if not isinstance(applied, Formula):
         raise UsageError(
-            f"the semantics {_name(judge)} returned {shown(judged)} for the predicate '{excerpt(predicate)}'; "
+            f"the semantics {_name(semantics)} returned {shown(applied)} for the predicate '{excerpt(predicate)}'; "
             f"return a formula"
         )
-    if judged is predicate:
+    if applied is predicate:
         return predicate
     holding = replace(truth(predicate), span=predicate.span)  # type: ignore[type-var]
-    if judged == holding:
+    if applied == holding:
         return holding
     known = set(variables(predicate))
-    for name in variables(judged):
+    for name in variables(applied):
         if name not in known:
             raise UsageError(
-                f"the semantics {_name(judge)} returned '{excerpt(judged)}' for the predicate "
+                f"the semantics {_name(semantics)} returned '{excerpt(applied)}' for the predicate "
                 f"'{excerpt(predicate)}', which does not read '{name}'; use the predicate's own variables"
             )
     # min(inf, v) is v, to the sign of a zero; the truth, +inf or -inf, is computed for its operands.
-    return STL["and"](STL["or"](holding, STL["true"]()), judged)
+    return STL["and"](STL["or"](holding, STL["true"]()), applied)
 
 
-def _name(judge: Judge) -> str:
-    return f"'{getattr(judge, '__name__', repr(judge))}'"
+def _name(semantics: PredicateSemantics) -> str:
+    return f"'{getattr(semantics, '__name__', repr(semantics))}'"

@@ -20,7 +20,7 @@ from rtamt.ros.messages import DEFINITIONS, FLOAT_STAMPED, SATISFIED, VERDICT, V
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-    from rtamt.signals.arrays import Signal
+    from rtamt.signals.signal import Signal
     from rtamt.specification import Specification
 
 _HEADER = "std_msgs/msg/Header"

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from rtamt.errors import StlError, UsageError
 from rtamt.language.units import duration
 from rtamt.ros.fields import reader, stamp_of
-from rtamt.ros.output_group import DenseWatch, DiscreteWatch, Robustness, Verdict, together
+from rtamt.ros.output_group import DenseWatch, DiscreteWatch, Robustness, Verdict, group_outputs
 from rtamt.ros.report import Condition, Level, Notice
 from rtamt.settings import positive_period, time_domain
 
@@ -95,11 +95,11 @@ class RosMonitor:
         self._dense: list[DenseWatch] = []
         self._discrete: list[DiscreteWatch] = []
         if self.time == "dense":
-            self._dense = [DenseWatch(outputs, topic_of) for outputs in together(binding.outputs)]
+            self._dense = [DenseWatch(outputs, topic_of) for outputs in group_outputs(binding.outputs)]
         else:
             assert self.period is not None
             self._discrete = [
-                DiscreteWatch(outputs, topic_of, self.period) for outputs in together(binding.outputs)
+                DiscreteWatch(outputs, topic_of, self.period) for outputs in group_outputs(binding.outputs)
             ]
         #: Topics for which records are made, such as those that somebody listens to; None: all.
         self.wanted: Container[str] | None = None

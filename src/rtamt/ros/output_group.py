@@ -107,7 +107,7 @@ class Watch:
             standing.forget()
 
 
-def together(outputs: Sequence[Output]) -> list[list[Output]]:
+def group_outputs(outputs: Sequence[Output]) -> list[list[Output]]:
     """Return the outputs in groups that one program may watch.
 
     Those of a group read the same numbers, so that they begin and end together. An output with a sample
@@ -142,8 +142,8 @@ def _watched(output: Output, period: Fraction | None) -> tuple[Watched, Watched]
     except SpecificationError as error:
         raise type(error)(f"'{output.name}': {error.message}", error.text, error.span) from None
     return (
-        Watched(output.name, spec.judged(past), spec.text),
-        Watched(f"truth of {output.name}", spec.judged(past, "boolean"), spec.text),
+        Watched(output.name, spec.apply_semantics(past), spec.text),
+        Watched(f"truth of {output.name}", spec.apply_semantics(past, "boolean"), spec.text),
     )
 
 

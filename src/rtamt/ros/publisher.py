@@ -21,7 +21,7 @@ DIAGNOSTICS = "/diagnostics"
 _VERDICTS = {None: UNKNOWN, True: SATISFIED, False: VIOLATED}
 
 
-class Outbox:
+class Publisher:
     """Makes the messages that a node publishes.
 
     ``load``: from a type to its class, which can be called without arguments. ``stamp``: from

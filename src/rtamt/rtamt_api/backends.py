@@ -22,9 +22,11 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Mapping, Sequence
     from fractions import Fraction
 
-    from rtamt.engine.dense_evaluate import DenseRecording
     from rtamt.language.formula import Formula
-    from rtamt.signals.arrays import FloatArray, Recording, Signal
+    from rtamt.signals.arrays import FloatArray
+    from rtamt.signals.dense import DenseTrace
+    from rtamt.signals.discrete import DiscreteTrace
+    from rtamt.signals.signal import Signal
 
 
 def is_compiled() -> bool:
@@ -55,7 +57,7 @@ def check_language(language: Language) -> None:
         require_core("Language.CPP", "Language.PYTHON")
 
 
-def dense_signal(formula: Formula, recording: DenseRecording) -> Signal:
+def dense_signal(formula: Formula, recording: DenseTrace) -> Signal:
     """Return the robustness of a formula over a finished recording in dense time."""
     if is_compiled():
         return dense_evaluate.evaluate(formula, recording)
@@ -63,7 +65,7 @@ def dense_signal(formula: Formula, recording: DenseRecording) -> Signal:
     return recording.signal(steps.times, steps.values)
 
 
-def signal(formula: Formula, trace: Recording) -> FloatArray:
+def signal(formula: Formula, trace: DiscreteTrace) -> FloatArray:
     """Return the robustness of a formula at every sample of a finished trace."""
     if is_compiled():
         return Evaluator((formula,), trace.period)(trace)[0]

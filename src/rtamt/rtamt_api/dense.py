@@ -6,7 +6,6 @@ from copy import copy
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from rtamt.engine import dense_evaluate
 from rtamt.engine.dense_monitor import DenseMonitor
 from rtamt.engine.gate import alone
 from rtamt.engine.online import Watched
@@ -25,14 +24,16 @@ from rtamt.rtamt_api.online import OnlineSpecification, require_past
 from rtamt.rtamt_api.options import Language, Semantics, sampling
 from rtamt.signals import arrays
 from rtamt.signals.counting import all_integers
+from rtamt.signals.dense import record_dense
+from rtamt.signals.regular import TOLERANCE
 from rtamt.signals.ticks import NANOSECOND, TimeScale
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Sequence
 
-    from rtamt.engine.dense_evaluate import DenseRecording
     from rtamt.language.formula import Formula
-    from rtamt.signals.arrays import Signal
+    from rtamt.signals.dense import DenseTrace
+    from rtamt.signals.signal import Signal
 
     Samples = tuple[list[Any], list[Any]]  # times and values, as given
 
@@ -42,7 +43,7 @@ class DenseTimeSpecification(Formulas):
 
     @raises_rtamt
     def set_sampling_period(
-        self, sampling_period: float = 1, unit: str = "s", tolerance: float = arrays.TOLERANCE
+        self, sampling_period: float = 1, unit: str = "s", tolerance: float = TOLERANCE
     ) -> None:
         """Change nothing: dense time has no sampling period. Programs for RTAMT set one all the same.
 
@@ -135,12 +136,12 @@ class StlDenseTimeOfflineSpecification(ExplainedSpecification, DenseTimeSpecific
 
     def _evaluation(
         self, part: Formula, columns: dict[str, Samples], scale: TimeScale
-    ) -> tuple[DenseRecording, list[list[float]]]:
+    ) -> tuple[DenseTrace, list[list[float]]]:
         """Return what a part of the specification is evaluated over, and its points."""
         check_dense(part, self._parsed_document.text)
         read = tuple(dict.fromkeys((*variables(self._result), *variables(part))))
         held = {name: columns[name] for name in read if name in columns}
-        recording = dense_evaluate.trace(held, read, NANOSECOND, scale=scale)
+        recording = record_dense(held, read, NANOSECOND, scale=scale)
         whole = all(all_integers(times) for times, _ in held.values())
         return recording, _points(dense_signal(self._worth(part), recording), whole)
 
@@ -287,14 +288,14 @@ class StlDenseTimeOnlineSpecification(OnlineSpecification, DenseTimeSpecificatio
             self._watched = (formula, *others)
             made = partial(
                 DenseMonitor,
-                self._judged(formula),
+                self._apply_semantics(formula),
                 text=text,
                 backend=backend,
-                watch=[Watched(str(i), self._judged(other), text) for i, other in enumerate(others)],
+                watch=[Watched(str(i), self._apply_semantics(other), text) for i, other in enumerate(others)],
                 scale=self._scale,
                 parts=True,
             )
-            self._monitor = made(again=made)
+            self._monitor = made(factory=made)
         return self._monitor
 
 

@@ -19,7 +19,9 @@ from rtamt.rtamt_api.failures import raises_rtamt
 from rtamt.rtamt_api.formulas import Formulas
 from rtamt.rtamt_api.options import sampling
 from rtamt.signals import arrays
-from rtamt.signals.arrays import TIME, Recording
+from rtamt.signals.arrays import TIME
+from rtamt.signals.discrete import DiscreteTrace, record_discrete
+from rtamt.signals.regular import TOLERANCE
 
 if TYPE_CHECKING:
     from rtamt.language.document import Document
@@ -35,14 +37,14 @@ class DiscreteTimeSpecification(Formulas):
     def __init__(self) -> None:
         super().__init__()
         self._period = Fraction(1)
-        self._tolerance = arrays.TOLERANCE
+        self._tolerance = TOLERANCE
         self._violations = 0  # of the latest evaluation
 
     # ---- settings --------------------------------------------------------------------------------
 
     @raises_rtamt
     def set_sampling_period(
-        self, sampling_period: float = 1, unit: str = "s", tolerance: float = arrays.TOLERANCE
+        self, sampling_period: float = 1, unit: str = "s", tolerance: float = TOLERANCE
     ) -> None:
         """Set the time between samples.
 
@@ -109,7 +111,7 @@ class StlDiscreteTimeOfflineSpecification(ExplainedSpecification, DiscreteTimeSp
         """
         formula = self._result
         stamps, trace = self._trace(dataset)
-        values = signal(self._judged(formula), trace)
+        values = signal(self._apply_semantics(formula), trace)
         gaps = np.diff(stamps)
         period = self._period_in_units
         self._violations = int(np.count_nonzero(np.abs(gaps - period) > self._tolerance * period))
@@ -118,18 +120,18 @@ class StlDiscreteTimeOfflineSpecification(ExplainedSpecification, DiscreteTimeSp
         result: list[list[float]] = np.column_stack((stamps, values)).tolist()
         return result
 
-    def _values_over(self, trace: Recording, part: Formula) -> list[float]:
+    def _values_over(self, trace: DiscreteTrace, part: Formula) -> list[float]:
         values: list[float] = signal(self._worth(part), trace).tolist()
         return values
 
-    def _trace(self, dataset: Any) -> tuple[arrays.FloatArray, Recording]:
+    def _trace(self, dataset: Any) -> tuple[arrays.FloatArray, DiscreteTrace]:
         """Return the stamps as given, and the trace in seconds, whatever the gaps between its samples."""
         keys = dataset if isinstance(dataset, Mapping) else getattr(dataset, "columns", ())
         columns = {key: dataset[key] for key in keys}
         stamps = arrays.array(columns[TIME], TIME) if TIME in columns else None
         if stamps is not None:
             columns[TIME] = stamps * float(UNITS[self._unit])
-        trace = arrays.trace(columns or dataset, self._inputs, self._period, tuple(columns), inf)
+        trace = record_discrete(columns or dataset, self._inputs, self._period, tuple(columns), inf)
         if stamps is None:
             raise arrays.missing_variable(TIME, tuple(columns))
         return stamps, trace

@@ -124,9 +124,9 @@ class StlDiscreteTimeOnlineSpecification(OnlineSpecification, DiscreteTimeSpecif
             formulas = [self._result, *(f for f in self._formulas.values() if f is not self._result)]
             for formula in formulas:
                 require_past(formula, text)
-            judged = [self._judged(formula) for formula in formulas]
+            applied = [self._apply_semantics(formula) for formula in formulas]
             self._stream = open_stream(
-                judged, self._inputs, self._period, self._unit, self._tolerance, frozenset(self._types)
+                applied, self._inputs, self._period, self._unit, self._tolerance, frozenset(self._types)
             )
             self._refusals = self._stream.refusals
         return self._stream
@@ -231,7 +231,7 @@ class StlDiscreteTimeOnlineSpecificationCpp(StlDiscreteTimeOnlineSpecification):
 class StlDiscreteTimeSpecification(StlDiscreteTimeOfflineSpecification, StlDiscreteTimeOnlineSpecification):
     """Evaluates finished traces and watches streams.
 
-    ``semantics``: how predicates are judged. ``language``: which back end RTAMT would run. Here both
+    ``semantics``: how predicates have the semantics applied. ``language``: which back end RTAMT would run. Here both
     names mean the compiled core; where it cannot be loaded, ``Language.PYTHON`` runs the definition in
     Python, with equal results, and ``Language.CPP`` raises :class:`RTAMTException`.
 

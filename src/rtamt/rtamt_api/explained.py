@@ -9,18 +9,18 @@ import numpy as np
 from rtamt.errors import UsageError
 from rtamt.language.formula import Var, variables
 from rtamt.language.printer import canonical
-from rtamt.rewrite.semantics import lower, semantics_of
+from rtamt.rewrite.semantics import apply_semantics, semantics_of
 from rtamt.rtamt_api.backends import is_compiled
 from rtamt.rtamt_api.failures import raises_rtamt
 from rtamt.rtamt_api.formulas import Formulas
-from rtamt.signals.arrays import Recording
+from rtamt.signals.discrete import DiscreteTrace
 
 if TYPE_CHECKING:
-    from rtamt.engine.dense_evaluate import DenseRecording
     from rtamt.explain.report import Explanation
     from rtamt.language.document import Document
     from rtamt.language.formula import Formula
-    from rtamt.rewrite.semantics import Judge
+    from rtamt.rewrite.semantics import PredicateSemantics
+    from rtamt.signals.dense import DenseTrace
 
 
 class Explainer:
@@ -38,14 +38,14 @@ class ExplainedSpecification(Formulas):
     def __init__(self) -> None:
         super().__init__()
         self.explainer = Explainer()
-        self._evaluated: tuple[Formula, Recording | DenseRecording, str | Judge] | None = None
+        self._evaluated: tuple[Formula, DiscreteTrace | DenseTrace, str | PredicateSemantics] | None = None
 
     def _parsed(self, document: Document) -> None:
         super()._parsed(document)
         self._evaluated = None
         self.explainer = Explainer()
 
-    def _remember(self, formula: Formula, recording: Recording | DenseRecording) -> None:
+    def _remember(self, formula: Formula, recording: DiscreteTrace | DenseTrace) -> None:
         """Keep what was evaluated, and under which semantics, until it is to be explained."""
         self._evaluated = formula, recording, semantics_of(self._semantics)
 
@@ -82,19 +82,19 @@ class ExplainedSpecification(Formulas):
             backend="cpp" if is_compiled() else "python",
             at=at,
             text=self._parsed_document.text,
-            semantics=lambda predicate: lower(predicate, semantics, roles),
+            semantics=lambda predicate: apply_semantics(predicate, semantics, roles),
         )
         self.explainer.explanations = _places(formula, recording, found)
         return found
 
 
 def _places(
-    formula: Formula, recording: Recording | DenseRecording, explanation: Explanation
+    formula: Formula, recording: DiscreteTrace | DenseTrace, explanation: Explanation
 ) -> dict[str, list[list[Any]]]:
     """Return where the predicates and variables of an implicant make a formula fail, by canonical text."""
 
     def place(time: Any) -> Any:
-        return int(np.searchsorted(recording.times, time)) if isinstance(recording, Recording) else time
+        return int(np.searchsorted(recording.times, time)) if isinstance(recording, DiscreteTrace) else time
 
     if explanation.satisfied:
         return {}

@@ -10,7 +10,7 @@ from rtamt.errors import UsageError, did_you_mean
 from rtamt.language.formula import Formula, Var, outermost, postorder, variables
 from rtamt.language.grammar import is_number
 from rtamt.language.printer import canonical
-from rtamt.rewrite.semantics import lower, semantics_of
+from rtamt.rewrite.semantics import apply_semantics, semantics_of
 from rtamt.rtamt_api.declarations import Declarations
 from rtamt.rtamt_api.failures import raises_rtamt
 from rtamt.rtamt_api.options import Semantics
@@ -19,13 +19,13 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from rtamt.language.document import Document
-    from rtamt.rewrite.semantics import Judge
+    from rtamt.rewrite.semantics import PredicateSemantics
 
 
 class Formulas(Declarations):
     """What the classes of both time domains share once the text has been read. Not made by users."""
 
-    _semantics: Semantics | str | Judge = Semantics.STANDARD
+    _semantics: Semantics | str | PredicateSemantics = Semantics.STANDARD
 
     def __init__(self) -> None:
         super().__init__()
@@ -42,13 +42,13 @@ class Formulas(Declarations):
         self._value_of = None
 
     @property
-    def semantics(self) -> Semantics | str | Judge:
+    def semantics(self) -> Semantics | str | PredicateSemantics:
         """What a predicate is worth: a :class:`Semantics`, or what ``semantics`` of :func:`rtamt.parse` takes."""
         return self._semantics
 
     @semantics.setter
     @raises_rtamt
-    def semantics(self, semantics: Semantics | str | Judge) -> None:
+    def semantics(self, semantics: Semantics | str | PredicateSemantics) -> None:
         semantics_of(semantics)
         self._semantics = semantics
         self._settings_changed()
@@ -78,9 +78,9 @@ class Formulas(Declarations):
 
     # ---- semantics -------------------------------------------------------------------------------
 
-    def _judged(self, formula: Formula) -> Formula:
+    def _apply_semantics(self, formula: Formula) -> Formula:
         """Return the formula whose robustness is the value of ``formula`` under the semantics."""
-        return lower(formula, semantics_of(self._semantics), self.var_io_dict)
+        return apply_semantics(formula, semantics_of(self._semantics), self.var_io_dict)
 
     def _worth(self, part: Formula) -> Formula:
         """Return the formula whose robustness is the value of a part of the specification.
@@ -89,9 +89,9 @@ class Formulas(Declarations):
         """
         if part is not self._result and is_number(part):
             return part
-        judged = self._judged(part)
-        read_so = postorder(*map(self._judged, self._formulas.values()))
-        return judged if judged == part or judged in set(read_so) else part
+        applied = self._apply_semantics(part)
+        read_so = postorder(*map(self._apply_semantics, self._formulas.values()))
+        return applied if applied == part or applied in set(read_so) else part
 
     # ---- values ----------------------------------------------------------------------------------
 

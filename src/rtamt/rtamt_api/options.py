@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 class Semantics(Enum):
-    """How a predicate is judged (the paper's interface-aware semantics)."""
+    """How a predicate is applied (the paper's interface-aware semantics)."""
 
     STANDARD = "standard"
     OUTPUT_ROBUSTNESS = "output-robustness"

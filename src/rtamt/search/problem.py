@@ -12,7 +12,7 @@ import numpy as np
 from rtamt.errors import StlError, UsageError, did_you_mean, shown
 from rtamt.search.inputs import Range
 from rtamt.search.log import Evaluation
-from rtamt.search.robust_interval import Outlook
+from rtamt.search.robust_interval import RobustInterval
 from rtamt.signals.arrays import TIME, is_number
 
 if TYPE_CHECKING:
@@ -130,7 +130,7 @@ class Problem:
         self, samples: Iterable[Any], point: Mapping[str, float], number: int, whole: bool
     ) -> Evaluation:
         total = self._total()
-        outlook = Outlook(self.spec, self.spec.period, total)
+        outlook = RobustInterval(self.spec, self.spec.period, total)
         watched = not whole and outlook.able and (total is not None or self.spec.time == "dense")
         # In dense time nobody knows how many samples will come: look again after a hundredth more.
         look = max(1, (total or LOOKS) // LOOKS)

@@ -15,13 +15,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rtamt.engine import dense_evaluate
 from rtamt.explain.structure import Structure, literal
 from rtamt.language.formula import Apply, Formula, postorder
 from rtamt.language.records import Tense
 from rtamt.reference import discrete as reference
 from rtamt.rewrite.semantics import boolean as truth_of
 from rtamt.signals import arrays
+from rtamt.signals.dense import record_dense
+from rtamt.signals.discrete import record_discrete
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -54,7 +55,7 @@ class Settled:
         return self.high if isfinite(self.high) else self.low
 
 
-class Outlook:
+class RobustInterval:
     """Tells of the first samples of a simulation whether they settle the verdict.
 
     ``samples`` is how many there are at the end in discrete time (dense time needs none). A formula with
@@ -101,7 +102,7 @@ class Outlook:
         recording = self._recording(times, columns, tuple(columns))
         found = {}
         for name, leaf in self._leaves.items():
-            formula = truth_of(leaf.formula) if truth else self._spec.judged(leaf.formula)
+            formula = truth_of(leaf.formula) if truth else self._spec.apply_semantics(leaf.formula)
             if leaf.fixed:  # it reads no variable: one value for ever
                 found[name] = reference.evaluate(formula, {}, 1, Fraction(1))
                 continue
@@ -129,8 +130,8 @@ class Outlook:
     def _recording(self, times: FloatArray, columns: Columns, names: tuple[str, ...]) -> Any:
         if self._spec.time == "dense":
             data = {name: (times, column) for name, column in columns.items()}
-            return dense_evaluate.trace(data, names, self._spec.resolution)
-        return arrays.trace({arrays.TIME: times, **columns}, names, self._period)
+            return record_dense(data, names, self._spec.resolution)
+        return record_discrete({arrays.TIME: times, **columns}, names, self._period)
 
 
 def _at_one_instant(formula: Formula) -> bool:

@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-import dataclasses
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
-from dataclasses import dataclass
 from datetime import datetime, timedelta
-from fractions import Fraction
 from functools import reduce
 from math import isinf, isnan
 from numbers import Real
@@ -16,7 +13,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from rtamt.errors import TraceError, UsageError, did_you_mean, shown, with_article
-from rtamt.language.units import UNITS, check_unit, decimal, format_duration
+from rtamt.language.units import UNITS, check_unit
 from rtamt.signals.counting import all_integers, integers, quotients, refuse_implausible
 from rtamt.signals.datetimes import has_length, in_nanoseconds, nanoseconds_of, no_length, out_of_reach
 from rtamt.signals.stamps import check_frame
@@ -30,9 +27,6 @@ if TYPE_CHECKING:
 
 #: The key under which a trace holds its time stamps.
 TIME = "time"
-
-#: How far, as a fraction of the period, the gap between two samples may be from the period.
-TOLERANCE = 0.1
 
 
 _MOMENTS = (datetime, timedelta, np.datetime64, np.timedelta64)
@@ -62,97 +56,6 @@ class Clocked(ABC):
         """Return times and values for each name."""
 
 
-class Signal:
-    """Values over time: ``times`` and ``values``, arrays of the same length.
-
-    Times come as the caller gave them: float64 seconds, numbers in the unit of ``time_unit=``, datetime64 or
-    timedelta64. In dense time there is a point for every change and one at the end.
-    The times of a discrete recording are shared by its signals and cannot be written.
-
-    >>> import rtamt
-    >>> signal = rtamt.parse("x >= 3").evaluate({"time": [0, 1, 2], "x": [5, 1, 4]}).signal
-    >>> len(signal), signal.times[signal.values < 0]
-    (3, array([1.]))
-    """
-
-    __slots__ = ("_times", "_values")
-
-    def __init__(self, times: NDArray[Any], values: FloatArray) -> None:
-        self._times = times
-        self._values = values
-
-    @property
-    def times(self) -> NDArray[Any]:
-        """When: seconds, or what else the caller tells time in."""
-        return self._times
-
-    @property
-    def values(self) -> FloatArray:
-        """What: one value for each time."""
-        return self._values
-
-    def points(self) -> list[tuple[Any, float]]:
-        """Return (time, value) pairs of Python's own numbers: the cheapest way to read what an update told.
-
-        >>> import rtamt
-        >>> monitor = rtamt.parse("historically[0:1](x >= 3)").monitor(time="dense")
-        >>> monitor.update(0.5, x=5.0).points()
-        [(0.5, 2.0)]
-        """
-        times = self.times.tolist() if self.times.dtype.kind in "fi" else self.times  # dates stay numpy's
-        return list(zip(times, self.values.tolist(), strict=True))
-
-    def __len__(self) -> int:
-        return len(self.times)
-
-    def __repr__(self) -> str:
-        return f"Signal(times={self.times!r}, values={self.values!r})"
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Recording:
-    """A finished recording in discrete time: one column of ``len(times)`` samples for each variable."""
-
-    #: Seconds; of dates, since 1970.
-    times: FloatArray
-    columns: Mapping[str, FloatArray]
-    period: Fraction
-    #: Whether the period was taken from the time stamps.
-    inferred: bool = False
-    #: The time stamps as the caller tells time; None where that is in seconds.
-    told: NDArray[Any] | None = None
-    #: Of time stamps that are numbers of something other than seconds.
-    unit: str | None = None
-    #: The units of the variables whose source tells them.
-    units: Mapping[str, str] = dataclasses.field(default_factory=dict)
-
-    def __len__(self) -> int:
-        return len(self.times)
-
-    @property
-    def stamps(self) -> NDArray[Any]:
-        """The time stamps as the caller tells time."""
-        return self.times if self.told is None else self.told
-
-    @property
-    def dated(self) -> bool:
-        """Whether the time stamps are dates."""
-        return self.stamps.dtype.kind == "M"
-
-    def stamp(self, sample: int) -> Any:
-        """Return a time stamp: a number of Python, or a date or duration of numpy."""
-        return plain(self.stamps[sample])
-
-    def show(self, sample: int) -> str:
-        """Return a time stamp for a sentence."""
-        stamp = self.stamp(sample)
-        if isinstance(stamp, np.datetime64):
-            return str(stamp.astype("M8[ms]")) if stamp == stamp.astype("M8[ms]") else str(stamp)
-        if isinstance(stamp, np.timedelta64):
-            return f"{decimal(int(stamp.astype(np.int64)) * UNITS['ns'])} s"
-        return f"{stamp:.15g} s" if self.unit is None else f"{stamp} {self.unit}"
-
-
 class Stamps(NamedTuple):
     """Time stamps in seconds, and as the caller tells time: in the same seconds, in a unit, as dates or durations."""
 
@@ -165,50 +68,13 @@ def plain(time: Any) -> Any:
     return time if isinstance(time, np.datetime64 | np.timedelta64) else time.item()
 
 
-def trace(
-    data: Any,
-    names: Sequence[str],
-    period: Fraction | None,
-    known: Collection[str] = (),
-    tolerance: float = TOLERANCE,
-    unit: str | None = None,
-) -> Recording:
-    """Normalise a finished recording; the caller's data is never changed.
-
-    ``data``: a mapping, or anything with columns (a pandas or polars frame), from variable to n
-    numbers; ``"time"`` (n stamps, seconds or datetimes) is optional. ``names`` are the variables the
-    formula reads, ``known`` others that may be there. Without a ``period`` (seconds) it is taken
-    from the stamps. ``unit``: of stamps that are numbers, by default seconds. Raises :class:`TraceError`.
-    """
-    check_tolerance(tolerance)
-    stamped, columns, n = columns_of(data, names, known, unit)
-    if n == 0:
-        raise TraceError("the trace is empty: give at least one sample")
-    inferred, told = False, None
-    if stamped is None:
-        period = period or Fraction(1)
-        times = np.arange(n, dtype=np.float64)
-        if period != 1:
-            times *= float(period)
-    else:
-        times = stamped.seconds
-        told = None if stamped.told is times else stamped.told
-        check_increasing(times)
-        inferred = period is None
-        period = period or infer_period(times)
-        check_regular(times, period, tolerance)
-    for name, column in columns.items():
-        check_numbers(name, column, times)
-    return Recording(times, columns, period, inferred, told, unit, units_of(data))
-
-
 def units_of(data: Any) -> Mapping[str, str]:
     """Return the units of the variables, where the data tells them."""
     return data.units if isinstance(data, Clocked) else {}
 
 
 def columns_of(
-    data: Any, names: Sequence[str], known: Collection[str] = (), unit: str | None = None
+    data: Any, names: Sequence[str], declared: Collection[str] = (), unit: str | None = None
 ) -> tuple[Stamps | None, dict[str, FloatArray], int]:
     """Return the time stamps (None if there are none), a column for each name, and their common length."""
     require_no_unit(data, unit)
@@ -216,7 +82,7 @@ def columns_of(
         data = data.on_one_clock(names)
     keys = _keys(data)
     if is_mapping(data):
-        refuse_unknown(keys, names, known)
+        refuse_unknown(keys, names, declared)
     else:
         check_frame(data, TIME, names)
     columns = {name: _column(data, keys, name) for name in names}
@@ -397,88 +263,6 @@ def nan_error(name: str, index: int, time: float) -> TraceError:
     )
 
 
-def check_increasing(times: FloatArray, before: float | None = None, first: int = 0) -> None:
-    """Raise :class:`TraceError` unless times are finite and increase strictly, also from ``before`` on.
-
-    ``first`` is the index of ``times[0]`` in the whole recording, for the message.
-    """
-    finite = np.isfinite(times)
-    if not finite.all():
-        i = int((~finite).argmax())
-        raise TraceError(
-            f"time is {times[i]} at sample {first + i}: give a finite number of seconds",
-            variable=TIME,
-            index=first + i,
-        )
-    if before is not None and len(times) and times[0] <= before:
-        raise not_increasing(first, float(times[0]), before)
-    steps = np.diff(times)
-    if (steps <= 0).any():
-        i = int((steps <= 0).argmax()) + 1
-        raise not_increasing(first + i, float(times[i]), float(times[i - 1]))
-
-
-def not_increasing(index: int, time: float, before: float) -> TraceError:
-    """Return the error for a stamp that is not later than the one before."""
-    return TraceError(
-        f"time does not increase at sample {index}: {time:.15g} s comes after {before:.15g} s; "
-        f"sort the samples and drop repeated stamps",
-        variable=TIME,
-        index=index,
-        time=time,
-    )
-
-
-def infer_period(times: FloatArray) -> Fraction:
-    """Return the median gap, as the shortest decimal that it cannot be told from; 1 s for one sample.
-
-    Stamps that count from 1970 are doubles of some 0.2 µs precision, which the gaps inherit.
-    """
-    if len(times) < 2:
-        return Fraction(1)
-    gap = float(np.median(np.diff(times)))
-    blur = max(1e-6 * gap, 2 * float(np.spacing(np.abs(times).max())))
-    for digits in range(1, 17):
-        short = float(f"{gap:.{digits}g}")
-        if abs(short - gap) <= blur:
-            return Fraction(repr(short))
-    return Fraction(repr(gap))
-
-
-def check_tolerance(tolerance: Any) -> None:
-    """Raise :class:`UsageError` unless ``tolerance`` is a fraction of the period, 0 or more."""
-    if not is_number(tolerance) or not tolerance >= 0:
-        raise UsageError(f"the tolerance is {shown(tolerance)}; give a fraction of the period, 0 or more")
-
-
-def check_regular(
-    times: FloatArray,
-    period: Fraction,
-    tolerance: float = TOLERANCE,
-    before: float | None = None,
-    first: int = 0,
-) -> None:
-    """Raise :class:`TraceError` where the gap to the sample before is not one period (within tolerance)."""
-    whole = times if before is None else np.concatenate(([before], times))
-    step = float(period)
-    off = np.abs(np.diff(whole) - step) > tolerance * step
-    if off.any():
-        i = int(off.argmax()) + 1
-        index = first + i - (0 if before is None else 1)
-        raise irregular(index, float(whole[i]), float(whole[i - 1]), period, tolerance)
-
-
-def irregular(index: int, time: float, before: float, period: Fraction, tolerance: float) -> TraceError:
-    """Return the error for a sample that is not one period after the one before."""
-    return TraceError(
-        f"sample {index} at {time:.15g} s is {time - before:g} s after the one before, expected "
-        f"{format_duration(period)} (within {tolerance:.0%}): give the right period, or resample the trace",
-        variable=TIME,
-        index=index,
-        time=time,
-    )
-
-
 def unknown_variable(name: str, names: Collection[str]) -> TraceError:
     """Return the error for a variable that the formula does not read."""
     reads = ", ".join(names) or "no variable"
@@ -511,10 +295,10 @@ def _keys(data: Any) -> list[str]:
     return list(columns)
 
 
-def refuse_unknown(keys: Sequence[str], names: Sequence[str], known: Collection[str]) -> None:
-    """Raise :class:`TraceError` at a key that is neither read, nor known, nor the time."""
+def refuse_unknown(keys: Sequence[str], names: Sequence[str], declared: Collection[str]) -> None:
+    """Raise :class:`TraceError` at a key that is neither read, nor declared, nor the time."""
     for key in keys:
-        if key in names or key == TIME or key in known:
+        if key in names or key == TIME or key in declared:
             continue
         if key not in {name.split(".")[0] for name in names}:
             raise unknown_variable(str(key), names)

@@ -11,7 +11,7 @@ import numpy as np
 from rtamt.errors import TraceError
 from rtamt.language.units import format_duration
 from rtamt.signals import arrays
-from rtamt.signals.arrays import Signal
+from rtamt.signals.signal import Signal
 from rtamt.signals.stamps import check_frame
 from rtamt.signals.ticks import sequence_of
 
@@ -91,7 +91,7 @@ def split(samples: Any, name: str) -> tuple[Any, Any]:
     return [time for time, _ in pairs], [value for _, value in pairs]
 
 
-def columns_of(data: Any, names: Sequence[str], known: Collection[str] = ()) -> dict[str, tuple[Any, Any]]:
+def columns_of(data: Any, names: Sequence[str], declared: Collection[str] = ()) -> dict[str, tuple[Any, Any]]:
     """Return times (an array or a list) and values (as given) of each variable that is in the data.
 
     With a key ``"time"`` all variables share its stamps, unless the formula reads a variable of that
@@ -108,7 +108,7 @@ def columns_of(data: Any, names: Sequence[str], known: Collection[str] = ()) -> 
             )
         check_frame(data, arrays.TIME, names)
         data = {name: data[name] for name in (*names, arrays.TIME) if name in data.columns}
-    arrays.refuse_unknown(list(data), names, known)
+    arrays.refuse_unknown(list(data), names, declared)
     stamped = arrays.TIME in data and arrays.TIME not in names
     shared = sequence_of(data[arrays.TIME], arrays.TIME) if stamped else None
     columns = {}

@@ -4,8 +4,8 @@
 
     Trace                    what users read from files and frames
       └── Channel            one signal: its times, its values, its unit
-    Recording                one clock, a period      (signals.py)           discrete time evaluates this
-    DenseRecording           integer ticks            (dense_evaluate.py)    dense time evaluates this
+    DiscreteTrace                one clock, a period      (signals.py)           discrete time evaluates this
+    DenseTrace           integer ticks            (dense_evaluate.py)    dense time evaluates this
 """
 
 from __future__ import annotations
@@ -18,7 +18,8 @@ import numpy as np
 
 from rtamt.errors import TraceError, UsageError, did_you_mean
 from rtamt.language.units import duration
-from rtamt.signals.arrays import TIME, Clocked, Signal, stamps
+from rtamt.signals.arrays import TIME, Clocked, stamps
+from rtamt.signals.signal import Signal
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator, Mapping, Sequence

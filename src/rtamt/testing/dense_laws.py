@@ -13,6 +13,7 @@ from rtamt.errors import EvaluationError
 from rtamt.language.formula import variables
 from rtamt.language.operators import Tense
 from rtamt.reference import dense as dense_reference
+from rtamt.signals.dense import record_dense
 from rtamt.testing.case import NAMES, ONE, Case, check_own_code
 from rtamt.testing.strategies import dense_chunkings, dense_traces
 
@@ -73,7 +74,7 @@ def _fast_is_the_dense_definition(case: Case, draw: Callable[[Any], Any]) -> Non
     assume(variables(formula))
     trace = _trace(case, draw, formula)
     expected = _densely_defined(formula, trace)
-    recording = dense_evaluate.trace(_ticks(trace), variables(formula), ONE)
+    recording = record_dense(_ticks(trace), variables(formula), ONE)
     got: Any
     try:
         signal = dense_evaluate.evaluate(formula, recording)

@@ -22,7 +22,7 @@ from rtamt.reference import discrete as reference
 from rtamt.rewrite.desugar import desugar
 from rtamt.rewrite.horizon import horizon
 from rtamt.rewrite.pastify import pastify
-from rtamt.signals import arrays
+from rtamt.signals.discrete import record_discrete
 from rtamt.testing.case import NAMES, ONE, Case, check_own_code, hold
 from rtamt.testing.dense_laws import DENSE_LAWS, has_dense_meaning
 from rtamt.testing.strategies import chunkings, traces
@@ -123,7 +123,7 @@ def _fast_is_the_definition(case: Case, draw: Callable[[Any], Any]) -> None:
     expected = _defined(formula, columns)
     got: Array | None
     try:
-        recording = arrays.trace(columns, NAMES, ONE)
+        recording = record_discrete(columns, NAMES, ONE)
         got = Evaluator((formula,), ONE)(recording)[0]
     except EvaluationError as error:
         check_own_code(error)

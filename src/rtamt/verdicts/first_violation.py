@@ -7,11 +7,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rtamt.engine.dense_evaluate import DenseRecording, reach
+from rtamt.engine.dense_evaluate import reach
 from rtamt.language.formula import Const, Var
 from rtamt.language.operators import STL
 from rtamt.rewrite.desugar import desugar
-from rtamt.signals.arrays import Recording
+from rtamt.signals.dense import DenseTrace
+from rtamt.signals.discrete import DiscreteTrace
 from rtamt.signals.ticks import TimeScale
 from rtamt.verdicts.decompose import Anchored, Leaf, anchor
 
@@ -42,13 +43,13 @@ def first_violation(result: Result) -> Any:
     if result.satisfied:
         return None
     spec, recording = result.specification, result.trace
-    anchored = anchor(spec.judged(spec.formula, "boolean"))
-    discrete = isinstance(recording, Recording)
-    unit = recording.period if isinstance(recording, Recording) else recording.scale.tick
+    anchored = anchor(spec.apply_semantics(spec.formula, "boolean"))
+    discrete = isinstance(recording, DiscreteTrace)
+    unit = recording.period if isinstance(recording, DiscreteTrace) else recording.scale.tick
     trackers = [Tracker(leaf, unit, not discrete) for leaf in anchored.leaves]
     for tracker in trackers:
-        formula = together(tracker.leaf.formula, tuple(recording.columns))
-        if isinstance(recording, Recording):
+        formula = align_inputs(tracker.leaf.formula, tuple(recording.columns))
+        if isinstance(recording, DiscreteTrace):
             signal = spec.signal_of(formula, recording)
             tracker.take(np.arange(len(signal)), signal.values)
         else:
@@ -56,12 +57,12 @@ def first_violation(result: Result) -> Any:
             tracker.take(signal.times - recording.start, signal.values)
         tracker.finish()
     position = violation_of(spec, anchored, trackers)
-    if isinstance(recording, Recording):
+    if isinstance(recording, DiscreteTrace):
         return recording.stamp(position)
     return recording.scale.time(recording.start + position)
 
 
-def together(formula: Formula, names: Sequence[str]) -> Formula:
+def align_inputs(formula: Formula, names: Sequence[str]) -> Formula:
     """Return a formula with the same values that reads all the names: so several formulas begin and end together."""
     if not names:
         return formula
@@ -71,14 +72,14 @@ def together(formula: Formula, names: Sequence[str]) -> Formula:
     return STL["and"](formula, STL["or"](Const(float("inf")), everything))
 
 
-def settled(recording: DenseRecording, formula: Formula) -> DenseRecording:
+def settled(recording: DenseTrace, formula: Formula) -> DenseTrace:
     """Return a recording, in ticks, whose last values hold until the past windows of a formula have slid over them."""
     end = recording.end + reach(desugar(formula), recording.scale.tick) + 1
     columns = {
         name: (np.append(ticks, end), np.append(values, values[-1]))
         for name, (ticks, values) in recording.columns.items()
     }
-    return DenseRecording(columns, TimeScale.in_ticks(recording.scale.tick))
+    return DenseTrace(columns, TimeScale.in_ticks(recording.scale.tick))
 
 
 def violation_of(spec: Specification, anchored: Anchored, trackers: Sequence[Tracker]) -> int:
@@ -99,7 +100,7 @@ def violation_of(spec: Specification, anchored: Anchored, trackers: Sequence[Tra
 def value_of(spec: Specification, skeleton: Formula, trackers: Sequence[Tracker]) -> float:
     """Return the value of a skeleton, given those of its leaves."""
     columns = {f"#{i}": np.array([tracker.value]) for i, tracker in enumerate(trackers)}
-    return float(spec.signal_of(skeleton, Recording(np.zeros(1), columns, Fraction(1))).values[0])
+    return float(spec.signal_of(skeleton, DiscreteTrace(np.zeros(1), columns, Fraction(1))).values[0])
 
 
 class Tracker:

@@ -21,18 +21,20 @@ from rtamt.rewrite.horizon import horizon
 from rtamt.rewrite.semantics import semantics_of
 from rtamt.settings import positive_period, time_domain
 from rtamt.signals import arrays, dense_arrays
+from rtamt.signals.regular import TOLERANCE, infer_period
 from rtamt.signals.ticks import TimeScale
 from rtamt.verdicts.decompose import Leaf, anchor, check_in_chunks
-from rtamt.verdicts.first_violation import Tracker, together, value_of, violation_of
+from rtamt.verdicts.first_violation import Tracker, align_inputs, value_of, violation_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping
 
     from rtamt.language.formula import Formula
-    from rtamt.rewrite.semantics import Judge
+    from rtamt.rewrite.semantics import PredicateSemantics
     from rtamt.settings import Duration, Semantics
-    from rtamt.signals.arrays import FloatArray, Signal
+    from rtamt.signals.arrays import FloatArray
     from rtamt.signals.dense_arrays import Samples
+    from rtamt.signals.signal import Signal
     from rtamt.specification import Specification
     from rtamt.verdicts.first_violation import Positions
 
@@ -63,7 +65,7 @@ def check_stream(
     *,
     time: str | None = None,
     period: Duration | None = None,
-    tolerance: float = arrays.TOLERANCE,
+    tolerance: float = TOLERANCE,
     semantics: Semantics | None = None,
     time_unit: str | None = None,
 ) -> StreamResult:
@@ -94,18 +96,18 @@ def check_stream(
 def check_streamable(spec: Specification) -> None:
     """Raise :class:`BoundError` where a formula needs the whole recording at once."""
     for alone in spec.requirements.values():
-        check_in_chunks(anchor(alone.judged(alone.formula)), alone.text)
+        check_in_chunks(anchor(alone.apply_semantics(alone.formula)), alone.text)
 
 
-class _Judged:
+class _RequirementInChunks:
     """One requirement over chunks: the leaves of its robustness and of its truth, and what becomes of them."""
 
-    def __init__(self, spec: Specification, semantics: str | Judge | None) -> None:
-        formula = spec.judged(spec.formula, semantics)
+    def __init__(self, spec: Specification, semantics: str | PredicateSemantics | None) -> None:
+        formula = spec.apply_semantics(spec.formula, semantics)
         self.spec = spec
         self._robust = anchor(formula)
         check_in_chunks(self._robust, spec.text)
-        self._boolean = anchor(spec.judged(spec.formula, "boolean"))
+        self._boolean = anchor(spec.apply_semantics(spec.formula, "boolean"))
         # The whole formula last, for its minimum, where it can be known online.
         whole = [] if horizon(formula) is None else [Leaf(formula, "min", end=None)]
         self.leaves = [*self._robust.leaves, *self._boolean.leaves, *whole]
@@ -155,7 +157,7 @@ class _Stream(ABC):
         self.spec = spec
         self.unit = None if unit is None else check_unit(unit)
         self.declared = tuple(declaration.name for declaration in spec.document.declarations)
-        self.judged = {name: _Judged(alone, chosen) for name, alone in spec.requirements.items()}
+        self.parts = {name: _RequirementInChunks(alone, chosen) for name, alone in spec.requirements.items()}
         self.monitors: dict[Formula, Any] = {}
         self.samples = 0
 
@@ -169,17 +171,17 @@ class _Stream(ABC):
 
     def begin(self, unit: Fraction, make: Callable[[Formula], Any], dense: bool) -> None:
         """Make monitors and trackers, once the length of a period or tick (``unit``, seconds) is known."""
-        for judged in self.judged.values():
-            judged.begin(unit, dense)
-        for formula in dict.fromkeys(leaf.formula for each in self.judged.values() for leaf in each.leaves):
-            self.monitors[formula] = make(together(formula, self.spec.input_names))
+        for part in self.parts.values():
+            part.begin(unit, dense)
+        for formula in dict.fromkeys(leaf.formula for each in self.parts.values() for leaf in each.leaves):
+            self.monitors[formula] = make(align_inputs(formula, self.spec.input_names))
 
     def told(
         self, formula: Formula, positions: Positions, values: FloatArray, last: int | None = None
     ) -> None:
         """Hand on what a monitor told; ``last``: the last position that the minimum is about."""
-        for judged in self.judged.values():
-            judged.take(formula, positions, values, last)
+        for part in self.parts.values():
+            part.take(formula, positions, values, last)
 
     @abstractmethod
     def time(self, position: int) -> Any:
@@ -189,7 +191,7 @@ class _Stream(ABC):
         """Return what came of all chunks."""
         if not self.samples:
             raise TraceError("the trace is empty: give at least one sample")
-        found = {name: each.result(self.time, self.samples, period) for name, each in self.judged.items()}
+        found = {name: each.result(self.time, self.samples, period) for name, each in self.parts.items()}
         results = tuple(found.values())
         violations = [each.first_violation for each in results if not each.satisfied]
         minima = [each.minimum for each in results]
@@ -230,7 +232,7 @@ class _DiscreteStream(_Stream):
             if stamps is not None:
                 arrays.check_increasing(stamps.seconds)
             if self._period is None:
-                self._period = Fraction(1) if stamps is None else arrays.infer_period(stamps.seconds)
+                self._period = Fraction(1) if stamps is None else infer_period(stamps.seconds)
             check_bounds(self.spec.formula, self._period, self.spec.text)
             self.begin(self._period, self._monitor, dense=False)
         for formula, monitor in self.monitors.items():
@@ -249,7 +251,7 @@ class _DiscreteStream(_Stream):
         self._told[formula] = begin + len(signal)
         self.told(formula, np.arange(begin, begin + len(signal)), signal.values)
         # A tracker judges a position when the next one comes: the stamp before is wanted, too.
-        trackers = (tracker for judged in self.judged.values() for tracker in judged.trackers)
+        trackers = (tracker for part in self.parts.values() for tracker in part.trackers)
         for position in {0, *(tracker.violated for tracker in trackers if tracker.violated is not None)}:
             if position == begin - 1:
                 self._kept.setdefault(position, self._last[formula])

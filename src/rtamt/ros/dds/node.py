@@ -8,7 +8,7 @@ import time
 from typing import TYPE_CHECKING, Any
 
 from rtamt.ros.dds.participant import LEAST
-from rtamt.ros.publisher import DIAGNOSTICS, Outbox, diagnostic
+from rtamt.ros.publisher import DIAGNOSTICS, Publisher, diagnostic
 
 if TYPE_CHECKING:
     from rtamt.ros.binding import MessageType
@@ -38,7 +38,7 @@ class Node:
         def stamp(nanoseconds: int) -> Any:
             return time_class(sec=nanoseconds // 10**9, nanosec=nanoseconds % 10**9)
 
-        self._outbox = Outbox(monitor.binding, types.load, stamp)
+        self._outbox = Publisher(monitor.binding, types.load, stamp)
         for topic, cls in self._outbox.topics.items():
             participant.advertise(topic, cls)
         participant.advertise(DIAGNOSTICS, types.load(diagnostic("DiagnosticArray")))

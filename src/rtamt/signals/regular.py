@@ -1,0 +1,100 @@
+"""Timestamps one sampling period apart: the period inferred, and the checks of order and distance."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rtamt.errors import TraceError, UsageError, shown
+from rtamt.language.units import format_duration
+from rtamt.signals.arrays import TIME, is_number
+
+if TYPE_CHECKING:
+    from rtamt.signals.arrays import FloatArray
+
+#: How far, as a fraction of the period, the gap between two samples may be from the period.
+TOLERANCE = 0.1
+
+
+def check_tolerance(tolerance: Any) -> None:
+    """Raise :class:`UsageError` unless ``tolerance`` is a fraction of the period, 0 or more."""
+    if not is_number(tolerance) or not tolerance >= 0:
+        raise UsageError(f"the tolerance is {shown(tolerance)}; give a fraction of the period, 0 or more")
+
+
+def infer_period(times: FloatArray) -> Fraction:
+    """Return the median gap, as the shortest decimal that it cannot be told from; 1 s for one sample.
+
+    Stamps that count from 1970 are doubles of some 0.2 µs precision, which the gaps inherit.
+    """
+    if len(times) < 2:
+        return Fraction(1)
+    gap = float(np.median(np.diff(times)))
+    blur = max(1e-6 * gap, 2 * float(np.spacing(np.abs(times).max())))
+    for digits in range(1, 17):
+        short = float(f"{gap:.{digits}g}")
+        if abs(short - gap) <= blur:
+            return Fraction(repr(short))
+    return Fraction(repr(gap))
+
+
+def check_increasing(times: FloatArray, before: float | None = None, first: int = 0) -> None:
+    """Raise :class:`TraceError` unless times are finite and increase strictly, also from ``before`` on.
+
+    ``first`` is the index of ``times[0]`` in the whole recording, for the message.
+    """
+    finite = np.isfinite(times)
+    if not finite.all():
+        i = int((~finite).argmax())
+        raise TraceError(
+            f"time is {times[i]} at sample {first + i}: give a finite number of seconds",
+            variable=TIME,
+            index=first + i,
+        )
+    if before is not None and len(times) and times[0] <= before:
+        raise not_increasing(first, float(times[0]), before)
+    steps = np.diff(times)
+    if (steps <= 0).any():
+        i = int((steps <= 0).argmax()) + 1
+        raise not_increasing(first + i, float(times[i]), float(times[i - 1]))
+
+
+def not_increasing(index: int, time: float, before: float) -> TraceError:
+    """Return the error for a stamp that is not later than the one before."""
+    return TraceError(
+        f"time does not increase at sample {index}: {time:.15g} s comes after {before:.15g} s; "
+        f"sort the samples and drop repeated stamps",
+        variable=TIME,
+        index=index,
+        time=time,
+    )
+
+
+def check_regular(
+    times: FloatArray,
+    period: Fraction,
+    tolerance: float = TOLERANCE,
+    before: float | None = None,
+    first: int = 0,
+) -> None:
+    """Raise :class:`TraceError` where the gap to the sample before is not one period (within tolerance)."""
+    whole = times if before is None else np.concatenate(([before], times))
+    step = float(period)
+    off = np.abs(np.diff(whole) - step) > tolerance * step
+    if off.any():
+        i = int(off.argmax()) + 1
+        index = first + i - (0 if before is None else 1)
+        raise irregular(index, float(whole[i]), float(whole[i - 1]), period, tolerance)
+
+
+def irregular(index: int, time: float, before: float, period: Fraction, tolerance: float) -> TraceError:
+    """Return the error for a sample that is not one period after the one before."""
+    return TraceError(
+        f"sample {index} at {time:.15g} s is {time - before:g} s after the one before, expected "
+        f"{format_duration(period)} (within {tolerance:.0%}): give the right period, or resample the trace",
+        variable=TIME,
+        index=index,
+        time=time,
+    )
