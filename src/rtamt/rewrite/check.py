@@ -25,8 +25,7 @@ def check_bounds(
 
     ``what`` is how the message calls the period: in dense time it is the resolution.
 
-    >>> from decimal import Decimal
-    from fractions import Fraction
+    >>> from fractions import Fraction
     >>> from rtamt.language.parser import parse_formula
     >>> check_bounds(parse_formula("always[0:1] x"), Fraction(1, 10))
     """
