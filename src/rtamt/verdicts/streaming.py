@@ -21,7 +21,7 @@ from rtamt.rewrite.horizon import horizon
 from rtamt.rewrite.semantics import semantics_of
 from rtamt.settings import positive_period, time_domain
 from rtamt.signals import arrays, dense_arrays
-from rtamt.signals.regular import TOLERANCE, infer_period
+from rtamt.signals.regular import TOLERANCE, check_increasing, infer_period
 from rtamt.signals.ticks import TimeScale
 from rtamt.verdicts.decompose import Leaf, anchor, check_in_chunks
 from rtamt.verdicts.first_violation import Tracker, align_inputs, value_of, violation_of
@@ -230,7 +230,7 @@ class _DiscreteStream(_Stream):
             return
         if not self.monitors:
             if stamps is not None:
-                arrays.check_increasing(stamps.seconds)
+                check_increasing(stamps.seconds)
             if self._period is None:
                 self._period = Fraction(1) if stamps is None else infer_period(stamps.seconds)
             check_bounds(self.spec.formula, self._period, self.spec.text)
