@@ -5,6 +5,7 @@ A specification is text, which somebody else may have written, so that it import
 - only from modules called ``<package>.msg``, as the messages of ROS are;
 - only from packages that lie on the module path by choice: one that is found in the current directory, where
   Python looks by itself, is refused unless Python code has imported it already;
+- only from packages that have a module ``msg``: no other package is imported to find out;
 - only message classes: those of ROS 1 (``genpy.Message``) and of ROS 2, which have
   ``get_fields_and_field_types``. Nothing else of a module is called.
 """
@@ -46,13 +47,13 @@ def message_class(module: str, name: str) -> type:
             f"the message package '{package}' lies in the current directory, from which a specification does not "
             f"import: run the program in another directory, or import '{module}' in Python code first"
         )
+    hint = "is the workspace built, and its setup file sourced?"
+    if module not in sys.modules and _has_no_messages(package, module):
+        raise UsageError(f"'{package}' is no message package: it has no module 'msg'; {hint}")
     try:
         loaded = importlib.import_module(module)
     except ImportError as error:
-        raise UsageError(
-            f"the message module '{module}' cannot be imported: {error}; "
-            f"is the workspace built, and its setup file sourced?"
-        ) from error
+        raise UsageError(f"the message module '{module}' cannot be imported: {error}; {hint}") from error
     if not hasattr(loaded, name):
         raise UsageError(f"'{module}' has no '{name}'{did_you_mean(name, vars(loaded))}")
     found = getattr(loaded, name)
@@ -84,6 +85,14 @@ def _is_in_current_directory(package: str) -> bool:
     places = list(spec.submodule_search_locations or ()) or [spec.origin or ""]
     here = os.path.realpath(os.curdir)
     return any(os.path.realpath(os.path.dirname(os.path.abspath(place))) == here for place in places)
+
+
+def _has_no_messages(package: str, module: str) -> bool:
+    """Tell whether a package lies on the module path and has no messages, without running it."""
+    # A package of several folders, such as a workspace over another one, joins them when it is run.
+    specs = [spec for entry in sys.path if (spec := PathFinder.find_spec(package, [entry])) is not None]
+    places = [place for spec in specs for place in spec.submodule_search_locations or ()]
+    return bool(specs) and PathFinder.find_spec(module, places) is None
 
 
 def _is_message(found: object) -> bool:

@@ -170,3 +170,32 @@ def test_a_message_package_in_the_current_directory_ran_when_a_text_named_it(pac
     elsewhere.mkdir()
     assert run(elsewhere, f"sys.path.append({str(here)!r}); ").stdout == "read\n"
     assert run(here, "import evil.msg; ").stdout == "read\n"
+
+
+@pytest.mark.parametrize("is_package", [True, False])
+def test_a_module_without_messages_ran_when_a_text_looked_for_messages_in_it(
+    package, monkeypatch, is_package
+):
+    (package / "msg.py").unlink()
+    if not is_package:
+        (package.parent / "evil.py").write_text((package / "__init__.py").read_text())
+        (package / "__init__.py").unlink()
+    monkeypatch.syspath_prepend(package.parent)
+    monkeypatch.chdir(package)
+    with pytest.raises(UsageError, match="'evil' is no message package: it has no module 'msg'"):
+        MessageType("evil.msg", "F").load()
+    assert not (package / "mark").exists()
+
+
+def test_a_message_package_may_have_its_messages_in_another_folder(package, monkeypatch, tmp_path):
+    (tmp_path / "over" / "evil").mkdir(parents=True)
+    (tmp_path / "over" / "evil" / "__init__.py").write_text(
+        "from pkgutil import extend_path\n__path__ = extend_path(__path__, __name__)\n"
+    )
+    for folder in (package.parent, tmp_path / "over"):
+        monkeypatch.syspath_prepend(folder)
+    monkeypatch.delitem(sys.modules, "evil", raising=False)
+    monkeypatch.chdir(package)
+    assert MessageType("evil.msg", "F").load().value == 0.0
+    for name in ("evil", "evil.msg"):
+        monkeypatch.delitem(sys.modules, name)
