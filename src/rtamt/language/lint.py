@@ -141,6 +141,14 @@ def _unused_number(document: Document) -> Found:
         if is_number(assertion.formula):
             what = "this number" if assertion.name is None else f"the number '{assertion.name}'"
             yield assertion.span, f"{what} is never used"
+    declared = {declaration.name for declaration in document.declarations}
+    for requirement in document.requirements:  # a number where the text has nothing else
+        name = next((a.name for a in document.assertions if a.span == requirement.span), None)
+        if is_number(requirement.formula) and name is not None and name.partition(".")[0] not in declared:
+            yield (
+                requirement.span,
+                f"the number '{name}' is never used, and checked in place of a formula; to compare write '=='",
+            )
 
 
 def _not_required(document: Document) -> Found:
@@ -149,7 +157,7 @@ def _not_required(document: Document) -> Found:
             what = "this formula" if assertion.name is None else f"'{assertion.name}'"
             yield (
                 assertion.span,
-                f"{what} is not checked, as the text says with 'require' what is; require it, too",
+                f"{what} is not checked, because the text uses 'require'; require it too, or remove it",
             )
 
 

@@ -37,8 +37,14 @@ class RequirementParser(FormulaParser):
         """``requirement = "require" , id , [ text ] , [ "severity" , word ] , ":" , expression``."""
         start = self.next().start
         span, name = self._id_span(), self._id()
+        if not name.strip() or not name.isprintable():
+            raise self.error(
+                "the name of a requirement is one line of visible characters, such as REQ-12", span
+            )
         if name in self._definitions or name in self._names:
             raise self.error(f"'{name}' is the name of another requirement or definition", span)
+        if name in self.scope.constants:
+            raise self.error(f"'{name}' is the name of a constant; give the requirement another one", span)
         description = unquoted(self.next().text) if self.token.kind == "quoted" else ""
         severity: Severity = "error"
         if self._word("severity"):
@@ -52,11 +58,6 @@ class RequirementParser(FormulaParser):
             raise self._expected(f"':' after 'require {name}'")
         formula = self.formula()
         whole = Span(start, self.tokens[self.index - 1].end)
-        if is_number(formula):
-            raise self.error(
-                f"'{name}' requires a number, which neither holds nor fails; compare it, such as x >= 0",
-                formula.span or whole,
-            )
         self._explicit.append(Requirement(name, formula, description, severity, True, whole))
         self._names[name] = span
 
@@ -86,6 +87,10 @@ class RequirementParser(FormulaParser):
                 raise self.error(
                     f"'{name}' is the name of a variable; give the requirement another one", span
                 )
+        for known in self._explicit:
+            if is_number(known.formula):
+                message = f"'{known.name}' requires a number, which neither holds nor fails; compare it, such as x >= 0"
+                raise self.error(message, known.formula.span or known.span)
         if self._explicit:
             return tuple(self._explicit)
         unused = [a for a in assertions if not is_number(a.formula) and a.name not in self.used]

@@ -269,7 +269,7 @@ class _DocumentParser(RequirementParser):
                     self._definitions[name] = formula
                     self._slashes = max(self._slashes, name.count("/"))
             # A formula without a name may go on in the next line: there the semicolon must be written.
-            ended = self._begins_a_line() and (name or self._requires())
+            ended = self._begins_a_line(self.index) and (name or self._requires())
             if self.token.kind != "end" and not (self.accept(";") or ended):
                 raise self._not_finished()
             while self.accept(";"):
@@ -279,8 +279,8 @@ class _DocumentParser(RequirementParser):
             raise self.error(empty, self.token.span)
         return tuple(found)
 
-    def _begins_a_line(self) -> bool:
-        between = self.text[self.tokens[self.index - 1].end : self.token.start]
+    def _begins_a_line(self, at: int) -> bool:
+        between = self.text[self.tokens[at - 1].end : self.tokens[at].start]
         return "\n" in between or "\r" in between
 
     def _assertion_name(self) -> str | None:
@@ -298,8 +298,15 @@ class _DocumentParser(RequirementParser):
 
     def _names_to_come(self) -> dict[str, str]:
         """Return the names that later assertions define, each with what to say to an earlier use."""
-        rest = self.tokens[self.index :]
-        names = [_name_of(a) for a, b in pairwise(rest) if a.kind in ("name", "quoted") and b.text == "="]
+        # Elsewhere than where an assertion may begin, '=' is a comparison gone wrong: always(x = 3).
+        names = [
+            _name_of(token)
+            for at, (token, after) in enumerate(pairwise(self.tokens))
+            if at >= self.index
+            and token.kind in ("name", "quoted")
+            and after.text == "="
+            and (at == self.index or self.tokens[at - 1].text == ";" or self._begins_a_line(at))
+        ]
         return {n: f"'{n}' is only defined further down; move its definition up" for n in names}
 
     def _check_new(self, name: str, token: Token) -> None:

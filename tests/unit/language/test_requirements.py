@@ -98,6 +98,22 @@ MESSAGES = [
         "        ^",
         "'x' is the name of a variable; give the requirement another one",
     ),
+    (
+        "require R: x => 3",
+        "             ^^",
+        "'=>' is no operator; write '->' for an implication, '>=' for at least",
+    ),
+    ("require R: x = 3", "             ^", "'=' gives a name to a formula; to compare write '=='"),
+    (
+        'require "": x > 1',
+        "        ^^",
+        "the name of a requirement is one line of visible characters, such as REQ-12",
+    ),
+    (
+        "const int c = 2; require c: x > c",
+        "                         ^",
+        "'c' is the name of a constant; give the requirement another one",
+    ),
     ("require low: x > 1; low = x > 1", "                    ^^^", "'low' is defined twice"),
     (
         "require R1 = 3",
