@@ -90,7 +90,7 @@ class RequirementParser(FormulaParser):
         for known in self._explicit:
             if is_number(known.formula):
                 message = f"'{known.name}' requires a number, which neither holds nor fails; compare it, such as x >= 0"
-                raise self.error(message, known.formula.span or known.span)
+                raise self.error(message, known.formula.span or self._names[known.name])
         if self._explicit:
             return tuple(self._explicit)
         unused = [a for a in assertions if not is_number(a.formula) and a.name not in self.used]

@@ -63,6 +63,7 @@ def trace_of(source: Source, choice: Choice) -> Trace:
     notes, losses = list(source.notes), list(source.losses)
     for selection in select(source, choice):
         raws = selection.table.load(selection.fields)
+        losses += selection.table.losses
         clock = clock_of(source, selection, choice)
         gaps = _gaps(source, selection, choice)
         made, left_out = _channels(source, selection, clock, raws, choice, gaps)

@@ -119,27 +119,39 @@ def _table(reader: Any, topic: str, connections: list[Any]) -> Table | None:
     connection, _, raw = first
     steps = {f"{topic}{_text(path)}": path for path in _numbers(_message(reader, connection, raw))}
     clock = Field(f"{topic} stamp", f"{topic} stamp", "ns", "number")
+    losses: list[str] = []
 
     def load(wanted: Sequence[Field]) -> list[Raw]:
         paths = [steps[field.column] for field in wanted if field != clock]
         stamps: list[int] = []
         rows: list[list[Any]] = []
+        others = 0
         for known, recorded, data in messages(reader, connections):
             message = _message(reader, known, data)
             stamp = _stamp(message) or recorded
             if stamps and stamp <= stamps[-1]:
-                if stamp == stamps[-1]:
-                    continue  # a signal has one value at an instant: the first
+                if stamp == stamps[-1]:  # a signal has one value at an instant: the first
+                    others += [_at(message, path) for path in paths] != rows[-1]
+                    continue
                 raise TraceError(
                     f"the stamps on {topic} go back by {(stamps[-1] - stamp) / 1e9:.9g} s at message {len(stamps)}: "
                     f"was simulated time set back? Cut the bag there"
                 )
             stamps.append(stamp)
             rows.append([_at(message, path) for path in paths])
+        losses[:] = [] if not others else [_repeated(topic, others)]
         return _columns(wanted, clock, stamps, rows)
 
     fields = [Field(column, column, "", "number") for column in steps]
-    return Table((clock, *fields), load, clock=clock)
+    return Table((clock, *fields), load, clock=clock, losses=losses)
+
+
+def _repeated(topic: str, count: int) -> str:
+    some = "1 message" if count == 1 else f"{count} messages"
+    it, its = ("it is", "has") if count == 1 else ("they are", "have")
+    return (
+        f"{some} on {printable(topic)} {its} the stamp of the message before and another value; {it} left out"
+    )
 
 
 def _columns(wanted: Sequence[Field], clock: Field, stamps: list[int], rows: list[list[Any]]) -> list[Raw]:

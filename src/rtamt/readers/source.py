@@ -60,6 +60,8 @@ class Table:
     clock: Field | None = None
     #: The line or row of the source in which the first sample stands, for messages.
     first_row: int = 0
+    #: What ``load`` had to leave out, a sentence each; empty until then.
+    losses: list[str] = field(default_factory=list)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -37,7 +37,7 @@ def test_every_rule_finds_its_example_and_no_other_one_does():
         ("x + y", []),
         ("a = x + 1; b = y + 1", [("RT201", "a = x + 1"), ("RT201", "b = y + 1")]),
         ("speed = 30", [("RT201", "speed = 30")]),
-        ("output float out; out = x + 1", []),
+        ("input float x  output float out  out = x + 1", []),
         ("x + 1", []),
         ("low = x > 1; require R: always(low)", []),
         ("low = x > 1; require R: y > 2", [("RT202", "low = x > 1")]),

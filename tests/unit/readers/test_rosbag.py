@@ -108,6 +108,19 @@ def test_what_a_chosen_period_passes_over_is_noted_beside_the_verdict(spike, tmp
     assert "notes" not in json.loads(capsys.readouterr().out)
 
 
+@pytest.mark.parametrize("time", ["discrete", "dense"])
+def test_a_violation_with_the_stamp_of_the_message_before_was_left_out_silently(tmp_path, capsys, time):
+    with Bag(tmp_path, "mcap") as bag:
+        for i in range(4):
+            bag.stamped("/x", START + i, 1.0)
+            for value in (-1.0, 1.0) if i == 2 else (1.0,):
+                bag.stamped("/x", START + i, value)
+    assert main(["check", 'always("/x.value" >= 0)', str(bag.path), "--time", time]) == 0
+    note = "1 message on /x has the stamp of the message before and another value; it is left out"
+    assert f"note: {bag.path}: {note}\n" in capsys.readouterr().out
+    assert note in rtamt.read(bag.path).losses
+
+
 def test_topics_with_the_same_regular_stamps_imply_their_period_and_every_message_is_a_sample(
     spike, tmp_path, capsys
 ):
