@@ -1,4 +1,4 @@
-"""Runtime monitors for Signal Temporal Logic: requirement and signal in, robustness out."""
+"""Monitor Signal Temporal Logic: compute the robustness of requirements on recorded or live signals."""
 
 from importlib import import_module
 from typing import TYPE_CHECKING, Any

@@ -44,7 +44,7 @@ SECTIONS = {
     ),
     "Explanation": (
         "explanation",
-        ["semantics", "horizon", "interface-aware", "engine", "rtamt", "choosing"],
+        ["semantics", "horizon", "interface-aware", "engine", "architecture", "rtamt", "choosing"],
     ),
 }
 

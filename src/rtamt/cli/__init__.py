@@ -1,4 +1,25 @@
-"""The command line ``rtamt``: one sentence on stderr for whatever goes wrong, never a traceback."""
+"""The command line ``rtamt``: every error is one sentence on stderr, never a traceback.
+
+Each command is a module with the name of the command: ``check``, ``explain``, ``plot``, ``report``,
+``monitor``, ``ros2``, ``falsify``, ``info``, ``lint``, ``compile``, ``fmu``, ``operators``, ``completion``.
+The other modules are shared:
+
+===============  =============================================================
+module           purpose
+===============  =============================================================
+command          ``Command``, the argument parser, options of several commands
+arguments        specifications and recordings on the command line
+reading_options  options for reading recordings
+language         the option ``--language``
+runner           every requirement on every recording, on all cores
+bag              check a bag, and write a copy with the results
+stdin_reader     JSON or CSV lines to samples
+live_view        the live view of ``rtamt monitor``
+terminal         output, colours, tables, progress
+compiled         ``rtamt info`` for compiled programs
+reports          JUnit, SARIF and HTML reports
+===============  =============================================================
+"""
 
 from __future__ import annotations
 

@@ -1,1 +1,12 @@
-"""Formula to program: instructions, delays, parameters, and the bytes that run without Python."""
+"""Compile a formula to a program: instructions, delays, parameters, and bytes that run without Python.
+
+==========  =====================================================================
+module      purpose
+==========  =====================================================================
+lower       formula to instructions: value numbering, lags, alignment of operands
+plan        formulas to one program (online) or a sequence of programs (offline)
+program     the program: instructions, serialisation, disassembly
+metadata    names, period and labels stored with a program
+standalone  compile a specification to a program that runs without Python
+==========  =====================================================================
+"""

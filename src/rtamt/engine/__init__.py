@@ -1,1 +1,19 @@
-"""Formula and signals to numbers."""
+"""Evaluate formulas on signals: offline on complete recordings, online sample by sample.
+
+====================  ============================================================================
+module                purpose
+====================  ============================================================================
+offline               evaluate queries on a recording; cache compiled plans
+evaluate              offline evaluation in discrete time
+dense_evaluate        offline evaluation in dense time
+online                watched formulas and copies, shared by the monitors
+monitor               the discrete-time monitor
+dense_monitor         the dense-time monitor
+gate                  reject concurrent and reentrant use of a monitor
+native                load the compiled core
+python_backend        the reference implementation behind the interface of the core, discrete time
+dense_python_backend  the same in dense time
+user_operators        call custom operators from the core
+_core                 the compiled core (``core/``); the stub describes its interface
+====================  ============================================================================
+"""

@@ -1,1 +1,1 @@
-"""RTAMT's module path for its exception."""
+"""Provide RTAMT's module path of its exception."""

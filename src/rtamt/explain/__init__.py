@@ -1,20 +1,35 @@
-"""Why a formula is satisfied or violated: which instants of which signals are responsible.
+"""Explain why a formula is satisfied or violated: which signals, and when.
 
-Two answers: the *critical point* (``critical.py``), the predicate and the instant whose value is the
-robustness; and the *implicant* (``demands.py``, ``choices.py``, ``needs.py``, ``minimise.py``), intervals of
-predicates that force the verdict whatever the signals do elsewhere, none of which can be left out.
-``structure.py`` takes the formula apart, ``timeline.py`` asks the engine, ``report.py`` and
-``sentences.py`` say what was found.
+An explanation has two parts. The *critical point* is the predicate and the time that determine the robustness.
+The *implicant* is a set of intervals of predicates that is sufficient for the verdict, independent of all other
+samples; no interval can be removed.
 
-What holds exactly, and is checked in the tests by doing it:
+=========  ===================================================================
+module     purpose
+=========  ===================================================================
+explain    a formula and a recording to an explanation
+structure  split a formula into predicates, minimum and maximum
+signals    values of sub-formulas, and where they hold
+time_axis  a recording divided into cells; evaluation with replaced predicates
+instants   sets of times as intervals
+critical   the critical point
+propagate  required truth values, from the verdict down to the predicates
+necessary  intervals that every implicant contains
+witnesses  choose between several sufficient operands or times
+minimise   remove intervals while the verdict is still forced
+report     the explanation as data and text
+sentences  the sentences of an explanation
+=========  ===================================================================
 
-- If every predicate moves by less than the size of the robustness, the verdict stands.
-- If the critical value alone moves, the robustness follows it, cut to an interval that is told; the
-  verdict falls with it where 0 lies inside, and not where something else holds too (``x or y``, 3 and 2).
-  Where several places give the robustness, one is taken with which the verdict falls, if there is any (of
-  many that are equal, the first that are tried).
-- On the implicant alone the formula has its verdict when everywhere else each place of each predicate
-  speaks against it; without any one of the intervals it has not. A predicate that stands both with and
-  without a negation is two for this: for ``p or not p`` the truth of p is told, though either would do.
-- No set of fewer intervals is promised: which of several witnesses to rest on is a choice.
+Exact properties, which the tests verify by experiment:
+
+- If every predicate changes by less than the absolute robustness, the verdict does not change.
+- If only the critical value changes, the robustness follows it within the reported interval. The verdict changes
+  with it if the interval contains 0, but not if another operand holds as well (``x or y`` with 3 and 2).
+  If several places determine the robustness, one that changes the verdict is preferred, if there is any (among
+  equal ones, the first that is tried).
+- The implicant alone forces the verdict even if every predicate opposes it everywhere else; without any one of the
+  intervals it does not. A predicate that occurs both with and without negation counts as two: for ``p or not p``
+  the truth of p is reported, although either operand is sufficient.
+- The number of intervals is not guaranteed to be minimal, because the choice between several witnesses is free.
 """

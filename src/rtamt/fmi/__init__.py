@@ -1,4 +1,13 @@
-"""Monitors as Functional Mock-up Units, which simulators import: FMI 2.0 and 3.0 for co-simulation."""
+"""Export monitors as Functional Mock-up Units (FMUs) for co-simulation, FMI 2.0 and 3.0.
+
+===========  ================================================================
+module       purpose
+===========  ================================================================
+package      write the FMU: a zip archive of description, program and library
+description  write modelDescription.xml
+variables    the variables of an FMU, in the order of their value references
+===========  ================================================================
+"""
 
 from rtamt.fmi.package import export, platform
 

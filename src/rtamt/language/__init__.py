@@ -1,1 +1,28 @@
-"""Text to formula and back; knows nothing of signals."""
+"""Convert text to formulas and back; this package does not depend on signals.
+
+``operators.py`` contains the operator table, which drives the lexer, the parser, the printer, the checks, the
+compiler, the documentation and the test generators.
+
+=================  =========================================================================
+module             purpose
+=================  =========================================================================
+operators          the table: every operator of the language, once
+records            the records ``Operator`` and ``Language`` (an immutable set of operators)
+definitions        the discrete-time meaning of each operator: one pure function
+dense_definitions  the dense-time meaning of temporal operators, at one time
+formula            formulas: three immutable node types
+lexer              text to tokens
+parser             tokens to a formula, and the grammar of formulas
+grammar            rules shared by parser and printer: chaining, signs, nesting depth
+intervals          bounds of temporal operators: units, exact values, errors
+units              durations with units
+scope              names in a formula: constants, named formulas, declared variables
+specfile           specification files (``.stl``) to a document, and their grammar
+document           the content of a specification file
+requirements       ``require ID "text" severity WORD: formula``
+lint               the table of warnings
+diagnostics        syntax error messages
+printer            formula to text, RTAMT's canonical text and LaTeX
+undefined_value    the error for undefined values, shared by both back ends
+=================  =========================================================================
+"""

@@ -1,6 +1,16 @@
-"""Pictures of results: signals, robustness over time and the explanation, and formulas as trees.
+"""Plot signals, robustness and explanations, and draw formulas as trees.
 
-``scene.py`` says what there is to see, as data, which ``clock.py``, ``panels.py`` and ``lines.py`` help to
-find; it draws nothing, and the HTML report shows the same scene. ``figure.py`` and ``tree.py`` draw it with
-matplotlib, in the colours of ``style.py``.
+``scene.py`` computes the content of a plot as data, without drawing. The HTML report shows the same scene.
+
+======  ===============================================================
+module  purpose
+======  ===============================================================
+scene   the content of a plot as data
+panels  which signals share a panel
+lines   points of lines, and intervals in which a formula does not hold
+clock   times as positions on an axis
+figure  draw a scene with matplotlib
+tree    draw a formula as a tree
+style   colours and markers
+======  ===============================================================
 """

@@ -1,1 +1,26 @@
-"""Whatever holds a recording to a trace: ``reading.py`` is the face, ``formats.py`` THE LIST of file formats."""
+"""Read recordings from files, databases and objects in memory into a ``Trace``.
+
+==========  ===============================================
+module      purpose
+==========  ===============================================
+read        ``rtamt.read`` and ``rtamt.scan``
+formats     the list of file formats
+source      the interface that every reader implements
+assemble    a source to a trace: columns, names, time base
+timestamps  the time column, its unit and its values
+dates       dates as text or objects to numpy dates
+gaps        missing samples: skipped or held
+rows        rows of Python objects to columns
+frames      pandas, polars, xarray, arrow and numpy objects
+csv         CSV files
+csv_cells   text columns of CSV files to numbers and dates
+csv_source  CSV files as a source
+arrow       Parquet and Arrow files and tables
+excel       Excel workbooks
+sql         databases
+ulog        PX4 flight logs
+mdf         ASAM MDF files
+rosbag      ROS bags
+mcap        recovery of damaged MCAP files
+==========  ===============================================
+"""

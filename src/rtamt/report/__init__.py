@@ -1,7 +1,13 @@
-"""One HTML file about requirements and recordings that needs nothing else: no network, no server.
+"""Write a self-contained HTML report about requirements and recordings.
 
-``page.py`` writes the text, which can be read without scripts; ``data.py`` what ``report.js`` draws into it,
-in the colours of ``report.css``.
+The report needs no network and no server. ``report.js`` and ``report.css`` are embedded in the page.
+
+======  ==============================================
+module  purpose
+======  ==============================================
+page    the text of the page, readable without scripts
+data    a scene as compact JSON for ``report.js``
+======  ==============================================
 """
 
 from rtamt.report.page import Card, Row, page

@@ -1,1 +1,12 @@
-"""Formula to formula: pure functions."""
+"""Rewrite formulas with pure functions from formula to formula.
+
+=========  ==========================================================================
+module     purpose
+=========  ==========================================================================
+check      reject formulas that cannot be evaluated: bounds, time domain, boundedness
+desugar    expand derived operators
+horizon    how far a formula looks ahead (the paper's Definition 3)
+pastify    bounded future to past (the paper's Definition 4)
+semantics  replace predicates according to a semantics; the table of semantics
+=========  ==========================================================================
+"""

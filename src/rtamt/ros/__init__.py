@@ -1,21 +1,22 @@
-"""Robots: a specification file in, live robustness topics out. Nothing in here needs ROS to be tested.
+"""Monitor specifications on ROS topics; no module needs a ROS installation.
 
-===========  ==========================================================================
-module       what it holds
-===========  ==========================================================================
-binding      from the annotations of a specification to topics, types and fields
-fields       a number in a message: ``pose.position.x``, ``ranges[3]``; its time stamp
-monitor      messages and ticks in; robustness, verdicts and conditions out
-report       what is wrong, in the words of ROS's diagnostics
-outbox       what comes out, as messages
-messages     the definitions of our own messages
-bags         which column of a bag a variable is; a bag written anew with what was found
-dds          ROS 2 on Cyclone DDS alone
-options      the arguments that every node takes
-===========  ==========================================================================
+The nodes are thin: they pass messages to :class:`~rtamt.ros.monitor.RosMonitor` and publish its output. They are
+part of the ROS packages, in the directory ``ros/``.
 
-The nodes are thin: they carry messages to :class:`~rtamt.ros.monitor.RosMonitor` and publish what comes
-out. They live with the ROS packages, in the directory ``ros/``.
+============  ===============================================================================
+module        purpose
+============  ===============================================================================
+binding       annotations of a specification to topics, types and fields
+fields        read a number from a message: ``pose.position.x``, ``ranges[3]``; its timestamp
+monitor       messages and ticks to robustness, verdicts and conditions
+output_group  outputs that are monitored together
+report        conditions as ROS diagnostics
+publisher     output as messages
+messages      the definitions of ``rtamt_msgs``
+bags          columns of a bag; a copy of a bag with added results
+dds           ROS 2 nodes directly on Cyclone DDS
+options       the arguments of all nodes
+============  ===============================================================================
 """
 
 from rtamt.ros.binding import Binding, Input, MessageType, Output, bind

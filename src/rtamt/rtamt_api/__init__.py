@@ -1,23 +1,24 @@
-"""The paper's API: programs written for RTAMT run unchanged, over the engine of this library.
+"""Run programs written for RTAMT unchanged, on the engine of this library.
 
-Thin: the classes keep declarations, put the text together, and hand everything else to
+The classes keep declarations, assemble the text, and delegate everything else to
 :mod:`rtamt.language`, :mod:`rtamt.rewrite` and :mod:`rtamt.engine`.
 
-==================  =====================================================================
-module              what it holds
-==================  =====================================================================
-options             Semantics, Language, TimeInterpretation, StlIOType
-declarations        what every class shares: names, types, topics, modules, the text
-formulas            the formulas that were read: canonical text, values of sub-formulas
-online              pastification, and where the result goes
-discrete            discrete time: sampling period, the offline class
-discrete_online     the online class, and the combined one
-dense               dense time: the offline class, the online one, and the combined one
-interface_aware     the classes for IA-STL: the same with another semantics
-backends            the compiled core, or the definition where it is not built
-associativity       the warning for chains that RTAMT read differently
-failures            every error leaves as an RTAMTException
-==================  =====================================================================
+===============  ====================================================================
+module           purpose
+===============  ====================================================================
+options          Semantics, Language, TimeInterpretation, StlIOType
+declarations     shared by every class: names, types, topics, modules, the text
+formulas         the parsed formulas: canonical text, values of sub-formulas
+online           pastification and the result, shared by the online classes
+discrete         discrete time: sampling period, the offline class
+discrete_online  the online class, and the combined one
+dense            dense time: the offline, online and combined classes
+interface_aware  the classes for IA-STL: the same with another semantics
+explained        explanations, shared by the offline classes
+backends         select the compiled core, or the definition if the core is not built
+associativity    the warning for chains that RTAMT parses differently
+failures         convert every error to an RTAMTException
+===============  ====================================================================
 """
 
 from rtamt.rtamt_api.dense import (

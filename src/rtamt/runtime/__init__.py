@@ -1,4 +1,4 @@
-"""The runtime that leaves with a program: a shared library with a C API, and its header."""
+"""Locate the shared library and the header of the C API, which run compiled programs without Python."""
 
 from __future__ import annotations
 

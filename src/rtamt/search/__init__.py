@@ -1,4 +1,4 @@
-"""The search for violations: a plant is simulated again and again, its robustness made small.
+"""Search for violations: simulate a plant repeatedly and minimise the robustness of its requirement.
 
 >>> import rtamt
 >>> from rtamt.search import Problem, Range, falsify
@@ -8,6 +8,22 @@
 >>> problem = Problem(rtamt.parse("always(height <= 6)"), throw, {"speed": Range(1, 12)})
 >>> print(falsify(problem, optimizer="random", seed=1).falsified)
 True
+
+===============  ========================================================
+module           purpose
+===============  ========================================================
+problem          the requirement, the plant, and the inputs that vary
+inputs           ranges, and input signals built from them
+falsify          falsification
+sensitivity      sensitivity analysis
+optimizers       optimizers of scipy, cma and optuna behind one interface
+executor         run simulations in batches, in one or several processes
+robust_interval  stop a simulation when its verdict is final
+log              record evaluations as JSON lines; resume a search
+config           problem files (TOML)
+fmu              an FMU as the plant
+plot             plots of a search
+===============  ========================================================
 """
 
 from rtamt.search.falsify import Falsification, falsify

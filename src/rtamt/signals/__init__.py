@@ -1,1 +1,18 @@
-"""Traces per time domain: what the caller has, as float64 arrays, ticks and timestamps."""
+"""Convert the caller's data to float64 arrays, integer ticks and timestamps, and represent traces.
+
+============  =================================================================
+module        purpose
+============  =================================================================
+discrete      discrete-time traces: one value of every variable per sample
+dense         dense-time traces: timestamps per signal, counted in ticks
+signal        ``Signal``: the result of evaluations and monitors
+trace         ``Trace``: named signals, each with its own time base; resampling
+arrays        data (lists, arrays, frames, objects) to float64 arrays
+dense_arrays  dense-time data to int64 ticks and float64 values
+regular       infer the sampling period; check order and distance of timestamps
+ticks         times to int64 ticks and back
+counting      exact conversion of numbers to ticks, rounded once
+datetimes     dates and durations of Python, numpy and pandas as integers
+stamps        recognise the time column and its unit by name
+============  =================================================================
+"""

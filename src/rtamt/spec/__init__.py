@@ -1,1 +1,1 @@
-"""RTAMT's module paths, for programs that import its classes from where they used to live."""
+"""Provide RTAMT's module paths for programs that import its classes from there."""

@@ -1,10 +1,19 @@
-"""For those who extend the language: one call that holds an operator to the generic laws.
+"""Test custom operators against the laws that every operator obeys.
 
-Needs hypothesis, which ``pip install "rtamt[testing]"`` brings.
+This package needs hypothesis: ``pip install "rtamt[testing]"``.
 
 >>> from rtamt.extend import STL
 >>> from rtamt.testing import check_operator
 >>> check_operator(STL["since"], examples=5)
+
+==========  =======================================================
+module      purpose
+==========  =======================================================
+laws        ``check_operator``, and the laws of discrete time
+dense_laws  the laws of dense time
+case        the operator under test, and the report of a broken law
+strategies  random formulas, traces and chunkings
+==========  =======================================================
 """
 
 from __future__ import annotations

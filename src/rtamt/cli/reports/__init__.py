@@ -1,4 +1,4 @@
-"""Reports of a check that other programs, and people, read: a module for each kind."""
+"""Write the results of a check as JUnit, SARIF or HTML, one module per format."""
 
 from __future__ import annotations
 
