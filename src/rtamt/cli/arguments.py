@@ -10,8 +10,10 @@ from typing import TYPE_CHECKING
 from rtamt.cli.command import CommandError, read_specification
 from rtamt.cli.reading_options import reading_of
 from rtamt.cli.runner import Requirement, evaluate
+from rtamt.readers.sql import shown
 
 if TYPE_CHECKING:
+    from rtamt.cli.reading_options import Reading
     from rtamt.language.document import Requirement as Written
     from rtamt.results import Result
     from rtamt.specification import Specification
@@ -78,13 +80,32 @@ def _split(args: Namespace, command: str) -> tuple[list[str], list[str]]:
 
 def result_of_one(args: Namespace, command: str) -> tuple[str, Result]:
     """Evaluate one specification over one recording; return what the recording is called, and the result."""
+    requirement, trace, reading = _one(args, command)
+    ((_, result),) = _results([replace(requirement, rows=())], trace, reading).items()
+    return shown(trace), result
+
+
+def results_of_one(args: Namespace, command: str) -> tuple[str, dict[str, Result]]:
+    """Evaluate one specification over one recording; return its name, and the result of each requirement."""
+    requirement, trace, reading = _one(args, command)
+    return shown(trace), _results([requirement], trace, reading)
+
+
+def _one(args: Namespace, command: str) -> tuple[Requirement, str, Reading]:
     requirements, traces = requirements_and_traces(args, command)
     if len(requirements) > 1 or len(traces) > 1:
         more = traces[1] if len(traces) > 1 else requirements[1].given
         raise CommandError(f"'rtamt {command}' takes one specification and one trace; leave out '{more}'")
     (requirement,), (trace,) = requirements, traces
-    reading = reading_of(args, requirement.spec.input_names, whole=True)
-    (outcome,) = evaluate([replace(requirement, rows=())], trace, reading)
-    if outcome.result is None:
-        raise CommandError(outcome.error)
-    return outcome.trace, outcome.result
+    return requirement, trace, reading_of(args, requirement.spec.input_names, whole=True)
+
+
+def _results(requirements: list[Requirement], trace: str, reading: Reading) -> dict[str, Result]:
+    found = {}
+    for row, outcome in zip(
+        each_requirement(requirements), evaluate(requirements, trace, reading), strict=True
+    ):
+        if outcome.result is None:
+            raise CommandError(outcome.error)
+        found[row.written.name] = outcome.result
+    return found

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rtamt.cli.arguments import result_of_one
+from rtamt.cli.arguments import results_of_one
 from rtamt.cli.command import (
     OK,
     VIOLATED,
@@ -61,10 +61,9 @@ def run(args: argparse.Namespace) -> int:
     """Evaluate the trace and explain what comes of it."""
     with Progress() as progress:
         progress.show("evaluating")
-        trace, result = result_of_one(args, "explain")
+        trace, results = results_of_one(args, "explain")
         try:
-            at = instant(args.at, result)
-            explanations = {name: part.explain(at) for name, part in result.requirements.items()}
+            explanations = {name: part.explain(instant(args.at, part)) for name, part in results.items()}
         except StlError as error:
             raise CommandError(f"{trace}: {error}") from error
     alone = len(explanations) == 1

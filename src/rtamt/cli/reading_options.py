@@ -158,7 +158,7 @@ def choice_for(specs: Sequence[Specification], trace: str, reading: Reading) -> 
     """Return which columns of a recording some requirements read, and how."""
     columns = dict.fromkeys(name for spec in specs for name in spec.input_names)
     # In discrete time a gap is an error, unless each signal has a clock of its own, or is resampled.
-    gaps = specs[0].time == "dense" or is_bag(trace) or reading.resample is not None
+    gaps = has_own_clocks(specs[0], trace, reading)
     names = dict(reading.names)
     if is_bag(trace):
         for spec in specs:
@@ -167,6 +167,11 @@ def choice_for(specs: Sequence[Specification], trace: str, reading: Reading) -> 
     return replace(
         choice(reading.time, columns or None, names, None, skipped, reading.hold_for, reading.unit), gaps=gaps
     )
+
+
+def has_own_clocks(spec: Specification, trace: str, reading: Reading) -> bool:
+    """Tell whether each signal has a clock of its own, so that signals may begin at different times."""
+    return spec.time == "dense" or is_bag(trace) or reading.resample is not None
 
 
 def on_clock(data: Trace, spec: Specification, trace: str, reading: Reading) -> Trace:

@@ -14,10 +14,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rtamt.cli.command import NO_STAMPS, stamp_text
-from rtamt.cli.reading_options import choice_for, how_to_mend, on_clock, read_for
+from rtamt.cli.reading_options import choice_for, has_own_clocks, how_to_mend, on_clock, read_for
 from rtamt.errors import BoundError, StlError, TraceError
 from rtamt.readers.assemble import chunks_of
-from rtamt.readers.formats import is_bag
 from rtamt.readers.read import opened
 from rtamt.readers.sql import is_url, shown
 from rtamt.signals.discrete import DiscreteTrace
@@ -139,6 +138,8 @@ def _is_large(trace: str, reading: Reading) -> bool:
 
 def _in_chunks(requirement: Requirement, trace: str, reading: Reading) -> list[Outcome]:
     """Check in chunks if format and formula allow it, else read the recording whole."""
+    if requirement.rows and has_own_clocks(requirement.spec, trace, reading):
+        return [o for row in requirement.rows for o in _in_chunks(row, trace, reading)]
     begin = time.perf_counter()
     chunks: _Chunks | None = None
     found: StreamResult | None = None
@@ -180,10 +181,10 @@ def _in_chunks(requirement: Requirement, trace: str, reading: Reading) -> list[O
 def _check(requirement: Requirement, trace: str, data: Trace | None, reading: Reading) -> list[Outcome]:
     """Check over a recording that is in memory, or read what the requirement needs of it.
 
-    Several requirements share one evaluation; where there is none, each is checked alone, and over a bag, where
-    each has topics of its own, as a node has it.
+    Several requirements share one evaluation; where there is none, each is checked alone, and so it is where signals
+    may begin at different times: a signal that begins late hides nothing from requirements that do not read it.
     """
-    if requirement.rows and is_bag(trace):
+    if requirement.rows and has_own_clocks(requirement.spec, trace, reading):
         return [o for row in requirement.rows for o in _check(row, trace, data, reading)]
     begin = time.perf_counter()
     spec, whole = requirement.spec, data

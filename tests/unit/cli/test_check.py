@@ -398,3 +398,21 @@ def test_each_requirement_is_explained(run, write):
     ]
     assert [row["requirement"] for row in rows] == ["REQ-7", "REQ-8"]
     assert (answer.code, run("report", "braking.stl", "drive.csv", "-o", "page.html").code) == (1, 1)
+
+
+@pytest.mark.parametrize("large", [False, True])
+@pytest.mark.parametrize("clock", [["--time", "dense"], ["--resample", "1s"]])
+def test_a_violation_was_hidden_by_a_variable_of_another_requirement_that_begins_late(
+    run, write, monkeypatch, clock, large
+):
+    if large:
+        monkeypatch.setattr("rtamt.cli.runner.LARGE", 0)
+    spec = write("two.stl", "require A: always(x > 0)\nrequire B: always(y > 0)\n")
+    trace = write("late.csv", "time,x,y\n0,-5,\n1,5,\n2,5,1\n3,5,1\n")
+    code, out, _ = run("check", spec, trace, "--json", *clock)
+    rows = [json.loads(line) for line in out.splitlines()]
+    assert code == 1
+    assert [(row["requirement"], row["robustness"]) for row in rows] == [("A", -5.0), ("B", 1.0)]
+    code, out, _ = run("explain", spec, trace, "--json", *clock)
+    assert code == 1
+    assert [json.loads(line)["time"] for line in out.splitlines()] == [0.0, 2.0]
