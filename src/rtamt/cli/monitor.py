@@ -30,6 +30,7 @@ from rtamt.cli.terminal import printed, say
 from rtamt.errors import StlError, TraceError
 from rtamt.signals.regular import TOLERANCE
 from rtamt.signals.signal import Signal
+from rtamt.signals.trace import in_seconds
 
 if TYPE_CHECKING:
     import argparse
@@ -59,8 +60,8 @@ the variables, a cell of CSV may be empty, and a line of output is printed for e
 last known instant.
 
 output: {"time": 0.0, "robustness": 3.0}; of several requirements also the robustness of each, by name:
-{"time": 0.0, "robustness": 3.0, "requirements": {"R1": 3.0, "R2": 4.5}}. The time is seconds, or in dense
-time a date where the input has dates. JSON has no infinities: they are the strings "inf" and "-inf", here
+{"time": 0.0, "robustness": 3.0, "requirements": {"R1": 3.0, "R2": 4.5}}. The time is seconds, or a
+date where the input has dates. JSON has no infinities: they are the strings "inf" and "-inf", here
 and in the input. With --semantics boolean a line has the verdict too: {"time": 0.0, "robustness": "inf",
 "satisfied": true}.
 
@@ -194,13 +195,17 @@ class Watched:
         self._period = float(monitor.period)
         self._assumed = assumed
         self._last: float | None = None
-        self._stamps: deque[float] = deque()
+        self._stamps: deque[Any] = deque()
 
-    def take(self, time: float | None, values: dict[str, float], line: int) -> str:
-        """Take a sample and print what became known; return what is wrong with the sample, if anything is."""
-        if time is None:
-            time = self.monitor.samples * self._period
-        elif self._assumed and self._last is not None and self._differs(time - self._last):
+    def take(self, stamp: Any, values: dict[str, float], line: int) -> str:
+        """Take a sample and print what became known; return what is wrong with the sample, if anything is.
+
+        ``stamp``: seconds, or a date or duration of numpy, which is printed with all its digits.
+        """
+        if stamp is None:
+            stamp = self.monitor.samples * self._period
+        time = stamp if isinstance(stamp, float) else float(in_seconds(np.array([stamp]))[0])
+        if self._assumed and self._last is not None and self._differs(time - self._last):
             return (
                 f"{STDIN}, line {line}: sample {self.monitor.samples} at {time:.15g} s is {time - self._last:g} s "
                 f"after the one before, expected {self._period:g} s: give the right period with --period, "
@@ -211,7 +216,7 @@ class Watched:
         except StlError as error:
             return f"{STDIN}, line {line}: {error}"
         self._last = time
-        self._stamps.append(time)
+        self._stamps.append(stamp)
         for name, known in self._parts.items():
             value = self.monitor[name]
             if isinstance(value, float):
@@ -231,10 +236,10 @@ class Watched:
             signal = self.monitor[name]
             assert isinstance(signal, Signal)
             known.extend(signal.values.tolist())
-        for time, robustness in zip(rest.times, rest.values.tolist(), strict=True):
-            self._point(time, robustness)
+        for stamp, robustness in zip(self._stamps, rest.values.tolist(), strict=True):
+            self._point(stamp, robustness)
 
-    def _point(self, time: float, robustness: float) -> None:
+    def _point(self, time: Any, robustness: float) -> None:
         self._output.point(time, robustness, {name: known.popleft() for name, known in self._parts.items()})
 
 

@@ -143,10 +143,9 @@ class _Stamps:
                 self._cells = Cells(Header(STDIN, (column,), ",", 0), column)
             self._cells.extend([stamp], [number])
             times = self.clock.times(self._cells.take(), self._samples)
-            seconds = float(in_seconds(times)[0])
-            time = times[0] if self._dense and times.dtype.kind != "f" else seconds
+            time = times[0] if times.dtype.kind != "f" else float(times[0])
             if TIME in self._names:  # a formula may read the time
-                values[TIME] = seconds
+                values[TIME] = float(in_seconds(times)[0])
         self._samples += 1
         return time, values
 

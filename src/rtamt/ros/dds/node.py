@@ -7,6 +7,7 @@ import sys
 import time
 from typing import TYPE_CHECKING, Any
 
+from rtamt.errors import escaped
 from rtamt.ros.dds.participant import LEAST
 from rtamt.ros.publisher import DIAGNOSTICS, Publisher, diagnostic
 
@@ -90,7 +91,7 @@ class Node:
     def _tell(self, now: int) -> None:
         notices = self._monitor.notices()
         for notice in notices:
-            print(f"[{notice.level.name}] {notice.message}", file=sys.stderr, flush=True)
+            print(escaped(f"[{notice.level.name}] {notice.message}"), file=sys.stderr, flush=True)
         if notices or time.monotonic() >= self._due:
             self._due = time.monotonic() + _DIAGNOSTICS_EVERY
             self._tell_refused()
@@ -100,9 +101,8 @@ class Node:
 
     def _tell_refused(self) -> None:
         for topic, quality in self._participant.refused():
-            print(
+            sentence = (
                 f"[WARN] a publisher on {topic} is not heard, for its {quality} is less than is asked for: "
-                f"--{quality} {LEAST[quality]} hears it",
-                file=sys.stderr,
-                flush=True,
+                f"--{quality} {LEAST[quality]} hears it"
             )
+            print(escaped(sentence), file=sys.stderr, flush=True)
