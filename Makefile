@@ -66,7 +66,7 @@ pictures: $(VENV)/.core $(VENV)/.extras ## draw docs/images anew
 paper: $(VENV)/.core $(VENV)/.extras peers ## the paper's listings, tables and figures, run again beside its claims: build/paper
 	$(RUN) examples/paper/reproduce.py
 
-bench: $(VENV)/.core $(VENV)/.extras $(VENV)/.group-build peers ## every tool timed beside the others, some ten minutes: benchmarks/RESULTS.md and plots
+bench: $(VENV)/.core $(VENV)/.extras $(VENV)/.group-build peers ## every tool timed beside the others, five rounds: benchmarks/RESULTS.md and plots
 	$(WITH_VENV) cmake -S . -B build/bench -G Ninja -DCMAKE_BUILD_TYPE=Release -DRTAMT_BUILD_BENCH=ON -DRTAMT_BUILD_TESTS=OFF
 	$(WITH_VENV) cmake --build build/bench --target fused_bench
 	$(RUN) benchmarks/run.py
@@ -85,8 +85,9 @@ peers: $(VENV)/.made ## install the tools that we are compared with, each into a
 conformance: $(VENV)/.core peers ## ask every peer the conformance corpus: conformance/RESULTS.md
 	$(RUN) conformance/table.py
 
-soak: $(VENV)/.core ## watch 10^8 samples and hours of dense stamps: memory flat, every value that of offline
+soak: $(VENV)/.core $(VENV)/.group-test ## watch 10^8 samples and hours of dense stamps, then ten times as many examples of every law
 	$(RUN) benchmarks/soak.py
+	$(RUN) -m pytest tests/laws --hypothesis-profile=soak --timeout=0
 
 FUZZ_SECONDS ?= 60
 fuzz: $(VENV)/.core $(VENV)/.group-test $(VENV)/.group-build ## look for input that breaks the core, the parser or the readers: FUZZ_SECONDS, then some minutes

@@ -3,9 +3,12 @@
 //     fused_bench [samples] [rounds]
 //
 // Prints a line of JSON a formula: medians, in nanoseconds a sample, of both in turn. Both read the
-// same two columns and write the robustness of every sample; the values must be equal.
+// same two columns and write the robustness of every sample; the values must be equal. Both are
+// compiled for the same processor: like the engine's kernels, the loops run in the vectors that
+// vectors.hpp finds.
 #include "discrete/executor.hpp"
 #include "programs.hpp"
+#include "vectors.hpp"
 
 #include <algorithm>
 #include <cstdio>
@@ -26,10 +29,17 @@ using Column = std::vector<double>;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-[[nodiscard]] double least(double a, double b) noexcept {
+// A formula written by hand: what vectors.hpp compiles for every machine and for AVX2.
+struct Samples {
+    const double* a;
+    const double* b;
+    std::size_t n;
+};
+
+[[nodiscard]] RTAMT_INLINE double least(double a, double b) noexcept {
     return a < b ? a : b;
 }
-[[nodiscard]] double most(double a, double b) noexcept {
+[[nodiscard]] RTAMT_INLINE double most(double a, double b) noexcept {
     return a > b ? a : b;
 }
 
@@ -47,10 +57,12 @@ Program both() {
     return builder.program();
 }
 
-void both_by_hand(const Column& a, const Column& b, Column& out) {
-    for (std::size_t i = 0; i < a.size(); ++i)
-        out[i] = least(a[i] + b[i] + 2, 3 - (a[i] - b[i]));
-}
+struct BothByHand {
+    RTAMT_INLINE static void over(Samples in, double* out) noexcept {
+        for (std::size_t i = 0; i < in.n; ++i)
+            out[i] = least(in.a[i] + in.b[i] + 2, 3 - (in.a[i] - in.b[i]));
+    }
+};
 
 // ---- always[0,100](a + b >= -2) -----------------------------------------------------------------
 
@@ -68,28 +80,30 @@ Program always() {
 
 // Van Herk's and Gil and Werman's algorithm over margins that are computed on the way: stretches of
 // the width of the window, of each the minima from its samples to its end.
-void always_by_hand(const Column& a, const Column& b, Column& out) {
-    const std::size_t n = a.size();
-    double to_end[width];
-    for (std::size_t begin = 0; begin < n; begin += width) {
-        const std::size_t count = std::min(width, n - begin);
-        double tail = infinity;
-        for (std::size_t i = count; i-- > 0;) {
-            tail = least(a[begin + i] + b[begin + i] + 2, tail);
-            to_end[i] = tail;
+struct AlwaysByHand {
+    RTAMT_INLINE static void over(Samples in, double* out) noexcept {
+        const auto [a, b, n] = in;
+        double to_end[width];
+        for (std::size_t begin = 0; begin < n; begin += width) {
+            const std::size_t count = std::min(width, n - begin);
+            double tail = infinity;
+            for (std::size_t i = count; i-- > 0;) {
+                tail = least(a[begin + i] + b[begin + i] + 2, tail);
+                to_end[i] = tail;
+            }
+            out[begin] = to_end[0];
+            const std::size_t next = begin + width;
+            const std::size_t ahead = next < n ? std::min(width - 1, n - next) : 0;
+            double head = infinity;
+            for (std::size_t i = 0; i < ahead; ++i) {
+                head = least(a[next + i] + b[next + i] + 2, head);
+                if (i + 1 < count) out[begin + i + 1] = least(to_end[i + 1], head);
+            }
+            for (std::size_t i = ahead; i + 1 < count; ++i)
+                out[begin + i + 1] = least(to_end[i + 1], head);
         }
-        out[begin] = to_end[0];
-        const std::size_t next = begin + width;
-        const std::size_t ahead = next < n ? std::min(width - 1, n - next) : 0;
-        double head = infinity;
-        for (std::size_t i = 0; i < ahead; ++i) {
-            head = least(a[next + i] + b[next + i] + 2, head);
-            if (i + 1 < count) out[begin + i + 1] = least(to_end[i + 1], head);
-        }
-        for (std::size_t i = ahead; i + 1 < count; ++i)
-            out[begin + i + 1] = least(to_end[i + 1], head);
     }
-}
+};
 
 // ---- historically[0,100](once[5,5](a >= 3) -> once[0,5](b >= 3)) --------------------------------
 
@@ -110,7 +124,8 @@ Program response() {
     return builder.program();
 }
 
-[[nodiscard]] double implied_at(const Column& a, const Column& b, std::size_t i) noexcept {
+[[nodiscard]] RTAMT_INLINE double implied_at(const double* a, const double* b,
+                                             std::size_t i) noexcept {
     if (i < delay) return infinity; // nobody asked
     double grant = b[i];
     for (std::size_t back = 1; back <= delay; ++back)
@@ -118,27 +133,29 @@ Program response() {
     return most(3 - a[i - delay], grant - 3);
 }
 
-void response_by_hand(const Column& a, const Column& b, Column& out) {
-    const std::size_t n = a.size();
-    double to_end[width]; // of the stretch before
-    std::fill_n(to_end, width, infinity);
-    double values[width];
-    for (std::size_t begin = 0; begin < n; begin += width) {
-        const std::size_t count = std::min(width, n - begin);
-        for (std::size_t i = 0; i < count; ++i)
-            values[i] = implied_at(a, b, begin + i);
-        double head = infinity;
-        for (std::size_t i = 0; i < count; ++i) {
-            head = least(values[i], head);
-            out[begin + i] = i + 1 < width ? least(to_end[i + 1], head) : head;
-        }
-        double tail = infinity;
-        for (std::size_t i = count; i-- > 0;) {
-            tail = least(values[i], tail);
-            to_end[i] = tail;
+struct ResponseByHand {
+    RTAMT_INLINE static void over(Samples in, double* out) noexcept {
+        const auto [a, b, n] = in;
+        double to_end[width]; // of the stretch before
+        std::fill_n(to_end, width, infinity);
+        double values[width];
+        for (std::size_t begin = 0; begin < n; begin += width) {
+            const std::size_t count = std::min(width, n - begin);
+            for (std::size_t i = 0; i < count; ++i)
+                values[i] = implied_at(a, b, begin + i);
+            double head = infinity;
+            for (std::size_t i = 0; i < count; ++i) {
+                head = least(values[i], head);
+                out[begin + i] = i + 1 < width ? least(to_end[i + 1], head) : head;
+            }
+            double tail = infinity;
+            for (std::size_t i = count; i-- > 0;) {
+                tail = least(values[i], tail);
+                to_end[i] = tail;
+            }
         }
     }
-}
+};
 
 // ---- both in turn -------------------------------------------------------------------------------
 
@@ -161,9 +178,9 @@ template <class Work>
     return figures[figures.size() / 2];
 }
 
-template <class Hand>
+template <class ByHand>
 bool compare(const char* name, const Program& program, const Column& a, const Column& b,
-             std::size_t rounds, Hand&& by_hand) {
+             std::size_t rounds) {
     const std::vector<const double*> columns{a.data(), b.data()};
     Column ours(a.size());
     Column theirs(a.size());
@@ -175,7 +192,9 @@ bool compare(const char* name, const Program& program, const Column& a, const Co
         const double first = spent(a.size(), [&] {
             if (Executor::evaluate(program, columns, a.size(), outputs)) std::abort();
         });
-        const double second = spent(a.size(), [&] { by_hand(a, b, theirs); });
+        const Samples in{a.data(), b.data(), a.size()};
+        const double second =
+            spent(a.size(), [&] { rtamt::vectorised<ByHand>(in.n, in, theirs.data()); });
         if (round == 0) continue; // memory is touched for the first time
         engine.push_back(first);
         hand.push_back(second);
@@ -203,10 +222,10 @@ int main(int argc, const char* const* argv) {
         a[i] = normal(engine);
         b[i] = normal(engine);
     }
-    bool equal = compare("a + b >= -2 and a - b <= 3", both(), a, b, rounds, both_by_hand);
-    equal = compare("always[0:100](a + b >= -2)", always(), a, b, rounds, always_by_hand) && equal;
-    equal = compare("historically[0:100](once[5:5](a >= 3) -> once[0:5](b >= 3))", response(), a, b,
-                    rounds, response_by_hand) &&
+    bool equal = compare<BothByHand>("a + b >= -2 and a - b <= 3", both(), a, b, rounds);
+    equal = compare<AlwaysByHand>("always[0:100](a + b >= -2)", always(), a, b, rounds) && equal;
+    equal = compare<ResponseByHand>("historically[0:100](once[5:5](a >= 3) -> once[0:5](b >= 3))",
+                                    response(), a, b, rounds) &&
             equal;
     return equal ? 0 : 1;
 }

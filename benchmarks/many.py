@@ -26,7 +26,7 @@ import rtamt
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-ROUNDS = 3
+ROUNDS = 5
 
 
 def peak() -> float:

@@ -66,9 +66,10 @@ Every tool runs in a process of its own, in an environment of its own. What is m
 of that process, and the time on the clock only at start-up and for threads; a shared cache still shows, and
 ratios tell more than times. In brackets stands how many times as long as ours a tool takes, the median of the
 rounds' ratios. Formulas are parsed and samples brought into the form that a tool takes (lists, dicts; for ours
-offline numpy arrays) before the clock runs. `this` online is `monitor.update(t, a=x)`, `this (step)` the positional
-`monitor.step(x)`, which hot loops call. Online, windows are full first. Every answer is the whole signal of
-robustness.
+offline numpy arrays) before the clock runs. Under "parsing" stands the time of the tool's own reader, from a text
+in its language to what is ready to run. The bytecode of all that a tool imports is written before it starts. `this`
+online is `monitor.update(t, a=x)`, `this (step)` the positional `monitor.step(x)`, which hot loops call. Online,
+windows are full first. Every answer is the whole signal of robustness.
 
 {tools}
 

@@ -54,11 +54,17 @@ def answer(formula, time, mode, signals, end):  # noqa: ARG001 - the whole trace
     return {"values": values, "until": values[-1][0] if values else 0}
 
 
-def prepare(formula, time, mode, signals):
-    """Take a value a variable and instant; samples one second apart stand for discrete time."""
+def reading(formula, time, mode, names):  # noqa: ARG001 - it declares none
+    """Parse, and make the monitor."""
     if mode != "online":
         raise UnsupportedError(mode)
-    monitor = mstlo.Monitor(mstlo.parse_formula(Dsl(TABLE).write(formula)), semantics="DelayedQuantitative")
+    text = Dsl(TABLE).write(formula)
+    return lambda: mstlo.Monitor(mstlo.parse_formula(text), semantics="DelayedQuantitative")
+
+
+def prepare(formula, time, mode, signals):
+    """Take a value a variable and instant; samples one second apart stand for discrete time."""
+    monitor = reading(formula, time, mode, list(signals))()
     if time == "discrete":
         signals = {name: list(enumerate(column)) for name, column in signals.items()}
     rows = [
@@ -85,4 +91,5 @@ serve(
     },
     answer,
     prepare,
+    reading,
 )

@@ -72,6 +72,14 @@ def answer(formula, time, mode, signals, end):
     return {"points": [[t, phi(data, time=t, quantitative=True)] for t in range(end)]}
 
 
+def reading(formula, time, mode, names):  # noqa: ARG001 - it declares none
+    """Parse: what comes out is the monitor."""
+    if mode != "offline":
+        raise UnsupportedError(mode)
+    text = Ltl().write(formula)
+    return lambda: mtl.parse(text)
+
+
 def prepare(formula, time, mode, signals):
     """Ask for the whole signal of values."""
     if mode != "offline":
@@ -96,4 +104,5 @@ serve(
     },
     answer,
     prepare,
+    reading,
 )

@@ -68,17 +68,23 @@ def answer(formula, time, mode, signals, end):  # noqa: ARG001 - the whole trace
     return {"values": told, "until": times[-1]}
 
 
-def prepare(formula, time, mode, signals):
-    """Take a dict a sample; in dense time one whose "time" is later."""
+def reading(formula, time, mode, names):  # noqa: ARG001 - it declares none
+    """Make one of its two monitors of a pattern."""
     if mode != "online":
         raise UnsupportedError(mode)
     pattern = Rye(TABLE).write(formula)
-    names = list(signals)
     if time == "discrete":
-        monitor = discrete_timed_monitor(pattern=pattern, semantics="robustness", condense=False)
+        return lambda: discrete_timed_monitor(pattern=pattern, semantics="robustness", condense=False)
+    return lambda: dense_timed_monitor(pattern=pattern, semantics="robustness")
+
+
+def prepare(formula, time, mode, signals):
+    """Take a dict a sample; in dense time one whose "time" is later."""
+    names = list(signals)
+    monitor = reading(formula, time, mode, names)()
+    if time == "discrete":
         rows = [dict(zip(names, row)) for row in zip(*signals.values())]  # noqa: B905
     else:
-        monitor = dense_timed_monitor(pattern=pattern, semantics="robustness")
         rows = [
             {"time": row[0][0], **{name: v for name, (_, v) in zip(names, row)}}  # noqa: B905
             for row in zip(*signals.values())  # noqa: B905
@@ -102,4 +108,5 @@ serve(
     },
     answer,
     prepare,
+    reading,
 )

@@ -80,9 +80,8 @@ def answer(formula, time, mode, signals, end):  # noqa: ARG001 - the whole trace
     return {"values": [[t - late, v] for t, v in told], "until": told[-1][0] - late if told else 0}
 
 
-@lru_cache(maxsize=1)
-def parsed(text, names, time, mode, pastified):
-    """Parse once what is evaluated again and again; a monitor is made anew."""
+def made(text, names, time, mode, pastified):
+    """Parse a text with its classes, and pastify it where it is to run online."""
     spec = CLASSES[time, mode]()
     for name in names:
         spec.declare_var(name, "float")
@@ -91,6 +90,21 @@ def parsed(text, names, time, mode, pastified):
     if pastified:
         spec.pastify()
     return spec
+
+
+@lru_cache(maxsize=1)
+def parsed(*text_and_settings):
+    """Parse once what is evaluated again and again; a monitor is made anew."""
+    return made(*text_and_settings)
+
+
+def reading(formula, time, mode, names):
+    """Declare the variables, parse and pastify."""
+    text = Writer(TABLE, number).write(formula)
+    if mode == "online":
+        horizon(formula)
+    pastified = mode == "online" and bool(operators(formula) & FUTURE)
+    return lambda: made(text, names, time, mode, pastified)
 
 
 def prepare(formula, time, mode, signals):
@@ -137,4 +151,5 @@ serve(
     },
     answer,
     prepare,
+    reading,
 )

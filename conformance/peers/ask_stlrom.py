@@ -75,18 +75,29 @@ def answer(formula, time, mode, signals, end):
     return {"points": [[t, monitor.eval_rob(float(t))] for t in range(end)]}
 
 
-def prepare(formula, time, mode, signals):
-    """Offline ask for the whole signal; online add a sample, then ask one horizon back."""
+def reading(formula, time, mode, names):  # noqa: ARG001 - it has one mode
+    """Let a driver parse the text; it is returned with the name of the formula."""
     if Stl.is_number(formula):
         raise UnsupportedError("a number as a formula")
-    if time == "discrete":
-        signals = {name: list(enumerate(column)) for name, column in signals.items()}
-    driver = stlrom.STLDriver()
     language = Stl()
     name = language.write(formula)
-    if not driver.parse_string("\n".join([f"signal {', '.join(signals)}", *language.lines, ""])):
-        raise ValueError("its parser refuses the formula")
-    driver.set_interpol("PREVIOUS")
+    text = "\n".join([f"signal {', '.join(names)}", *language.lines, ""])
+
+    def read():
+        driver = stlrom.STLDriver()
+        if not driver.parse_string(text):
+            raise ValueError("its parser refuses the formula")
+        driver.set_interpol("PREVIOUS")
+        return driver, name
+
+    return read
+
+
+def prepare(formula, time, mode, signals):
+    """Offline ask for the whole signal; online add a sample, then ask one horizon back."""
+    if time == "discrete":
+        signals = {name: list(enumerate(column)) for name, column in signals.items()}
+    driver, name = reading(formula, time, mode, list(signals))()
     rows = [[float(row[0][0]), *(v for _, v in row)] for row in zip(*signals.values())]  # noqa: B905
     if mode == "offline":
 
@@ -119,4 +130,5 @@ serve(
     },
     answer,
     prepare,
+    reading,
 )

@@ -10,6 +10,7 @@ import rtamt
 from rtamt.language.operators import STL
 from rtamt.language.records import Fixity
 
+BACKEND = os.environ.get("RTAMT_BENCH_BACKEND", "cpp")
 MODES = [["discrete", "offline"], ["discrete", "online"], ["dense", "offline"], ["dense", "online"]]
 
 
@@ -60,10 +61,21 @@ def answer(formula, time, mode, signals, end):  # noqa: ARG001 - the whole trace
     return {"values": told, "until": told[-1][0] if told else 0}
 
 
+def reading(formula, time, mode, names):  # noqa: ARG001 - it declares none
+    """Parse the text; online make the monitor, too."""
+    text = TEXT.write(formula)
+
+    def read():
+        spec = rtamt.parse(text, time=time, backend=BACKEND)
+        return spec if mode == "offline" else spec.monitor()
+
+    return read
+
+
 @lru_cache(maxsize=1)
 def parsed(text, time):
     """Parse once what is evaluated again and again."""
-    return rtamt.parse(text, time=time, backend=os.environ.get("RTAMT_BENCH_BACKEND", "cpp"))
+    return rtamt.parse(text, time=time, backend=BACKEND)
 
 
 def stepping(spec, signals):
@@ -117,4 +129,5 @@ serve(
     {"peer": f"rtamt {rtamt.__version__} (this)", "modes": MODES, "conventions": {}, "notes": "everything"},
     answer,
     prepare,
+    reading,
 )

@@ -74,11 +74,11 @@ def horizon(node):
     return below + bounds[1]
 
 
-def serve(declaration, answer, prepare=None):
+def serve(declaration, answer, prepare=None, reading=None):
     """Answer questions until there are no more; ``declaration`` comes first.
 
-    ``prepare(formula, time, mode, signals)`` returns a function that does the work that is to be timed
-    (see ``timing.py``). What a peer prints itself goes to standard error.
+    ``prepare(formula, time, mode, signals)`` and ``reading(formula, time, mode, names)`` return a function
+    that does the work that is to be timed (see ``timing.py``). What a peer prints itself goes to standard error.
     """
     lines = os.fdopen(os.dup(1), "w", encoding="utf-8")
     os.dup2(2, 1)
@@ -92,9 +92,9 @@ def serve(declaration, answer, prepare=None):
         question = json.loads(line)
         try:
             if "workload" in question:
-                if prepare is None:
+                if prepare is None or reading is None:
                     raise UnsupportedError("timing")
-                said = timing.measure(prepare, **question)
+                said = timing.measure(prepare, reading, **question)
             else:
                 said = answer(**question)
         except UnsupportedError as reason:

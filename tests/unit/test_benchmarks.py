@@ -81,3 +81,19 @@ def test_a_tool_that_is_asked_how_long_it_takes_answers_in_seconds_a_sample():
     )
     _, answer = map(json.loads, said.stdout.splitlines())
     assert 0 < answer["seconds"] < 1
+
+
+def test_the_reader_of_a_tool_is_timed_without_the_adapter(monkeypatch):
+    import timing
+
+    now = iter(range(1000))
+    monkeypatch.setattr(timing, "process_time", lambda: next(now))
+    done = []
+
+    def reading(formula, time, mode, names):
+        done.append(("written", formula, time, mode, names))
+        return lambda: done.append("read")
+
+    answer = timing.measure(None, reading, {"var": "a"}, "dense", "online", {"kind": "parse"})
+    assert done == [("written", {"var": "a"}, "dense", "online", ["a"])] + ["read"] * 5
+    assert answer == {"seconds": 1}
