@@ -1,14 +1,14 @@
 function install_rtamt(python)
-%INSTALL_RTAMT Build what online_monitor needs, and put it on the path.
+%INSTALL_RTAMT Build the gateway of online_monitor and add it to the path.
 %
-%   INSTALL_RTAMT uses the Python that the system calls python3 (on Windows,
-%   python), in which rtamt must be installed: 'pip install rtamt'.
-%   INSTALL_RTAMT(PYTHON) uses another one, such as '/home/me/.venv/bin/python'.
+%   INSTALL_RTAMT uses the interpreter python3 (on Windows, python), in which
+%   rtamt must be installed: 'pip install rtamt'. INSTALL_RTAMT(PYTHON) uses
+%   another interpreter, such as '/home/me/.venv/bin/python'.
 %
-%   It takes the C library out of that installation, builds the MEX gateway to it
-%   (a C compiler must be there: 'mex -setup' in MATLAB) and remembers Python,
-%   which compiles specifications that are given as text. Simulations do not use
-%   Python. Run it again after an update of rtamt or a move of this folder.
+%   It copies the C library from that installation, builds the MEX gateway to it
+%   (this needs a C compiler: 'mex -setup' in MATLAB) and stores the interpreter,
+%   which compiles specifications given as text. Simulations do not use Python.
+%   Run it again after an update of rtamt or a move of this folder.
 
     if nargin < 1
         python = default_python();
@@ -33,7 +33,7 @@ function python = default_python()
 end
 
 function [python, library, header] = locate(python)
-% The interpreter by its full name, the C library and its header.
+% Return the full path of the interpreter, the C library and its header.
     question = ['import sys, rtamt.runtime as r; ' ...
                 'print(sys.executable, r.library(), r.header(), sep=chr(10))'];
     [status, said] = run_python(python, ['-c "' question '"']);
@@ -48,12 +48,12 @@ function [python, library, header] = locate(python)
 end
 
 function build(folder, library, header)
-% The library goes beside the gateway, which is linked to it by its full name.
+% Copy the library next to the gateway, which links to it by its full path.
     clear rtamt_gateway;
     [~, name, ending] = fileparts(library);
     copied = fullfile(folder, [name ending]);
     if isfile(copied)
-        delete(copied); % it may be loaded: the old one stays whole
+        delete(copied); % it may be loaded; the old file stays intact
     end
     [done, reason] = copyfile(library, copied);
     if ~done
@@ -77,7 +77,7 @@ function write_text(name, text)
 end
 
 function try_out()
-% A requirement whose answer is known: 5 is 2 above 3.
+% Evaluate a requirement with a known result: the margin of 5 to 3 is 2.
     robustness = rtamt_robustness('x >= 3', 'x', 1, 5);
     if robustness ~= 2
         error('rtamt:notInstalled', 'The gateway was built, but ''x >= 3'' is %g at 5.', ...

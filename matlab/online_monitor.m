@@ -1,21 +1,21 @@
 function online_monitor(block)
-%ONLINE_MONITOR Level-2 MATLAB S-function: the robustness of a requirement, live.
+%ONLINE_MONITOR Level-2 MATLAB S-function: compute robustness online.
 %
 %   Put 'online_monitor' into a block "Level-2 MATLAB S-Function", with three
 %   parameters:
 %
-%   1. the specification: its text, a file with it (.stl), or a program that
-%      'rtamt compile' has written (.rtamt); to set named constants of it, in a cell
-%      array with their names and values: {'response.stl', 'limit', 4},
+%   1. the specification: its text, its file (.stl), or a program written by
+%      'rtamt compile' (.rtamt); to set named constants, a cell array with their
+%      names and values: {'response.stl', 'limit', 4},
 %   2. the names of its variables, in the order of the elements of the input:
 %      {'req', 'gnt'} or 'req, gnt',
-%   3. the sampling period in seconds, or -1: that of the input.
+%   3. the sampling period in seconds, or -1 to inherit that of the input.
 %
-%   The input is a vector, one element for each variable. The output is the
-%   robustness that the last sample made known, that of the instant one horizon
-%   ago, and NaN until the horizon has passed. It follows the input at once.
+%   The input is a vector with one element for each variable. The output is the
+%   robustness one horizon ago, and NaN until the horizon has passed. It reflects
+%   the input of the same step.
 %
-%   Errors are 'rtamt:...': see docs/how-to/simulink.md.
+%   For the error identifiers 'rtamt:...' see docs/how-to/simulink.md.
 %
 %   See also RTAMT_ROBUSTNESS, INSTALL_RTAMT.
 
@@ -48,7 +48,7 @@ function online_monitor(block)
 end
 
 function seconds = sample_time(seconds)
-% The third parameter, checked.
+% Check and return the third parameter.
     valid = isnumeric(seconds) && isscalar(seconds) && isreal(seconds) && ...
         (seconds == -1 || (seconds > 0 && isfinite(seconds)));
     if ~valid
@@ -59,7 +59,7 @@ function seconds = sample_time(seconds)
 end
 
 function set_input_dimensions(block, port, dimensions)
-% The width is checked here, so that the message can name the variables.
+% Check the width here, so that the message can name the variables.
     names = variable_names(block.DialogPrm(2).Data);
     width = prod(dimensions);
     if width ~= numel(names)
@@ -71,8 +71,8 @@ function set_input_dimensions(block, port, dimensions)
 end
 
 function set_up_work(block)
-% Work vectors: the monitor (0: there is none), the time of the last sample (NaN:
-% there was none), and the element of the input for each variable of the program.
+% Work vectors: the monitor (0 for none), the time of the last sample (NaN for
+% none), and the element of the input for each variable of the program.
     names = {'monitor', 'last_time', 'order'};
     widths = [1, 1, numel(variable_names(block.DialogPrm(2).Data))];
     block.NumDworks = numel(names);
@@ -100,7 +100,7 @@ function start(block)
 end
 
 function initialize(block)
-% At the start, and wherever a subsystem is enabled with its states reset: a new trace.
+% Start a new trace, also when a subsystem is enabled with its states reset.
     if block.Dwork(1).Data ~= 0
         rtamt_gateway('reset', block.Dwork(1).Data);
     end
@@ -108,7 +108,7 @@ function initialize(block)
 end
 
 function outputs(block)
-% May be called again in a step, with other inputs: nothing is taken here.
+% Can be called repeatedly in a step, with different inputs: takes no sample.
     if block.IsMajorTimeStep
         known = rtamt_gateway('peek', block.Dwork(1).Data, sample(block));
         block.OutputPort(1).Data = known(1);
@@ -116,7 +116,7 @@ function outputs(block)
 end
 
 function update(block)
-% Called once a step, when its inputs are final: the sample is taken.
+% Called once per step, when its inputs are final: takes the sample.
     if block.IsMajorTimeStep
         rtamt_gateway('step', block.Dwork(1).Data, sample(block));
         block.Dwork(2).Data = block.CurrentTime;
@@ -124,7 +124,7 @@ function update(block)
 end
 
 function values = sample(block)
-% The input in the order of the program, if it comes one period after the last one.
+% Return the input in program order; it must be one period after the last one.
     last = block.Dwork(2).Data;
     period = block.SampleTimes(1);
     now = block.CurrentTime;
@@ -137,7 +137,7 @@ function values = sample(block)
 end
 
 function terminate(block)
-% Also called where the start failed.
+% Also called if the start failed.
     if block.NumDworks > 0 && ~isempty(block.Dwork(1).Data) && block.Dwork(1).Data ~= 0
         rtamt_gateway('destroy', block.Dwork(1).Data);
         block.Dwork(1).Data = 0;

@@ -4,8 +4,8 @@ function robustness = rtamt_robustness(specification, variables, period, samples
 %   RHO = RTAMT_ROBUSTNESS(SPECIFICATION, VARIABLES, PERIOD, SAMPLES) takes the
 %   three parameters of the block ONLINE_MONITOR and SAMPLES, an array with a row for
 %   each sample, PERIOD seconds apart, and a column for each variable. RHO is a
-%   column: RHO(i) is the robustness at sample i. At the end of the recording the
-%   future is cut off: 'always' looks at the samples that are there.
+%   column vector: RHO(i) is the robustness at sample i. Windows are truncated at the
+%   end of the recording: 'always' uses the remaining samples.
 %
 %   Example:
 %       rtamt_robustness('eventually[0:1](x >= 3)', 'x', 1, [1; 5; 2])  % 2; 2; -1

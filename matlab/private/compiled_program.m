@@ -1,6 +1,6 @@
 function bytes = compiled_program(specification, period)
-% The program of a specification, as uint8: read from a file (.rtamt), or made by
-% 'rtamt compile' of a file with a specification or of its text.
+% Return the program of a specification as uint8: read from a file (.rtamt), or
+% compiled by 'rtamt compile' from a file or a text.
     if isa(specification, 'string')
         specification = char(specification);
     end

@@ -1,6 +1,6 @@
 function [monitor, order] = open_monitor(specification, variables, period)
-% A monitor of a specification, and where among `variables` each input of it is. The
-% specification may be a cell array, with names and values of constants after it.
+% Create a monitor of a specification, and map its inputs to `variables`. The
+% specification can be a cell array, followed by names and values of constants.
     names = variable_names(variables);
     require_gateway();
     constants = {};

@@ -1,5 +1,5 @@
 function text = quoted(text)
-% One word for the shell.
+% Quote a word for the shell.
     if isunix
         text = ['''' strrep(text, '''', '''\''''') ''''];
     else

@@ -1,5 +1,5 @@
 function names = variable_names(given)
-% The names of variables as a row of text: of {'a', 'b'}, or of 'a, b'.
+% Return variable names as a cell row, from {'a', 'b'} or 'a, b'.
     if isa(given, 'string')
         given = cellstr(given);
     end
