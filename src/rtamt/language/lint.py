@@ -142,8 +142,9 @@ def _unused_number(document: Document) -> Found:
             what = "this number" if assertion.name is None else f"the number '{assertion.name}'"
             yield assertion.span, f"{what} is never used"
     declared = {declaration.name for declaration in document.declarations}
+    names = {assertion.span: assertion.name for assertion in reversed(document.assertions)}
     for requirement in document.requirements:  # a number where the text has nothing else
-        name = next((a.name for a in document.assertions if a.span == requirement.span), None)
+        name = names.get(requirement.span)
         if is_number(requirement.formula) and name is not None and name.partition(".")[0] not in declared:
             yield (
                 requirement.span,
