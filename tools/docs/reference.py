@@ -49,14 +49,14 @@ def pictures() -> dict[str, str]:
 
 
 def language() -> str:
-    """Return the page of the operators: meaning, example and picture of each."""
+    """Return the page of the operators: meaning, example and plot of each."""
     lines = [
         "# The language\n",
-        "Every operator, from the table that the parser and the engine read. The pictures show the example on the "
-        "same two signals, a sample a second: above the signals, below the robustness, green where it is positive "
-        "and red where it is negative. [The grammar](grammar.md) says how formulas are put together, "
-        "[the semantics](../explanation/semantics.md) what they mean exactly.\n",
-        "| operator | written | binds | meaning |",
+        "All operators of the language, generated from the operator table. Each plot shows the example on the "
+        "same two signals with one sample per second: the signals above, the robustness below, green if positive "
+        "and red if negative. [The grammar](grammar.md) defines the syntax, "
+        "[the semantics](../explanation/semantics.md) the exact meaning.\n",
+        "| operator | spelling | precedence | meaning |",
         "|---|---|---:|---|",
     ]
     lines += [
@@ -64,7 +64,7 @@ def language() -> str:
         for op in sorted(spelled(), key=lambda op: -op.power)
     ]
     lines.append(
-        "\nWhat binds tighter has the higher number. Infix operators associate to the left, "
+        "\nA higher precedence binds tighter. Infix operators associate to the left, "
         f"{', '.join(f'`{op.spellings[0]}`' for op in STL if op.fixity is Fixity.RIGHT)} to the right.\n"
     )
     left = spelled()
@@ -78,13 +78,13 @@ def language() -> str:
 
 def _operator(op: Operator) -> str:
     spec = rtamt.parse(op.example)
-    facts = [f"written {_written(op)}"]
+    facts = [f"spelling {_written(op)}"]
     facts += [f"interval {op.bounds.value}"] if op.bounds is not Bounds.NONE else []
     facts += ["discrete time only"] if op.discrete_only else []
     facts += [f"dual `{op.dual}`"] if op.dual else []
     facts += [f"past counterpart `{op.twin}`"] if op.twin else []
     expansion = op.expansion is not None and op.kernel is None
-    facts += ["derived: the engine runs what it expands to"] if expansion else []
+    facts += ["derived: the engine runs its expansion"] if expansion else []
     return (
         f"### {op.name} {{#{op.name.replace('_', '-')}}}\n\n{op.doc}\n\n"
         f"{' · '.join(facts)}\n\n```text\n{op.example}\n```\n\n"
@@ -119,8 +119,8 @@ def grammar() -> str:
     ]
     listing = "\n".join(words)
     return (
-        "# The grammar\n\nIn EBNF: `[ ]` may be left out, `{ }` may be repeated. An infix operator that binds more "
-        "weakly than what is around it ends an operand: [the powers](language.md).\n\n"
+        "# The grammar\n\nThe grammar in EBNF: `[ ]` is optional, `{ }` is repeated. An infix operator of lower "
+        "[precedence](language.md) than its context ends an operand.\n\n"
         f"## A formula\n\n{_productions(parser)}\n\n```ebnf\n{listing}\n```\n\n"
         f"## A specification file\n\n{_productions(specfile)}\n"
     )
@@ -145,10 +145,10 @@ def warnings() -> str:
     return "\n".join(
         [
             "# Warnings\n",
-            "What is legal in a specification and seldom meant. `rtamt lint` and `rtamt check` print it on stderr, ",
-            "with the line and a caret; `--ignore CODE` silences a code. The exit code of `rtamt check` does not ",
-            "change; that of `rtamt lint --strict` is 1. In Python: `rtamt.parse(...).warnings`.\n",
-            "| code | what | example |",
+            "Warnings report valid but suspicious specifications. `rtamt lint` and `rtamt check` print them on ",
+            "stderr, with the line and a caret; `--ignore CODE` silences a warning. Warnings do not change the exit ",
+            "code of `rtamt check`; that of `rtamt lint --strict` is 1. In Python: `rtamt.parse(...).warnings`.\n",
+            "| code | meaning | example |",
             "|---|---|---|",
             *rows,
             "",
@@ -221,9 +221,9 @@ def _is_module(name: str) -> bool:
 def _messages() -> Iterator[str]:
     yield "# Messages\n"
     yield (
-        "What rtamt says when something is wrong, out of its source: search this page for the words of a message. "
-        "What differs from case to case is in ⟨brackets⟩. Errors about text also show the line and a caret under the "
-        "place. On the command line every message is one line on stderr, with exit code 2.\n"
+        "All error messages, extracted from the source: search this page for the words of a message. "
+        "Variable parts are in ⟨brackets⟩. Errors in a text also show the line and a caret under the "
+        "position. On the command line every message is one line on stderr, with exit code 2.\n"
     )
     for kind, found in messages.by_kind(ROOT / "src/rtamt").items():
         error = getattr(rtamt, kind, None)
