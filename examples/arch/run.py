@@ -19,23 +19,23 @@ HEAD = """\
 # Falsified benchmarks of ARCH-COMP
 
 Written by `{command}`: at most {budget} simulations, seeds 0 to {last}. Inputs are piecewise constant, each
-value held for 5 s. A cell tells how many of the runs falsified, and after how many simulations on average
-(those that did not are left out of it).
+value held for 5 s. Each cell contains the number of runs that found a violation, and the mean number of simulations
+of these runs.
 
 | formula | {optimizers} | reported elsewhere |
 |---|{lines}---|"""
 
 TAIL = """
-Reported elsewhere: how many of 10 runs of FalCAuN falsified, and after how many simulations on average, from the
-summary in its repository for the competition of 2024 (MasWag/FalCAuN-ARCH-COMP); it ran the Simulink models, and more
-than 300 simulations where it needed them. A budget of 300 is that of FalStar's published configuration. The plants
-here are other programs than the models of the competition (see README.md), so that rows can be compared in kind,
-not to the digit.
+Reported elsewhere: the same numbers for 10 runs of FalCAuN, from the summary in its repository for the competition of
+2024 (MasWag/FalCAuN-ARCH-COMP). It ran the Simulink models, and more than 300 simulations if necessary. A budget of 300
+is that of FalStar's published configuration. The plants here differ from the models of the competition (see
+README.md), so that the rows are comparable qualitatively, not digit by digit.
 
 ## The formulas
 
-Published forms first, as participants have them (FalStar, zlscheck, FalCAuN, ARIsTEO); then what is monitored.
-G is always, F eventually, X next; `g1` is "gear 1 is engaged". Where published forms differ, the first is used.
+Each entry lists the published forms of the participants (FalStar, zlscheck, FalCAuN, ARIsTEO) and the monitored
+formula.
+G is always, F eventually, X next; `g1` is "gear 1 is engaged". If published forms differ, the first is used.
 """
 
 
