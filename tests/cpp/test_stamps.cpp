@@ -49,7 +49,7 @@ TEST(regular_times_are_exactly_those_that_were_given) {
     Stamps stamps(0.1, 3);
     for (int i = 0; i < 1000; ++i)
         stamps.add(i * 0.1);
-    CHECK(stamps.regular() && stamps.regular_next() == 1000 * 0.1);
+    CHECK(stamps.regular() && stamps.regular_at(1000) == 1000 * 0.1);
     CHECK((last(stamps, 3) == std::vector<double>{997 * 0.1, 998 * 0.1, 999 * 0.1}));
 }
 
