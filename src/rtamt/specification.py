@@ -331,7 +331,7 @@ class Specification:
         >>> import rtamt
         >>> program = rtamt.parse("always[0:200ms](x >= 3)").compile(period="100ms")
         >>> program.lags, len(program.to_bytes())
-        ((2, 2), 457)
+        ((2, 2), 459)
         """
         domain = self._time(time)
         step = self._resolution(resolution) if domain == "dense" else self._period(period) or Fraction(1)

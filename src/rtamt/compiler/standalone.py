@@ -12,11 +12,11 @@ from rtamt.errors import UsageError
 from rtamt.language.formula import Apply, Const, Formula, Var, fold, postorder, variables
 from rtamt.language.printer import PAGE, excerpt, to_text
 from rtamt.rewrite.check import check_bounds, check_dense, check_online
-from rtamt.rewrite.desugar import desugar
+from rtamt.rewrite.desugar import as_written, desugar
 from rtamt.rewrite.semantics import boolean
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterable, Mapping
     from fractions import Fraction
 
     from rtamt.compiler.program import Program
@@ -62,8 +62,8 @@ def carried_program(
     structural = _bounds(formula)
     values: dict[str, float] = {}
     pairs = {"": (formula, applied or formula)} | {f".{name}": pair for name, pair in (parts or {}).items()}
-    lowered = [desugar(each) for own, worth in pairs.values() for each in (worth, boolean(own))]
-    told = [_with_parameters(each, structural, values) for each in lowered]
+    judged = [each for own, worth in pairs.values() for each in (worth, boolean(own))]
+    told = [_with_parameters(desugar(each), structural, values) for each in judged]
     program = compile_program(told, period, inputs, domain=domain, parameters=values)
     places = {
         node.name: (i,)
@@ -75,7 +75,7 @@ def carried_program(
         to_text(formula, limit=PAGE),
         tuple(f"{output}{suffix}" for suffix in pairs for output in OUTPUTS),
         MappingProxyType(places),
-        MappingProxyType(_meanings(program)),
+        MappingProxyType(_meanings(program, [_with_parameters(each, structural, values) for each in judged])),
     )
     return replace(program, metadata=metadata)
 
@@ -100,10 +100,11 @@ def _with_parameters(formula: Formula, structural: frozenset[str], values: dict[
     return fold(formula, step)
 
 
-def _meanings(program: Program) -> dict[int, str]:
-    """Return the formula of each instruction that computes something, as far as a message shows it."""
+def _meanings(program: Program, formulas: Iterable[Formula]) -> dict[int, str]:
+    """Return what each instruction computes, as it is written in ``formulas`` and as far as a message shows it."""
+    written = as_written(formulas)
     return {
-        i: excerpt(formula)
+        i: excerpt(written.get(formula, formula))
         for i, formula in enumerate(program.origins)
         if isinstance(formula, Apply) and program.value_of[formula] == i
     }

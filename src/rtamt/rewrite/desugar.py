@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rtamt.language.formula import Apply, Formula, Span, children, fold, postorder
+from rtamt.language.formula import Apply, Formula, Span, children, fold, folds, postorder
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
@@ -33,17 +33,20 @@ def written(core: Formula, formulas: Iterable[Formula]) -> Formula:
     >>> print(written(parse_formula("3 - x"), [formula]), "|", written(parse_formula("y"), [formula]))
     x < 3 | y
     """
-    found: list[Formula] = []
+    return as_written(formulas).get(core, core)
+
+
+def as_written(formulas: Iterable[Formula]) -> dict[Formula, Formula]:
+    """Return, for each core formula that a part of ``formulas`` expands to, the first such part."""
+    found: dict[Formula, Formula] = {}
 
     def step(node: Formula, args: tuple[Formula, ...]) -> Formula:
         expanded = expand(node, args)
-        if expanded == core:
-            found.append(node)
+        found.setdefault(expanded, node)
         return expanded
 
-    for formula in formulas:
-        fold(formula, step)
-    return found[0] if found else core
+    folds(tuple(formulas), step)
+    return found
 
 
 def spelled_out(formula: Formula) -> Formula:

@@ -21,7 +21,7 @@ LISTING = (
 def test_a_program_is_written_and_told_about(run):
     assert run("compile", SPEC, "--period", "100ms", "-o", "spec.rtamt") == (
         0,
-        "spec.rtamt: 6 instructions, 490 bytes, discrete time\n",
+        "spec.rtamt: 6 instructions, 492 bytes, discrete time\n",
         "",
     )
     facts, _, listing = run("info", "spec.rtamt").out.partition("program\n")
