@@ -14,32 +14,33 @@ namespace rtamt {
 
 class Arena {
   public:
-    explicit Arena(std::size_t doubles) : size_(doubles) {
-        if (doubles == 0) return;
-        if (doubles > std::numeric_limits<std::ptrdiff_t>::max() / sizeof(double)) {
+    explicit Arena(std::size_t bytes) : size_(bytes) {
+        if (bytes == 0) return;
+        if (bytes > static_cast<std::size_t>(std::numeric_limits<std::ptrdiff_t>::max())) {
             throw std::bad_alloc();
         }
         // NOLINTNEXTLINE(*-no-malloc): operator new would promise nothing about untouched pages
-        memory_.reset(static_cast<double*>(std::calloc(doubles, sizeof(double))));
+        memory_.reset(static_cast<std::byte*>(std::calloc(bytes, 1)));
         if (!memory_) throw std::bad_alloc();
     }
 
-    // The next `doubles` cells; the sum of all pieces is the size given at the start.
-    [[nodiscard]] double* take(std::size_t doubles) noexcept {
-        double* piece = memory_.get() + taken_;
-        taken_ += doubles;
+    // The next `bytes`, aligned for values as long as all sizes are multiples of 8; the sum of all
+    // pieces is the size given at the start.
+    [[nodiscard]] void* take(std::size_t bytes) noexcept {
+        std::byte* piece = memory_.get() + taken_;
+        taken_ += bytes;
         return piece;
     }
 
-    [[nodiscard]] std::size_t bytes() const noexcept { return size_ * sizeof(double); }
+    [[nodiscard]] std::size_t bytes() const noexcept { return size_; }
 
   private:
     struct Free {
-        void operator()(double* memory) const noexcept {
+        void operator()(std::byte* memory) const noexcept {
             std::free(memory); // NOLINT(*-no-malloc)
         }
     };
-    std::unique_ptr<double, Free> memory_;
+    std::unique_ptr<std::byte, Free> memory_;
     std::size_t size_;
     std::size_t taken_ = 0;
 };

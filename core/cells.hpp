@@ -7,7 +7,8 @@
 
 namespace rtamt {
 
-inline void copy_cells(const double* from, std::size_t count, double* to) noexcept {
+template <class Cell>
+void copy_cells(const Cell* from, std::size_t count, Cell* to) noexcept {
     if (count == 1) {
         *to = *from;
     } else {
@@ -15,9 +16,11 @@ inline void copy_cells(const double* from, std::size_t count, double* to) noexce
     }
 }
 
-inline void fill_cells(double* to, std::size_t count, double value) noexcept {
+template <class Cell>
+void fill_cells(Cell* to, std::size_t count, const Cell& value) noexcept {
+    const Cell cell = value; // which may lie among those that are written
     for (std::size_t i = 0; i < count; ++i)
-        to[i] = value;
+        to[i] = cell;
 }
 
 } // namespace rtamt

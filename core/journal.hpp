@@ -11,20 +11,21 @@
 
 namespace rtamt {
 
+template <class Cell>
 class Journal {
   public:
-    explicit Journal(double* store) noexcept : store_(store) {}
+    explicit Journal(Cell* store) noexcept : store_(store) {}
 
-    void save(const double* ring, std::size_t begin, std::size_t count) noexcept {
+    void save(const Cell* ring, std::size_t begin, std::size_t count) noexcept {
         begin_ = begin;
         count_ = count;
         copy_cells(ring + begin, count, store_);
     }
 
-    void restore(double* ring) const noexcept { copy_cells(store_, count_, ring + begin_); }
+    void restore(Cell* ring) const noexcept { copy_cells(store_, count_, ring + begin_); }
 
   private:
-    double* store_;
+    Cell* store_;
     std::size_t begin_ = 0;
     std::size_t count_ = 0;
 };

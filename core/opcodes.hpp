@@ -43,28 +43,46 @@ enum class Opcode : std::uint8_t {
 // What the number n of an instruction means.
 enum class Count : std::uint8_t { none, input, distance, width, call };
 
+// What an instruction works on. `either`: on numbers or on formulas, and it gives what it takes.
+enum class Sort : std::uint8_t { number, formula, either };
+
 struct OpcodeInfo {
     std::string_view name;
     std::uint8_t operands;
     bool pointwise; // a function of the operands at the same instant, without state
     bool partial;   // may turn numbers into NaN
     Count count;
+    Sort takes;
+    Sort gives;
 };
 
 inline constexpr std::array<OpcodeInfo, 26> opcodes{{
-    {"input", 0, false, false, Count::input},     {"const", 0, false, false, Count::none},
-    {"neg", 1, true, false, Count::none},         {"abs", 1, true, false, Count::none},
-    {"sqrt", 1, true, true, Count::none},         {"exp", 1, true, false, Count::none},
-    {"ln", 1, true, true, Count::none},           {"add", 2, true, true, Count::none},
-    {"sub", 2, true, true, Count::none},          {"mul", 2, true, true, Count::none},
-    {"div", 2, true, true, Count::none},          {"pow", 2, true, true, Count::none},
-    {"log", 2, true, true, Count::none},          {"min", 2, true, false, Count::none},
-    {"max", 2, true, false, Count::none},         {"holds_gt", 2, true, false, Count::none},
-    {"holds_ge", 2, true, false, Count::none},    {"holds_eq", 2, true, false, Count::none},
-    {"shift", 1, false, false, Count::distance},  {"slide_max", 1, false, false, Count::width},
-    {"slide_min", 1, false, false, Count::width}, {"run_max", 1, false, false, Count::none},
-    {"run_min", 1, false, false, Count::none},    {"since", 2, false, false, Count::none},
-    {"until", 2, false, false, Count::width},     {"call", 0, false, true, Count::call},
+    {"input", 0, false, false, Count::input, Sort::either, Sort::either},
+    {"const", 0, false, false, Count::none, Sort::either, Sort::either},
+    {"neg", 1, true, false, Count::none, Sort::either, Sort::either},
+    {"abs", 1, true, false, Count::none, Sort::number, Sort::number},
+    {"sqrt", 1, true, true, Count::none, Sort::number, Sort::number},
+    {"exp", 1, true, false, Count::none, Sort::number, Sort::number},
+    {"ln", 1, true, true, Count::none, Sort::number, Sort::number},
+    {"add", 2, true, true, Count::none, Sort::number, Sort::number},
+    {"sub", 2, true, true, Count::none, Sort::number, Sort::number},
+    {"mul", 2, true, true, Count::none, Sort::number, Sort::number},
+    {"div", 2, true, true, Count::none, Sort::number, Sort::number},
+    {"pow", 2, true, true, Count::none, Sort::number, Sort::number},
+    {"log", 2, true, true, Count::none, Sort::number, Sort::number},
+    {"min", 2, true, false, Count::none, Sort::either, Sort::either},
+    {"max", 2, true, false, Count::none, Sort::either, Sort::either},
+    {"holds_gt", 2, true, false, Count::none, Sort::number, Sort::formula},
+    {"holds_ge", 2, true, false, Count::none, Sort::number, Sort::formula},
+    {"holds_eq", 2, true, false, Count::none, Sort::number, Sort::formula},
+    {"shift", 1, false, false, Count::distance, Sort::either, Sort::either},
+    {"slide_max", 1, false, false, Count::width, Sort::either, Sort::either},
+    {"slide_min", 1, false, false, Count::width, Sort::either, Sort::either},
+    {"run_max", 1, false, false, Count::none, Sort::either, Sort::either},
+    {"run_min", 1, false, false, Count::none, Sort::either, Sort::either},
+    {"since", 2, false, false, Count::none, Sort::formula, Sort::formula},
+    {"until", 2, false, false, Count::width, Sort::formula, Sort::formula},
+    {"call", 0, false, true, Count::call, Sort::number, Sort::number},
 }};
 
 static_assert(opcodes[static_cast<std::size_t>(Opcode::call)].name == "call");

@@ -288,6 +288,17 @@ bool Program::can_fail(const Instruction& instruction) const noexcept {
     }
 }
 
+std::vector<bool> Program::guarded() const {
+    std::vector<bool> guarded(instructions.size(), false);
+    for (std::size_t i = guarded.size(); i-- > 0;) {
+        const Instruction& instruction = instructions[i];
+        if (can_fail(instruction)) guarded[i] = true;
+        if (!guarded[i]) continue;
+        each_operand(instruction, [&](std::uint32_t operand) { guarded[operand] = true; });
+    }
+    return guarded;
+}
+
 std::int64_t Program::latest() const noexcept {
     std::int64_t latest = 0;
     for (const std::uint32_t output : outputs) {

@@ -94,6 +94,9 @@ struct Program {
     // >= 3.
     [[nodiscard]] bool can_fail(const Instruction& instruction) const noexcept;
 
+    // By instruction, whether it is guarded: it can fail, or one that can is computed from it.
+    [[nodiscard]] std::vector<bool> guarded() const;
+
     // Whether an operand is a constant; no_operand is none.
     [[nodiscard]] bool is_constant(std::uint32_t operand) const noexcept {
         return operand != no_operand && instructions[operand].opcode == Opcode::constant;

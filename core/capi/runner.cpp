@@ -47,7 +47,7 @@ void DiscreteRunner::last_known(std::span<double> known) const noexcept {
     for (std::size_t output = 0; output < known.size(); ++output) {
         const std::uint32_t instruction = program().outputs[output];
         known[output] = executor_.samples() > program().instructions[instruction].lag
-                            ? executor_.last(instruction)
+                            ? *executor_.last(instruction)
                             : std::numeric_limits<double>::quiet_NaN();
     }
 }

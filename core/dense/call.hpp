@@ -20,11 +20,11 @@
 
 namespace rtamt::dense {
 
-class Call final : public Kernel {
+class Call final : public Writing<double> {
   public:
     Call(const rtamt_kernel& kernel, const rtamt_setup& setup, std::int64_t operand_lag,
          std::int64_t lag)
-        : Kernel(lag), foreign_(kernel, setup), operand_lag_(operand_lag), lag_(lag) {}
+        : Writing(lag), foreign_(kernel, setup), operand_lag_(operand_lag), lag_(lag) {}
 
     void connect_operands(std::vector<const Events*> operands) {
         operands_ = std::move(operands);

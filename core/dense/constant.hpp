@@ -5,13 +5,14 @@
 
 namespace rtamt::dense {
 
-class Constant final : public Temporal {
+template <ValueDomain D>
+class Constant final : public Temporal<D> {
   public:
-    using Temporal::Temporal;
+    using Temporal<D>::Temporal;
 
     std::int64_t run(std::int64_t frontier) override {
-        Writer out = open(0);
-        close(out, frontier);
+        auto out = this->open(0);
+        this->close(out, frontier);
         return never;
     }
 };

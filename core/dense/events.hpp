@@ -1,8 +1,8 @@
 // Step functions as events: from each time on the value beside it holds, until the next event, and
 // the last value for ever. Times are ticks from -(2^63 - 1) on and increase strictly.
 //
-// Memory: 16 bytes an event. A list grows to twice its size, by realloc, which moves large lists
-// without copying them, and keeps its memory when cleared.
+// Memory: 8 bytes and a value an event. A list grows to twice its size, by realloc, which moves
+// large lists without copying them, and keeps its memory when cleared.
 #pragma once
 
 #include "../snapshot.hpp"
@@ -26,13 +26,14 @@ inline constexpr std::int64_t never = std::numeric_limits<std::int64_t>::max();
 }
 
 // Events that somebody else owns.
-struct Events {
+template <class Value>
+struct BasicEvents {
     const std::int64_t* times = nullptr;
-    const double* values = nullptr;
+    const Value* values = nullptr;
     std::size_t count = 0;
 
     // Without the first `skipped` events.
-    [[nodiscard]] Events from(std::size_t skipped) const noexcept {
+    [[nodiscard]] BasicEvents from(std::size_t skipped) const noexcept {
         return {times + skipped, values + skipped, count - skipped};
     }
 
@@ -44,16 +45,17 @@ struct Events {
     }
 };
 
-class EventList {
+template <class Value>
+class BasicEventList {
   public:
-    void append(std::int64_t time, double value) {
+    void append(std::int64_t time, const Value& value) {
         if (count_ == capacity_) grow(count_ + 1);
         times_[count_] = time;
         values_[count_] = value;
         ++count_;
     }
 
-    void append(const Events& events) {
+    void append(const BasicEvents<Value>& events) {
         if (events.count > capacity_ - count_) grow(count_ + events.count);
         std::copy_n(events.times, events.count, times_.get() + count_);
         std::copy_n(events.values, events.count, values_.get() + count_);
@@ -77,7 +79,7 @@ class EventList {
 
     void transfer(Snapshot& snapshot) {
         std::size_t count = count_;
-        snapshot.count(count, sizeof(std::int64_t) + sizeof(double));
+        snapshot.count(count, sizeof(std::int64_t) + sizeof(Value));
         if (snapshot.loading()) {
             make_room(count);
             resize(count);
@@ -88,10 +90,12 @@ class EventList {
 
     [[nodiscard]] std::size_t count() const noexcept { return count_; }
     [[nodiscard]] std::int64_t* times() noexcept { return times_.get(); }
-    [[nodiscard]] double* values() noexcept { return values_.get(); }
-    [[nodiscard]] Events view() const noexcept { return {times_.get(), values_.get(), count_}; }
+    [[nodiscard]] Value* values() noexcept { return values_.get(); }
+    [[nodiscard]] BasicEvents<Value> view() const noexcept {
+        return {times_.get(), values_.get(), count_};
+    }
     [[nodiscard]] std::size_t bytes() const noexcept {
-        return capacity_ * (sizeof(std::int64_t) + sizeof(double));
+        return capacity_ * (sizeof(std::int64_t) + sizeof(Value));
     }
 
   private:
@@ -104,7 +108,7 @@ class EventList {
     using Memory = std::unique_ptr<Item[], Free>;
 
     Memory<std::int64_t> times_;
-    Memory<double> values_;
+    Memory<Value> values_;
     std::size_t count_ = 0;
     std::size_t capacity_ = 0;
 
@@ -127,5 +131,9 @@ class EventList {
         capacity_ = capacity;
     }
 };
+
+// Of real numbers, as traces and their robustness are.
+using Events = BasicEvents<double>;
+using EventList = BasicEventList<double>;
 
 } // namespace rtamt::dense

@@ -5,11 +5,12 @@
 // input, and every kernel brings its events up to it (kernel.hpp). finish() lets every input hold
 // its last value and moves the frontier on until the outputs are known at the latest last time.
 //
-// The *guarded* group is every instruction that can make NaN and everything such an instruction is
-// computed from; the rest cannot fail. An update runs the guarded group first and looks for NaN;
-// when there is one, it takes the guarded kernels back to where they were, and the rest has not
-// moved. So a failed update leaves no trace. An update of more than one block runs the guarded
-// group over the whole chunk once to look, takes it back, and then runs everything.
+// Kernels run in the two groups of guard_plan.hpp. An update of more than one block runs the
+// guarded group over the whole chunk once to look for undefined values, takes it back, and then
+// runs everything.
+//
+// An executor is a template over the value domain of the program's formulas, as in discrete time
+// (discrete/executor.hpp): predicates take numbers and give formulas. Inputs are numbers.
 //
 // Cost: a virtual call an instruction and block, and O(1) an event, amortised. Memory: the events
 // inside the windows, and the samples that wait for other inputs. When memory runs out in the
@@ -18,14 +19,14 @@
 
 #include "../fault.hpp"
 #include "../program.hpp"
+#include "../values/domain.hpp"
+#include "../values/real.hpp"
 #include "events.hpp"
 #include "feed.hpp"
-#include "kernel.hpp"
+#include "wiring.hpp"
 
 #include <cstddef>
 #include <cstdint>
-#include <map>
-#include <memory>
 #include <optional>
 #include <span>
 #include <utility>
@@ -41,24 +42,29 @@ struct Failure {
     Fault fault;
 };
 
-class Executor {
+template <ValueDomain D>
+class BasicExecutor {
   public:
-    explicit Executor(Program program);
-    ~Executor() = default;
-    Executor(const Executor&) = delete;
-    Executor& operator=(const Executor&) = delete;
-    Executor(Executor&&) = delete; // kernels point to inputs
-    Executor& operator=(Executor&&) = delete;
+    using Formula = typename D::Value;
+    using Number = typename D::Number::Value;
+    using Inputs = std::span<const BasicEvents<Number>>;
+    using Outputs = std::span<BasicEventList<Formula>>;
+
+    explicit BasicExecutor(Program program);
+    ~BasicExecutor() = default;
+    BasicExecutor(const BasicExecutor&) = delete;
+    BasicExecutor& operator=(const BasicExecutor&) = delete;
+    BasicExecutor(BasicExecutor&&) = delete; // kernels point to inputs
+    BasicExecutor& operator=(BasicExecutor&&) = delete;
 
     // New samples, one list an input, each later than the last time of its input and not later than
     // last_possible(). What becomes known of each output is appended to its list: equal neighbours
     // merged, also over updates. Nothing is appended by an update that fails.
-    [[nodiscard]] std::optional<Failure> push(std::span<const Events> inputs,
-                                              std::span<EventList> outputs);
+    [[nodiscard]] std::optional<Failure> push(Inputs inputs, Outputs outputs);
 
     // No more samples: the rest of each output, up to the last time of all inputs. Then only
     // reset() helps.
-    [[nodiscard]] std::optional<Failure> finish(std::span<EventList> outputs);
+    [[nodiscard]] std::optional<Failure> finish(Outputs outputs);
 
     void reset() noexcept;
 
@@ -68,12 +74,10 @@ class Executor {
 
     // A whole trace at once, the last values held for `extra` ticks more; what a failure leaves
     // behind is unspecified.
-    [[nodiscard]] static std::optional<Failure> evaluate(Program program,
-                                                         std::span<const Events> inputs,
-                                                         std::int64_t extra,
-                                                         std::span<EventList> outputs);
+    [[nodiscard]] static std::optional<Failure> evaluate(Program program, Inputs inputs,
+                                                         std::int64_t extra, Outputs outputs);
 
-    [[nodiscard]] const Program& program() const noexcept { return program_; }
+    [[nodiscard]] const Program& program() const noexcept { return wiring_.program(); }
     [[nodiscard]] bool finished() const noexcept { return finished_; }
 
     // When the trace begins, once every input has come so far.
@@ -83,39 +87,26 @@ class Executor {
     [[nodiscard]] std::optional<std::int64_t> known_until(std::size_t output) const noexcept;
 
     // What an output is worth there; any number while it is known nowhere.
-    [[nodiscard]] double value(std::size_t output) const noexcept { return outputs_[output].last; }
+    [[nodiscard]] Formula value(std::size_t output) const noexcept { return outputs_[output].last; }
 
     [[nodiscard]] std::optional<std::int64_t> last_time(std::size_t input) const noexcept {
-        return feeds_[input].last();
+        return feeds()[input].last();
     }
 
     // The latest time a sample may have, so that the end of the trace is within the range of ticks.
     [[nodiscard]] std::int64_t last_possible() const noexcept {
-        return never - 1 - program_.latest();
+        return never - 1 - program().latest();
     }
 
     [[nodiscard]] std::size_t state_bytes() const noexcept;
 
   private:
-    struct Unit {
-        Kernel* kernel;
-        std::uint32_t instruction;
-        std::int64_t reach; // how long after the end of the trace an output depends on it
-    };
     struct Output {
-        const Events* events = nullptr;
-        std::int64_t lag = 0;
         bool told = false; // whether it has a value yet
-        double last = 0.0; // and which
+        Formula last{};    // and which
     };
-    using Lists = std::span<EventList>;
 
-    Program program_;
-    std::vector<std::unique_ptr<Kernel>> kernels_; // by instruction; none for inputs and constants
-    std::map<std::pair<std::uint32_t, std::int64_t>, std::unique_ptr<Kernel>> constants_; // and lag
-    std::vector<Unit> guarded_;
-    std::vector<Unit> free_;
-    std::vector<Feed> feeds_; // by input
+    Wiring<D> wiring_;
     std::vector<Output> outputs_;
     std::int64_t origin_ = 0;     // when the trace begins
     std::int64_t frontier_ = 0;   // how far it is known
@@ -126,12 +117,10 @@ class Executor {
     bool finished_ = false;
     Failure failure_{};
 
-    [[nodiscard]] std::vector<bool> guarded() const;
-    [[nodiscard]] std::vector<std::int64_t> reaches() const;
-    [[nodiscard]] const Events* operand(std::uint32_t index, std::int64_t lag) const;
-    [[nodiscard]] std::unique_ptr<Kernel> make_call(const Instruction& instruction,
-                                                    std::int64_t lag) const;
-    void add_constants(const std::vector<bool>& guarded);
+    [[nodiscard]] std::vector<Feed<Number>>& feeds() noexcept { return wiring_.feeds(); }
+    [[nodiscard]] const std::vector<Feed<Number>>& feeds() const noexcept {
+        return wiring_.feeds();
+    }
 
     [[nodiscard]] bool open() noexcept;
     [[nodiscard]] bool sound() const noexcept;
@@ -140,14 +129,16 @@ class Executor {
     [[nodiscard]] std::int64_t step(std::int64_t target) noexcept;
     [[nodiscard]] bool run_guarded(std::int64_t frontier);
     void run_free(std::int64_t frontier);
-    void deliver(Lists outputs);
-    [[nodiscard]] bool advance(std::int64_t target, Lists outputs);
+    void deliver(Outputs outputs);
+    [[nodiscard]] bool advance(std::int64_t target, Outputs outputs);
     [[nodiscard]] bool look(std::int64_t target);
     [[nodiscard]] bool survey(std::int64_t target, std::int64_t tail);
     [[nodiscard]] bool one_block() const noexcept;
     [[nodiscard]] std::int64_t stride_to(std::int64_t target) const noexcept;
-    [[nodiscard]] bool update(Lists outputs);
-    [[nodiscard]] bool complete(std::int64_t extra, bool checked, Lists outputs);
+    [[nodiscard]] bool update(Outputs outputs);
+    [[nodiscard]] bool complete(std::int64_t extra, bool checked, Outputs outputs);
 };
+
+using Executor = BasicExecutor<Real>;
 
 } // namespace rtamt::dense

@@ -1,7 +1,7 @@
 // The samples of one input on their way into the program, which may be ahead of the other inputs.
 //
 // Samples of an update are read where the caller has them; only those that are left over at its end
-// are copied. Memory: 16 bytes a sample that waits for other inputs.
+// are copied. Memory: 8 bytes and a value a sample that waits for other inputs.
 #pragma once
 
 #include "events.hpp"
@@ -12,8 +12,11 @@
 
 namespace rtamt::dense {
 
+template <class Value>
 class Feed {
   public:
+    using Events = BasicEvents<Value>;
+
     // The samples of an update, which stay where they are until settle() or restore().
     void attach(const Events& fresh) {
         saved_ = {first_, last_, queue_.count()};
@@ -122,13 +125,13 @@ class Feed {
         std::size_t queued = 0;
     };
 
-    EventList queue_;      // what earlier updates left over
-    std::size_t head_ = 0; // of which so many have been read since
-    Events rest_;          // what is to be read
-    Events rewind_;        // and what was, when the update began
-    Events view_;          // what the program reads now
+    BasicEventList<Value> queue_; // what earlier updates left over
+    std::size_t head_ = 0;        // of which so many have been read since
+    Events rest_;                 // what is to be read
+    Events rewind_;               // and what was, when the update began
+    Events view_;                 // what the program reads now
     std::int64_t start_time_ = 0;
-    double start_value_ = 0.0;
+    Value start_value_{};
     std::optional<std::int64_t> first_; // time of the first sample
     std::optional<std::int64_t> last_;  // and of the last one
     Saved saved_;

@@ -4,13 +4,14 @@
 // happens up to the frontier is known. A run moves the frontier: the operands bring their events
 // since the last one, and the kernel gives its own up to the new frontier, that instant included.
 // An instruction begins at its start, that of the trace plus its lag, and its first event is there.
-// No value is NaN: a kernel that can make one says when, and the executor takes the update back.
+// No value is undefined: a kernel that can make such a value says when, and the executor takes the
+// update back. Of which type values are is known to the kernels alone (values/domain.hpp).
 #pragma once
 
 #include "../snapshot.hpp"
+#include "../values/domain.hpp"
 #include "events.hpp"
 
-#include <bit>
 #include <cstddef>
 #include <cstdint>
 
@@ -31,10 +32,10 @@ class Kernel {
         reset();
     }
 
-    // Moves the frontier; answers the first arrival of a value that is NaN, or never.
+    // Moves the frontier; answers the first arrival of a value that is undefined, or never.
     virtual std::int64_t run(std::int64_t frontier) = 0;
 
-    // What went wrong where run() answers a time and no value is NaN: null but for calls.
+    // What went wrong where run() answers a time and no value is undefined: null but for calls.
     [[nodiscard]] virtual const char* fault() const noexcept { return nullptr; }
 
     // Remembers the state; takes back everything since then.
@@ -48,25 +49,52 @@ class Kernel {
     // How many events can come without any more from the operands.
     [[nodiscard]] virtual std::size_t pending() const noexcept { return 0; }
 
-    [[nodiscard]] virtual std::size_t bytes() const noexcept { return list_.bytes(); }
+    [[nodiscard]] virtual std::size_t bytes() const noexcept = 0;
 
-    void connect(const Events* a, const Events* b) noexcept {
+    // Where the events of the operands are, of the types that the kernel reads.
+    void connect(const void* a, const void* b) noexcept {
         a_ = a;
         b_ = b;
     }
 
-    // The events of the last run.
-    [[nodiscard]] const Events& out() const noexcept { return out_; }
+    // Where the events of the last run are, of the type that the kernel writes.
+    [[nodiscard]] virtual const void* result() const noexcept = 0;
 
   protected:
     virtual void reset() noexcept = 0;
 
-    [[nodiscard]] const Events& a() const noexcept { return *a_; }
-    [[nodiscard]] const Events& b() const noexcept { return *b_; }
+    template <class Value>
+    [[nodiscard]] const BasicEvents<Value>& a() const noexcept {
+        return *static_cast<const BasicEvents<Value>*>(a_);
+    }
+    template <class Value>
+    [[nodiscard]] const BasicEvents<Value>& b() const noexcept {
+        return *static_cast<const BasicEvents<Value>*>(b_);
+    }
     [[nodiscard]] std::int64_t start() const noexcept { return start_; }
 
+  private:
+    const void* a_ = nullptr;
+    const void* b_ = nullptr;
+    std::int64_t lag_;
+    std::int64_t start_ = 0;
+};
+
+// A kernel that writes values of one type.
+template <class Value>
+class Writing : public Kernel {
+  public:
+    using Kernel::Kernel;
+
+    [[nodiscard]] std::size_t bytes() const noexcept override { return list_.bytes(); }
+    [[nodiscard]] const void* result() const noexcept override { return &out_; }
+
+    // The events of the last run.
+    [[nodiscard]] const BasicEvents<Value>& out() const noexcept { return out_; }
+
+  protected:
     // Where to write up to `count` events; then, how many there are.
-    [[nodiscard]] EventList& room(std::size_t count) {
+    [[nodiscard]] BasicEventList<Value>& room(std::size_t count) {
         list_.make_room(count);
         return list_;
     }
@@ -76,27 +104,26 @@ class Kernel {
     }
 
   private:
-    const Events* a_ = nullptr;
-    const Events* b_ = nullptr;
-    EventList list_;
-    Events out_;
-    std::int64_t lag_;
-    std::int64_t start_ = 0;
+    BasicEventList<Value> list_;
+    BasicEvents<Value> out_;
 };
 
 // A kernel whose result need not begin where its operands do. What it says before its start is
 // held back, and its value at the start told there.
-class Temporal : public Kernel {
+template <ValueDomain D>
+class Temporal : public Writing<typename D::Value> {
   public:
+    using Value = typename D::Value;
+
     // `before` is the value as long as the operands have brought nothing.
-    Temporal(std::int64_t lag, double before) noexcept
-        : Kernel(lag), before_(before), told_{before, false}, saved_(told_) {}
+    Temporal(std::int64_t lag, const Value& before) noexcept
+        : Writing<Value>(lag), before_(before), told_{before, false}, saved_(told_) {}
 
     void checkpoint() noexcept override { saved_ = told_; }
     void rollback() noexcept override { told_ = saved_; }
     void transfer(Snapshot& snapshot, std::int64_t frontier) override {
         snapshot.item(told_.last);
-        told_.begun = start() <= frontier;
+        told_.begun = this->start() <= frontier;
     }
 
   protected:
@@ -104,13 +131,14 @@ class Temporal : public Kernel {
     // stack, so that the loop around it need not reload it after every store.
     struct Writer {
         std::int64_t* times;
-        double* values;
+        Value* values;
         std::size_t count;
         std::int64_t start;
-        double last; // the value so far
+        Value last; // the value so far
         bool begun;
 
-        void put(std::int64_t time, double value) noexcept {
+        void put(std::int64_t time, const Value& next) noexcept {
+            const Value value = next; // which no store can change
             if (time <= start) [[unlikely]] {
                 last = value;
                 return;
@@ -120,9 +148,7 @@ class Temporal : public Kernel {
             }
             times[count] = time;
             values[count] = value;
-            const bool change =
-                std::bit_cast<std::uint64_t>(value) != std::bit_cast<std::uint64_t>(last);
-            count += change ? 1 : 0;
+            count += D::same(value, last) ? 0 : 1;
             last = value;
         }
 
@@ -136,25 +162,26 @@ class Temporal : public Kernel {
 
     // For at most `count` calls of put().
     [[nodiscard]] Writer open(std::size_t count) {
-        EventList& list = room(count + 2); // the start, and one that changes nothing
-        return {list.times(), list.values(), 0, start(), told_.last, told_.begun};
+        BasicEventList<Value>& list =
+            this->room(count + 2); // the start, and one that changes nothing
+        return {list.times(), list.values(), 0, this->start(), told_.last, told_.begun};
     }
 
     void close(Writer& writer, std::int64_t frontier) noexcept {
         if (!writer.begun && writer.start <= frontier) writer.begin();
         told_ = {writer.last, writer.begun};
-        publish(writer.count);
+        this->publish(writer.count);
     }
 
     void reset() noexcept override { told_ = {before_, false}; }
 
   private:
     struct Told {
-        double last;
+        Value last;
         bool begun;
     };
 
-    double before_;
+    Value before_;
     Told told_;
     Told saved_;
 };

@@ -13,15 +13,17 @@
 namespace rtamt::dense {
 
 // What two step functions are worth at the frontier.
+template <class Value>
 struct Pair {
-    double a = 0.0;
-    double b = 0.0;
+    Value a{};
+    Value b{};
 };
 
 // Calls visit(time, values) once for each instant at which one of them has an event.
-template <class Visit>
-void merge(const Events& a, const Events& b, Pair& values, Visit&& visit) {
-    Pair now = values;
+template <class Value, class Visit>
+void merge(const BasicEvents<Value>& a, const BasicEvents<Value>& b, Pair<Value>& values,
+           Visit&& visit) {
+    Pair<Value> now = values;
     std::size_t i = 0;
     std::size_t j = 0;
     while (i < a.count && j < b.count) {

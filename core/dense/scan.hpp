@@ -4,7 +4,7 @@
 // Cost: one or two comparisons an event. Memory: the result.
 #pragma once
 
-#include "../algebra.hpp"
+#include "../values/algebra.hpp"
 #include "events.hpp"
 #include "merge.hpp"
 
@@ -44,8 +44,8 @@ template <class Algebra>
     EventList result;
     if (phi.count == 0 || psi.count == 0) return result;
     const std::int64_t start = std::max(phi.times[0], psi.times[0]);
-    Pair values;
-    merge(phi, psi, values, [&](std::int64_t time, const Pair& now) {
+    Pair<double> values;
+    merge(phi, psi, values, [&](std::int64_t time, const Pair<double>& now) {
         if (time < start) return;
         holds.append(time, now.a);
         result.append(time, now.b);

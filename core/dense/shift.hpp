@@ -9,16 +9,20 @@
 
 namespace rtamt::dense {
 
-class Shift final : public Temporal {
+template <ValueDomain D>
+class Shift final : public Temporal<D> {
   public:
-    Shift(std::int64_t lag, std::int64_t distance, double absent) noexcept
-        : Temporal(lag, absent), distance_(distance) {}
+    using Value = typename D::Value;
+    using Base = Temporal<D>;
+
+    Shift(std::int64_t lag, std::int64_t distance, const Value& absent) noexcept
+        : Base(lag, absent), distance_(distance) {}
 
     std::int64_t run(std::int64_t frontier) override {
-        const Events a = this->a();
+        const BasicEvents<Value> a = Kernel::a<Value>();
         const std::size_t due =
             waiting_.count_while([&](std::size_t i) { return waiting_[i].time <= frontier; });
-        Writer out = open(due + a.count);
+        auto out = this->open(due + a.count);
         for (std::size_t i = 0; i < due; ++i) {
             out.put(waiting_.front().time, waiting_.front().value);
             waiting_.pop_front();
@@ -31,39 +35,39 @@ class Shift final : public Temporal {
                 waiting_.push_back({time, a.values[i]});
             }
         }
-        close(out, frontier);
+        this->close(out, frontier);
         return never;
     }
 
     void checkpoint() noexcept override {
-        Temporal::checkpoint();
+        Base::checkpoint();
         waiting_.checkpoint();
     }
     void rollback() noexcept override {
-        Temporal::rollback();
+        Base::rollback();
         waiting_.rollback();
     }
     void transfer(Snapshot& snapshot, std::int64_t frontier) override {
-        Temporal::transfer(snapshot, frontier);
+        Base::transfer(snapshot, frontier);
         waiting_.transfer(snapshot);
         snapshot.require(waiting_.increasing(frontier, later(frontier, distance_), &Event::time));
     }
 
     [[nodiscard]] std::size_t pending() const noexcept override { return waiting_.size(); }
     [[nodiscard]] std::size_t bytes() const noexcept override {
-        return Temporal::bytes() + waiting_.bytes();
+        return Base::bytes() + waiting_.bytes();
     }
 
   protected:
     void reset() noexcept override {
-        Temporal::reset();
+        Base::reset();
         waiting_.clear();
     }
 
   private:
     struct Event {
         std::int64_t time; // when it is due
-        double value;
+        Value value;
     };
     std::int64_t distance_;
     Ring<Event> waiting_;

@@ -5,58 +5,61 @@
 // leave. To the next segment it leaves C' = min(p, max(q, C)): unlike in discrete time, p counts
 // even for the psi of its own segment, because (t', t] contains the rest of the segment of t'.
 //
-// Cost: four comparisons an event. Memory: three doubles.
+// Cost: four comparisons an event. Memory: three values.
 #pragma once
 
-#include "../algebra.hpp"
 #include "kernel.hpp"
 #include "merge.hpp"
 
 namespace rtamt::dense {
 
-class Since final : public Temporal {
+template <ValueDomain D>
+class Since final : public Temporal<D> {
   public:
-    explicit Since(std::int64_t lag) noexcept : Temporal(lag, Max::identity) {}
+    using Value = typename D::Value;
+    using Base = Temporal<D>;
+
+    explicit Since(std::int64_t lag) noexcept : Base(lag, D::bottom) {}
 
     std::int64_t run(std::int64_t frontier) override {
-        const Events phi = a();
-        const Events psi = b();
-        Writer out = open(phi.count + psi.count);
-        Pair segment = state_.operands;
-        double carry = state_.carry;
-        merge(phi, psi, state_.operands, [&](std::int64_t time, const Pair& now) {
-            carry = Min::join(segment.a, Max::join(segment.b, carry));
+        const BasicEvents<Value> phi = Kernel::a<Value>();
+        const BasicEvents<Value> psi = Kernel::b<Value>();
+        auto out = this->open(phi.count + psi.count);
+        Pair<Value> segment = state_.operands;
+        Value carry = state_.carry;
+        merge(phi, psi, state_.operands, [&](std::int64_t time, const Pair<Value>& now) {
+            carry = D::meet(segment.a, D::join(segment.b, carry));
             segment = now;
-            out.put(time, Max::join(now.b, Min::join(now.a, carry)));
+            out.put(time, D::join(now.b, D::meet(now.a, carry)));
         });
         state_.carry = carry;
-        close(out, frontier);
+        this->close(out, frontier);
         return never;
     }
 
     void checkpoint() noexcept override {
-        Temporal::checkpoint();
+        Base::checkpoint();
         saved_ = state_;
     }
     void rollback() noexcept override {
-        Temporal::rollback();
+        Base::rollback();
         state_ = saved_;
     }
     void transfer(Snapshot& snapshot, std::int64_t frontier) override {
-        Temporal::transfer(snapshot, frontier);
+        Base::transfer(snapshot, frontier);
         snapshot.item(state_);
     }
 
   protected:
     void reset() noexcept override {
-        Temporal::reset();
+        Base::reset();
         state_ = {};
     }
 
   private:
     struct State {
-        Pair operands{Max::identity, Max::identity}; // phi and psi of the last segment
-        double carry = Max::identity;                // what the segments before it leave
+        Pair<Value> operands{D::bottom, D::bottom}; // phi and psi of the last segment
+        Value carry = D::bottom;                    // what the segments before it leave
     };
     State state_;
     State saved_;

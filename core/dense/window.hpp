@@ -5,27 +5,37 @@
 // "Streaming maximum-minimum filter using no more than three comparisons per element", 2006) with
 // expiry times: segments in the order of time, each better than all after it, so that the first is
 // the extremum. A new segment outlives those before it and removes the ones that are no better.
+// That takes values of which one is always the better; where they are not so ordered, the window is
+// one of two stacks (sliding.hpp).
 //
 // Cost: amortised O(1) an event whatever w. Memory: at most the segments inside the window.
 #pragma once
 
-#include "../algebra.hpp"
+#include "../values/algebra.hpp"
 #include "kernel.hpp"
 #include "ring.hpp"
+#include "sliding.hpp"
+
+#include <type_traits>
 
 namespace rtamt::dense {
 
 template <class Algebra>
-class Slide final : public Temporal {
+class Wedge final : public Temporal<typename Algebra::Domain> {
   public:
-    Slide(std::int64_t lag, std::int64_t width) noexcept
-        : Temporal(lag, Algebra::identity), width_(width) {}
+    using Value = typename Algebra::Value;
+    using Base = Temporal<typename Algebra::Domain>;
+    using Writer = typename Base::Writer;
+    static_assert(Algebra::Domain::total);
+
+    Wedge(std::int64_t lag, std::int64_t width) noexcept
+        : Base(lag, Algebra::identity), width_(width) {}
 
     std::int64_t run(std::int64_t frontier) override {
-        const Events a = this->a();
+        const BasicEvents<Value> a = Kernel::a<Value>();
         const std::size_t due =
             wedge_.count_while([&](std::size_t i) { return wedge_[i].expiry <= frontier; });
-        Writer out = open(due + 2 * a.count); // what arrives may leave again
+        Writer out = this->open(due + 2 * a.count); // what arrives may leave again
         for (std::size_t i = 0; i < a.count; ++i) {
             const std::int64_t time = a.times[i];
             while (!wedge_.empty() && wedge_.front().expiry < time)
@@ -36,20 +46,20 @@ class Slide final : public Temporal {
         }
         while (!wedge_.empty() && wedge_.front().expiry <= frontier)
             expire(out);
-        close(out, frontier);
+        this->close(out, frontier);
         return never;
     }
 
     void checkpoint() noexcept override {
-        Temporal::checkpoint();
+        Base::checkpoint();
         wedge_.checkpoint();
     }
     void rollback() noexcept override {
-        Temporal::rollback();
+        Base::rollback();
         wedge_.rollback();
     }
     void transfer(Snapshot& snapshot, std::int64_t frontier) override {
-        Temporal::transfer(snapshot, frontier);
+        Base::transfer(snapshot, frontier);
         wedge_.transfer(snapshot);
         snapshot.require(wedge_.empty() || wedge_.back().expiry == never);
         snapshot.require(wedge_.increasing(frontier, never, &Segment::expiry));
@@ -59,19 +69,19 @@ class Slide final : public Temporal {
 
     [[nodiscard]] std::size_t pending() const noexcept override { return wedge_.size(); }
     [[nodiscard]] std::size_t bytes() const noexcept override {
-        return Temporal::bytes() + wedge_.bytes();
+        return Base::bytes() + wedge_.bytes();
     }
 
   protected:
     void reset() noexcept override {
-        Temporal::reset();
+        Base::reset();
         wedge_.clear();
     }
 
   private:
     struct Segment {
         std::int64_t expiry; // when it leaves the window; never, as long as it lasts
-        double value;
+        Value value;
     };
     std::int64_t width_;
     Ring<Segment> wedge_;
@@ -83,9 +93,9 @@ class Slide final : public Temporal {
         out.put(time, wedge_.front().value);
     }
 
-    void arrive(std::int64_t time, double value) {
+    void arrive(std::int64_t time, Value value) {
         if (!wedge_.empty()) {
-            const double last = wedge_.back().value;
+            const Value last = wedge_.back().value;
             if (last == value) return; // the segment goes on
             if (Algebra::join(last, value) != value) {
                 wedge_.edit(wedge_.size() - 1).expiry = later(time, width_);
@@ -98,5 +108,9 @@ class Slide final : public Temporal {
         wedge_.push_back({never, value});
     }
 };
+
+template <class Algebra>
+using Slide = std::conditional_t<Algebra::Domain::total, Wedge<Algebra>,
+                                 Sliding<Extremum<Algebra>, typename Algebra::Domain>>;
 
 } // namespace rtamt::dense

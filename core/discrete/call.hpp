@@ -35,10 +35,10 @@ class Call final : public Kernel {
             places_[i] = registers_[i] + fresh.begin;
         const bool last =
             block.slot + static_cast<std::int64_t>(block.count) >= block.samples + lag();
-        fault_ = foreign_.run({places_.data(), fresh.end - fresh.begin, last, out() + due.begin,
-                               due.end - due.begin});
+        fault_ = foreign_.run({places_.data(), fresh.end - fresh.begin, last,
+                               out<double>() + due.begin, due.end - due.begin});
         if (fault_ != nullptr) return std::min(due.begin, block.count - 1);
-        const double* values = out();
+        const double* values = out<double>();
         for (std::size_t place = due.begin; place < due.end; ++place) {
             if (std::isnan(values[place])) return place;
         }

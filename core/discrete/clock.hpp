@@ -22,13 +22,14 @@ class Clock {
     // Whether the next sample may come at this time.
     [[nodiscard]] bool accepts(double time) const noexcept {
         if (!std::isfinite(time)) return false;
-        if (stamps_.count() == 0) return true;
-        return strict_ ? time > stamps_.last() && even(time) : time >= stamps_.last();
+        const auto last = stamps_.last();
+        if (!last) return true;
+        return strict_ ? time > *last && even(time - *last) : time >= *last;
     }
 
     // A sample came at a time that was accepted.
     void advance(double time) noexcept {
-        if (stamps_.count() != 0 && !even(time)) ++violations_;
+        if (const auto last = stamps_.last(); last && !even(time - *last)) ++violations_;
         anchor_ = time;
         steps_ = 0.0;
         stamps_.add(time);
@@ -74,8 +75,9 @@ class Clock {
     std::uint64_t violations_ = 0;
     bool strict_;
 
-    [[nodiscard]] bool even(double time) const noexcept {
-        return std::fabs(time - stamps_.last() - period_) <= slack_;
+    // Whether two samples may be so far apart.
+    [[nodiscard]] bool even(double gap) const noexcept {
+        return std::fabs(gap - period_) <= slack_;
     }
 };
 

@@ -66,8 +66,8 @@ class Direct {
 
     // Before a block runs: of each column the block's first sample is at `offset`, and
     // `place(output, lag)` is where a result of the block's first slot belongs.
-    template <class Place, class Register>
-    void aim(std::span<const double* const> columns, std::size_t offset, const Block& block,
+    template <class Value, class Place, class Register>
+    void aim(std::span<const Value* const> columns, std::size_t offset, const Block& block,
              Place&& place, Register&& home) noexcept {
         if (!columns.empty()) {
             for (const Reader& reader : readers_)
@@ -82,7 +82,7 @@ class Direct {
     }
 
   private:
-    using Read = void (Kernel::*)(const double*) noexcept;
+    using Read = void (Kernel::*)(const void*) noexcept;
     struct Reader {
         Kernel* kernel;
         Read read;

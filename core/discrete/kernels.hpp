@@ -3,6 +3,7 @@
 
 #include "../kernel.hpp"
 #include "../program.hpp"
+#include "../values/domain.hpp"
 #include "pointwise.hpp"
 
 #include <cstddef>
@@ -10,14 +11,22 @@
 
 namespace rtamt::discrete {
 
-// Doubles of state in the arena.
-[[nodiscard]] std::size_t state_size(const Instruction& instruction) noexcept;
+// Makes the kernels of a program whose formulas have values of a domain.
+template <ValueDomain D>
+struct Kernels {
+    // Bytes of state in the arena of an instruction whose value has this sort.
+    [[nodiscard]] static std::size_t state_size(const Instruction& instruction, Sort sort) noexcept;
 
-// Null for inputs and constants, which compute nothing. `state` and `journal` point to state_size()
-// doubles each; the journal is only used by checkpoint() and rollback(). `same`: which operands are
-// constants.
-[[nodiscard]] std::unique_ptr<Kernel> make_kernel(const Instruction& instruction,
-                                                  std::int64_t operand_lag, double* state,
-                                                  double* journal, Same same = {});
+    // Null for inputs and constants, which compute nothing. `state` and `journal` point to
+    // state_size() bytes each; the journal is only used by checkpoint() and rollback(). `same`:
+    // which operands are constants.
+    [[nodiscard]] static std::unique_ptr<Kernel> make(const Instruction& instruction, Sort sort,
+                                                      std::int64_t operand_lag, void* state,
+                                                      void* journal, Same same = {});
+
+    // The kernel that copies a value of one sort to a register of the other.
+    [[nodiscard]] static std::unique_ptr<Kernel> cross(Sort from, std::int64_t lag)
+        requires(!UniformDomain<D>);
+};
 
 } // namespace rtamt::discrete

@@ -3,7 +3,7 @@
 // Cost: one or two comparisons a sample. No memory.
 #pragma once
 
-#include "../algebra.hpp"
+#include "../values/algebra.hpp"
 
 #include <cstddef>
 #include <span>

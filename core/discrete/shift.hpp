@@ -1,7 +1,7 @@
 // The operand d slots ago, or a given value where it was absent then: prev, next, once[d,d], and
 // the delays that line up operands of different lags.
 //
-// Cost: two copies a sample. Memory: d doubles, touched as far as the trace has come.
+// Cost: two copies a sample. Memory: d values, touched as far as the trace has come.
 #pragma once
 
 #include "../cells.hpp"
@@ -10,19 +10,22 @@
 
 namespace rtamt::discrete {
 
+template <class Value>
 class Shift final : public Kernel {
   public:
-    Shift(std::int64_t operand_lag, std::size_t distance, double absent, double* ring,
-          double* journal) noexcept
+    Shift(std::int64_t operand_lag, std::size_t distance, Value absent, Value* ring,
+          Value* journal) noexcept
         : Kernel(operand_lag), ring_(ring), distance_(distance), absent_(absent),
           journal_(journal) {}
 
     std::size_t run(const Block& block) noexcept override {
         const Range present = block.present(lag());
         // Before its first sample the operand leaves nothing behind: the ring starts with it.
-        fill_cells(out(), present.begin, absent_);
-        feed({a() + present.begin, absent_}, out() + present.begin, present.end - present.begin);
-        feed({nullptr, absent_}, out() + present.end, block.count - present.end);
+        auto* out = this->out<Value>();
+        fill_cells(out, present.begin, absent_);
+        feed({a<Value>() + present.begin, absent_}, out + present.begin,
+             present.end - present.begin);
+        feed({nullptr, absent_}, out + present.end, block.count - present.end);
         return defined;
     }
 
@@ -52,10 +55,10 @@ class Shift final : public Kernel {
   private:
     // Consecutive values of the operand, or as many of the value that stands for absent ones.
     struct Source {
-        const double* values;
-        double absent;
+        const Value* values;
+        Value absent;
 
-        void copy(std::size_t offset, std::size_t count, double* target) const noexcept {
+        void copy(std::size_t offset, std::size_t count, Value* target) const noexcept {
             if (values != nullptr) {
                 copy_cells(values + offset, count, target);
             } else {
@@ -69,14 +72,14 @@ class Shift final : public Kernel {
         bool full = false;
     };
 
-    double* ring_;
+    Value* ring_;
     std::size_t distance_;
-    double absent_;
+    Value absent_;
     State state_;
     State saved_;
-    Journal journal_;
+    Journal<Value> journal_;
 
-    void feed(Source source, double* out, std::size_t count) noexcept {
+    void feed(Source source, Value* out, std::size_t count) noexcept {
         if (count == 0) return;
         if (count >= distance_) {
             drain(out);
@@ -86,7 +89,7 @@ class Shift final : public Kernel {
             return;
         }
         for (std::size_t done = 0; done < count;) {
-            double* cells = ring_ + state_.next;
+            Value* cells = ring_ + state_.next;
             const std::size_t part = std::min(count - done, distance_ - state_.next);
             if (state_.full) {
                 copy_cells(cells, part, out + done);
@@ -101,7 +104,7 @@ class Shift final : public Kernel {
     }
 
     // The whole ring, oldest first.
-    void drain(double* out) const noexcept {
+    void drain(Value* out) const noexcept {
         const std::size_t rest = distance_ - state_.next;
         if (state_.full) {
             copy_cells(ring_ + state_.next, rest, out);

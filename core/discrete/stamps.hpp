@@ -10,7 +10,7 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <limits>
+#include <optional>
 
 namespace rtamt::discrete {
 
@@ -18,7 +18,9 @@ class Stamps {
   public:
     // Keeps the last `size` times, at least one.
     Stamps(double period, std::size_t size)
-        : arena_(size), ring_(arena_.take(size)), size_(size), period_(period) {}
+        : arena_(size * sizeof(double)),
+          ring_(static_cast<double*>(arena_.take(size * sizeof(double)))), size_(size),
+          period_(period) {}
 
     void add(double time) noexcept {
         if (count_ == 0) origin_ = time;
@@ -33,7 +35,7 @@ class Stamps {
     }
 
     void reset() noexcept {
-        last_ = std::numeric_limits<double>::quiet_NaN();
+        last_ = 0.0;
         count_ = 0;
         regular_ = 0;
         next_ = 0;
@@ -65,8 +67,10 @@ class Stamps {
         return index < regular_ ? computed(index) : ring_[(index - regular_) % size_];
     }
 
-    // The last time; NaN before the first.
-    [[nodiscard]] double last() const noexcept { return last_; }
+    // The last time; nothing before the first.
+    [[nodiscard]] std::optional<double> last() const noexcept {
+        return count_ == 0 ? std::nullopt : std::optional(last_);
+    }
 
     // How many of the last times are still here.
     [[nodiscard]] std::size_t available() const noexcept { return std::min(count_, size_); }
@@ -94,7 +98,7 @@ class Stamps {
     std::size_t regular_ = 0; // times before the first irregular one
     double period_;
     double origin_ = 0.0; // the first time
-    double last_ = std::numeric_limits<double>::quiet_NaN();
+    double last_ = 0.0;
 
     [[nodiscard]] double computed(std::size_t index) const noexcept {
         return origin_ + static_cast<double>(index) * period_;

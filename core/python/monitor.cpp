@@ -266,7 +266,7 @@ std::uint64_t Monitor::violations() const {
 
 double Monitor::last_time() const {
     gate_.require_idle();
-    return clock_.stamps().last();
+    return clock_.stamps().last().value_or(missing);
 }
 
 std::size_t Monitor::state_bytes() const {
@@ -279,7 +279,7 @@ double Monitor::last(std::uint32_t instruction) const {
     if (instruction >= executor_.program().instructions.size()) {
         throw std::out_of_range("There is no instruction " + std::to_string(instruction) + ".");
     }
-    return executor_.last(instruction);
+    return executor_.last(instruction).value_or(missing);
 }
 
 std::optional<double> Monitor::latest(std::size_t output) const {

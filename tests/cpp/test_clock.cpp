@@ -13,7 +13,7 @@ static constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
 TEST(time_must_be_finite_and_grow) {
     Clock clock(1.0, inf, true, 1);
-    CHECK(std::isnan(clock.stamps().last()));
+    CHECK(!clock.stamps().last());
     CHECK(!clock.accepts(not_a_number) && !clock.accepts(inf) && !clock.accepts(-inf));
     CHECK(clock.accepts(-7.5));
     clock.advance(-7.5);
@@ -39,7 +39,7 @@ TEST(lenient_clock_counts_a_gap_out_of_tolerance) {
     }
     CHECK(clock.violations() == 2);
     clock.reset();
-    CHECK(clock.violations() == 0 && std::isnan(clock.stamps().last()));
+    CHECK(clock.violations() == 0 && !clock.stamps().last());
     CHECK(clock.accepts(0.0));
 }
 

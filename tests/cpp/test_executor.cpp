@@ -1,12 +1,13 @@
 #include "discrete/executor.hpp"
 
-#include "programs.hpp"
+#include "random_programs.hpp"
 #include "ways.hpp"
 
 #include <stdexcept>
 
 using oracle::inf;
 using programs::Builder;
+using programs::random_program;
 using rtamt::Opcode;
 using rtamt::Program;
 using ways::Executor;
@@ -16,49 +17,8 @@ using ways::Signal;
 
 namespace {
 
-// A random program over two inputs: any opcode over anything so far, delays where lags differ.
-Program random_program(Random& random, int size) {
-    Builder builder;
-    std::vector<std::uint32_t> known{builder.input(), builder.input(),
-                                     builder.constant(random.number(5))};
-    const auto pick = [&] {
-        return known[static_cast<std::size_t>(
-            random.between(0, static_cast<std::int64_t>(known.size()) - 1))];
-    };
-    const auto constant = [&](std::uint32_t a) {
-        return builder.program().instructions[a].opcode == Opcode::constant;
-    };
-    for (int i = 0; i < size; ++i) {
-        const auto opcode =
-            static_cast<Opcode>(random.between(2, static_cast<std::int64_t>(Opcode::until)));
-        std::uint32_t a = pick();
-        std::uint32_t b = pick();
-        const auto& info = rtamt::info(opcode);
-        if (info.operands == 2 && !constant(a) && !constant(b)) {
-            const std::int64_t apart = builder.lag(a) - builder.lag(b);
-            if (apart > 0) b = builder.later(b, apart);
-            if (apart < 0) a = builder.later(a, -apart);
-        }
-        if (info.pointwise) {
-            known.push_back(
-                builder.pointwise(opcode, a, info.operands == 2 ? b : rtamt::no_operand));
-            continue;
-        }
-        const std::int64_t width = random.chance(20) ? random.between(1, 40) : random.between(1, 6);
-        const std::int64_t operand_lag = constant(a) ? builder.lag(b) : builder.lag(a);
-        const std::int64_t lag = std::max<std::int64_t>(
-            0, (info.operands == 2 ? operand_lag : builder.lag(a)) + random.between(-1, width));
-        const double absent = random.number(30);
-        known.push_back(info.operands == 2 ? builder.binary(opcode, a, b, width, lag)
-                                           : builder.unary(opcode, a, width, lag, absent));
-    }
-    builder.output(known.back());
-    builder.output(pick());
-    return builder.program();
-}
-
-std::vector<double> registers(const Executor& executor) {
-    std::vector<double> values;
+std::vector<std::optional<double>> registers(const Executor& executor) {
+    std::vector<std::optional<double>> values;
     for (std::uint32_t i = 0; i < executor.program().instructions.size(); ++i) {
         values.push_back(executor.last(i));
     }
@@ -66,9 +26,11 @@ std::vector<double> registers(const Executor& executor) {
 }
 
 // Equal where both are numbers; garbage in absent slots may be NaN.
-bool same(const std::vector<double>& a, const std::vector<double>& b) {
-    return std::ranges::equal(
-        a, b, [](double x, double y) { return x == y || (std::isnan(x) && std::isnan(y)); });
+bool same(const std::vector<std::optional<double>>& a,
+          const std::vector<std::optional<double>>& b) {
+    return std::ranges::equal(a, b, [](const auto& x, const auto& y) {
+        return x == y || (x && y && std::isnan(*x) && std::isnan(*y));
+    });
 }
 
 Signal appended(Signal signal, const Signal& more, std::size_t begin, std::size_t count) {
@@ -213,7 +175,7 @@ TEST(steps_and_chunks_can_be_mixed_and_reset_forgets_everything) {
         CHECK(!ways::finish(executor, outputs));
         CHECK(outputs == expected.outputs);
         executor.reset();
-        CHECK(executor.samples() == 0 && !executor.finished() && std::isnan(executor.last(a)));
+        CHECK(executor.samples() == 0 && !executor.finished() && !executor.last(a));
     }
 }
 
@@ -329,7 +291,7 @@ TEST(first_update_that_fails_leaves_a_new_monitor) {
     double value = 0;
     CHECK(executor.step(bad.data(), value) == Outcome::failed);
     CHECK(executor.failure().instruction == 3 && executor.failure().sample == 0);
-    CHECK(std::isnan(executor.last(a)) && executor.samples() == 0);
+    CHECK(!executor.last(a) && executor.samples() == 0);
     CHECK(executor.step(good.data(), value) == Outcome::known);
     CHECK(value == 3.0);
     CHECK(executor.step(bad.data(), value) == Outcome::failed);

@@ -16,7 +16,7 @@ TEST(restores_exactly_the_saved_cells) {
 
 TEST(saving_nothing_restores_nothing) {
     std::array<double, 2> ring{1, 2};
-    rtamt::Journal journal(nullptr);
+    rtamt::Journal<double> journal(nullptr);
     journal.save(ring.data(), 2, 0);
     ring = {3, 4};
     journal.restore(ring.data());

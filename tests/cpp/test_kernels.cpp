@@ -1,19 +1,43 @@
 #include "discrete/kernels.hpp"
 
 #include "check.hpp"
+#include "values/interval.hpp"
+#include "values/lanes.hpp"
+#include "values/real.hpp"
+#include "values/truth.hpp"
 
 using rtamt::Instruction;
+using rtamt::Interval;
+using rtamt::Lanes;
 using rtamt::Opcode;
-using rtamt::discrete::make_kernel;
-using rtamt::discrete::state_size;
+using rtamt::Real;
+using rtamt::Sort;
+using rtamt::Truth;
+using rtamt::discrete::Kernels;
 
-TEST(every_opcode_that_computes_has_a_kernel) {
+namespace {
+
+template <class D>
+void check_opcodes() {
     for (std::size_t code = 0; code < rtamt::opcodes.size(); ++code) {
         Instruction instruction;
         instruction.opcode = static_cast<Opcode>(code);
-        const auto kernel = make_kernel(instruction, 0, nullptr, nullptr);
-        CHECK((kernel != nullptr) == (rtamt::opcodes[code].operands > 0));
+        const auto& opcode = rtamt::opcodes[code];
+        for (const Sort sort : {Sort::number, Sort::formula}) {
+            if (opcode.gives != Sort::either && opcode.gives != sort) continue;
+            const auto kernel = Kernels<D>::make(instruction, sort, 0, nullptr, nullptr);
+            CHECK((kernel != nullptr) == (opcode.operands > 0));
+        }
     }
+}
+
+} // namespace
+
+TEST(every_opcode_that_computes_has_a_kernel_in_every_domain) {
+    check_opcodes<Real>();
+    check_opcodes<Interval>();
+    check_opcodes<Lanes<8>>();
+    check_opcodes<Truth>();
 }
 
 TEST(only_windows_and_shifts_keep_samples) {
@@ -23,7 +47,13 @@ TEST(only_windows_and_shifts_keep_samples) {
         instruction.n = 10;
         const auto count = rtamt::opcodes[code].count;
         const bool keeps = count == rtamt::Count::width || count == rtamt::Count::distance;
-        const std::size_t expected = instruction.opcode == Opcode::until ? 20 : 10;
-        CHECK(state_size(instruction) == (keeps ? expected : 0));
+        const std::size_t values = instruction.opcode == Opcode::until ? 20 : 10;
+        const std::size_t expected = keeps ? values * 8 : 0;
+        CHECK(Kernels<Real>::state_size(instruction, Sort::formula) == expected);
+        CHECK(Kernels<Truth>::state_size(instruction, Sort::formula) == expected);
+        CHECK(Kernels<Interval>::state_size(instruction, Sort::formula) == 2 * expected);
+        CHECK(Kernels<Lanes<8>>::state_size(instruction, Sort::formula) == 8 * expected);
+        if (instruction.opcode == Opcode::until) continue; // is never a number
+        CHECK(Kernels<Truth>::state_size(instruction, Sort::number) == 64 * expected);
     }
 }

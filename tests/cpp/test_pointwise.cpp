@@ -1,6 +1,7 @@
 #include "discrete/pointwise.hpp"
 
 #include "programs.hpp"
+#include "values/functions.hpp"
 #include "ways.hpp"
 
 #include <cmath>
@@ -140,15 +141,15 @@ static bool makes_nan(double constant, bool first) {
 }
 
 TEST(an_operation_with_a_constant_can_fail_if_some_sample_makes_nan) {
-    namespace pointwise = rtamt::discrete::pointwise;
+    namespace functions = rtamt::functions;
     struct Case {
         Opcode opcode;
         bool (*makes_nan)(double, bool);
     };
-    for (const Case& example : {Case{Opcode::add, makes_nan<pointwise::Add>},
-                                Case{Opcode::sub, makes_nan<pointwise::Sub>},
-                                Case{Opcode::mul, makes_nan<pointwise::Mul>},
-                                Case{Opcode::div, makes_nan<pointwise::Div>}}) {
+    for (const Case& example : {Case{Opcode::add, makes_nan<functions::Add>},
+                                Case{Opcode::sub, makes_nan<functions::Sub>},
+                                Case{Opcode::mul, makes_nan<functions::Mul>},
+                                Case{Opcode::div, makes_nan<functions::Div>}}) {
         for (const double constant : {-inf, -1e308, -3.0, -0.0, 0.0, 5e-324, 3.0, 1e308, inf}) {
             for (const bool first : {true, false}) {
                 Builder builder;

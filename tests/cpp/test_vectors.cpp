@@ -2,13 +2,14 @@
 
 #include "check.hpp"
 #include "discrete/pointwise.hpp"
+#include "values/functions.hpp"
 
 #include <cstring>
 #include <limits>
 #include <vector>
 
 using rtamt::Range;
-using Divide = rtamt::discrete::Binary<rtamt::discrete::pointwise::Div>;
+using Divide = rtamt::discrete::Binary<rtamt::operations::Map<rtamt::Real, rtamt::functions::Div>>;
 
 TEST(a_loop_gives_the_same_bits_and_finds_the_same_nan_however_wide) {
     constexpr double inf = std::numeric_limits<double>::infinity();

@@ -2,7 +2,7 @@
 //
 // The first byte chooses the time domain and how the samples are cut, the rest is a program, whose
 // checksum is set right here: else nothing that was changed would ever get past it.
-#include "algebra.hpp"
+#include "values/algebra.hpp"
 #include "crc32.hpp"
 #include "dense/executor.hpp"
 #include "discrete/executor.hpp"

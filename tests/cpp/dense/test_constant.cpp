@@ -10,7 +10,7 @@ using ways::Random;
 using ways::Signal;
 
 TEST(a_constant_is_one_event_where_it_begins) {
-    rtamt::dense::Constant constant(3, 2.5);
+    rtamt::dense::Constant<rtamt::Real> constant(3, 2.5);
     constant.begin(100);
     CHECK(constant.run(102) == rtamt::dense::never && constant.out().count == 0);
     CHECK(constant.run(200) == rtamt::dense::never);

@@ -1,12 +1,13 @@
 #include "dense/executor.hpp"
 
-#include "../programs.hpp"
+#include "random_programs.hpp"
 #include "ways.hpp"
 
 #include <stdexcept>
 
 using dense_oracle::inf;
 using programs::Builder;
+using programs::random_dense_program;
 using rtamt::Opcode;
 using rtamt::Program;
 using ways::EventList;
@@ -19,48 +20,6 @@ using ways::Trace;
 
 namespace {
 
-// A random program over two inputs: any opcode over anything so far, delays where lags differ.
-Program random_program(Random& random, int size) {
-    Builder builder;
-    std::vector<std::uint32_t> known{builder.input(), builder.input(),
-                                     builder.constant(random.number(5))};
-    const auto pick = [&] {
-        return known[static_cast<std::size_t>(
-            random.between(0, static_cast<std::int64_t>(known.size()) - 1))];
-    };
-    const auto constant = [&](std::uint32_t a) {
-        return builder.program().instructions[a].opcode == Opcode::constant;
-    };
-    for (int i = 0; i < size; ++i) {
-        const auto opcode =
-            static_cast<Opcode>(random.between(2, static_cast<std::int64_t>(Opcode::until)));
-        std::uint32_t a = pick();
-        std::uint32_t b = pick();
-        const auto& info = rtamt::info(opcode);
-        if (info.operands == 2 && !constant(a) && !constant(b)) {
-            const std::int64_t apart = builder.lag(a) - builder.lag(b);
-            if (apart > 0) b = builder.later(b, apart);
-            if (apart < 0) a = builder.later(a, -apart);
-        }
-        if (info.pointwise) {
-            known.push_back(
-                builder.pointwise(opcode, a, info.operands == 2 ? b : rtamt::no_operand));
-            continue;
-        }
-        const std::int64_t width = random.chance(20) ? random.between(0, 30) : random.between(0, 5);
-        const std::int64_t operand_lag =
-            constant(a) && info.operands == 2 ? builder.lag(b) : builder.lag(a);
-        const std::int64_t lag =
-            std::max<std::int64_t>(0, operand_lag + random.between(-1, width + 1));
-        const double absent = random.number(30);
-        known.push_back(info.operands == 2 ? builder.binary(opcode, a, b, width, lag)
-                                           : builder.unary(opcode, a, width, lag, absent));
-    }
-    builder.output(known.back());
-    builder.output(pick());
-    return builder.program();
-}
-
 std::string round_note(int round) {
     return "round " + std::to_string(round);
 }
@@ -71,7 +30,8 @@ TEST(random_programs_offline_are_their_definition) {
     Random random(20);
     int failed = 0;
     for (int round = 0; round < 1500; ++round) {
-        const Program program = random_program(random, static_cast<int>(random.between(1, 12)));
+        const Program program =
+            random_dense_program(random, static_cast<int>(random.between(1, 12)));
         const Trace trace = dense_oracle::random_trace(random, 2, 20, random.between(-50, 50), 1);
         const std::int64_t extra = random.chance(30) ? random.between(0, 30) : 0;
         const auto expected = dense_oracle::answer(program, trace, extra);
@@ -99,7 +59,8 @@ TEST(random_programs_online_are_their_definition_and_failures_leave_no_trace) {
     int finish_failed = 0;
     for (int round = 0; round < 1200; ++round) {
         const std::string note = round_note(round);
-        const Program program = random_program(random, static_cast<int>(random.between(1, 10)));
+        const Program program =
+            random_dense_program(random, static_cast<int>(random.between(1, 10)));
         const Trace all = dense_oracle::random_trace(random, 2, 20, random.between(-50, 50), 1);
         Executor executor(program);
         // Events that were refused are left out of `trace`, which grows event by event.
@@ -292,7 +253,7 @@ TEST(the_answers_at_the_ends_of_time_are_those_at_0) {
     Random random(23);
     int checked = 0;
     for (int round = 0; round < 200; ++round) {
-        const Program program = random_program(random, 8);
+        const Program program = random_dense_program(random, 8);
         const Trace trace = dense_oracle::random_trace(random, 2, 20, 0, 1);
         const auto expected = dense_oracle::answer(program, trace);
         if (expected.undefined) continue;

@@ -3,7 +3,7 @@
 #include "ways.hpp"
 
 using dense_oracle::signal_of;
-using rtamt::dense::Feed;
+using Feed = rtamt::dense::Feed<double>;
 using rtamt::dense::never;
 using ways::Signal;
 

@@ -5,7 +5,7 @@
 using dense_oracle::signal_of;
 using rtamt::dense::Events;
 using rtamt::dense::never;
-using rtamt::dense::Temporal;
+using Temporal = rtamt::dense::Temporal<rtamt::Real>;
 using ways::Signal;
 
 namespace {
@@ -16,9 +16,10 @@ class Echo final : public Temporal {
     explicit Echo(std::int64_t lag) : Temporal(lag, -1.0) {}
 
     std::int64_t run(std::int64_t frontier) override {
-        Writer out = open(a().count);
-        for (std::size_t i = 0; i < a().count; ++i)
-            out.put(a().times[i], a().values[i]);
+        const Events a = this->a<double>();
+        Writer out = open(a.count);
+        for (std::size_t i = 0; i < a.count; ++i)
+            out.put(a.times[i], a.values[i]);
         close(out, frontier);
         return never;
     }

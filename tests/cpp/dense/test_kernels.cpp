@@ -1,17 +1,38 @@
 #include "dense/kernels.hpp"
 
 #include "../check.hpp"
+#include "values/interval.hpp"
+#include "values/lanes.hpp"
+#include "values/real.hpp"
+#include "values/truth.hpp"
 
 using rtamt::Instruction;
 using rtamt::Opcode;
-using rtamt::dense::make_kernel;
+using rtamt::Sort;
+using rtamt::dense::Kernels;
 
-TEST(every_opcode_that_computes_has_a_kernel) {
+namespace {
+
+template <class D>
+void check_opcodes() {
     for (std::size_t code = 0; code < rtamt::opcodes.size(); ++code) {
         Instruction instruction;
         instruction.opcode = static_cast<Opcode>(code);
-        const auto kernel = make_kernel(instruction);
-        CHECK((kernel != nullptr) == (rtamt::opcodes[code].operands > 0));
-        if (kernel) CHECK(kernel->bytes() == 0 && kernel->pending() == 0);
+        const auto& opcode = rtamt::opcodes[code];
+        for (const Sort sort : {Sort::number, Sort::formula}) {
+            if (opcode.gives != Sort::either && opcode.gives != sort) continue;
+            const auto kernel = Kernels<D>::make(instruction, sort);
+            CHECK((kernel != nullptr) == (opcode.operands > 0));
+            if (kernel) CHECK(kernel->bytes() == 0 && kernel->pending() == 0);
+        }
     }
+}
+
+} // namespace
+
+TEST(every_opcode_that_computes_has_a_kernel_in_every_domain) {
+    check_opcodes<rtamt::Real>();
+    check_opcodes<rtamt::Interval>();
+    check_opcodes<rtamt::Lanes<8>>();
+    check_opcodes<rtamt::Truth>();
 }

@@ -17,9 +17,9 @@ TEST(every_instant_of_either_signal_comes_once_with_both_values) {
         std::ranges::sort(expected);
         expected.erase(std::ranges::unique(expected).begin(), expected.end());
         std::vector<std::int64_t> seen;
-        rtamt::dense::Pair values{100, 200};
+        rtamt::dense::Pair<double> values{100, 200};
         rtamt::dense::merge(a.events(0, a.size()), b.events(0, b.size()), values,
-                            [&](std::int64_t time, const rtamt::dense::Pair& now) {
+                            [&](std::int64_t time, const rtamt::dense::Pair<double>& now) {
                                 seen.push_back(time);
                                 CHECK(now.a == (time < a.times[0] ? 100 : at(a, time)));
                                 CHECK(now.b == (time < b.times[0] ? 200 : at(b, time)));

@@ -1,4 +1,4 @@
-#include "algebra.hpp"
+#include "values/algebra.hpp"
 
 #include "check.hpp"
 #include "oracle.hpp"

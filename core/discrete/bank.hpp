@@ -1,0 +1,122 @@
+// The registers of one sort: a block of values for each instruction that is a number, or a formula.
+//
+// Memory: a value a register until grow(), then a block. Cost: checkpoint() and rollback() copy a
+// value for each register that a failed update overwrites.
+#pragma once
+
+#include "../cells.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace rtamt::discrete {
+
+template <class Value>
+class Bank {
+  public:
+    // A new register; before at(). Answers its row.
+    [[nodiscard]] std::uint32_t add() {
+        cells_.emplace_back();
+        return rows_++;
+    }
+
+    // A new register that samples of an input are copied to.
+    [[nodiscard]] std::uint32_t add_input(std::uint32_t instruction, std::size_t column) {
+        inputs_.push_back({instruction, rows_, column, nullptr});
+        return add();
+    }
+
+    // A register that is filled with one value.
+    [[nodiscard]] std::uint32_t add_constant(const Value& value) {
+        constants_.push_back({rows_, value});
+        return add();
+    }
+
+    // Has checkpoint() remember what the last slot of a register held.
+    void protect(std::uint32_t row) { fragile_.push_back({row, nullptr, {}}); }
+    void protect_nothing() noexcept { fragile_.clear(); }
+
+    // Puts the registers `stride` values apart and keeps slot `last` of each, as the first;
+    // settle() has to follow.
+    void grow(std::size_t stride, std::size_t last) {
+        std::vector<Value> larger(rows_ * stride);
+        for (std::uint32_t row = 0; row < rows_; ++row)
+            larger[row * stride] = at(row)[last];
+        cells_ = std::move(larger);
+        stride_ = stride;
+    }
+
+    // After the last register was added, and whenever they have moved: they have `size` slots.
+    void settle(std::size_t size) noexcept {
+        for (const Constant& constant : constants_)
+            std::fill_n(at(constant.row), size, constant.value);
+        for (Input& input : inputs_)
+            input.values = at(input.row);
+        for (Fragile& fragile : fragile_)
+            fragile.values = at(fragile.row);
+    }
+
+    [[nodiscard]] Value* at(std::uint32_t row) noexcept { return cells_.data() + row * stride_; }
+    [[nodiscard]] const Value* at(std::uint32_t row) const noexcept {
+        return cells_.data() + row * stride_;
+    }
+
+    // One sample of every input.
+    template <class Number>
+    void load(const Number* samples) noexcept {
+        for (const Input& input : inputs_)
+            *input.values = samples[input.column];
+    }
+
+    // `count` samples from `offset` on of every input but those that are to be skipped.
+    template <class Column, class Skip>
+    void load(std::span<const Column> columns, std::size_t offset, std::size_t count,
+              Skip&& skip) noexcept {
+        for (const Input& input : inputs_) {
+            if (skip(input.instruction)) continue;
+            copy_cells(static_cast<const Value*>(columns[input.column]) + offset, count,
+                       input.values);
+        }
+    }
+
+    void checkpoint(std::size_t last) noexcept {
+        for (Fragile& fragile : fragile_)
+            fragile.last = fragile.values[last];
+    }
+    void rollback(std::size_t last) noexcept {
+        for (const Fragile& fragile : fragile_)
+            fragile.values[last] = fragile.last;
+    }
+
+    [[nodiscard]] std::size_t bytes() const noexcept { return cells_.size() * sizeof(Value); }
+
+  private:
+    struct Input {
+        std::uint32_t instruction;
+        std::uint32_t row;
+        std::size_t column;
+        Value* values;
+    };
+    struct Constant {
+        std::uint32_t row;
+        Value value;
+    };
+    // A register that a failed update overwrites, and what its last slot held before.
+    struct Fragile {
+        std::uint32_t row;
+        Value* values;
+        Value last;
+    };
+
+    std::vector<Value> cells_;
+    std::uint32_t rows_ = 0;
+    std::size_t stride_ = 1; // values from one register to the next
+    std::vector<Input> inputs_;
+    std::vector<Constant> constants_;
+    std::vector<Fragile> fragile_;
+};
+
+} // namespace rtamt::discrete

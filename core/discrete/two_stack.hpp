@@ -1,0 +1,223 @@
+// A sliding window over a monoid: the aggregate of the last w elements.
+//
+// Two stacks in one ring of w cells, the streaming form of van Herk's and of Gil and Werman's
+// running-extremum algorithm (M. van Herk, "A fast algorithm for local minimum and maximum filters
+// on rectangular and octagonal kernels", 1992; J. Gil, M. Werman, "Computing 2-D min, median, and
+// max filters", 1993). Time is cut into stretches of w slots. Cells before `fill` hold the elements
+// of this stretch, `back` their total; cells from `fill` on hold, from the stretch before, the
+// total from there to its end. The window is always a tail of the one and a head of the other.
+//
+// Cost: three operations of the monoid a sample whatever w, in runs between the ends of stretches;
+// at the end of a stretch, one pass over the ring. Memory: w elements, touched as far as the trace
+// has come.
+#pragma once
+
+#include "../cells.hpp"
+#include "../journal.hpp"
+#include "../kernel.hpp"
+#include "../snapshot.hpp"
+#include "../values/monoid.hpp"
+
+#include <algorithm>
+#include <cstddef>
+
+namespace rtamt::discrete {
+
+// The operands of a window, of which the second is read by binary monoids only.
+template <Monoid M>
+struct Operands {
+    const typename M::Value* a;
+    const typename M::Value* b;
+
+    [[nodiscard]] typename M::Element operator[](std::size_t i) const noexcept {
+        if constexpr (M::binary) {
+            return M::element(a[i], b[i]);
+        } else {
+            return M::element(a[i]);
+        }
+    }
+    [[nodiscard]] Operands from(std::size_t i) const noexcept {
+        return {a + i, M::binary ? b + i : b};
+    }
+};
+
+// The loops between the ends of stretches. To be specialised where a monoid allows better ones.
+template <Monoid M>
+struct Stretch {
+    using Element = typename M::Element;
+    using Value = typename M::Value;
+
+    // Replaces every cell by the total from there to the end.
+    static void flip(Element* ring, std::size_t width) noexcept {
+        Element tail = M::identity;
+        for (std::size_t i = width; i > 0; --i) {
+            tail = M::prepend(ring[i - 1], tail);
+            ring[i - 1] = tail;
+        }
+    }
+
+    // In the first stretch of a trace: nothing is before it. Answers the new back.
+    [[nodiscard]] static Element grow(Operands<M> in, Element* cells, Element back, Value* out,
+                                      std::size_t count) noexcept {
+        for (std::size_t i = 0; i < count; ++i) {
+            const Element here = in[i];
+            back = M::append(back, here);
+            out[i] = M::result(back);
+            cells[i] = here;
+        }
+        return back;
+    }
+
+    // In any later stretch. A cell is read for the slot before the one that overwrites it.
+    [[nodiscard]] static Element slide(Operands<M> in, Element* cells, Element back, Value* out,
+                                       std::size_t count) noexcept {
+        for (std::size_t i = 0; i < count; ++i) {
+            const Element here = in[i];
+            back = M::append(back, here);
+            out[i] = M::result(cells[i + 1], back);
+            cells[i] = here;
+        }
+        return back;
+    }
+};
+
+template <Monoid M>
+class TwoStack {
+  public:
+    using Element = typename M::Element;
+    using Value = typename M::Value;
+
+    // The ring and the journal hold `width` elements; the journal is only used by checkpoint().
+    TwoStack(std::size_t width, Element* ring, Element* journal) noexcept
+        : ring_(ring), width_(width), journal_(journal) {}
+
+    // The next `count` elements, and the aggregate at each.
+    void push(Operands<M> in, Value* out, std::size_t count) noexcept {
+        for (std::size_t done = 0; done < count;) {
+            const std::size_t part = room(count - done);
+            state_.front ? slide(in.from(done), out + done, part)
+                         : grow(in.from(done), out + done, part);
+            done += part;
+        }
+    }
+
+    // Slots after the last element: the window empties.
+    void expire(Value* out, std::size_t count) noexcept {
+        for (std::size_t done = 0; done < count;) {
+            const std::size_t part = room(count - done);
+            drop(out + done, part);
+            done += part;
+        }
+    }
+
+    void reset() noexcept { state_ = {}; }
+
+    // At most the next `count` slots will be taken back.
+    void checkpoint(std::size_t count) noexcept {
+        (void)room(
+            1); // ends a full stretch, which changes how the window is held but not what it is
+        saved_ = state_;
+        if (count <= width_ - state_.fill) {
+            journal_.save(ring_, state_.fill, state_.front ? count : 0);
+        } else {
+            journal_.save(ring_, 0, state_.front ? width_ : state_.fill);
+        }
+    }
+
+    void rollback() noexcept {
+        state_ = saved_;
+        journal_.restore(ring_);
+    }
+
+    void transfer(Snapshot& snapshot) {
+        snapshot.item(state_.fill);
+        snapshot.item(state_.back);
+        snapshot.item(state_.front);
+        snapshot.require(state_.fill <= width_);
+        snapshot.cells(ring_, state_.front ? width_ : state_.fill);
+    }
+
+  private:
+    struct State {
+        std::size_t fill = 0;
+        Element back = M::identity;
+        bool front = false; // whether there was a stretch before this one
+    };
+
+    Element* ring_;
+    std::size_t width_;
+    State state_;
+    State saved_;
+    Journal<Element> journal_;
+
+    // How many of `count` slots fit into this stretch, after ending it if it is full.
+    [[nodiscard]] std::size_t room(std::size_t count) noexcept {
+        if (state_.fill == width_) {
+            Stretch<M>::flip(ring_, width_);
+            state_ = {0, M::identity, true};
+        }
+        return std::min(count, width_ - state_.fill);
+    }
+
+    void grow(Operands<M> in, Value* out, std::size_t count) noexcept {
+        state_.back = Stretch<M>::grow(in, ring_ + state_.fill, state_.back, out, count);
+        state_.fill += count;
+    }
+
+    void slide(Operands<M> in, Value* out, std::size_t count) noexcept {
+        const std::size_t inner = std::min(count, width_ - state_.fill - 1);
+        Element* cells = ring_ + state_.fill;
+        Element back = Stretch<M>::slide(in, cells, state_.back, out, inner);
+        if (inner < count) { // the last slot of the stretch: nothing of the one before is left
+            const Element here = in[inner];
+            back = M::append(back, here);
+            out[inner] = M::result(back);
+            cells[inner] = here;
+        }
+        state_.back = back;
+        state_.fill += count;
+    }
+
+    void drop(Value* out, std::size_t count) noexcept {
+        Element* cells = ring_ + state_.fill;
+        const std::size_t inner =
+            state_.front ? std::min(count, width_ - state_.fill - 1) : std::size_t{0};
+        for (std::size_t i = 0; i < inner; ++i)
+            out[i] = M::result(cells[i + 1], state_.back);
+        fill_cells(out + inner, count - inner, M::result(state_.back));
+        fill_cells(cells, count, M::identity);
+        state_.fill += count;
+    }
+};
+
+// The kernel of a sliding window.
+template <Monoid M>
+class Sliding final : public Kernel {
+  public:
+    using Element = typename M::Element;
+    using Value = typename M::Value;
+
+    Sliding(std::int64_t operand_lag, std::size_t width, Element* ring, Element* journal) noexcept
+        : Kernel(operand_lag), stack_(width, ring, journal) {}
+
+    std::size_t run(const Block& block) noexcept override {
+        const Range present = block.present(lag());
+        auto* out = this->out<Value>();
+        // Before their first sample the operands leave nothing behind: the window starts with it.
+        fill_cells(out, present.begin, M::result(M::identity));
+        const Operands<M> in{a<Value>(), b<Value>()};
+        stack_.push(in.from(present.begin), out + present.begin, present.end - present.begin);
+        stack_.expire(out + present.end, block.count - present.end);
+        return defined;
+    }
+
+    void reset() noexcept override { stack_.reset(); }
+    void checkpoint(std::size_t count) noexcept override { stack_.checkpoint(count); }
+    void rollback() noexcept override { stack_.rollback(); }
+    void transfer(Snapshot& snapshot) override { stack_.transfer(snapshot); }
+
+  private:
+    TwoStack<M> stack_;
+};
+
+} // namespace rtamt::discrete

@@ -1,0 +1,54 @@
+// Random programs over two inputs.
+#pragma once
+
+#include "oracle.hpp"
+#include "programs.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+namespace programs {
+
+// A random program over two inputs: any opcode over anything so far, delays where lags differ.
+inline Program random_program(oracle::Random& random, int size) {
+    Builder builder;
+    std::vector<std::uint32_t> known{builder.input(), builder.input(),
+                                     builder.constant(random.number(5))};
+    const auto pick = [&] {
+        return known[static_cast<std::size_t>(
+            random.between(0, static_cast<std::int64_t>(known.size()) - 1))];
+    };
+    const auto constant = [&](std::uint32_t a) {
+        return builder.program().instructions[a].opcode == Opcode::constant;
+    };
+    for (int i = 0; i < size; ++i) {
+        const auto opcode =
+            static_cast<Opcode>(random.between(2, static_cast<std::int64_t>(Opcode::until)));
+        std::uint32_t a = pick();
+        std::uint32_t b = pick();
+        const auto& info = rtamt::info(opcode);
+        if (info.operands == 2 && !constant(a) && !constant(b)) {
+            const std::int64_t apart = builder.lag(a) - builder.lag(b);
+            if (apart > 0) b = builder.later(b, apart);
+            if (apart < 0) a = builder.later(a, -apart);
+        }
+        if (info.pointwise) {
+            known.push_back(
+                builder.pointwise(opcode, a, info.operands == 2 ? b : rtamt::no_operand));
+            continue;
+        }
+        const std::int64_t width = random.chance(20) ? random.between(1, 40) : random.between(1, 6);
+        const std::int64_t operand_lag = constant(a) ? builder.lag(b) : builder.lag(a);
+        const std::int64_t lag = std::max<std::int64_t>(
+            0, (info.operands == 2 ? operand_lag : builder.lag(a)) + random.between(-1, width));
+        const double absent = random.number(30);
+        known.push_back(info.operands == 2 ? builder.binary(opcode, a, b, width, lag)
+                                           : builder.unary(opcode, a, width, lag, absent));
+    }
+    builder.output(known.back());
+    builder.output(pick());
+    return builder.program();
+}
+
+} // namespace programs
