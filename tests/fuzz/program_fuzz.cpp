@@ -2,11 +2,11 @@
 //
 // The first byte chooses the time domain and how the samples are cut, the rest is a program, whose
 // checksum is set right here: else nothing that was changed would ever get past it.
-#include "values/algebra.hpp"
 #include "crc32.hpp"
 #include "dense/executor.hpp"
 #include "discrete/executor.hpp"
 #include "program.hpp"
+#include "values/algebra.hpp"
 
 #include <algorithm>
 #include <array>
