@@ -17,11 +17,6 @@ namespace {
 // No input has this value, so it marks those that have none yet.
 constexpr double missing = std::numeric_limits<double>::quiet_NaN();
 
-// Whether a time is an integer that can only be nanoseconds since 1970; IMPLAUSIBLE in counting.py.
-[[nodiscard]] bool implausible(PyObject* time, double seconds) noexcept {
-    return std::fabs(seconds) >= 1e17 && !PyFloat_Check(time);
-}
-
 // How many samples a value may come late, and the last one: those that a caller may have to name.
 [[nodiscard]] std::size_t history_of(const Program& program) noexcept {
     return static_cast<std::size_t>(program.latest()) + 1;
@@ -94,7 +89,7 @@ template <class Values>
 PyObject* Monitor::update(PyObject* time, const Values& values) noexcept {
     return sample<true, false>(
         [&](const auto& numbers, double& t, std::span<double> row) -> const char* {
-            if (!numbers.read(time, t) || implausible(time, t)) return "time";
+            if (!numbers.read(time, t) || std::fabs(t) >= implausible) return "time";
             if (values.count() != names_.count()) return "names";
             std::size_t guess = 0;
             return values.each([&](PyObject* name, PyObject* value) -> const char* {

@@ -11,6 +11,9 @@ namespace rtamt::python {
 
 namespace nb = nanobind;
 
+// Numbers from here on are no times in seconds: Python says why (IMPLAUSIBLE in counting.py).
+inline constexpr double implausible = 1e11;
+
 // Drops a Python exception that only says that an object is no number, or too large a one.
 inline bool forget_no_number() noexcept {
     if (PyErr_ExceptionMatches(PyExc_TypeError) != 0 ||

@@ -187,3 +187,30 @@ def test_a_unit_that_is_none_and_one_too_many(time: str) -> None:
         )
     with pytest.raises(rtamt.TraceError, match=r"expected a number of ns"):
         spec.evaluate({"time": np.array([0], "M8[s]"), "x": [1]}, time_unit="ns")
+
+
+@pytest.mark.parametrize("number", [1_700_000_000_123, 1_700_000_000_123.0, 17 * 10**14, 17 * 10**17])
+@pytest.mark.parametrize("backend", ["cpp", "python"])
+@pytest.mark.parametrize("time", ["discrete", "dense"])
+def test_milliseconds_since_1970_are_never_seconds_in_one_place_and_milliseconds_in_another(
+    time: str, backend: str, number: float
+) -> None:
+    unit = {13: "ms", 16: "us", 19: "ns"}[len(f"{number:.0f}")]
+    spec = rtamt.parse("historically[0:1](x >= 0)", time=time, backend=backend, resolution="1ms")
+    data = {"time": [number, number + 1000], "x": [1, -1]}
+    ways = {
+        "evaluate": lambda: spec.evaluate(data),
+        "array": lambda: spec.evaluate({"time": np.array(data["time"]), "x": np.array(data["x"])}),
+        "frame": lambda: spec.evaluate(pd.DataFrame(data)),
+        "read": lambda: rtamt.read(data),
+        "read a frame": lambda: rtamt.read(pd.DataFrame(data)),
+        "stream": lambda: rtamt.check_stream(spec, [data]),
+        "batch": lambda: rtamt.evaluate_batch(spec, [data]),
+        "update": lambda: spec.monitor().update(number, x=1),
+        "update_many": lambda: spec.monitor().update_many(data),
+    }
+    for way, call in ways.items():
+        with pytest.raises(rtamt.TraceError) as info:
+            call()
+        assert f"is {number} at sample 0, too large for seconds: if it counts {unit}" in str(info.value), way
+    assert rtamt.parse("x").evaluate({**data, "time": [1e10, 1e10 + 1]}).robustness == 1

@@ -53,8 +53,8 @@ SPEC is a file (.stl) or a formula in quotes; more .stl files may follow. A trac
 Arrow, Excel, PX4 ULog or MDF file, a ROS bag (.bag, .db3, .mcap, or the folder that ROS 2 records), or
 the rows of a query (--sql URL --query TEXT). Time stamps are in the column called time, t, timestamp,
 stamp or datetime; without one, samples are one period apart. They are dates (ISO 8601) or numbers:
-seconds, or the unit in the header ('t [ms]') or of --time-unit; where the first is too large for seconds,
-ms, us or ns since 1970. Columns that no formula reads may hold anything.
+seconds, or the unit in the header ('t [ms]') or of --time-unit; numbers too large for seconds
+are an error. Columns that no formula reads may hold anything.
 'rtamt info TRACE' tells what is in a file, and what is guessed of it.
 
 With --time dense a value holds until the next one, and time stamps may lie anywhere; a variable has

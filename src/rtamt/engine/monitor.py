@@ -435,8 +435,8 @@ def read_time(time: Any, index: int, last: float | None, *, again: bool = False)
         raise TraceError(
             f"time is {shown(time)} at sample {index}, expected a number of seconds", variable="time"
         )
-    if is_implausible(time):
-        raise implausible("time", index, time)
+    if is_implausible(stamp):
+        raise implausible("time", index, time if is_implausible(time) else stamp)
     if not isfinite(stamp):
         raise TraceError(f"time is {stamp} at sample {index}: give a finite number of seconds")
     if last is not None and (stamp < last or (stamp == last and not again)):

@@ -113,9 +113,10 @@ class PythonMonitor:
         """Take one sample with a value for every variable."""
         if set(values) != set(self._names):
             raise Refused("variables")
-        if is_implausible(time):
+        number = _number(time)
+        if is_implausible(number):
             raise Refused("time")
-        return self._take(_number(time), {name: _number(values[name]) for name in self._names})
+        return self._take(number, {name: _number(values[name]) for name in self._names})
 
     def update_pairs(self, time: float, pairs: Sequence[tuple[str, float]]) -> float | None:
         """Take one sample; a variable that is left out keeps its value."""

@@ -74,7 +74,7 @@ def _blocks(lines: Iterator[str], header: Header, wanted: Sequence[Field]) -> It
 
 
 def _whole(column: Raw) -> Raw:
-    """Return a column of integers as int64: stamps are exact then, and told apart by their size."""
+    """Return a column of integers as int64: stamps are exact then."""
     return column.astype(np.int64) if (np.isfinite(column) & (column == np.rint(column))).all() else column
 
 

@@ -47,8 +47,8 @@ def read(
     ``{"v": "battery_status[1].voltage_v"}``. ``time``: the column of time stamps, ``""`` for none; by
     default the one called time, t, timestamp, stamp or datetime, perhaps with a unit (``Time [ms]``,
     ``time_ms``), else the one column of dates. ``time_unit``: of stamps that are numbers (``"s"``, ``"ms"``,
-    ``"us"``, ``"ns"``); by default what their column says, else seconds, or, where they are too large
-    for that, ms, us or ns since 1970. ``units``: from column to unit, where the source does not say it.
+    ``"us"``, ``"ns"``); by default what their column says, else seconds; numbers that are too large
+    for seconds are an error. ``units``: from column to unit, where the source does not say it.
     ``sheet``: of an Excel workbook that
     has several. ``recover``: read an MCAP file that was cut off or is damaged up to the damage, an
     error otherwise; flight logs are always read that far.

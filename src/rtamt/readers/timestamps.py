@@ -16,6 +16,7 @@ from rtamt.errors import TraceError, shown
 from rtamt.language.units import UNITS
 from rtamt.readers.dates import EXAMPLE, DateError, Dates, is_date
 from rtamt.signals.arrays import is_number
+from rtamt.signals.counting import refuse_implausible
 from rtamt.signals.datetimes import in_nanoseconds
 from rtamt.signals.stamps import is_stamps, may_be_stamps, unit_called, unit_of
 from rtamt.signals.ticks import NANOSECOND, TimeScale
@@ -29,9 +30,6 @@ if TYPE_CHECKING:
 
 #: What messages offer where the column of time stamps is not clear.
 CHOICES = "choose one with time=, or on the command line --time-column ('' for none)"
-
-#: Numbers at least this large count since 1970 in that unit: the year 1973 in it, 5138 in the next coarser one.
-_SINCE_1970 = (("ns", 10**17), ("us", 10**14), ("ms", 10**11))
 
 #: Nanoseconds that a double of seconds holds exactly enough to be rounded back.
 _EXACT = 2**50
@@ -78,10 +76,8 @@ class Clock:
         self._source = source
         why = "by its name" if is_stamps(field.name) else "the one column of dates"
         self.notes = [f"time is '{field.column}', {why}"] if guessed else []
-        #: Of numbers; None before the first stamp where neither the caller nor the column names one.
+        #: Of numbers; None where neither the caller nor the column names one.
         self._unit = self._named_unit(said)
-        #: The first stamp, where its size told the unit.
-        self._first: Any = None
         #: Whether numbers become timedelta64 of nanoseconds, and not float64 seconds; None before the first.
         self._exact: bool | None = None
         #: Reads objects that are dates, once the first of them was one.
@@ -130,23 +126,10 @@ class Clock:
         return ticks.view("m8[ns]")
 
     def _unit_of(self, raw: Raw, before: int) -> str:
-        """Return the unit of numbers, by the size of the first where nothing names it; all must be alike."""
-        if self._unit is None and len(raw):
-            self._first = raw[0]
-            self._unit = _unit_of_size(self._first)
-            if self._unit != "s":
-                self.notes.append(f"its numbers are taken as {self._unit} since 1970, by their size")
-        unit = self._unit or "s"
-        if self._first is not None:
-            sizes = np.abs(np.where(np.isfinite(raw.astype(np.float64)), raw, 0))
-            if len(raw) and _unit_of_size(sizes.max()) not in (unit, "s"):
-                i = int(sizes.argmax())
-                raise TraceError(
-                    f"the time column '{self.field.column}' of {self._source} is {self._first} at first and "
-                    f"{raw[i]} at sample {before + i}, too large for {unit}: give its unit ({', '.join(UNITS)}) with "
-                    f"time_unit=, or on the command line --time-unit"
-                )
-        return unit
+        """Return the unit of numbers, seconds where nothing names it."""
+        if self._unit is None:
+            refuse_implausible(raw, self.field.column, before, self._source)
+        return self._unit or "s"
 
     # ---- what is in the cells --------------------------------------------------------------------
 
@@ -186,15 +169,6 @@ class Clock:
         return TraceError(
             f"the time column '{self.field.column}' of {self._source} is {shown(value)} at sample {row}, {problem}"
         )
-
-
-def _unit_of_size(number: Any) -> str:
-    """Return the unit of a number that counts since 1970, by its size; seconds where it may count from anywhere.
-
-    >>> _unit_of_size(1_700_000_000), _unit_of_size(1_700_000_000_123)
-    ('s', 'ms')
-    """
-    return next((unit for unit, least in _SINCE_1970 if abs(number) >= least), "s")
 
 
 def _objects(raw: Raw) -> list[Any]:

@@ -131,7 +131,8 @@ class StlDiscreteTimeOfflineSpecification(ExplainedSpecification, DiscreteTimeSp
         stamps = arrays.array(columns[TIME], TIME) if TIME in columns else None
         if stamps is not None:
             columns[TIME] = stamps * float(UNITS[self._unit])
-        trace = record_discrete(columns or dataset, self._inputs, self._period, tuple(columns), inf)
+        unit = "s" if columns else None  # said by the specification: also where the numbers are large
+        trace = record_discrete(columns or dataset, self._inputs, self._period, tuple(columns), inf, unit)
         if stamps is None:
             raise arrays.missing_variable(TIME, tuple(columns))
         return stamps, trace

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rtamt.errors import TraceError
+from rtamt.errors import TraceError, shown
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -29,9 +29,11 @@ DOUBLES = 2**53
 _DOUBT = 2.0**-53
 
 
-#: Integers from here on are no number of seconds that anybody means: 10^17 s are three thousand million years,
-#: 10^17 ns since 1970 the year 1973.
-IMPLAUSIBLE = 10**17
+#: Numbers from here on are no number of seconds that anybody means (the year 5138), and how little counts since 1970
+#: in another unit: the year 1973 in it.
+IMPLAUSIBLE = 10**11
+_LARGEST = np.finfo(np.float64).max
+_SINCE_1970 = (("ns", 10**17), ("us", 10**14), ("ms", IMPLAUSIBLE))
 
 
 def all_integers(times: Any) -> bool:
@@ -41,28 +43,41 @@ def all_integers(times: Any) -> bool:
     return all(isinstance(time, Integral) for time in times)
 
 
-def refuse_implausible(times: Any, name: str, first: int = 0) -> None:
-    """Raise :class:`TraceError` at an integer that is said to be seconds and can only be something else."""
+def refuse_implausible(times: Any, name: str, first: int = 0, source: str = "") -> None:
+    """Raise :class:`TraceError` at a number that is said to be seconds and can only be something else."""
     if isinstance(times, np.ndarray) and times.dtype.kind != "O":
-        if times.dtype.kind not in "iu" or not len(times):
+        if times.dtype.kind not in "iuf" or not len(times):
             return
-        if max(abs(int(times.min())), abs(int(times.max()))) < IMPLAUSIBLE:
+        # Of NaN and infinities others say what is wrong with them.
+        if times.min() > -IMPLAUSIBLE and times.max() < IMPLAUSIBLE:
             return
     for i, time in enumerate(times):
         if is_implausible(time):
-            raise implausible(name, first + i, time)
+            raise implausible(name, first + i, time, source)
 
 
 def is_implausible(time: Any) -> bool:
-    """Tell whether a time is an integer that can only be nanoseconds since 1970."""
-    return isinstance(time, Integral) and IMPLAUSIBLE <= abs(int(time)) < 2**64
+    """Tell whether a time is a finite number that is too large for seconds.
+
+    >>> is_implausible(1_700_000_000), is_implausible(1_700_000_000_123), is_implausible(1.7e12)
+    (False, True, True)
+    """
+    plain = isinstance(time, int | float | np.integer | np.floating) and not isinstance(time, np.timedelta64)
+    return plain and bool(IMPLAUSIBLE <= abs(time) <= _LARGEST)
 
 
-def implausible(name: str, index: int, time: Any) -> TraceError:
-    """Return the error for such an integer where seconds are expected."""
+def implausible(name: str, index: int, time: Any, source: str = "") -> TraceError:
+    """Return the error for such a number where seconds are expected; ``source``: where it was read."""
+    number = time.item() if isinstance(time, np.generic) else time
+    unit = next(unit for unit, least in _SINCE_1970 if abs(time) >= least)
+    remedy = (
+        f"if it counts {unit} since 1970, say time_unit='{unit}', or on the command line --time-unit {unit}"
+    )
+    if abs(time) >= 2**64:
+        remedy = "subtract a start time"
     return TraceError(
-        f"the time of '{name}' is {int(time)} at sample {index}, which is no number of seconds: if it counts "
-        f"nanoseconds, say time_unit='ns'",
+        f"the time of '{name}'{f' of {source}' if source else ''} is {shown(number)} at sample {index}, "
+        f"too large for seconds: {remedy}",
         variable=name,
         index=index,
     )

@@ -63,7 +63,8 @@ class DiscreteTrace:
             return str(stamp.astype("M8[ms]")) if stamp == stamp.astype("M8[ms]") else str(stamp)
         if isinstance(stamp, np.timedelta64):
             return f"{decimal(int(stamp.astype(np.int64)) * UNITS['ns'])} s"
-        return f"{stamp:.15g} s" if self.unit is None else f"{stamp} {self.unit}"
+        number = f"{stamp:.15g}" if isinstance(stamp, float) else str(stamp)
+        return f"{number} {self.unit or 's'}"
 
 
 def record_discrete(

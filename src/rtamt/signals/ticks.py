@@ -34,6 +34,7 @@ from rtamt.signals import arrays
 from rtamt.signals.counting import (
     DOUBLES,
     FARTHEST,
+    IMPLAUSIBLE,
     NEAR,
     all_integers,
     counted,
@@ -149,7 +150,7 @@ class TimeScale:
         if max(self.tick.as_integer_ratio()) >= DOUBLES:
             return None
         rate, whole = float(self.tick.denominator), float(self.tick.numerator)
-        bound = NEAR * whole / rate
+        bound = min(NEAR * whole / rate, IMPLAUSIBLE)
         # In order, all are as near as the first and the last; NaN is in no order.
         if not len(numbers) or not -bound < numbers[0] <= numbers[-1] < bound:
             return None

@@ -138,7 +138,7 @@ class _RequirementInChunks:
         whole = self.trackers[n + len(boolean) :]
         satisfied = value_of(self.spec, self._boolean.skeleton, boolean) > 0
         return StreamResult(
-            value_of(self.spec, self._robust.skeleton, robust),
+            value_of(self.spec, self._robust.skeleton, robust) + 0.0,  # as of an evaluation
             satisfied,
             None if satisfied else time(violation_of(self.spec, self._boolean, boolean)),
             whole[0].value if whole else None,

@@ -125,7 +125,13 @@ def test_variables_on_clocks_of_their_own_in_chunks() -> None:
 
 @pytest.mark.parametrize(
     ("rate", "time", "tick"),
-    [(10.0, 0.25, 2), (10.0, 0.35, 4), (10.0, -0.25, -2), (1e9, 0.3, 300_000_000), (1.0, 2**52, 2**52)],
+    [
+        (10.0, 0.25, 2),
+        (10.0, 0.35, 4),
+        (10.0, -0.25, -2),
+        (1e9, 0.3, 300_000_000),
+        (1e5, 2.0**36, 2**36 * 10**5),
+    ],
 )
 def test_seconds_are_rounded_to_the_nearest_tick_and_halves_to_the_even_one(
     rate: float, time: float, tick: int

@@ -127,12 +127,6 @@ def test_every_guess_is_visible():
         "  left out, not numbers: mode\n"
         "  x [V]  2 samples, 0 s to 1e-05 s"
     )
-    epoch = rtamt.read({"timestamp": np.array([1_700_000_000_123, 1_700_000_000_223]), "x": [1, 2]})
-    assert epoch.notes == (
-        "time is 'timestamp', by its name",
-        "its numbers are taken as ms since 1970, by their size",
-    )
-    assert epoch["x"].times.tolist() == [1_700_000_000_123_000_000, 1_700_000_000_223_000_000]
     assert rtamt.read(pl.DataFrame({"when": DATES, "x": X})).notes == (
         "time is 'when', the one column of dates",
     )

@@ -96,6 +96,8 @@ def test_a_value_is_held_for_as_long_as_is_said_whatever_the_chunks(
     cells = ["nan" if gap and i % 2 else "" if gap else str(i) for i, gap in enumerate(gaps)]
     path.write_text("time,x\n" + "".join(f"{t},{x}\n" for t, x in zip(stamps, cells, strict=True)))
     options = {"columns": ["x"], "skip_nan": ["x"], "hold_for": f"{periods * 100}ms"}
+    if unit == "ms":
+        options["time_unit"] = "ms"
     expected, last, too_old = [], None, False
     for i, gap in enumerate(gaps):
         last = last if gap else i

@@ -131,13 +131,13 @@ def test_kinds_mixed_between_variables_and_between_updates() -> None:
         (np.array(["2026", "NaT"], "M8[s]"), "the time of 'x' is NaT at sample 1: give a finite time"),
         (
             [1_700_000_000_000_000_000, 1_700_000_000_000_000_001],
-            "the time of 'x' is 1700000000000000000 at sample 0, which is no number of seconds: if it counts "
-            "nanoseconds, say time_unit='ns'",
+            "the time of 'x' is 1700000000000000000 at sample 0, too large for seconds: if it counts "
+            "ns since 1970, say time_unit='ns', or on the command line --time-unit ns",
         ),
         (
             np.array([5, 1_700_000_000_000_000_001]),
-            "the time of 'x' is 1700000000000000001 at sample 1, which is no number of seconds: if it counts "
-            "nanoseconds, say time_unit='ns'",
+            "the time of 'x' is 1700000000000000001 at sample 1, too large for seconds: if it counts "
+            "ns since 1970, say time_unit='ns', or on the command line --time-unit ns",
         ),
         (
             [10**400, 1.5],

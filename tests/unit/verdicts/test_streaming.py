@@ -260,3 +260,11 @@ def test_a_bound_beyond_every_trace_is_rejected_where_it_stands(bound):
     assert str(error.value).splitlines()[-1].strip() == "^" * (len(bound) + 4)
     assert "more than can be counted" in error.value.message
     assert len(error.value.message) < 200
+
+
+@pytest.mark.parametrize("time", ["discrete", "dense"])
+def test_no_minus_before_a_zero_as_in_an_evaluation(time):
+    spec = rtamt.parse("not(x <= x)", time=time)
+    recording = {"time": [0.0, 1.0], "x": [1.0, 2.0]}
+    answers = [spec.evaluate(recording).robustness, rtamt.check_stream(spec, [recording]).robustness]
+    assert list(map(str, answers)) == ["0.0", "0.0"]
