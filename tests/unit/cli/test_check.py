@@ -214,7 +214,7 @@ def test_in_dense_time_a_variable_has_no_sample_where_its_cell_is_empty(run, wri
     )
 
 
-@pytest.mark.parametrize(("header", "options"), [("t", ["--time-unit", "ns"]), ("t [ns]", []), ("t", [])])
+@pytest.mark.parametrize(("header", "options"), [("t", ["--time-unit", "ns"]), ("t [ns]", [])])
 def test_integer_nanoseconds_are_exact(run, write, header, options):
     start = 1_700_000_000 * 10**9
     write("log.csv", f"{header},x\n{start},5\n{start + 1},1\n{start + 100_000_001},5\n")
@@ -223,6 +223,17 @@ def test_integer_nanoseconds_are_exact(run, write, header, options):
     assert Path("rho.csv").read_text() == (
         "time,robustness\n1700000000,-inf\n1700000000.1,5.0\n1700000000.100000001,1.0\n"
     )
+
+
+def test_nanoseconds_since_1970_without_their_unit_are_rejected(run, write):
+    write("log.csv", "t,x\n1700000000000000000,5\n1700000000100000000,1\n")
+    for time in ("discrete", "dense"):
+        assert run("check", "x >= 3", "log.csv", "--time", time) == (
+            2,
+            "",
+            "rtamt: the time of 't' of log.csv is 1700000000000000000 at sample 0, too large for seconds: if it "
+            "counts ns since 1970, say time_unit='ns', or on the command line --time-unit ns\n",
+        )
 
 
 def test_a_unit_of_stamps_in_discrete_time(run, write):

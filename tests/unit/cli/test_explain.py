@@ -62,6 +62,6 @@ def test_dates_and_nanoseconds_are_explained_in_dense_time(run, write):
     answer = run("explain", "always(x >= 3)", "log.csv", "--time", "dense", "--json")
     assert (answer.code, answer.err) == (1, "")
     assert "2026-01-01T00:00:01" in answer.out
-    write("log.csv", "t,x\n1700000000000000000,5\n1700000001000000000,1\n")
+    write("log.csv", "t [ns],x\n1700000000000000000,5\n1700000001000000000,1\n")
     answer = run("explain", "x >= 3", "log.csv", "--time", "dense", "--at", "1700000000.5")
     assert (answer.code, answer.err) == (0, "")

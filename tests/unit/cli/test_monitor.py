@@ -199,8 +199,8 @@ def test_dense_stamps_may_be_dates(run):
 def test_a_dense_stamp_too_far_from_0(run):
     _, errors = watch(run, "x", jsonl({"time": 10**30, "x": 5}), "--time-unit", "us")
     assert errors == (
-        "rtamt: stdin, line 1: 'x' has a time too far from 0 for ticks of 1 ns: subtract a start time, "
-        "or choose a coarser resolution\n"
+        "rtamt: stdin, line 1: the time of 'x' is 1e+24 at sample 0, too large for seconds: "
+        "subtract a start time\n"
     )
 
 
