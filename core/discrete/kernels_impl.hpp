@@ -1,10 +1,10 @@
+// The definitions of kernels.hpp, for the files that instantiate it for a domain (real.cpp and its
+// neighbours).
+#pragma once
+
 #include "kernels.hpp"
 
 #include "../values/functions.hpp"
-#include "../values/interval.hpp"
-#include "../values/lanes.hpp"
-#include "../values/real.hpp"
-#include "../values/truth.hpp"
 #include "running.hpp"
 #include "shift.hpp"
 #include "since.hpp"
@@ -13,7 +13,7 @@
 
 namespace rtamt::discrete {
 
-namespace {
+namespace detail {
 
 struct Setting {
     const Instruction& instruction;
@@ -110,7 +110,7 @@ std::unique_ptr<Kernel> make_formula(const Setting& at) {
     }
 }
 
-} // namespace
+} // namespace detail
 
 template <ValueDomain D>
 std::size_t Kernels<D>::state_size(const Instruction& instruction, Sort sort) noexcept {
@@ -132,8 +132,9 @@ template <ValueDomain D>
 std::unique_ptr<Kernel> Kernels<D>::make(const Instruction& instruction, Sort sort,
                                          std::int64_t operand_lag, void* state, void* journal,
                                          Same same) {
-    const Setting at{instruction, operand_lag, state, journal, same};
-    return sort == Sort::number ? make_number<typename D::Number>(at) : make_formula<D>(at);
+    const detail::Setting at{instruction, operand_lag, state, journal, same};
+    return sort == Sort::number ? detail::make_number<typename D::Number>(at)
+                                : detail::make_formula<D>(at);
 }
 
 template <ValueDomain D>
@@ -143,10 +144,5 @@ std::unique_ptr<Kernel> Kernels<D>::cross(Sort from, std::int64_t lag)
     if (from == Sort::number) return std::make_unique<Unary<operations::ToFormula<D>>>(lag);
     return std::make_unique<Unary<operations::ToNumber<D>>>(lag);
 }
-
-template struct Kernels<Real>;
-template struct Kernels<Interval>;
-template struct Kernels<Lanes<8>>;
-template struct Kernels<Truth>;
 
 } // namespace rtamt::discrete

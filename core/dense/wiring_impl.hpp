@@ -1,10 +1,10 @@
+// The definitions of wiring.hpp, for the files that instantiate it for a domain (real.cpp and its
+// neighbours).
+#pragma once
+
 #include "wiring.hpp"
 
 #include "../sorts.hpp"
-#include "../values/interval.hpp"
-#include "../values/lanes.hpp"
-#include "../values/real.hpp"
-#include "../values/truth.hpp"
 #include "call.hpp"
 #include "kernels.hpp"
 
@@ -159,10 +159,5 @@ std::size_t Wiring<D>::bytes() const noexcept {
         bytes += feed.bytes();
     return bytes;
 }
-
-template class Wiring<Real>;
-template class Wiring<Interval>;
-template class Wiring<Lanes<8>>;
-template class Wiring<Truth>;
 
 } // namespace rtamt::dense

@@ -1,10 +1,10 @@
+// The definitions of kernels.hpp, for the files that instantiate it for a domain (real.cpp and its
+// neighbours).
+#pragma once
+
 #include "kernels.hpp"
 
 #include "../values/functions.hpp"
-#include "../values/interval.hpp"
-#include "../values/lanes.hpp"
-#include "../values/real.hpp"
-#include "../values/truth.hpp"
 #include "constant.hpp"
 #include "pointwise.hpp"
 #include "running.hpp"
@@ -15,7 +15,7 @@
 
 namespace rtamt::dense {
 
-namespace {
+namespace detail {
 
 // A window, an operation on values that may be numbers or formulas, or null.
 template <ValueDomain D>
@@ -98,12 +98,12 @@ std::unique_ptr<Kernel> make_formula(const Instruction& at) {
     }
 }
 
-} // namespace
+} // namespace detail
 
 template <ValueDomain D>
 std::unique_ptr<Kernel> Kernels<D>::make(const Instruction& instruction, Sort sort) {
-    return sort == Sort::number ? make_number<typename D::Number>(instruction)
-                                : make_formula<D>(instruction);
+    return sort == Sort::number ? detail::make_number<typename D::Number>(instruction)
+                                : detail::make_formula<D>(instruction);
 }
 
 template <ValueDomain D>
@@ -120,10 +120,5 @@ std::unique_ptr<Kernel> Kernels<D>::cross(Sort from, std::int64_t lag)
     if (from == Sort::number) return std::make_unique<Unary<operations::ToFormula<D>>>(lag);
     return std::make_unique<Unary<operations::ToNumber<D>>>(lag);
 }
-
-template struct Kernels<Real>;
-template struct Kernels<Interval>;
-template struct Kernels<Lanes<8>>;
-template struct Kernels<Truth>;
 
 } // namespace rtamt::dense

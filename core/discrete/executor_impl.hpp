@@ -1,10 +1,10 @@
+// The definitions of executor.hpp, for the files that instantiate it for a domain (real.cpp and its
+// neighbours).
+#pragma once
+
 #include "executor.hpp"
 
 #include "../cells.hpp"
-#include "../values/interval.hpp"
-#include "../values/lanes.hpp"
-#include "../values/real.hpp"
-#include "../values/truth.hpp"
 
 #include <algorithm>
 #include <limits>
@@ -13,14 +13,14 @@
 
 namespace rtamt::discrete {
 
-namespace {
+namespace detail {
 
 // How many values of an output of this lag are known when the next slot is `slot`.
-[[nodiscard]] std::int64_t known_before(std::int64_t slot, std::int64_t lag) noexcept {
+[[nodiscard]] inline std::int64_t known_before(std::int64_t slot, std::int64_t lag) noexcept {
     return std::max<std::int64_t>(slot - lag, 0);
 }
 
-} // namespace
+} // namespace detail
 
 template <ValueDomain D>
 BasicExecutor<D>::BasicExecutor(Program program) : wiring_(std::move(program)) {}
@@ -47,15 +47,16 @@ void BasicExecutor<D>::reserve(std::size_t count) {
 template <ValueDomain D>
 std::size_t BasicExecutor<D>::known(std::size_t output, std::size_t count) const noexcept {
     const std::int64_t lag = program().instructions[program().outputs[output]].lag;
-    return static_cast<std::size_t>(known_before(slot_ + static_cast<std::int64_t>(count), lag) -
-                                    known_before(slot_, lag));
+    return static_cast<std::size_t>(
+        detail::known_before(slot_ + static_cast<std::int64_t>(count), lag) -
+        detail::known_before(slot_, lag));
 }
 
 template <ValueDomain D>
 std::size_t BasicExecutor<D>::remaining(std::size_t output) const noexcept {
     if (finished_) return 0;
     const std::int64_t lag = program().instructions[program().outputs[output]].lag;
-    return static_cast<std::size_t>(slot_ - known_before(slot_, lag));
+    return static_cast<std::size_t>(slot_ - detail::known_before(slot_, lag));
 }
 
 template <ValueDomain D>
@@ -110,7 +111,7 @@ void BasicExecutor<D>::aim(Columns columns, std::size_t offset, const Block& blo
         direct_.aim(
             columns, offset, block,
             [&](std::size_t output, std::int64_t lag) {
-                return outputs[output] + (block.slot - lag - known_before(start, lag));
+                return outputs[output] + (block.slot - lag - detail::known_before(start, lag));
             },
             [&](std::size_t output) { return wiring_.output(output); });
     }
@@ -124,8 +125,8 @@ void BasicExecutor<D>::deliver(const Block& block, std::int64_t start, Outputs o
         const std::int64_t lag = program().instructions[instruction].lag;
         const Range present = block.present(lag);
         if (present.begin == present.end) continue;
-        const std::int64_t offset =
-            block.slot + static_cast<std::int64_t>(present.begin) - lag - known_before(start, lag);
+        const std::int64_t offset = block.slot + static_cast<std::int64_t>(present.begin) - lag -
+                                    detail::known_before(start, lag);
         copy_cells(static_cast<const Formula*>(wiring_.output(output)) + present.begin,
                    present.end - present.begin, outputs[output] + offset);
     }
@@ -304,10 +305,5 @@ BasicExecutor<D>::last(std::uint32_t instruction) const noexcept
     if (slot_ == 0) return std::nullopt;
     return wiring_.value(instruction, last_);
 }
-
-template class BasicExecutor<Real>;
-template class BasicExecutor<Interval>;
-template class BasicExecutor<Lanes<8>>;
-template class BasicExecutor<Truth>;
 
 } // namespace rtamt::discrete

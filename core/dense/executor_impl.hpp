@@ -1,24 +1,23 @@
-#include "executor.hpp"
+// The definitions of executor.hpp, for the files that instantiate it for a domain (real.cpp and its
+// neighbours).
+#pragma once
 
-#include "../values/interval.hpp"
-#include "../values/lanes.hpp"
-#include "../values/real.hpp"
-#include "../values/truth.hpp"
+#include "executor.hpp"
 
 #include <algorithm>
 #include <stdexcept>
 
 namespace rtamt::dense {
 
-namespace {
+namespace detail {
 
 // Samples of an input in one step of the frontier: registers of this size stay in the cache.
-constexpr std::size_t block_size = 256;
+inline constexpr std::size_t block_size = 256;
 
 // Samples come after this tick, so that the time between two of them is one too.
-constexpr std::int64_t before_all = -(never / 2) - 1;
+inline constexpr std::int64_t before_all = -(never / 2) - 1;
 
-} // namespace
+} // namespace detail
 
 template <ValueDomain D>
 BasicExecutor<D>::BasicExecutor(Program program)
@@ -74,9 +73,9 @@ std::int64_t BasicExecutor<D>::step(std::int64_t target) noexcept {
     }
     std::int64_t frontier = std::min(target, later(frontier_, stride_));
     for (const auto& feed : feeds())
-        frontier = std::min(frontier, feed.reach(block_size));
+        frontier = std::min(frontier, feed.reach(detail::block_size));
     for (auto& feed : feeds())
-        feed.load(frontier, block_size);
+        feed.load(frontier, detail::block_size);
     return frontier;
 }
 
@@ -170,7 +169,7 @@ bool BasicExecutor<D>::survey(std::int64_t target, std::int64_t tail) {
 template <ValueDomain D>
 bool BasicExecutor<D>::one_block() const noexcept {
     return !fresh_ && std::ranges::all_of(feeds(), [](const auto& feed) {
-        return feed.reach(block_size) == never;
+        return feed.reach(detail::block_size) == never;
     });
 }
 
@@ -181,7 +180,7 @@ std::int64_t BasicExecutor<D>::stride_to(std::int64_t target) const noexcept {
     std::size_t pending = 0;
     wiring_.units().each(
         [&](const Unit& unit) { pending = std::max(pending, unit.kernel->pending()); });
-    const auto steps = static_cast<std::int64_t>(pending / block_size + 1);
+    const auto steps = static_cast<std::int64_t>(pending / detail::block_size + 1);
     return std::max<std::int64_t>((target - frontier_) / steps, 1);
 }
 
@@ -285,7 +284,8 @@ template <ValueDomain D>
 bool BasicExecutor<D>::sound() const noexcept {
     const auto waits_from_the_start = [](const auto& feed) { return feed.next() == feed.first(); };
     const auto in_range = [&](const auto& feed) {
-        return !feed.first() || (*feed.first() > before_all && *feed.last() <= last_possible());
+        return !feed.first() ||
+               (*feed.first() > detail::before_all && *feed.last() <= last_possible());
     };
     if (!std::ranges::all_of(feeds(), in_range)) return false;
     if (!started_) {
@@ -330,10 +330,5 @@ std::optional<std::int64_t> BasicExecutor<D>::known_until(std::size_t output) co
     if (frontier_ < later(origin_, lag)) return std::nullopt;
     return frontier_ - lag;
 }
-
-template class BasicExecutor<Real>;
-template class BasicExecutor<Interval>;
-template class BasicExecutor<Lanes<8>>;
-template class BasicExecutor<Truth>;
 
 } // namespace rtamt::dense

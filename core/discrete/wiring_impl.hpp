@@ -1,10 +1,10 @@
+// The definitions of wiring.hpp, for the files that instantiate it for a domain (real.cpp and its
+// neighbours).
+#pragma once
+
 #include "wiring.hpp"
 
 #include "../sorts.hpp"
-#include "../values/interval.hpp"
-#include "../values/lanes.hpp"
-#include "../values/real.hpp"
-#include "../values/truth.hpp"
 #include "kernels.hpp"
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 
 namespace rtamt::discrete {
 
-namespace {
+namespace detail {
 
 // A cache line more than a block: else the same place of every register would fall into the same
 // few cache sets.
@@ -22,7 +22,7 @@ template <class Value>
     return block + std::max<std::size_t>(64 / sizeof(Value), 1);
 }
 
-[[nodiscard]] std::size_t checked_sum(std::size_t a, std::size_t b) {
+[[nodiscard]] inline std::size_t checked_sum(std::size_t a, std::size_t b) {
     if (b > std::numeric_limits<std::size_t>::max() - a) {
         throw std::invalid_argument("This program needs more memory than can be addressed: make "
                                     "its time bounds smaller or its period longer.");
@@ -30,7 +30,7 @@ template <class Value>
     return a + b;
 }
 
-} // namespace
+} // namespace detail
 
 template <ValueDomain D>
 Wiring<D>::Plan Wiring<D>::plan(const Program& program) {
@@ -38,11 +38,11 @@ Wiring<D>::Plan Wiring<D>::plan(const Program& program) {
     Plan plan{sorts(program), program.guarded()};
     for (std::size_t i = 0; i < size; ++i) {
         const std::size_t state = Kernels<D>::state_size(program.instructions[i], plan.sorts[i]);
-        plan.state = checked_sum(plan.state, state);
-        if (plan.guarded[i]) plan.journal = checked_sum(plan.journal, state);
+        plan.state = detail::checked_sum(plan.state, state);
+        if (plan.guarded[i]) plan.journal = detail::checked_sum(plan.journal, state);
         plan.registers += plan.sorts[i] == Sort::number ? sizeof(Number) : sizeof(Formula);
     }
-    (void)checked_sum(checked_sum(plan.state, plan.journal), plan.registers);
+    (void)detail::checked_sum(detail::checked_sum(plan.state, plan.journal), plan.registers);
     return plan;
 }
 
@@ -209,15 +209,10 @@ void Wiring<D>::connect() {
 
 template <ValueDomain D>
 void Wiring<D>::grow(std::size_t last) {
-    numbers_.grow(stride<Number>(block), last);
-    formulas_.grow(stride<Formula>(block), last);
+    numbers_.grow(detail::stride<Number>(block), last);
+    formulas_.grow(detail::stride<Formula>(block), last);
     capacity_ = block;
     connect();
 }
-
-template class Wiring<Real>;
-template class Wiring<Interval>;
-template class Wiring<Lanes<8>>;
-template class Wiring<Truth>;
 
 } // namespace rtamt::discrete

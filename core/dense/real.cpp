@@ -1,0 +1,11 @@
+#include "../values/real.hpp"
+
+#include "executor_impl.hpp"
+#include "wiring_impl.hpp"
+
+namespace rtamt::dense {
+
+template class Wiring<Real>;
+template class BasicExecutor<Real>;
+
+} // namespace rtamt::dense
