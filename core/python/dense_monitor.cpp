@@ -233,7 +233,8 @@ std::optional<std::int64_t> DenseMonitor::read_time(PyObject* time) const noexce
         return std::nullopt;
     }
     const double tick = std::nearbyint(number * rate);
-    if (!(std::fabs(tick) < farthest && std::fabs(number) < implausible)) return std::nullopt;
+    if (!(std::fabs(tick) < farthest)) return std::nullopt;
+    if (!(std::fabs(number) < implausible)) return std::nullopt;
     return std::fabs(tick) < near ? static_cast<std::int64_t>(tick)
                                   : far_tick(number, static_cast<std::int64_t>(rate));
 }
