@@ -19,6 +19,7 @@ from rtamt.errors import (
 )
 from rtamt.language.operators import STL
 from rtamt.results import Result
+from rtamt.signals.outcomes import Interval, Verdict, VerdictRun
 from rtamt.signals.signal import Signal
 from rtamt.specification import Specification
 from rtamt.texts import load, parse, robustness
@@ -88,6 +89,7 @@ __all__ = [
     "IAStlOutputVacuityDenseTimeOnlineSpecification",
     "IAStlOutputVacuityDiscreteTimeOfflineSpecification",
     "IAStlOutputVacuityDiscreteTimeOnlineSpecification",
+    "Interval",
     "Language",
     "Monitor",
     "NameInFormulaError",
@@ -118,6 +120,8 @@ __all__ = [
     "Trace",
     "TraceError",
     "UsageError",
+    "Verdict",
+    "VerdictRun",
     "check_stream",
     "evaluate_all",
     "evaluate_batch",

@@ -6,6 +6,7 @@ module        purpose
 discrete      discrete-time traces: one value of every variable per sample
 dense         dense-time traces: timestamps per signal, counted in ticks
 signal        ``Signal``: the result of evaluations and monitors
+outcomes      bounds and verdicts that are known before the whole trace is
 trace         ``Trace``: named signals, each with its own time base; resampling
 arrays        data (lists, arrays, frames, objects) to float64 arrays
 dense_arrays  dense-time data to int64 ticks and float64 values
