@@ -8,7 +8,7 @@
 // vectors.hpp finds.
 #include "discrete/executor.hpp"
 #include "programs.hpp"
-#include "vectors.hpp"
+#include "values/vectors.hpp"
 
 #include <algorithm>
 #include <cstdio>

@@ -7,7 +7,7 @@
 // the kernel itself takes. Memory: the events of a step, and the kernel's own.
 #pragma once
 
-#include "../foreign.hpp"
+#include "../program/foreign.hpp"
 #include "kernel.hpp"
 
 #include <algorithm>

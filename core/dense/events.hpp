@@ -5,7 +5,7 @@
 // large lists without copying them, and keeps its memory when cleared.
 #pragma once
 
-#include "../snapshot.hpp"
+#include "../program/snapshot.hpp"
 
 #include <algorithm>
 #include <cstddef>
@@ -84,8 +84,8 @@ class BasicEventList {
             make_room(count);
             resize(count);
         }
-        snapshot.cells(times_.get(), count);
-        snapshot.cells(values_.get(), count);
+        snapshot.values(times_.get(), count);
+        snapshot.values(values_.get(), count);
     }
 
     [[nodiscard]] std::size_t count() const noexcept { return count_; }

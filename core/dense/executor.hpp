@@ -17,12 +17,12 @@
 // middle of an update (std::bad_alloc), only reset() helps.
 #pragma once
 
-#include "../fault.hpp"
-#include "../program.hpp"
+#include "../program/fault.hpp"
+#include "../program/program.hpp"
 #include "../values/domain.hpp"
 #include "../values/real.hpp"
 #include "events.hpp"
-#include "feed.hpp"
+#include "input_queue.hpp"
 #include "wiring.hpp"
 
 #include <cstddef>
@@ -90,7 +90,7 @@ class BasicExecutor {
     [[nodiscard]] Formula value(std::size_t output) const noexcept { return outputs_[output].last; }
 
     [[nodiscard]] std::optional<std::int64_t> last_time(std::size_t input) const noexcept {
-        return feeds()[input].last();
+        return queues()[input].last();
     }
 
     // The latest time a sample may have, so that the end of the trace is within the range of ticks.
@@ -117,13 +117,13 @@ class BasicExecutor {
     bool finished_ = false;
     Failure failure_{};
 
-    [[nodiscard]] std::vector<Feed<Number>>& feeds() noexcept { return wiring_.feeds(); }
-    [[nodiscard]] const std::vector<Feed<Number>>& feeds() const noexcept {
-        return wiring_.feeds();
+    [[nodiscard]] std::vector<InputQueue<Number>>& queues() noexcept { return wiring_.queues(); }
+    [[nodiscard]] const std::vector<InputQueue<Number>>& queues() const noexcept {
+        return wiring_.queues();
     }
 
     [[nodiscard]] bool open() noexcept;
-    [[nodiscard]] bool sound() const noexcept;
+    [[nodiscard]] bool valid() const noexcept;
     [[nodiscard]] std::int64_t earliest_last() const noexcept;
     [[nodiscard]] std::int64_t latest_last() const noexcept;
     [[nodiscard]] std::int64_t step(std::int64_t target) noexcept;
@@ -131,8 +131,8 @@ class BasicExecutor {
     void run_free(std::int64_t frontier);
     void deliver(Outputs outputs);
     [[nodiscard]] bool advance(std::int64_t target, Outputs outputs);
-    [[nodiscard]] bool look(std::int64_t target);
-    [[nodiscard]] bool survey(std::int64_t target, std::int64_t tail);
+    [[nodiscard]] bool run_guarded_to(std::int64_t target);
+    [[nodiscard]] bool dry_run(std::int64_t target, std::int64_t tail);
     [[nodiscard]] bool one_block() const noexcept;
     [[nodiscard]] std::int64_t stride_to(std::int64_t target) const noexcept;
     [[nodiscard]] bool update(Outputs outputs);

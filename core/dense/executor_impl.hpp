@@ -33,16 +33,16 @@ std::size_t BasicExecutor<D>::state_bytes() const noexcept {
 template <ValueDomain D>
 std::int64_t BasicExecutor<D>::earliest_last() const noexcept {
     std::int64_t earliest = never;
-    for (const auto& feed : feeds())
-        earliest = std::min(earliest, *feed.last());
+    for (const auto& queue : queues())
+        earliest = std::min(earliest, *queue.last());
     return earliest;
 }
 
 template <ValueDomain D>
 std::int64_t BasicExecutor<D>::latest_last() const noexcept {
     std::int64_t latest = -never;
-    for (const auto& feed : feeds())
-        latest = std::max(latest, *feed.last());
+    for (const auto& queue : queues())
+        latest = std::max(latest, *queue.last());
     return latest;
 }
 
@@ -50,11 +50,11 @@ std::int64_t BasicExecutor<D>::latest_last() const noexcept {
 template <ValueDomain D>
 bool BasicExecutor<D>::open() noexcept {
     if (started_) return true;
-    if (feeds().empty()) return false;
+    if (queues().empty()) return false;
     std::int64_t origin = -never;
-    for (const auto& feed : feeds()) {
-        if (!feed.first()) return false;
-        origin = std::max(origin, *feed.first());
+    for (const auto& queue : queues()) {
+        if (!queue.first()) return false;
+        origin = std::max(origin, *queue.first());
     }
     wiring_.units().each([&](const Unit& unit) { unit.kernel->begin(origin); });
     origin_ = origin;
@@ -66,16 +66,16 @@ bool BasicExecutor<D>::open() noexcept {
 template <ValueDomain D>
 std::int64_t BasicExecutor<D>::step(std::int64_t target) noexcept {
     if (fresh_) {
-        for (auto& feed : feeds())
-            feed.begin(origin_);
+        for (auto& queue : queues())
+            queue.begin(origin_);
         fresh_ = false;
         return origin_;
     }
     std::int64_t frontier = std::min(target, later(frontier_, stride_));
-    for (const auto& feed : feeds())
-        frontier = std::min(frontier, feed.reach(detail::block_size));
-    for (auto& feed : feeds())
-        feed.load(frontier, detail::block_size);
+    for (const auto& queue : queues())
+        frontier = std::min(frontier, queue.reach(detail::block_size));
+    for (auto& queue : queues())
+        queue.load(frontier, detail::block_size);
     return frontier;
 }
 
@@ -136,7 +136,7 @@ bool BasicExecutor<D>::advance(std::int64_t target, Outputs outputs) {
 
 // The same with the guarded group alone.
 template <ValueDomain D>
-bool BasicExecutor<D>::look(std::int64_t target) {
+bool BasicExecutor<D>::run_guarded_to(std::int64_t target) {
     while (fresh_ || frontier_ < target) {
         const std::int64_t frontier = step(target);
         if (!run_guarded(frontier)) return false;
@@ -147,29 +147,29 @@ bool BasicExecutor<D>::look(std::int64_t target) {
 
 // Looks for NaN up to the target and then, in longer steps, the tail; takes everything back.
 template <ValueDomain D>
-bool BasicExecutor<D>::survey(std::int64_t target, std::int64_t tail) {
+bool BasicExecutor<D>::dry_run(std::int64_t target, std::int64_t tail) {
     const std::int64_t frontier = frontier_;
     const bool fresh = fresh_;
-    const bool sound = wiring_.units().dry_run([&] {
-        if (!look(target)) return false;
+    const bool valid = wiring_.units().dry_run([&] {
+        if (!run_guarded_to(target)) return false;
         if (tail <= frontier_) return true;
         stride_ = stride_to(tail);
-        const bool settled = look(tail);
+        const bool settled = run_guarded_to(tail);
         stride_ = never;
         return settled;
     });
-    for (auto& feed : feeds())
-        feed.rewind();
+    for (auto& queue : queues())
+        queue.rewind();
     frontier_ = frontier;
     fresh_ = fresh;
-    return sound;
+    return valid;
 }
 
 // Whether an update is one step, so that it fails before anything but the guarded group has moved.
 template <ValueDomain D>
 bool BasicExecutor<D>::one_block() const noexcept {
-    return !fresh_ && std::ranges::all_of(feeds(), [](const auto& feed) {
-        return feed.reach(detail::block_size) == never;
+    return !fresh_ && std::ranges::all_of(queues(), [](const auto& queue) {
+        return queue.reach(detail::block_size) == never;
     });
 }
 
@@ -193,7 +193,7 @@ bool BasicExecutor<D>::update(Outputs outputs) {
     if (target < origin_ || (!fresh_ && target <= frontier_)) return true;
     if (!wiring_.units().can_fail()) return advance(target, outputs);
     if (!one_block()) {
-        if (survey(target, target)) return advance(target, outputs);
+        if (dry_run(target, target)) return advance(target, outputs);
         started_ = !starting;
         return false;
     }
@@ -208,12 +208,12 @@ std::optional<Failure> BasicExecutor<D>::push(Inputs inputs, Outputs outputs) {
     if (finished_) {
         throw std::logic_error("The trace has ended: reset the monitor before the next sample.");
     }
-    for (std::size_t i = 0; i < feeds().size(); ++i)
-        feeds()[i].attach(inputs[i]);
-    const bool sound = update(outputs);
-    for (auto& feed : feeds())
-        sound ? feed.settle() : feed.restore();
-    if (!sound) return failure_;
+    for (std::size_t i = 0; i < queues().size(); ++i)
+        queues()[i].attach(inputs[i]);
+    const bool valid = update(outputs);
+    for (auto& queue : queues())
+        valid ? queue.settle() : queue.restore();
+    if (!valid) return failure_;
     return std::nullopt;
 }
 
@@ -223,23 +223,23 @@ bool BasicExecutor<D>::complete(std::int64_t extra, bool checked, Outputs output
     const std::int64_t last = latest_last();
     end_ = later(last, extra);
     const std::int64_t tail = std::min(later(end_, program().latest()), never - 1);
-    if (!checked && wiring_.units().can_fail() && !survey(last, tail)) return false;
+    if (!checked && wiring_.units().can_fail() && !dry_run(last, tail)) return false;
     if (!advance(last, outputs)) return false;
     stride_ = stride_to(tail);
-    const bool sound = advance(tail, outputs);
+    const bool valid = advance(tail, outputs);
     stride_ = never;
-    return sound;
+    return valid;
 }
 
 template <ValueDomain D>
 std::optional<Failure> BasicExecutor<D>::finish(Outputs outputs) {
     if (finished_) return std::nullopt;
-    for (auto& feed : feeds())
-        feed.attach({});
-    const bool sound = !open() || complete(0, false, outputs);
-    for (auto& feed : feeds())
-        sound ? feed.settle() : feed.restore();
-    if (!sound) {
+    for (auto& queue : queues())
+        queue.attach({});
+    const bool valid = !open() || complete(0, false, outputs);
+    for (auto& queue : queues())
+        valid ? queue.settle() : queue.restore();
+    if (!valid) {
         end_ = never;
         return failure_;
     }
@@ -249,8 +249,8 @@ std::optional<Failure> BasicExecutor<D>::finish(Outputs outputs) {
 
 template <ValueDomain D>
 void BasicExecutor<D>::reset() noexcept {
-    for (auto& feed : feeds())
-        feed.reset();
+    for (auto& queue : queues())
+        queue.reset();
     for (Output& output : outputs_)
         output.told = false;
     stride_ = end_ = never;
@@ -265,13 +265,13 @@ void BasicExecutor<D>::transfer(Snapshot& snapshot) {
     snapshot.item(started_);
     snapshot.item(fresh_);
     snapshot.item(finished_);
-    for (auto& feed : feeds())
-        feed.transfer(snapshot);
+    for (auto& queue : queues())
+        queue.transfer(snapshot);
     for (Output& output : outputs_) {
         snapshot.item(output.told);
         snapshot.item(output.last);
     }
-    snapshot.require(sound());
+    snapshot.require(valid());
     if (!started_ || finished_) return; // kernels begin before they run again
     wiring_.units().each([&](const Unit& unit) {
         if (snapshot.loading()) unit.kernel->begin(origin_);
@@ -281,28 +281,30 @@ void BasicExecutor<D>::transfer(Snapshot& snapshot) {
 
 // Whether the times are such as updates leave behind.
 template <ValueDomain D>
-bool BasicExecutor<D>::sound() const noexcept {
-    const auto waits_from_the_start = [](const auto& feed) { return feed.next() == feed.first(); };
-    const auto in_range = [&](const auto& feed) {
-        return !feed.first() ||
-               (*feed.first() > detail::before_all && *feed.last() <= last_possible());
+bool BasicExecutor<D>::valid() const noexcept {
+    const auto waits_from_the_start = [](const auto& queue) {
+        return queue.next() == queue.first();
     };
-    if (!std::ranges::all_of(feeds(), in_range)) return false;
+    const auto in_range = [&](const auto& queue) {
+        return !queue.first() ||
+               (*queue.first() > detail::before_all && *queue.last() <= last_possible());
+    };
+    if (!std::ranges::all_of(queues(), in_range)) return false;
     if (!started_) {
-        return end_ == never && std::ranges::all_of(feeds(), waits_from_the_start);
+        return end_ == never && std::ranges::all_of(queues(), waits_from_the_start);
     }
     std::int64_t origin = -never;
-    for (const auto& feed : feeds()) {
-        if (!feed.first()) return false;
-        origin = std::max(origin, *feed.first());
+    for (const auto& queue : queues()) {
+        if (!queue.first()) return false;
+        origin = std::max(origin, *queue.first());
     }
-    if (feeds().empty() || origin_ != origin) return false;
+    if (queues().empty() || origin_ != origin) return false;
     if (finished_) return !fresh_ && end_ == latest_last();
     if (end_ != never) return false;
-    if (fresh_) return std::ranges::all_of(feeds(), waits_from_the_start);
+    if (fresh_) return std::ranges::all_of(queues(), waits_from_the_start);
     return frontier_ >= origin_ && frontier_ == earliest_last() &&
-           std::ranges::all_of(feeds(), [&](const auto& feed) {
-               return feed.next() ? *feed.next() > frontier_ : *feed.last() == frontier_;
+           std::ranges::all_of(queues(), [&](const auto& queue) {
+               return queue.next() ? *queue.next() > frontier_ : *queue.last() == frontier_;
            });
 }
 
@@ -311,7 +313,7 @@ std::optional<Failure> BasicExecutor<D>::evaluate(Program program, Inputs inputs
                                                   std::int64_t extra, Outputs outputs) {
     BasicExecutor executor(std::move(program));
     for (std::size_t i = 0; i < inputs.size(); ++i)
-        executor.feeds()[i].attach(inputs[i]);
+        executor.queues()[i].attach(inputs[i]);
     if (executor.open() && !executor.complete(extra, true, outputs)) return executor.failure_;
     return std::nullopt;
 }

@@ -8,7 +8,7 @@
 // update back. Of which type values are is known to the kernels alone (values/domain.hpp).
 #pragma once
 
-#include "../snapshot.hpp"
+#include "../program/snapshot.hpp"
 #include "../values/domain.hpp"
 #include "events.hpp"
 

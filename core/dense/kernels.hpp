@@ -1,7 +1,7 @@
 // From an instruction to its kernel.
 #pragma once
 
-#include "../program.hpp"
+#include "../program/program.hpp"
 #include "../values/domain.hpp"
 #include "kernel.hpp"
 

@@ -6,7 +6,7 @@
 // Cost: O(1) a cell that enters, amortised; unlike a copy of the window, it does not grow with it.
 #pragma once
 
-#include "../snapshot.hpp"
+#include "../program/snapshot.hpp"
 
 #include <algorithm>
 #include <cstddef>

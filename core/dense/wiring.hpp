@@ -8,11 +8,11 @@
 // for other inputs.
 #pragma once
 
-#include "../guard_plan.hpp"
-#include "../program.hpp"
+#include "../program/guard_plan.hpp"
+#include "../program/program.hpp"
 #include "../values/domain.hpp"
 #include "events.hpp"
-#include "feed.hpp"
+#include "input_queue.hpp"
 #include "kernel.hpp"
 
 #include <compare>
@@ -48,8 +48,8 @@ class Wiring {
     [[nodiscard]] std::size_t bytes() const noexcept;
 
     // By input.
-    [[nodiscard]] std::vector<Feed<Number>>& feeds() noexcept { return feeds_; }
-    [[nodiscard]] const std::vector<Feed<Number>>& feeds() const noexcept { return feeds_; }
+    [[nodiscard]] std::vector<InputQueue<Number>>& queues() noexcept { return queues_; }
+    [[nodiscard]] const std::vector<InputQueue<Number>>& queues() const noexcept { return queues_; }
 
     // The events of the last run of an output.
     [[nodiscard]] const BasicEvents<Formula>& output(std::size_t output) const noexcept {
@@ -75,7 +75,7 @@ class Wiring {
     std::vector<std::unique_ptr<Kernel>> kernels_; // by instruction; none for inputs and constants
     std::map<Stand, StandIn> stands_;
     GuardPlan<Unit> units_;
-    std::vector<Feed<Number>> feeds_;
+    std::vector<InputQueue<Number>> queues_;
     std::vector<const BasicEvents<Formula>*> outputs_;
 
     [[nodiscard]] std::vector<std::int64_t> reaches() const;

@@ -4,7 +4,7 @@
 
 #include "wiring.hpp"
 
-#include "../sorts.hpp"
+#include "../program/sorts.hpp"
 #include "call.hpp"
 #include "kernels.hpp"
 
@@ -16,7 +16,7 @@ namespace rtamt::dense {
 
 template <ValueDomain D>
 Wiring<D>::Wiring(Program program)
-    : program_(std::move(program)), sorts_(sorts(program_)), feeds_(program_.inputs) {
+    : program_(std::move(program)), sorts_(sorts(program_)), queues_(program_.inputs) {
     if (!std::same_as<D, Real> && !program_.calls.empty()) {
         throw std::invalid_argument("This program runs code of its own, which computes with real "
                                     "numbers only.");
@@ -133,7 +133,7 @@ template <ValueDomain D>
 const void* Wiring<D>::own(std::uint32_t index) const {
     const Instruction& instruction = program_.instructions[index];
     if (instruction.opcode == Opcode::input) {
-        return &feeds_[static_cast<std::size_t>(instruction.n)].view();
+        return &queues_[static_cast<std::size_t>(instruction.n)].view();
     }
     return kernels_[index]->result();
 }
@@ -155,8 +155,8 @@ template <ValueDomain D>
 std::size_t Wiring<D>::bytes() const noexcept {
     std::size_t bytes = 0;
     units_.each([&](const Unit& unit) { bytes += unit.kernel->bytes(); });
-    for (const auto& feed : feeds_)
-        bytes += feed.bytes();
+    for (const auto& queue : queues_)
+        bytes += queue.bytes();
     return bytes;
 }
 

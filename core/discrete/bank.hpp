@@ -4,7 +4,7 @@
 // value for each register that a failed update overwrites.
 #pragma once
 
-#include "../cells.hpp"
+#include "copy.hpp"
 
 #include <algorithm>
 #include <cstddef>
@@ -77,8 +77,8 @@ class Bank {
               Skip&& skip) noexcept {
         for (const Input& input : inputs_) {
             if (skip(input.instruction)) continue;
-            copy_cells(static_cast<const Value*>(columns[input.column]) + offset, count,
-                       input.values);
+            copy_values(static_cast<const Value*>(columns[input.column]) + offset, count,
+                        input.values);
         }
     }
 

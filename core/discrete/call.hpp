@@ -4,8 +4,8 @@
 // own.
 #pragma once
 
-#include "../foreign.hpp"
-#include "../kernel.hpp"
+#include "../program/foreign.hpp"
+#include "kernel.hpp"
 
 #include <algorithm>
 #include <cmath>

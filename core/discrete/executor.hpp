@@ -12,13 +12,13 @@
 // constructor but the registers, which grow once, in reserve(), from one slot to a block.
 #pragma once
 
-#include "../fault.hpp"
-#include "../kernel.hpp"
-#include "../program.hpp"
+#include "../program/fault.hpp"
+#include "../program/program.hpp"
 #include "../values/domain.hpp"
 #include "../values/real.hpp"
-#include "direct.hpp"
+#include "kernel.hpp"
 #include "wiring.hpp"
+#include "zero_copy.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -105,7 +105,7 @@ class BasicExecutor {
 
   private:
     Wiring<D> wiring_;
-    Direct direct_;         // of use to evaluate() alone, after which nobody looks at registers
+    ZeroCopy zero_copy_;    // of use to evaluate() alone, after which nobody looks at registers
     std::size_t last_ = 0;  // place of the last slot in the registers
     std::int64_t slot_ = 0; // the next slot
     std::int64_t samples_ = endless;
@@ -117,14 +117,14 @@ class BasicExecutor {
     void load(Columns columns, std::size_t offset, const Block& block) noexcept;
     void deliver(const Block& block, std::int64_t start, Outputs outputs) noexcept;
     [[nodiscard]] bool run_guarded(const Block& block) noexcept;
-    void aim(Columns columns, std::size_t offset, const Block& block, std::int64_t start,
-             Outputs outputs) noexcept;
+    void bind_buffers(Columns columns, std::size_t offset, const Block& block, std::int64_t start,
+                      Outputs outputs) noexcept;
     void run_free(const Block& block) noexcept;
     [[nodiscard]] std::size_t idle(std::int64_t slot, std::size_t count) const noexcept;
     [[nodiscard]] bool advance(Columns columns, std::size_t count, Outputs outputs,
                                bool checked) noexcept;
     [[nodiscard]] bool update(Columns columns, std::size_t count, Outputs outputs) noexcept;
-    [[nodiscard]] bool survey(Columns columns, std::size_t count) noexcept;
+    [[nodiscard]] bool dry_run(Columns columns, std::size_t count) noexcept;
 };
 
 using Executor = BasicExecutor<Real>;

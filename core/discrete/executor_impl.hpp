@@ -4,7 +4,7 @@
 
 #include "executor.hpp"
 
-#include "../cells.hpp"
+#include "copy.hpp"
 
 #include <algorithm>
 #include <limits>
@@ -76,7 +76,7 @@ void BasicExecutor<D>::rollback() noexcept {
 template <ValueDomain D>
 void BasicExecutor<D>::load(Columns columns, std::size_t offset, const Block& block) noexcept {
     if (columns.empty()) return; // after the last sample
-    const auto skips = [&](std::uint32_t input) { return direct_.skips(input); };
+    const auto skips = [&](std::uint32_t input) { return zero_copy_.skips(input); };
     wiring_.numbers().load(columns, offset, block.count, skips);
     wiring_.formulas().load(columns, offset, block.count, skips);
 }
@@ -105,10 +105,10 @@ void BasicExecutor<D>::run_free(const Block& block) noexcept {
 
 // Has kernels read from the caller's columns and write to the caller's outputs where they can.
 template <ValueDomain D>
-void BasicExecutor<D>::aim(Columns columns, std::size_t offset, const Block& block,
-                           std::int64_t start, Outputs outputs) noexcept {
+void BasicExecutor<D>::bind_buffers(Columns columns, std::size_t offset, const Block& block,
+                                    std::int64_t start, Outputs outputs) noexcept {
     if constexpr (UniformDomain<D>) {
-        direct_.aim(
+        zero_copy_.bind_buffers(
             columns, offset, block,
             [&](std::size_t output, std::int64_t lag) {
                 return outputs[output] + (block.slot - lag - detail::known_before(start, lag));
@@ -120,15 +120,15 @@ void BasicExecutor<D>::aim(Columns columns, std::size_t offset, const Block& blo
 template <ValueDomain D>
 void BasicExecutor<D>::deliver(const Block& block, std::int64_t start, Outputs outputs) noexcept {
     for (std::size_t output = 0; output < outputs.size(); ++output) {
-        if (direct_.written(output)) continue;
+        if (zero_copy_.written(output)) continue;
         const std::uint32_t instruction = program().outputs[output];
         const std::int64_t lag = program().instructions[instruction].lag;
         const Range present = block.present(lag);
         if (present.begin == present.end) continue;
         const std::int64_t offset = block.slot + static_cast<std::int64_t>(present.begin) - lag -
                                     detail::known_before(start, lag);
-        copy_cells(static_cast<const Formula*>(wiring_.output(output)) + present.begin,
-                   present.end - present.begin, outputs[output] + offset);
+        copy_values(static_cast<const Formula*>(wiring_.output(output)) + present.begin,
+                    present.end - present.begin, outputs[output] + offset);
     }
 }
 
@@ -161,7 +161,7 @@ bool BasicExecutor<D>::advance(Columns columns, std::size_t count, Outputs outpu
         }
         const Block block{slot_, std::min(count - offset, wiring_.capacity()), samples_};
         load(columns, offset, block);
-        aim(columns, offset, block, start, outputs);
+        bind_buffers(columns, offset, block, start, outputs);
         if (!run_guarded(block) && !checked) return false;
         run_free(block);
         deliver(block, start, outputs);
@@ -174,10 +174,10 @@ bool BasicExecutor<D>::advance(Columns columns, std::size_t count, Outputs outpu
 
 // Looks for undefined values over `count` slots and takes everything back.
 template <ValueDomain D>
-bool BasicExecutor<D>::survey(Columns columns, std::size_t count) noexcept {
+bool BasicExecutor<D>::dry_run(Columns columns, std::size_t count) noexcept {
     wiring_.numbers().checkpoint(last_);
     wiring_.formulas().checkpoint(last_);
-    const bool sound = wiring_.units().dry_run(
+    const bool valid = wiring_.units().dry_run(
         [&] {
             for (std::size_t offset = 0; offset < count;) {
                 const std::int64_t slot = slot_ + static_cast<std::int64_t>(offset);
@@ -195,7 +195,7 @@ bool BasicExecutor<D>::survey(Columns columns, std::size_t count) noexcept {
         count);
     wiring_.numbers().rollback(last_);
     wiring_.formulas().rollback(last_);
-    return sound;
+    return valid;
 }
 
 template <ValueDomain D>
@@ -203,7 +203,7 @@ bool BasicExecutor<D>::update(Columns columns, std::size_t count, Outputs output
     if (count == 0) return true;
     if (!wiring_.units().can_fail()) return advance(columns, count, outputs, true);
     if (count > wiring_.capacity()) {
-        return survey(columns, count) && advance(columns, count, outputs, true);
+        return dry_run(columns, count) && advance(columns, count, outputs, true);
     }
     checkpoint(count);
     if (advance(columns, count, outputs, false)) return true;
@@ -285,7 +285,7 @@ std::optional<Failure> BasicExecutor<D>::evaluate(Program program, Columns colum
     const auto rest = static_cast<std::size_t>(executor.program().latest());
     executor.reserve(std::max(count, rest));
     if constexpr (UniformDomain<D>)
-        executor.direct_ = Direct(executor.program(), executor.wiring_.kernels());
+        executor.zero_copy_ = ZeroCopy(executor.program(), executor.wiring_.kernels());
     if (!executor.advance(columns, count, outputs, false)) return executor.failure_;
     executor.samples_ = executor.slot_;
     std::vector<Formula*> tails;

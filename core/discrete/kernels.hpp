@@ -1,9 +1,9 @@
 // From an instruction to its kernel, and to the memory that the kernel needs.
 #pragma once
 
-#include "../kernel.hpp"
-#include "../program.hpp"
+#include "../program/program.hpp"
 #include "../values/domain.hpp"
+#include "kernel.hpp"
 #include "pointwise.hpp"
 
 #include <cstddef>

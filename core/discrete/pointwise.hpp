@@ -4,10 +4,10 @@
 // present. A constant operand is read once. No memory.
 #pragma once
 
-#include "../kernel.hpp"
 #include "../values/operations.hpp"
 #include "../values/real.hpp"
-#include "../vectors.hpp"
+#include "../values/vectors.hpp"
+#include "kernel.hpp"
 
 #include <bit>
 #include <cmath>
@@ -20,7 +20,7 @@ namespace rtamt::discrete {
 template <ValueDomain D>
 class Undefined {
   public:
-    RTAMT_INLINE void look(const typename D::Value& value) noexcept {
+    RTAMT_INLINE void check(const typename D::Value& value) noexcept {
         seen_ |= D::undefined(value);
     }
     [[nodiscard]] bool seen() const noexcept { return seen_; }
@@ -35,7 +35,7 @@ class Undefined {
 template <>
 class Undefined<Real> {
   public:
-    RTAMT_INLINE void look(double value) noexcept {
+    RTAMT_INLINE void check(double value) noexcept {
         seen_ |= (std::bit_cast<std::uint64_t>(value) & magnitude) + above;
     }
     [[nodiscard]] bool seen() const noexcept { return seen_ > magnitude; }
@@ -61,7 +61,7 @@ template <class Operation, class Function>
         for (std::size_t i = range.begin; i < range.end; ++i) {
             const typename D::Value value = function(i);
             out[i] = value;
-            undefined.look(value);
+            undefined.check(value);
         }
         if (!undefined.seen()) [[likely]] {
             return Kernel::defined;

@@ -3,9 +3,9 @@
 // Cost: one comparison a sample. Memory: one value.
 #pragma once
 
-#include "../cells.hpp"
-#include "../kernel.hpp"
 #include "../values/algebra.hpp"
+#include "copy.hpp"
+#include "kernel.hpp"
 
 namespace rtamt::discrete {
 
@@ -22,12 +22,12 @@ class Running final : public Scalar<typename Algebra::Value> {
         const auto* __restrict a = Kernel::a<Value>();
         auto* __restrict out = Kernel::out<Value>();
         Value extremum = this->state();
-        fill_cells(out, present.begin, extremum);
+        fill_values(out, present.begin, extremum);
         for (std::size_t i = present.begin; i < present.end; ++i) {
             extremum = Algebra::join(a[i], extremum);
             out[i] = extremum;
         }
-        fill_cells(out + present.end, block.count - present.end, extremum);
+        fill_values(out + present.end, block.count - present.end, extremum);
         this->state() = extremum;
         return Kernel::defined;
     }

@@ -4,9 +4,9 @@
 // Cost: two copies a sample. Memory: d values, touched as far as the trace has come.
 #pragma once
 
-#include "../cells.hpp"
-#include "../journal.hpp"
-#include "../kernel.hpp"
+#include "copy.hpp"
+#include "journal.hpp"
+#include "kernel.hpp"
 
 namespace rtamt::discrete {
 
@@ -22,10 +22,10 @@ class Shift final : public Kernel {
         const Range present = block.present(lag());
         // Before its first sample the operand leaves nothing behind: the ring starts with it.
         auto* out = this->out<Value>();
-        fill_cells(out, present.begin, absent_);
-        feed({a<Value>() + present.begin, absent_}, out + present.begin,
+        fill_values(out, present.begin, absent_);
+        push({a<Value>() + present.begin, absent_}, out + present.begin,
              present.end - present.begin);
-        feed({nullptr, absent_}, out + present.end, block.count - present.end);
+        push({nullptr, absent_}, out + present.end, block.count - present.end);
         return defined;
     }
 
@@ -49,7 +49,7 @@ class Shift final : public Kernel {
         snapshot.item(state_.next);
         snapshot.item(state_.full);
         snapshot.require(state_.next <= distance_);
-        snapshot.cells(ring_, state_.full ? distance_ : state_.next);
+        snapshot.values(ring_, state_.full ? distance_ : state_.next);
     }
 
   private:
@@ -60,9 +60,9 @@ class Shift final : public Kernel {
 
         void copy(std::size_t offset, std::size_t count, Value* target) const noexcept {
             if (values != nullptr) {
-                copy_cells(values + offset, count, target);
+                copy_values(values + offset, count, target);
             } else {
-                fill_cells(target, count, absent);
+                fill_values(target, count, absent);
             }
         }
     };
@@ -79,7 +79,7 @@ class Shift final : public Kernel {
     State saved_;
     Journal<Value> journal_;
 
-    void feed(Source source, Value* out, std::size_t count) noexcept {
+    void push(Source source, Value* out, std::size_t count) noexcept {
         if (count == 0) return;
         if (count >= distance_) {
             drain(out);
@@ -92,9 +92,9 @@ class Shift final : public Kernel {
             Value* cells = ring_ + state_.next;
             const std::size_t part = std::min(count - done, distance_ - state_.next);
             if (state_.full) {
-                copy_cells(cells, part, out + done);
+                copy_values(cells, part, out + done);
             } else {
-                fill_cells(out + done, part, absent_);
+                fill_values(out + done, part, absent_);
             }
             source.copy(done, part, cells);
             done += part;
@@ -107,11 +107,11 @@ class Shift final : public Kernel {
     void drain(Value* out) const noexcept {
         const std::size_t rest = distance_ - state_.next;
         if (state_.full) {
-            copy_cells(ring_ + state_.next, rest, out);
+            copy_values(ring_ + state_.next, rest, out);
         } else {
-            fill_cells(out, rest, absent_);
+            fill_values(out, rest, absent_);
         }
-        copy_cells(ring_, state_.next, out + rest);
+        copy_values(ring_, state_.next, out + rest);
     }
 };
 

@@ -4,9 +4,9 @@
 // Cost: two comparisons a sample. Memory: one value.
 #pragma once
 
-#include "../cells.hpp"
-#include "../kernel.hpp"
 #include "../values/domain.hpp"
+#include "copy.hpp"
+#include "kernel.hpp"
 
 namespace rtamt::discrete {
 
@@ -23,12 +23,12 @@ class Since final : public Scalar<typename D::Value> {
         const auto* psi = Kernel::b<Value>();
         auto* __restrict out = Kernel::out<Value>();
         Value since = this->state();
-        fill_cells(out, present.begin, since);
+        fill_values(out, present.begin, since);
         for (std::size_t i = present.begin; i < present.end; ++i) {
             since = D::join(psi[i], D::meet(phi[i], since));
             out[i] = since;
         }
-        fill_cells(out + present.end, block.count - present.end, since);
+        fill_values(out + present.end, block.count - present.end, since);
         this->state() = since;
         return Kernel::defined;
     }

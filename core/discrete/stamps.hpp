@@ -5,8 +5,8 @@
 // were asked for, touched as far as the trace has come.
 #pragma once
 
-#include "../arena.hpp"
-#include "../snapshot.hpp"
+#include "../program/snapshot.hpp"
+#include "arena.hpp"
 
 #include <algorithm>
 #include <cstddef>
@@ -48,7 +48,7 @@ class Stamps {
         snapshot.item(origin_);
         snapshot.item(last_);
         snapshot.require(regular_ <= count_ && next_ == (count_ - regular_) % size_);
-        snapshot.cells(ring_, std::min(count_ - regular_, size_));
+        snapshot.values(ring_, std::min(count_ - regular_, size_));
     }
 
     [[nodiscard]] std::size_t count() const noexcept { return count_; }

@@ -12,11 +12,11 @@
 // has come.
 #pragma once
 
-#include "../cells.hpp"
-#include "../journal.hpp"
-#include "../kernel.hpp"
-#include "../snapshot.hpp"
+#include "../program/snapshot.hpp"
 #include "../values/monoid.hpp"
+#include "copy.hpp"
+#include "journal.hpp"
+#include "kernel.hpp"
 
 #include <algorithm>
 #include <cstddef>
@@ -134,7 +134,7 @@ class TwoStack {
         snapshot.item(state_.back);
         snapshot.item(state_.front);
         snapshot.require(state_.fill <= width_);
-        snapshot.cells(ring_, state_.front ? width_ : state_.fill);
+        snapshot.values(ring_, state_.front ? width_ : state_.fill);
     }
 
   private:
@@ -184,8 +184,8 @@ class TwoStack {
             state_.front ? std::min(count, width_ - state_.fill - 1) : std::size_t{0};
         for (std::size_t i = 0; i < inner; ++i)
             out[i] = M::result(cells[i + 1], state_.back);
-        fill_cells(out + inner, count - inner, M::result(state_.back));
-        fill_cells(cells, count, M::identity);
+        fill_values(out + inner, count - inner, M::result(state_.back));
+        fill_values(cells, count, M::identity);
         state_.fill += count;
     }
 };
@@ -204,7 +204,7 @@ class Sliding final : public Kernel {
         const Range present = block.present(lag());
         auto* out = this->out<Value>();
         // Before their first sample the operands leave nothing behind: the window starts with it.
-        fill_cells(out, present.begin, M::result(M::identity));
+        fill_values(out, present.begin, M::result(M::identity));
         const Operands<M> in{a<Value>(), b<Value>()};
         stack_.push(in.from(present.begin), out + present.begin, present.end - present.begin);
         stack_.expire(out + present.end, block.count - present.end);

@@ -41,7 +41,7 @@ struct Stretch<Extremum<Algebra>> {
     [[nodiscard]] static double grow(In operands, double* cells, double back, double* out,
                                      std::size_t count) noexcept {
         const double* in = operands.a;
-        copy_cells(in, count, cells);
+        copy_values(in, count, cells);
         std::size_t i = 0;
         for (; i + 4 <= count; i += 4) {
             const double first = Algebra::join(in[i], in[i + 1]);

@@ -9,13 +9,13 @@
 // registers, which grow() makes larger.
 #pragma once
 
-#include "../arena.hpp"
-#include "../guard_plan.hpp"
-#include "../kernel.hpp"
-#include "../program.hpp"
+#include "../program/guard_plan.hpp"
+#include "../program/program.hpp"
 #include "../values/domain.hpp"
+#include "arena.hpp"
 #include "bank.hpp"
 #include "call.hpp"
+#include "kernel.hpp"
 
 #include <algorithm>
 #include <cstddef>

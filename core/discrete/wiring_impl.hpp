@@ -4,7 +4,7 @@
 
 #include "wiring.hpp"
 
-#include "../sorts.hpp"
+#include "../program/sorts.hpp"
 #include "kernels.hpp"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 #include "component.hpp"
 
-#include "../crc32.hpp"
-#include "../reader.hpp"
+#include "../program/crc32.hpp"
+#include "../program/reader.hpp"
 
 #include <array>
 #include <cmath>
@@ -84,7 +84,7 @@ std::string path_of(const std::string& uri) {
 
 Component::Component(const std::string& folder, const std::string& token)
     : program_(read(folder + "/program.rtamt")),
-      monitor_(std::make_unique<capi::Monitor>(program_)) {
+      monitor_(std::make_unique<c_api::Monitor>(program_)) {
     if (token != token_of(program_)) {
         refuse("The model description is for the program '" + token + "', but the unit carries '" +
                token_of(program_) + "'.");
@@ -105,7 +105,7 @@ Component::Now Component::fresh() const {
 }
 
 void Component::reset() {
-    monitor_ = std::make_unique<capi::Monitor>(program_);
+    monitor_ = std::make_unique<c_api::Monitor>(program_);
     now_ = fresh();
 }
 
@@ -260,7 +260,7 @@ void Component::Now::transfer(Snapshot& snapshot) {
             snapshot.item(*value);
         snapshot.item(each.known);
     }
-    snapshot.cells(inputs.data(), inputs.size());
+    snapshot.values(inputs.data(), inputs.size());
 }
 
 // What is not in the monitor, its checksum, then the monitor, which has its own.

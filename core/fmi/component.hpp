@@ -1,5 +1,5 @@
 // A monitor as a co-simulation unit, whatever the version of FMI: variables by value reference,
-// communication steps, state. What is wrong is thrown as std::invalid_argument or capi::Undefined,
+// communication steps, state. What is wrong is thrown as std::invalid_argument or c_api::Undefined,
 // and everything is then as it was.
 //
 // Value references: the inputs from 0 on, then robustness, verdict, known, known_since of all
@@ -11,8 +11,8 @@
 // from which a step is made is a sample of every input. No output depends on an input directly.
 #pragma once
 
-#include "../capi/monitor.hpp"
-#include "../snapshot.hpp"
+#include "../c_api/monitor.hpp"
+#include "../program/snapshot.hpp"
 
 #include <cstdint>
 #include <memory>
@@ -48,7 +48,7 @@ class Component {
     void restore(std::span<const std::uint8_t> state);
 
     // The sentence for a value that does not exist.
-    [[nodiscard]] std::string undefined(const capi::Undefined& failure) const {
+    [[nodiscard]] std::string undefined(const c_api::Undefined& failure) const {
         return monitor_->undefined(failure);
     }
 
@@ -75,7 +75,7 @@ class Component {
     };
 
     std::vector<std::uint8_t> program_;
-    std::unique_ptr<capi::Monitor> monitor_;
+    std::unique_ptr<c_api::Monitor> monitor_;
     Now now_;
 
     [[nodiscard]] double step() const noexcept { return monitor_->metadata().seconds(); }

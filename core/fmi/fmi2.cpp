@@ -3,8 +3,8 @@
 
 #include "fmi2.hpp"
 
-#include "attempt.hpp"
 #include "component.hpp"
+#include "error_boundary.hpp"
 
 #include <cstdint>
 #include <cstring>
@@ -13,9 +13,9 @@
 #include <string>
 #include <vector>
 
-using rtamt::fmi::attempt;
 using rtamt::fmi::Component;
-using rtamt::fmi::Fate;
+using rtamt::fmi::error_boundary;
+using rtamt::fmi::Outcome;
 
 namespace {
 
@@ -53,10 +53,10 @@ fmi2Status with(fmi2Component handle, fmi2Status refusal, Work&& work) noexcept 
     if (handle == nullptr) return fmi2Error;
     auto& instance = *static_cast<Instance*>(handle);
     fmi2Status status = fmi2OK;
-    (void)attempt(
+    (void)error_boundary(
         &instance.component, [&] { work(instance.component); },
-        [&](Fate fate, const char* sentence) {
-            status = fate == Fate::refused ? refusal : fmi2Error;
+        [&](Outcome outcome, const char* sentence) {
+            status = outcome == Outcome::refused ? refusal : fmi2Error;
             instance.log.say(status, sentence);
         });
     return status;
@@ -96,7 +96,7 @@ RTAMT_FMI2_EXPORT fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, 
                                                 fmi2Boolean /*visible*/, fmi2Boolean /*logging*/) {
     if (callbacks == nullptr) return nullptr;
     Instance* instance = nullptr;
-    (void)attempt(
+    (void)error_boundary(
         nullptr,
         [&] {
             if (type != fmi2CoSimulation) {
@@ -108,7 +108,7 @@ RTAMT_FMI2_EXPORT fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, 
             Component component(rtamt::fmi::path_of(resources), guid);
             instance = new Instance{{*callbacks, name}, std::move(component)};
         },
-        [&](Fate, const char* sentence) {
+        [&](Outcome, const char* sentence) {
             const Log log{*callbacks, name == nullptr ? "" : name};
             log.say(fmi2Error, sentence);
         });

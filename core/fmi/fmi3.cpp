@@ -3,8 +3,8 @@
 
 #include "fmi3.hpp"
 
-#include "attempt.hpp"
 #include "component.hpp"
+#include "error_boundary.hpp"
 #include "instance3.hpp"
 
 #include <cstdint>
@@ -13,11 +13,11 @@
 #include <span>
 #include <vector>
 
-using rtamt::fmi::attempt;
 using rtamt::fmi::Component;
-using rtamt::fmi::Fate;
+using rtamt::fmi::error_boundary;
 using rtamt::fmi::Instance3;
 using rtamt::fmi::Log3;
+using rtamt::fmi::Outcome;
 using rtamt::fmi::refuse;
 
 namespace {
@@ -30,10 +30,10 @@ fmi3Status with(fmi3Instance handle, fmi3Status refusal, Work&& work) noexcept {
     if (handle == nullptr) return fmi3Error;
     auto& instance = *static_cast<Instance3*>(handle);
     fmi3Status status = fmi3OK;
-    (void)attempt(
+    (void)error_boundary(
         &instance.component, [&] { work(instance.component); },
-        [&](Fate fate, const char* sentence) {
-            status = fate == Fate::refused ? refusal : fmi3Error;
+        [&](Outcome outcome, const char* sentence) {
+            status = outcome == Outcome::refused ? refusal : fmi3Error;
             instance.log.say(status, sentence);
         });
     return status;
@@ -66,7 +66,7 @@ RTAMT_FMI3_EXPORT fmi3Instance fmi3InstantiateCoSimulation(
     fmi3InstanceEnvironment environment, fmi3LogMessageCallback log,
     fmi3IntermediateUpdateCallback /*update*/) {
     Instance3* instance = nullptr;
-    (void)attempt(
+    (void)error_boundary(
         nullptr,
         [&] {
             if (token == nullptr || resources == nullptr) {
@@ -75,7 +75,7 @@ RTAMT_FMI3_EXPORT fmi3Instance fmi3InstantiateCoSimulation(
             Component component(resources, token);
             instance = new Instance3{{environment, log}, std::move(component)};
         },
-        [&](Fate, const char* sentence) { Log3{environment, log}.say(fmi3Error, sentence); });
+        [&](Outcome, const char* sentence) { Log3{environment, log}.say(fmi3Error, sentence); });
     return instance;
 }
 

@@ -1,7 +1,7 @@
 // Columns that come from numpy and results that go to it, neither copied.
 #pragma once
 
-#include "../snapshot.hpp"
+#include "../program/snapshot.hpp"
 
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>

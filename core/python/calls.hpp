@@ -4,7 +4,7 @@
 // A call to Python takes the GIL. What it raises is kept until the failure is told.
 #pragma once
 
-#include "../program.hpp"
+#include "../program/program.hpp"
 
 #include <nanobind/nanobind.h>
 

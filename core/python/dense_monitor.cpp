@@ -122,13 +122,13 @@ DenseMonitor::DenseMonitor(Program program, const std::vector<nb::str>& names,
                            Exceptions exceptions)
     : calls_(std::move(calls)), executor_(std::move(program)),
       names_(names, executor_.program().inputs, ignored), exceptions_(std::move(exceptions)),
-      gate_(exceptions_.refused, exceptions_.in_use), row_(names.size()), events_(names.size()),
+      usage_(exceptions_.refused, exceptions_.in_use), row_(names.size()), events_(names.size()),
       results_(executor_.program().outputs.size()), spare_(results_.size()),
       until_(results_.size()), counts_(names.size()) {}
 
 void DenseMonitor::tell(const nb::type_object& signal, const nb::object& scale, double rate,
                         bool whole) {
-    gate_.require_idle();
+    usage_.require_idle();
     scale_slot_ = slot_of(signal, "_scale");
     events_slot_ = slot_of(signal, "_events");
     signal_ = signal;
@@ -148,7 +148,7 @@ PyObject* DenseMonitor::update(PyObject* time, const Values& values) noexcept {
     for (EventList& list : spare_)
         list.resize(0);
     try {
-        const auto failure = gate_.briefly([&] { return executor_.push(events_, spare_); });
+        const auto failure = usage_.briefly([&] { return executor_.push(events_, spare_); });
         if (failure) return fail(*failure);
         std::swap(results_, spare_);
         for (std::size_t input = 0; input < events_.size(); ++input)
@@ -181,7 +181,7 @@ PyObject* DenseMonitor::fail(const Failure& failure) const noexcept {
     return nullptr;
 }
 
-// Reads an instant, after which the gate is open; if not, a Python exception is set. Plain numbers,
+// Reads an instant, after which samples may come; if not, a Python exception is set. Plain numbers,
 // which run no Python code, are read into row_ at once. All others are read into a row of this call
 // alone, and the monitor is looked at when all of them have been read: only then is it certain what
 // its state is.
@@ -191,7 +191,7 @@ bool DenseMonitor::read(PyObject* time, const Values& values) noexcept {
     const double rate = rate_;
     const bool whole = whole_;
     const auto tick = told ? read_time(time) : std::nullopt;
-    if (!tick) return gate_.refuse("time") != nullptr;
+    if (!tick) return usage_.refuse("time") != nullptr;
     for (double& value : row_)
         value = std::numeric_limits<double>::quiet_NaN();
     // A time of any other kind may have run Python code.
@@ -200,14 +200,14 @@ bool DenseMonitor::read(PyObject* time, const Values& values) noexcept {
         Row row(row_.size());
         if (!row) return PyErr_NoMemory() != nullptr;
         if (const char* wrong = read_values(values, numbers_, row.values())) {
-            return gate_.refuse(wrong) != nullptr;
+            return usage_.refuse(wrong) != nullptr;
         }
         if (!ready()) return false;
         std::ranges::copy(row.values(), row_.begin());
     }
     time_ = *tick;
-    return (told == told_ && rate == rate_ && whole == whole_ && aim()) ||
-           gate_.refuse("time") != nullptr;
+    return (told == told_ && rate == rate_ && whole == whole_ && bind_buffers()) ||
+           usage_.refuse("time") != nullptr;
 }
 
 // The tick of a plain time: of a float or an int, rounded to the nearest and halves to the even
@@ -253,7 +253,7 @@ const char* DenseMonitor::read_values(const Values& values, const Numbers& numbe
 }
 
 // Makes events of the instant; answers whether it may come now.
-bool DenseMonitor::aim() noexcept {
+bool DenseMonitor::bind_buffers() noexcept {
     if (time_ > executor_.last_possible()) return false;
     for (std::size_t input = 0; input < row_.size(); ++input) {
         events_[input] = {};
@@ -292,7 +292,7 @@ nb::object DenseMonitor::signal_of(const Events& events) const noexcept {
 // ---- many samples -------------------------------------------------------------------------------
 
 nb::tuple DenseMonitor::push(const std::vector<EventColumn>& columns) {
-    gate_.require_idle();
+    usage_.require_idle();
     if (!ready()) throw nb::python_error();
     const std::vector<Events> inputs = events_of(columns, names_.count());
     for (std::size_t i = 0; i < inputs.size(); ++i) {
@@ -300,13 +300,13 @@ nb::tuple DenseMonitor::push(const std::vector<EventColumn>& columns) {
         if (events.count == 0) continue;
         if (events.times[0] <= executor_.last_time(i).value_or(-dense::never - 1) ||
             events.times[events.count - 1] > executor_.last_possible()) {
-            (void)gate_.refuse("time");
+            (void)usage_.refuse("time");
             throw nb::python_error();
         }
     }
     std::vector<EventList> results(results_.size());
     std::optional<Failure> failure;
-    gate_.exclusively(samples(inputs), [&] { failure = executor_.push(inputs, results); });
+    usage_.exclusively(samples(inputs), [&] { failure = executor_.push(inputs, results); });
     if (failure) {
         raise_undefined(exceptions_, *calls_, failure->instruction, failure->time, failure->fault);
     }
@@ -316,10 +316,10 @@ nb::tuple DenseMonitor::push(const std::vector<EventColumn>& columns) {
 }
 
 nb::tuple DenseMonitor::finish() {
-    gate_.require_idle();
+    usage_.require_idle();
     std::vector<EventList> results(results_.size());
     std::optional<Failure> failure;
-    gate_.exclusively(executor_.state_bytes(), [&] { failure = executor_.finish(results); });
+    usage_.exclusively(executor_.state_bytes(), [&] { failure = executor_.finish(results); });
     if (failure) {
         raise_undefined(exceptions_, *calls_, failure->instruction, failure->time, failure->fault);
     }
@@ -333,7 +333,7 @@ nb::tuple DenseMonitor::take(std::vector<EventList>& results) {
 }
 
 nb::tuple DenseMonitor::told(std::size_t output) const {
-    gate_.require_idle();
+    usage_.require_idle();
     require_output(output);
     const Events events = results_[output].view();
     EventList copy;
@@ -342,7 +342,7 @@ nb::tuple DenseMonitor::told(std::size_t output) const {
 }
 
 nb::list DenseMonitor::points() const {
-    gate_.require_idle();
+    usage_.require_idle();
     nb::list every;
     for (const EventList& list : results_) {
         const Events events = list.view();
@@ -355,7 +355,7 @@ nb::list DenseMonitor::points() const {
 }
 
 void DenseMonitor::reset() {
-    gate_.require_idle();
+    usage_.require_idle();
     executor_.reset();
     for (EventList& list : results_)
         list.resize(0);
@@ -365,14 +365,14 @@ void DenseMonitor::reset() {
 }
 
 nb::bytes DenseMonitor::state() {
-    gate_.require_idle();
+    usage_.require_idle();
     Snapshot snapshot;
     transfer(snapshot);
     return bytes_of(snapshot);
 }
 
 void DenseMonitor::restore(const nb::bytes& state) {
-    gate_.require_idle();
+    usage_.require_idle();
     Snapshot snapshot = snapshot_of(state);
     transfer(snapshot);
     snapshot.end();
@@ -380,7 +380,7 @@ void DenseMonitor::restore(const nb::bytes& state) {
 
 void DenseMonitor::transfer(Snapshot& snapshot) {
     executor_.transfer(snapshot);
-    snapshot.cells(counts_.data(), counts_.size());
+    snapshot.values(counts_.data(), counts_.size());
     for (auto& until : until_)
         snapshot.item(until);
     for (EventList& list : results_)
@@ -388,23 +388,23 @@ void DenseMonitor::transfer(Snapshot& snapshot) {
 }
 
 std::vector<std::int64_t> DenseMonitor::counts() const {
-    gate_.require_idle();
+    usage_.require_idle();
     return counts_;
 }
 
 std::optional<std::int64_t> DenseMonitor::start() const {
-    gate_.require_idle();
+    usage_.require_idle();
     return executor_.start();
 }
 
 std::optional<std::int64_t> DenseMonitor::known(std::size_t output) const {
-    gate_.require_idle();
+    usage_.require_idle();
     require_output(output);
     return executor_.known_until(output);
 }
 
 std::vector<std::optional<std::int64_t>> DenseMonitor::last_times() const {
-    gate_.require_idle();
+    usage_.require_idle();
     std::vector<std::optional<std::int64_t>> times;
     times.reserve(names_.count());
     for (std::size_t input = 0; input < names_.count(); ++input)
@@ -413,12 +413,12 @@ std::vector<std::optional<std::int64_t>> DenseMonitor::last_times() const {
 }
 
 std::int64_t DenseMonitor::last_possible() const {
-    gate_.require_idle();
+    usage_.require_idle();
     return executor_.last_possible();
 }
 
 std::size_t DenseMonitor::state_bytes() const {
-    gate_.require_idle();
+    usage_.require_idle();
     return executor_.state_bytes();
 }
 

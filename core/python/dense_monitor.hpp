@@ -10,10 +10,10 @@
 #include "arrays.hpp"
 #include "calls.hpp"
 #include "failures.hpp"
-#include "gate.hpp"
 #include "names.hpp"
 #include "numbers.hpp"
 #include "row.hpp"
+#include "usage_guard.hpp"
 
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
@@ -89,7 +89,7 @@ class DenseMonitor {
     Names names_;
     Numbers numbers_;
     Exceptions exceptions_;
-    Gate gate_;
+    UsageGuard usage_;
     std::int64_t time_ = 0;                          // of the instant that is being taken
     std::vector<double> row_;                        // its values, NaN where there is none
     std::vector<dense::Events> events_;              // the same
@@ -109,14 +109,14 @@ class DenseMonitor {
     void transfer(Snapshot& snapshot);
     void require_output(std::size_t output) const;
     [[nodiscard]] PyObject* fail(const dense::Failure& failure) const noexcept;
-    [[nodiscard]] bool ready() const noexcept { return gate_.open(executor_.finished()); }
+    [[nodiscard]] bool ready() const noexcept { return usage_.open(executor_.finished()); }
     [[nodiscard]] std::optional<std::int64_t> read_time(PyObject* time) const noexcept;
     template <class Values, class Numbers>
     [[nodiscard]] const char* read_values(const Values& values, const Numbers& numbers,
                                           std::span<double> row) const noexcept;
     template <class Values>
     [[nodiscard]] bool read(PyObject* time, const Values& values) noexcept;
-    [[nodiscard]] bool aim() noexcept;
+    [[nodiscard]] bool bind_buffers() noexcept;
     void close();
     [[nodiscard]] PyObject* answer() const noexcept;
     [[nodiscard]] nb::object signal_of(const dense::Events& events) const noexcept;

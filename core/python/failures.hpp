@@ -1,7 +1,7 @@
 // The exceptions of the module, and how a failure of the core becomes one.
 #pragma once
 
-#include "../fault.hpp"
+#include "../program/fault.hpp"
 #include "calls.hpp"
 
 #include <nanobind/nanobind.h>

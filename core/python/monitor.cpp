@@ -40,7 +40,7 @@ Monitor::Monitor(Program program, const std::vector<nb::str>& names, double peri
     : calls_(std::move(calls)), executor_(std::move(program)),
       clock_(period, tolerance, strict, history_of(executor_.program())),
       names_(names, executor_.program().inputs, ignored), exceptions_(std::move(exceptions)),
-      gate_(exceptions_.refused, exceptions_.in_use), row_(names.size()),
+      usage_(exceptions_.refused, exceptions_.in_use), row_(names.size()),
       previous_(names.size(), missing) {
     if (!(period > 0.0) || !std::isfinite(period) || !(tolerance >= 0.0)) {
         throw std::invalid_argument(
@@ -61,8 +61,8 @@ PyObject* Monitor::sample(const Read& read) noexcept {
     if (read(PlainNumbers{}, time, std::span(row_)) != nullptr) [[unlikely]] {
         return sample_carefully<timed, keeps>(read);
     }
-    if (timed && !clock_.accepts(time)) return gate_.refuse("time");
-    if (keeps && !whole()) return gate_.refuse("names");
+    if (timed && !clock_.accepts(time)) return usage_.refuse("time");
+    if (keeps && !whole()) return usage_.refuse("names");
     return take<timed>(time);
 }
 
@@ -73,12 +73,12 @@ PyObject* Monitor::sample_carefully(const Read& read) noexcept {
     double time = 0.0;
     Row row(row_.size());
     if (!row) return PyErr_NoMemory();
-    if (const char* wrong = read(numbers_, time, row.values())) return gate_.refuse(wrong);
+    if (const char* wrong = read(numbers_, time, row.values())) return usage_.refuse(wrong);
     if (!ready()) return nullptr;
     if constexpr (keeps) row.complete(previous_);
     std::ranges::copy(row.values(), row_.begin());
-    if (timed && !clock_.accepts(time)) return gate_.refuse("time");
-    return whole() ? take<timed>(time) : gate_.refuse("names");
+    if (timed && !clock_.accepts(time)) return usage_.refuse("time");
+    return whole() ? take<timed>(time) : usage_.refuse("names");
 }
 
 bool Monitor::whole() const noexcept {
@@ -130,7 +130,7 @@ PyObject* Monitor::update_pairs(PyObject* time, PyObject* pairs) noexcept {
 }
 
 PyObject* Monitor::step(std::span<PyObject* const> values) noexcept {
-    if (values.size() != names_.count()) return ready() ? gate_.refuse("count") : nullptr;
+    if (values.size() != names_.count()) return ready() ? usage_.refuse("count") : nullptr;
     return sample<false, false>(
         [&](const auto& numbers, double& /*time*/, std::span<double> row) -> const char* {
             for (std::size_t i = 0; i < values.size(); ++i) {
@@ -145,7 +145,7 @@ PyObject* Monitor::step(std::span<PyObject* const> values) noexcept {
 template <bool timed>
 PyObject* Monitor::take(double time) noexcept {
     double value = 0.0;
-    const Outcome outcome = gate_.briefly([&] { return executor_.step(row_.data(), value); });
+    const Outcome outcome = usage_.briefly([&] { return executor_.step(row_.data(), value); });
     if (outcome == Outcome::failed) [[unlikely]] {
         const Failure& failure = executor_.failure();
         const bool before = failure.sample < executor_.samples();
@@ -175,12 +175,12 @@ double Monitor::time_of(std::int64_t sample, const std::optional<Column>& times)
 std::vector<Result> Monitor::push(const std::optional<Column>& times,
                                   const std::vector<Column>& columns,
                                   std::optional<std::int64_t> after) {
-    gate_.require_idle();
+    usage_.require_idle();
     if (executor_.finished()) {
-        (void)gate_.refuse("finished");
+        (void)usage_.refuse("finished");
         throw nb::python_error();
     }
-    gate_.require(after.value_or(executor_.samples()) == executor_.samples());
+    usage_.require(after.value_or(executor_.samples()) == executor_.samples());
     std::size_t count = times ? times->shape(0) : 0;
     if (!times && !columns.empty()) count = columns.front().shape(0);
     const auto pointers = pointers_of(columns, names_.count(), count);
@@ -188,7 +188,7 @@ std::vector<Result> Monitor::push(const std::optional<Column>& times,
     for (std::size_t i = 0; i < executor_.program().outputs.size(); ++i) {
         results.add(executor_.known(i, count));
     }
-    const auto failure = gate_.exclusively(
+    const auto failure = usage_.exclusively(
         count, [&] { return executor_.push(pointers, count, results.pointers()); });
     if (failure) {
         raise_undefined(exceptions_, *calls_, failure->instruction, failure->sample, failure->fault,
@@ -208,13 +208,13 @@ std::vector<Result> Monitor::push(const std::optional<Column>& times,
 }
 
 std::vector<Result> Monitor::finish() {
-    gate_.require_idle();
+    usage_.require_idle();
     Results results;
     for (std::size_t i = 0; i < executor_.program().outputs.size(); ++i) {
         results.add(executor_.remaining(i));
     }
-    const auto failure = gate_.exclusively(history_of(executor_.program()),
-                                           [&] { return executor_.finish(results.pointers()); });
+    const auto failure = usage_.exclusively(history_of(executor_.program()),
+                                            [&] { return executor_.finish(results.pointers()); });
     if (failure) {
         raise_undefined(exceptions_, *calls_, failure->instruction, failure->sample, failure->fault,
                         time_of(failure->sample, std::nullopt));
@@ -223,21 +223,21 @@ std::vector<Result> Monitor::finish() {
 }
 
 void Monitor::reset() {
-    gate_.require_idle();
+    usage_.require_idle();
     executor_.reset();
     clock_.reset();
     std::ranges::fill(previous_, missing);
 }
 
 nb::bytes Monitor::state() {
-    gate_.require_idle();
+    usage_.require_idle();
     Snapshot snapshot;
     transfer(snapshot);
     return bytes_of(snapshot);
 }
 
 void Monitor::restore(const nb::bytes& state) {
-    gate_.require_idle();
+    usage_.require_idle();
     Snapshot snapshot = snapshot_of(state);
     transfer(snapshot);
     snapshot.end();
@@ -246,31 +246,31 @@ void Monitor::restore(const nb::bytes& state) {
 void Monitor::transfer(Snapshot& snapshot) {
     executor_.transfer(snapshot);
     clock_.transfer(snapshot);
-    snapshot.cells(previous_.data(), previous_.size());
+    snapshot.values(previous_.data(), previous_.size());
 }
 
 std::int64_t Monitor::samples() const {
-    gate_.require_idle();
+    usage_.require_idle();
     return executor_.samples();
 }
 
 std::uint64_t Monitor::violations() const {
-    gate_.require_idle();
+    usage_.require_idle();
     return clock_.violations();
 }
 
 double Monitor::last_time() const {
-    gate_.require_idle();
+    usage_.require_idle();
     return clock_.stamps().last().value_or(missing);
 }
 
 std::size_t Monitor::state_bytes() const {
-    gate_.require_idle();
+    usage_.require_idle();
     return executor_.state_bytes() + clock_.stamps().bytes();
 }
 
 double Monitor::last(std::uint32_t instruction) const {
-    gate_.require_idle();
+    usage_.require_idle();
     if (instruction >= executor_.program().instructions.size()) {
         throw std::out_of_range("There is no instruction " + std::to_string(instruction) + ".");
     }
@@ -278,7 +278,7 @@ double Monitor::last(std::uint32_t instruction) const {
 }
 
 std::optional<double> Monitor::latest(std::size_t output) const {
-    gate_.require_idle();
+    usage_.require_idle();
     const Program& program = executor_.program();
     if (output >= program.outputs.size()) {
         throw std::out_of_range("There is no output " + std::to_string(output) + ".");
@@ -289,7 +289,7 @@ std::optional<double> Monitor::latest(std::size_t output) const {
 }
 
 Result Monitor::recent(std::size_t count) const {
-    gate_.require_idle();
+    usage_.require_idle();
     const std::size_t available = clock_.stamps().available();
     if (count > available) {
         throw std::invalid_argument("Only the times of the last " + std::to_string(available) +

@@ -9,10 +9,10 @@
 #include "arrays.hpp"
 #include "calls.hpp"
 #include "failures.hpp"
-#include "gate.hpp"
 #include "names.hpp"
 #include "numbers.hpp"
 #include "row.hpp"
+#include "usage_guard.hpp"
 
 #include <nanobind/nanobind.h>
 
@@ -72,12 +72,12 @@ class Monitor {
     Numbers numbers_;
     Names names_;
     Exceptions exceptions_;
-    Gate gate_;
+    UsageGuard usage_;
     std::vector<double> row_;      // the sample that is being taken
     std::vector<double> previous_; // the last sample that was taken; NaN where there is none
 
     void transfer(Snapshot& snapshot);
-    [[nodiscard]] bool ready() const noexcept { return gate_.open(executor_.finished()); }
+    [[nodiscard]] bool ready() const noexcept { return usage_.open(executor_.finished()); }
     [[nodiscard]] double time_of(std::int64_t sample, const std::optional<Column>& times) const;
     template <bool timed, bool keeps, class Read>
     [[nodiscard]] PyObject* sample(const Read& read) noexcept;

@@ -1,7 +1,7 @@
 // The names of a program's inputs, looked up by the Python strings that a caller passes.
 #pragma once
 
-#include "../vectors.hpp"
+#include "../values/vectors.hpp"
 
 #include <nanobind/nanobind.h>
 

@@ -1,7 +1,7 @@
 // Real numbers from Python objects.
 #pragma once
 
-#include "../vectors.hpp"
+#include "../values/vectors.hpp"
 
 #include <nanobind/nanobind.h>
 

@@ -1,7 +1,7 @@
 // Programs whose meaning over one value domain follows from that over reals.
 #pragma once
 
-#include "oracle.hpp"
+#include "discrete/oracle.hpp"
 #include "programs.hpp"
 
 #include <algorithm>

@@ -1,9 +1,9 @@
 // Programs for tests: a builder, and the bytes of a program as whoever compiles one writes them.
 #pragma once
 
-#include "crc32.hpp"
-#include "metadata.hpp"
-#include "program.hpp"
+#include "program/crc32.hpp"
+#include "program/metadata.hpp"
+#include "program/program.hpp"
 
 #include <bit>
 #include <cstdint>

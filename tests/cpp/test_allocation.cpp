@@ -1,8 +1,8 @@
 // A running monitor allocates nothing: this stands in front of malloc and of operator new.
 #include "discrete/executor.hpp"
 
+#include "discrete/ways.hpp"
 #include "programs.hpp"
-#include "ways.hpp"
 
 #include <cstdlib>
 #include <new>
@@ -89,16 +89,16 @@ TEST(running_a_monitor_allocates_nothing) {
 
     executor.reserve(5000);
     before = allocations;
-    bool sound = true;
+    bool valid = true;
     for (const std::size_t count : std::initializer_list<std::size_t>{1, 200, 256, 257, 5000}) {
-        sound = sound && !executor.push(columns, count, outputs);
+        valid = valid && !executor.push(columns, count, outputs);
     }
     for (int i = 0; i < 500; ++i)
         (void)executor.step(row.data(), value);
-    sound = sound && !executor.finish(outputs);
+    valid = valid && !executor.finish(outputs);
     executor.reset();
     for (int i = 0; i < 500; ++i)
         (void)executor.step(row.data(), value);
     CHECK(allocations == before);
-    CHECK(sound && executor.samples() == 500);
+    CHECK(valid && executor.samples() == 500);
 }

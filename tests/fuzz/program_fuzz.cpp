@@ -2,10 +2,10 @@
 //
 // The first byte chooses the time domain and how the samples are cut, the rest is a program, whose
 // checksum is set right here: else nothing that was changed would ever get past it.
-#include "crc32.hpp"
 #include "dense/executor.hpp"
 #include "discrete/executor.hpp"
-#include "program.hpp"
+#include "program/crc32.hpp"
+#include "program/program.hpp"
 #include "values/algebra.hpp"
 
 #include <algorithm>

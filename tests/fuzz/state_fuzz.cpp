@@ -4,10 +4,10 @@
 // The first byte chooses the program and how many samples come afterwards, the rest is a state,
 // whose checksum and whose program's are set right here: else nothing that was changed would ever
 // get past them.
-#include "capi/rtamt.h"
+#include "c_api/rtamt.h"
 
-#include "../cpp/programs.hpp"
-#include "crc32.hpp"
+#include "program/crc32.hpp"
+#include "programs.hpp"
 
 #include <array>
 #include <cstddef>

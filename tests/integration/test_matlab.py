@@ -481,7 +481,7 @@ def test_the_gateway_compiles_without_a_warning():
         ["mkoctfile", "-p", "OCTINCLUDEDIR"], check=True, capture_output=True, text=True
     ).stdout.strip()
     check = ["gcc", "-std=c99", "-Wall", "-Wextra", "-Wconversion", "-Wshadow", "-Werror", "-fsyntax-only"]
-    includes = ["-isystem", folder, "-isystem", str(Path(folder).parent), "-I", ROOT / "core" / "capi"]
+    includes = ["-isystem", folder, "-isystem", str(Path(folder).parent), "-I", ROOT / "core" / "c_api"]
     done = subprocess.run(
         [*check, *includes, ROOT / "matlab/private/rtamt_gateway.c"],
         capture_output=True,

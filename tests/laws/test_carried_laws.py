@@ -18,7 +18,7 @@ from rtamt.engine.monitor import Monitor
 from rtamt.errors import EvaluationError
 from rtamt.language.formula import Apply, Const, Formula, fold, variables
 from rtamt.rewrite.semantics import SEMANTICS, apply_semantics, boolean
-from tests import capi
+from tests import c_api
 from tests.strategies import dense_chunkings, dense_traces, formulas, traces
 
 ONE = Fraction(1)
@@ -52,11 +52,11 @@ def test_samples_in_the_same_bits_out(data: st.DataObject) -> None:
     rows = rows_of(formula, columns)
     judged = draw_judged(data, formula)
     code = carried(formula, applied=judged)
-    here, there, truth = Monitor(judged), capi.Monitor(code), Monitor(boolean(formula))
+    here, there, truth = Monitor(judged), c_api.Monitor(code), Monitor(boolean(formula))
     cut = data.draw(st.integers(0, len(rows)))
     for i, row in enumerate(rows):
         if i == cut:  # a state can go to another monitor
-            state, there = there.save(), capi.Monitor(code)
+            state, there = there.save(), c_api.Monitor(code)
             there.restore(state)
         try:
             expected = here.step(*row)
@@ -64,7 +64,7 @@ def test_samples_in_the_same_bits_out(data: st.DataObject) -> None:
             holds = truth.step(*(named[name] for name in truth.input_names))
         except EvaluationError as error:
             sentence = re.escape(f"{error}.")
-            with pytest.raises(capi.RefusedError, match=sentence):
+            with pytest.raises(c_api.RefusedError, match=sentence):
                 there.step(row)
             return
         got = there.step(row)
@@ -90,12 +90,12 @@ def test_events_in_the_same_events_out(data: st.DataObject) -> None:
     updates = data.draw(dense_chunkings(trace))
     judged = draw_judged(data, formula)
     code = carried(formula, "dense", judged)
-    here, there = DenseMonitor(judged, resolution=ONE), capi.Monitor(code)
+    here, there = DenseMonitor(judged, resolution=ONE), c_api.Monitor(code)
     cut = data.draw(st.integers(0, len(updates)))
     try:
         for i, update in enumerate(updates):
             if i == cut:
-                state, there = there.save(), capi.Monitor(code)
+                state, there = there.save(), c_api.Monitor(code)
                 there.restore(state)
             samples = [
                 (names.index(name), int(tick), float(value))
@@ -105,7 +105,7 @@ def test_events_in_the_same_events_out(data: st.DataObject) -> None:
             seconds = {name: (times.astype(float), values) for name, (times, values) in update.items()}
             assert_same_steps(there.push(samples), here.update_many(seconds))
         assert_same_steps(there.finish(), here.finish())
-    except (EvaluationError, capi.RefusedError):
+    except (EvaluationError, c_api.RefusedError):
         assume(False)
 
 
@@ -148,7 +148,7 @@ def test_a_parameter_has_the_value_that_is_set(data: st.DataObject) -> None:
             return Const(values[node.name])
         return Apply(node.op, args, node.interval) if isinstance(node, Apply) else node
 
-    here, there = Monitor(fold(named, set_value)), capi.Monitor(program.to_bytes())
+    here, there = Monitor(fold(named, set_value)), c_api.Monitor(program.to_bytes())
     for index, name in enumerate(names):
         there.set_parameter(index, values[name])
     order = here.input_names

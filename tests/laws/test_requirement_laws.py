@@ -26,7 +26,7 @@ from rtamt.language.grammar import is_number
 from rtamt.language.parser import parse_formula
 from rtamt.language.specfile import parse_document
 from rtamt.verdicts.first_violation import first_violation
-from tests import capi
+from tests import c_api
 from tests.strategies import chunkings, dense_traces, formulas, traces
 
 DECLARED = "float x  float y  "
@@ -166,7 +166,7 @@ def test_program(drawn: tuple[str, list[Formula]], columns: dict[str, Any]) -> N
     )
     declared = [variable.name for variable in variables_of(program)]
     assert all(f"known_since{name}" in declared for name in names)
-    monitor = capi.Monitor(program.to_bytes())
+    monitor = c_api.Monitor(program.to_bytes())
     known: list[list[float]] = [[] for _ in program.metadata.outputs]
     rows = [[float(columns[name][i]) for name in spec.input_names] for i in range(len(columns["x"]))]
     try:
@@ -174,7 +174,7 @@ def test_program(drawn: tuple[str, list[Formula]], columns: dict[str, Any]) -> N
             for values, value in zip(known, monitor.step(row, len(known)), strict=True):
                 values.extend([] if np.isnan(value) else [value])
         monitor.finish()
-    except capi.RefusedError:
+    except c_api.RefusedError:
         return
     for output, values in enumerate(known):
         values.extend(monitor.told(output)[1].tolist())

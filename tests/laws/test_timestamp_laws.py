@@ -24,7 +24,7 @@ import rtamt
 from rtamt.cli import main
 from rtamt.signals.counting import quotients
 from rtamt.signals.ticks import NANOSECOND, TimeScale
-from tests import capi
+from tests import c_api
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -290,7 +290,7 @@ def test_rtamts_classes_and_compiled_programs(start: int, case: Case) -> None:
     if rtamt.parse(case.text).horizon == float("inf"):
         return
     program = rtamt.parse(case.text).compile(time="dense")
-    monitor = capi.Monitor(program.to_bytes())
+    monitor = c_api.Monitor(program.to_bytes())
     samples = sorted(
         (start * 10**6 + t * 10**6, program.inputs.index(n), v)
         for n, s in case.trace.items()

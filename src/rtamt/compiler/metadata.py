@@ -1,6 +1,6 @@
 """What a program says of itself to whoever carries it: names, the period, what instructions mean.
 
-The bytes are those of core/metadata.hpp, where each field is described.
+The bytes are those of core/program/metadata.hpp, where each field is described.
 """
 
 from __future__ import annotations

@@ -5,7 +5,7 @@ s - L; a future window [a, b] adds b to the lag, and operands are delayed until 
 What lies outside the trace is *absent*: kernels skip it, which cuts windows at both ends. So one
 program serves offline and online alike, and nothing needs pastification.
 
-The bytes are those of core/program.hpp (documented there and in ``to_bytes``): header, records of
+The bytes are those of core/program/program.hpp (documented there and in ``to_bytes``): header, records of
 40 bytes, outputs, a note, CRC-32. The note is empty in programs that stay in Python; in those that
 leave it (``carry.py``) it is their metadata (``metadata.py``).
 """

@@ -5,9 +5,9 @@
 // of a tick is said for its first instant and holds for the others. Nothing is kept or clever.
 #pragma once
 
-#include "../oracle.hpp"
 #include "dense/events.hpp"
-#include "program.hpp"
+#include "discrete/oracle.hpp"
+#include "program/program.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,8 @@
 // Random programs over two inputs in dense time.
 #pragma once
 
-#include "../oracle.hpp"
-#include "../programs.hpp"
+#include "discrete/oracle.hpp"
+#include "programs.hpp"
 
 #include <algorithm>
 #include <cstdint>

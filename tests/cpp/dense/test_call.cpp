@@ -1,8 +1,8 @@
 #include "dense/call.hpp"
 
-#include "../check.hpp"
-#include "../programs.hpp"
+#include "check.hpp"
 #include "dense/executor.hpp"
+#include "programs.hpp"
 
 #include <algorithm>
 #include <cstdint>

@@ -1,6 +1,6 @@
 #include "dense/constant.hpp"
 
-#include "../programs.hpp"
+#include "programs.hpp"
 #include "ways.hpp"
 
 using dense_oracle::inf;

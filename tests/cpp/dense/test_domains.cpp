@@ -1,5 +1,5 @@
 // The executor of dense time over every value domain, against that over reals.
-#include "../domain_programs.hpp"
+#include "domain_programs.hpp"
 #include "random_programs.hpp"
 #include "value_ways.hpp"
 #include "values/interval.hpp"

@@ -1,6 +1,6 @@
 #include "dense/kernels.hpp"
 
-#include "../check.hpp"
+#include "check.hpp"
 #include "values/interval.hpp"
 #include "values/lanes.hpp"
 #include "values/real.hpp"

@@ -1,6 +1,6 @@
 #include "dense/running.hpp"
 
-#include "../programs.hpp"
+#include "programs.hpp"
 #include "ways.hpp"
 
 using programs::Builder;

@@ -1,6 +1,6 @@
 #include "dense/window.hpp"
 
-#include "../programs.hpp"
+#include "programs.hpp"
 #include "ways.hpp"
 
 using dense_oracle::inf;

@@ -1,7 +1,7 @@
 #include "dense/wiring.hpp"
 
-#include "../check.hpp"
-#include "../programs.hpp"
+#include "check.hpp"
+#include "programs.hpp"
 #include "values/real.hpp"
 #include "values/truth.hpp"
 

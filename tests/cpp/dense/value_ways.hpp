@@ -2,9 +2,9 @@
 // fail.
 #pragma once
 
-#include "../check.hpp"
-#include "../oracle.hpp"
+#include "check.hpp"
 #include "dense/executor.hpp"
+#include "discrete/oracle.hpp"
 #include "oracle.hpp"
 
 #include <algorithm>
@@ -105,9 +105,9 @@ void check_online(const Program& program, const Trace<D>& trace, std::int64_t la
             inputs.push_back(trace[i].events(taken[i], count));
             taken[i] += count;
         }
-        const bool sound = !executor.push(inputs, outputs);
-        CHECK_NOTE(sound || expected == nullptr, note);
-        if (sound) CHECK_NOTE(!twin->push(inputs, others), note);
+        const bool valid = !executor.push(inputs, outputs);
+        CHECK_NOTE(valid || expected == nullptr, note);
+        if (valid) CHECK_NOTE(!twin->push(inputs, others), note);
         if (random.chance(20)) {
             rtamt::Snapshot written;
             twin->transfer(written);

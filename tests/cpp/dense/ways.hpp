@@ -1,7 +1,7 @@
 // Runs programs over events in every way there is, so that a kernel's test is one call.
 #pragma once
 
-#include "../check.hpp"
+#include "check.hpp"
 #include "dense/executor.hpp"
 #include "oracle.hpp"
 

@@ -1,9 +1,9 @@
 #include "fmi/component.hpp"
 
-#include "../check.hpp"
-#include "../forged.hpp"
-#include "../programs.hpp"
-#include "fmi/attempt.hpp"
+#include "check.hpp"
+#include "fmi/error_boundary.hpp"
+#include "forged.hpp"
+#include "programs.hpp"
 
 #include <array>
 #include <cstdio>
@@ -12,9 +12,9 @@
 #include <limits>
 
 using rtamt::Domain;
-using rtamt::fmi::attempt;
 using rtamt::fmi::Component;
-using rtamt::fmi::Fate;
+using rtamt::fmi::error_boundary;
+using rtamt::fmi::Outcome;
 
 namespace {
 // References: the inputs a and b, then the outputs, then the parameter and the time.
@@ -58,9 +58,9 @@ void set(Component& component, double first, double second) {
 std::string refusal(Component& component, double from, double length) {
     std::string said = "done";
     const auto before = component.save();
-    (void)attempt(
+    (void)error_boundary(
         &component, [&] { component.advance(from, length); },
-        [&](Fate, const char* sentence) { said = sentence; });
+        [&](Outcome, const char* sentence) { said = sentence; });
     CHECK(component.save() == before || said == "done");
     return said;
 }

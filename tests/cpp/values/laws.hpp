@@ -2,7 +2,7 @@
 #pragma once
 
 #include "check.hpp"
-#include "oracle.hpp"
+#include "discrete/oracle.hpp"
 #include "values/domain.hpp"
 #include "values/interval.hpp"
 #include "values/lanes.hpp"

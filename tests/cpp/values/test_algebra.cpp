@@ -1,7 +1,7 @@
 #include "values/algebra.hpp"
 
 #include "check.hpp"
-#include "oracle.hpp"
+#include "discrete/oracle.hpp"
 
 using oracle::inf;
 using rtamt::Clamp;

@@ -1,7 +1,7 @@
 #include "values/functions.hpp"
 
 #include "check.hpp"
-#include "oracle.hpp"
+#include "discrete/oracle.hpp"
 
 #include <cmath>
 

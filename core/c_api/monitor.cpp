@@ -1,0 +1,271 @@
+#include "monitor.hpp"
+
+#include "../program/crc32.hpp"
+#include "../program/reader.hpp"
+#include "../program/snapshot.hpp"
+
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <new>
+#include <stdexcept>
+#include <utility>
+
+namespace rtamt::c_api {
+
+namespace {
+
+constexpr std::size_t checksum_size = 4;
+
+// Times lie between these, so that bounds can be added to them.
+constexpr std::int64_t farthest = 4'611'686'018'427'387'904; // 2^62
+
+[[noreturn]] void refuse(const std::string& sentence) {
+    throw std::invalid_argument(sentence);
+}
+
+[[nodiscard]] std::string shown(double number) {
+    char text[32];
+    (void)std::snprintf(text, sizeof text, "%.15g", number);
+    return text;
+}
+
+[[nodiscard]] std::string listed(const std::vector<std::string>& names) {
+    std::string list;
+    for (const std::string& name : names)
+        list += (list.empty() ? "" : ", ") + name;
+    return list.empty() ? "the formula reads no variable" : list;
+}
+
+[[nodiscard]] Domain domain_of(std::span<const std::uint8_t> program) noexcept {
+    constexpr std::size_t place = 10;
+    return program.size() > place && program[place] == 1 ? Domain::dense : Domain::discrete;
+}
+
+} // namespace
+
+Monitor::Monitor(std::span<const std::uint8_t> program) {
+    Program parsed = Program::parse(program, domain_of(program));
+    checksum_ = Reader(program.last(checksum_size)).take<std::uint32_t>();
+    metadata_ = Metadata::parse(parsed);
+    runner_ = make_runner(std::move(parsed));
+}
+
+Monitor::Monitor(Monitor& other)
+    : checksum_(other.checksum_), metadata_(other.metadata_),
+      runner_(make_runner(other.program())) {
+    other.require_whole();
+    Snapshot saved;
+    other.runner_->transfer(saved);
+    Snapshot read(saved.bytes());
+    runner_->transfer(read);
+}
+
+std::int64_t Monitor::samples() const {
+    return program().domain == Domain::discrete ? discrete().samples() : 0;
+}
+
+double Monitor::parameter(std::size_t index) const noexcept {
+    return program().instructions[metadata_.parameters[index].instructions.front()].x;
+}
+
+void Monitor::set_parameter(std::size_t index, double value) {
+    const std::vector<Parameter>& parameters = metadata_.parameters;
+    if (index >= parameters.size()) {
+        refuse("There is no parameter " + std::to_string(index) + ": the program has " +
+               std::to_string(parameters.size()) + ".");
+    }
+    const Parameter& parameter = parameters[index];
+    if (std::isnan(value)) refuse("The parameter '" + parameter.name + "' may not be NaN.");
+    if (runner_->begun()) {
+        refuse("The parameter '" + parameter.name +
+               "' cannot change in the middle of a trace: set it before the first sample.");
+    }
+    Program patched = program();
+    for (const std::uint32_t place : parameter.instructions)
+        patched.instructions[place].x = value;
+    runner_ = make_runner(std::move(patched));
+    broken_ = false;
+}
+
+void Monitor::step(std::span<const double> row, std::span<double> known) {
+    DiscreteRunner& runner = discrete();
+    require_ready();
+    check_row(row, known.size());
+    runner.step(row.data(), known);
+}
+
+void Monitor::hold(std::span<const double> row, std::size_t count, std::span<double> known) {
+    DiscreteRunner& runner = discrete();
+    require_ready();
+    check_row(row, known.size());
+    unbroken([&] { runner.hold(row, count, known); });
+}
+
+// Refuses a sample that has the wrong number of values, or NaN among them.
+void Monitor::check_row(std::span<const double> row, std::size_t outputs) const {
+    const std::int64_t sample = samples();
+    if (row.size() != metadata_.inputs.size()) {
+        refuse("Sample " + std::to_string(sample) + " has the wrong number of values: expected " +
+               std::to_string(metadata_.inputs.size()) + " (" + listed(metadata_.inputs) +
+               "), got " + std::to_string(row.size()) + ".");
+    }
+    if (outputs > program().outputs.size()) {
+        refuse("The program has " + std::to_string(program().outputs.size()) + " outputs, not " +
+               std::to_string(outputs) + ".");
+    }
+    for (std::size_t i = 0; i < row.size(); ++i) {
+        if (std::isnan(row[i])) {
+            refuse("'" + metadata_.inputs[i] + "' is NaN at " + time_of(sample) +
+                   ": fill the gap or leave the sample out.");
+        }
+    }
+}
+
+void Monitor::push(std::span<const rtamt_sample> samples) {
+    DenseRunner& runner = dense();
+    require_ready();
+    unbroken([&] {
+        try {
+            for (const rtamt_sample& sample : samples)
+                add(runner, sample);
+        } catch (...) {
+            runner.discard();
+            throw;
+        }
+        runner.push();
+    });
+}
+
+// One sample to those that are pushed together.
+void Monitor::add(DenseRunner& runner, const rtamt_sample& sample) const {
+    if (sample.input >= metadata_.inputs.size()) {
+        refuse("There is no input " + std::to_string(sample.input) + ": the program has " +
+               std::to_string(metadata_.inputs.size()) + " (" + listed(metadata_.inputs) + ").");
+    }
+    const std::string& name = metadata_.inputs[sample.input];
+    if (std::isnan(sample.value)) {
+        refuse("'" + name + "' is NaN at " + time_of(sample.tick) +
+               ": fill the gap or leave the sample out.");
+    }
+    if (sample.tick <= -farthest || sample.tick >= farthest ||
+        sample.tick > runner.last_possible()) {
+        refuse("'" + name + "' has a sample at tick " + std::to_string(sample.tick) +
+               ", too far from 0: subtract a start time, or choose a coarser resolution.");
+    }
+    const auto last = runner.last(sample.input);
+    if (last && sample.tick <= *last) {
+        refuse("The time of '" + name + "' does not increase: " + time_of(sample.tick) +
+               " comes after " + time_of(*last) + ".");
+    }
+    runner.add(sample.input, sample.tick, sample.value);
+}
+
+void Monitor::finish() {
+    if (runner_->finished()) refuse("The trace has been finished before: reset the monitor.");
+    require_ready();
+    unbroken([&] { runner_->finish(); });
+}
+
+void Monitor::reset() noexcept {
+    runner_->reset();
+    broken_ = false;
+}
+
+// ---- state --------------------------------------------------------------------------------------
+
+// Checksum of the program, values of the parameters, what the runner has, checksum of all that.
+std::vector<std::uint8_t> Monitor::save() {
+    require_whole();
+    Snapshot snapshot;
+    snapshot.item(checksum_);
+    for (std::size_t i = 0; i < metadata_.parameters.size(); ++i) {
+        double value = parameter(i);
+        snapshot.item(value);
+    }
+    runner_->transfer(snapshot);
+    std::vector<std::uint8_t> state = snapshot.bytes();
+    const std::uint32_t sum = crc32(state);
+    for (unsigned shift = 0; shift < 32; shift += 8)
+        state.push_back(static_cast<std::uint8_t>(sum >> shift));
+    return state;
+}
+
+void Monitor::restore(std::span<const std::uint8_t> state) {
+    if (state.size() < checksum_size || Reader(state.last(checksum_size)).take<std::uint32_t>() !=
+                                            crc32(state.first(state.size() - checksum_size))) {
+        refuse("This is not a state of a monitor, or it was damaged on the way.");
+    }
+    Snapshot snapshot(state.first(state.size() - checksum_size));
+    std::uint32_t checksum = 0;
+    snapshot.item(checksum);
+    if (checksum != checksum_) refuse("This is the state of a monitor of another program.");
+    Program patched = program();
+    for (const Parameter& parameter : metadata_.parameters) {
+        double value = 0.0;
+        snapshot.item(value);
+        for (const std::uint32_t place : parameter.instructions)
+            patched.instructions[place].x = value;
+    }
+    auto runner = make_runner(std::move(patched));
+    runner->transfer(snapshot);
+    snapshot.end();
+    runner_ = std::move(runner);
+    broken_ = false;
+}
+
+// ---- what goes wrong ----------------------------------------------------------------------------
+
+std::string Monitor::undefined(const Undefined& failure) const {
+    const auto found = metadata_.meanings.find(failure.instruction);
+    const std::string what = found != metadata_.meanings.end()
+                                 ? "'" + found->second + "'"
+                                 : "Instruction " + std::to_string(failure.instruction);
+    return what + " has no value at " + time_of(failure.step) +
+           ": it is 0/0, inf - inf, 0 * inf, or a root or logarithm of a negative number; change "
+           "the formula or the data so that this cannot happen.";
+}
+
+std::string Monitor::time_of(std::int64_t step) const {
+    const double seconds = static_cast<double>(step) * metadata_.seconds();
+    if (program().domain == Domain::dense) return "time " + shown(seconds) + " s";
+    return "sample " + std::to_string(step) + ", time " + shown(seconds) + " s";
+}
+
+DiscreteRunner& Monitor::discrete() const {
+    if (program().domain != Domain::discrete) {
+        refuse("The program is for dense time: use rtamt_push.");
+    }
+    return static_cast<DiscreteRunner&>(*runner_);
+}
+
+DenseRunner& Monitor::dense() const {
+    if (program().domain != Domain::dense) {
+        refuse("The program is for discrete time: use rtamt_step.");
+    }
+    return static_cast<DenseRunner&>(*runner_);
+}
+
+void Monitor::require_whole() const {
+    if (broken_) refuse("Memory ran out before: reset the monitor.");
+}
+
+void Monitor::require_ready() const {
+    require_whole();
+    if (runner_->finished()) {
+        refuse("The trace has ended: reset the monitor before the next sample.");
+    }
+}
+
+// Does something that leaves the runner neither here nor there when memory runs out.
+template <class Work>
+void Monitor::unbroken(Work&& work) {
+    try {
+        std::forward<Work>(work)();
+    } catch (const std::bad_alloc&) {
+        broken_ = true;
+        throw;
+    }
+}
+
+} // namespace rtamt::c_api

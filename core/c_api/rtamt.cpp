@@ -1,0 +1,276 @@
+// The C API: no exception leaves it, and each failure becomes a status and a sentence.
+
+#include "rtamt.h"
+#include "monitor.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <exception>
+#include <limits>
+#include <memory>
+#include <new>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+using rtamt::c_api::Monitor;
+using rtamt::c_api::Undefined;
+
+struct rtamt_monitor {
+    explicit rtamt_monitor(std::span<const std::uint8_t> program) : monitor(program) {}
+    explicit rtamt_monitor(Monitor& other) : monitor(other) {}
+
+    Monitor monitor;
+    Undefined failure{0, 0};
+    std::string message;
+    const char* shown = ""; // the message, or a sentence that needs no memory
+};
+
+namespace {
+
+constexpr const char* out_of_memory = "There is not enough memory.";
+constexpr const char* no_monitor = "There is no monitor: it was not created.";
+constexpr const char* no_place = "The place for the result is null: pass an address.";
+
+// Calls `work` and answers its status; `say` takes the sentence of a failure.
+template <class Work, class Say>
+[[nodiscard]] rtamt_status guarded(Work&& work, Say&& say) noexcept {
+    try {
+        std::forward<Work>(work)();
+        return RTAMT_OK;
+    } catch (const std::bad_alloc&) {
+        say(out_of_memory);
+        return RTAMT_NO_MEMORY;
+    } catch (const std::length_error&) { // of a container
+        say(out_of_memory);
+        return RTAMT_NO_MEMORY;
+    } catch (const std::exception& exception) {
+        say(exception.what());
+        return RTAMT_REFUSED;
+    }
+}
+
+void remember(rtamt_monitor& handle, std::string_view sentence) noexcept {
+    try {
+        handle.message = sentence;
+        handle.shown = handle.message.c_str();
+    } catch (const std::bad_alloc&) {
+        handle.shown = out_of_memory;
+    }
+}
+
+template <class Work>
+[[nodiscard]] rtamt_status error_boundary(rtamt_monitor* handle, Work&& work) noexcept {
+    if (handle == nullptr) return RTAMT_REFUSED;
+    bool undefined = false;
+    const rtamt_status status = guarded(
+        [&] {
+            try {
+                std::forward<Work>(work)(handle->monitor);
+            } catch (const Undefined& failure) {
+                undefined = true;
+                handle->failure = failure;
+                remember(*handle, handle->monitor.undefined(failure));
+            }
+        },
+        [&](const char* sentence) { remember(*handle, sentence); });
+    return undefined && status == RTAMT_OK ? RTAMT_UNDEFINED : status;
+}
+
+// Memory of the caller's that is to hold so many items.
+template <class Item>
+[[nodiscard]] std::span<Item> items(Item* memory, std::size_t count, const char* what) {
+    if (memory == nullptr && count != 0) {
+        throw std::invalid_argument(std::string(what) + " are null: pass the address of " +
+                                    std::to_string(count) + ", or the number 0.");
+    }
+    return {memory, count};
+}
+
+template <class Item>
+void put(Item* place, Item item) noexcept {
+    if (place != nullptr) *place = item;
+}
+
+[[nodiscard]] std::span<const std::uint8_t> bytes(const void* memory, std::size_t size) noexcept {
+    return {static_cast<const std::uint8_t*>(memory), memory == nullptr ? 0 : size};
+}
+
+void copy_message(const char* sentence, char* message, std::size_t room) noexcept {
+    if (message == nullptr || room == 0) return;
+    const std::size_t length = std::min(std::strlen(sentence), room - 1);
+    std::memcpy(message, sentence, length);
+    message[length] = '\0';
+}
+
+template <class List>
+[[nodiscard]] const char* name_in(const List& names, std::uint32_t index) noexcept {
+    return index < names.size() ? names[index].c_str() : nullptr;
+}
+
+} // namespace
+
+extern "C" {
+
+uint32_t rtamt_abi(void) {
+    return RTAMT_ABI;
+}
+
+rtamt_status rtamt_create(const void* program, size_t size, rtamt_monitor** monitor, char* message,
+                          size_t room) {
+    const auto say = [&](const char* sentence) { copy_message(sentence, message, room); };
+    if (monitor == nullptr) {
+        say(no_place);
+        return RTAMT_REFUSED;
+    }
+    *monitor = nullptr;
+    return guarded([&] { *monitor = new rtamt_monitor(bytes(program, size)); }, say);
+}
+
+void rtamt_destroy(rtamt_monitor* monitor) { // NOLINT(misc-const-correctness): the C API
+    delete monitor;
+}
+
+const char* rtamt_message(const rtamt_monitor* monitor) {
+    return monitor == nullptr ? no_monitor : monitor->shown;
+}
+
+rtamt_status rtamt_failure(const rtamt_monitor* monitor, uint32_t* instruction, int64_t* step) {
+    if (monitor == nullptr) return RTAMT_REFUSED;
+    put(instruction, monitor->failure.instruction);
+    put(step, monitor->failure.step);
+    return RTAMT_OK;
+}
+
+rtamt_domain rtamt_time(const rtamt_monitor* monitor) {
+    if (monitor == nullptr) return RTAMT_NO_DOMAIN;
+    return static_cast<rtamt_domain>(monitor->monitor.program().domain);
+}
+
+const char* rtamt_name(const rtamt_monitor* monitor) {
+    return monitor == nullptr ? nullptr : monitor->monitor.metadata().name.c_str();
+}
+
+const char* rtamt_formula(const rtamt_monitor* monitor) {
+    return monitor == nullptr ? nullptr : monitor->monitor.metadata().formula.c_str();
+}
+
+rtamt_status rtamt_period(const rtamt_monitor* monitor, int64_t* numerator, int64_t* denominator) {
+    if (monitor == nullptr) return RTAMT_REFUSED;
+    put(numerator, monitor->monitor.metadata().numerator);
+    put(denominator, monitor->monitor.metadata().denominator);
+    return RTAMT_OK;
+}
+
+uint32_t rtamt_inputs(const rtamt_monitor* monitor) {
+    return monitor == nullptr ? 0 : monitor->monitor.program().inputs;
+}
+
+uint32_t rtamt_outputs(const rtamt_monitor* monitor) {
+    if (monitor == nullptr) return 0;
+    return static_cast<uint32_t>(monitor->monitor.program().outputs.size());
+}
+
+uint32_t rtamt_parameters(const rtamt_monitor* monitor) {
+    if (monitor == nullptr) return 0;
+    return static_cast<uint32_t>(monitor->monitor.metadata().parameters.size());
+}
+
+const char* rtamt_input(const rtamt_monitor* monitor, uint32_t input) {
+    return monitor == nullptr ? nullptr : name_in(monitor->monitor.metadata().inputs, input);
+}
+
+const char* rtamt_output(const rtamt_monitor* monitor, uint32_t output) {
+    return monitor == nullptr ? nullptr : name_in(monitor->monitor.metadata().outputs, output);
+}
+
+const char* rtamt_parameter(const rtamt_monitor* monitor, uint32_t parameter) {
+    if (parameter >= rtamt_parameters(monitor)) return nullptr;
+    return monitor->monitor.metadata().parameters[parameter].name.c_str();
+}
+
+int64_t rtamt_lag(const rtamt_monitor* monitor, uint32_t output) {
+    if (output >= rtamt_outputs(monitor)) return -1;
+    const rtamt::Program& program = monitor->monitor.program();
+    return program.instructions[program.outputs[output]].lag;
+}
+
+double rtamt_parameter_value(const rtamt_monitor* monitor, uint32_t parameter) {
+    if (parameter >= rtamt_parameters(monitor)) return std::numeric_limits<double>::quiet_NaN();
+    return monitor->monitor.parameter(parameter);
+}
+
+rtamt_status rtamt_set_parameter(rtamt_monitor* monitor, uint32_t parameter, double value) {
+    return error_boundary(monitor, [&](Monitor& self) { self.set_parameter(parameter, value); });
+}
+
+rtamt_status rtamt_step(rtamt_monitor* monitor, const double* values, size_t count, double* known,
+                        size_t outputs) {
+    return error_boundary(monitor, [&](Monitor& self) {
+        self.step(items(values, count, "The values of the sample"),
+                  items(known, outputs, "The places for the outputs"));
+    });
+}
+
+rtamt_status rtamt_push(rtamt_monitor* monitor, const rtamt_sample* samples, size_t count) {
+    return error_boundary(monitor,
+                          [&](Monitor& self) { self.push(items(samples, count, "The samples")); });
+}
+
+rtamt_status rtamt_finish(rtamt_monitor* monitor) {
+    return error_boundary(monitor, [](Monitor& self) { self.finish(); });
+}
+
+rtamt_status rtamt_reset(rtamt_monitor* monitor) {
+    return error_boundary(monitor, [](Monitor& self) { self.reset(); });
+}
+
+size_t rtamt_told(const rtamt_monitor* monitor, uint32_t output, const int64_t** steps,
+                  const double** values) {
+    if (output >= rtamt_outputs(monitor)) return 0;
+    const rtamt::dense::Events told = monitor->monitor.runner().told(output);
+    put(steps, told.times);
+    put(values, told.values);
+    return told.count;
+}
+
+int rtamt_known_until(const rtamt_monitor* monitor, uint32_t output, int64_t* step) {
+    if (monitor == nullptr) return -1;
+    if (output >= rtamt_outputs(monitor)) return 0;
+    const auto until = monitor->monitor.runner().known_until(output);
+    if (until) put(step, *until);
+    return until ? 1 : 0;
+}
+
+int64_t rtamt_sample_count(const rtamt_monitor* monitor) {
+    return monitor == nullptr ? -1 : monitor->monitor.samples();
+}
+
+rtamt_status rtamt_clone(rtamt_monitor* monitor, rtamt_monitor** copy) {
+    return error_boundary(monitor, [&](Monitor& self) {
+        if (copy == nullptr) throw std::invalid_argument(no_place);
+        *copy = nullptr;
+        *copy = new rtamt_monitor(self);
+    });
+}
+
+rtamt_status rtamt_save(rtamt_monitor* monitor, void* state, size_t room, size_t* size) {
+    return error_boundary(monitor, [&](Monitor& self) {
+        if (size == nullptr) throw std::invalid_argument(no_place);
+        const auto saved = self.save();
+        *size = saved.size();
+        if (state == nullptr) return;
+        if (room < saved.size()) {
+            throw std::invalid_argument("The state takes " + std::to_string(saved.size()) +
+                                        " bytes, and there is room for " + std::to_string(room) +
+                                        ": make room for all of them.");
+        }
+        std::memcpy(state, saved.data(), saved.size());
+    });
+}
+
+rtamt_status rtamt_restore(rtamt_monitor* monitor, const void* state, size_t size) {
+    return error_boundary(monitor, [&](Monitor& self) { self.restore(bytes(state, size)); });
+}
+
+} // extern "C"

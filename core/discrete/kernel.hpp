@@ -1,0 +1,130 @@
+// What every kernel is: one virtual call for a block of slots, operands and result in registers.
+//
+// A value is present at slot s of an instruction with lag L where 0 <= s - L < samples. Registers
+// hold anything at all in absent slots, and kernels skip these in their operands: that one rule
+// cuts every window at both ends of the trace. Where values are present, they are never undefined:
+// a kernel that can make such a value says where it did, and the executor then takes the update
+// back.
+//
+// What the registers hold is known to the kernel alone: of a value domain (values/domain.hpp) the
+// values of numbers or of formulas.
+#pragma once
+
+#include "../program/snapshot.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+
+namespace rtamt::discrete {
+
+// Half-open range of places in a block.
+struct Range {
+    std::size_t begin;
+    std::size_t end;
+};
+
+// The length of a trace that has not ended yet.
+inline constexpr std::int64_t endless = std::numeric_limits<std::int64_t>::max() / 2;
+
+struct Block {
+    std::int64_t slot;    // the first slot
+    std::size_t count;    // how many slots
+    std::int64_t samples; // length of the trace, or endless
+
+    [[nodiscard]] Range present(std::int64_t lag) const noexcept {
+        const auto size = static_cast<std::int64_t>(count);
+        const std::int64_t begin = std::clamp<std::int64_t>(lag - slot, 0, size);
+        const std::int64_t end = std::clamp<std::int64_t>(lag + samples - slot, begin, size);
+        return {static_cast<std::size_t>(begin), static_cast<std::size_t>(end)};
+    }
+};
+
+class Kernel {
+  public:
+    // The answer of run() when no value is undefined.
+    static constexpr std::size_t defined = std::numeric_limits<std::size_t>::max();
+
+    explicit Kernel(std::int64_t operand_lag) noexcept : lag_(operand_lag) {}
+    virtual ~Kernel() = default;
+    Kernel(const Kernel&) = delete;
+    Kernel& operator=(const Kernel&) = delete;
+    Kernel(Kernel&&) = delete;
+    Kernel& operator=(Kernel&&) = delete;
+
+    // Computes a block; answers the first place where a present value is undefined, or `defined`.
+    virtual std::size_t run(const Block& block) noexcept = 0;
+
+    // Back to the state before the first slot, in a time that does not depend on the state's size.
+    virtual void reset() noexcept {}
+
+    // Remembers the state, of which at most the next `count` slots will be taken back.
+    virtual void checkpoint(std::size_t /*count*/) noexcept {}
+
+    // Takes back everything since the checkpoint.
+    virtual void rollback() noexcept {}
+
+    // What went wrong where run() answers a place and no value is undefined: null but for calls.
+    [[nodiscard]] virtual const char* fault() const noexcept { return nullptr; }
+
+    // Writes or reads what the samples so far have left behind; not between checkpoint() and
+    // rollback().
+    virtual void transfer(Snapshot& snapshot) = 0;
+
+    // Where the registers are; again whenever they have moved.
+    void connect(const void* a, const void* b, void* out) noexcept {
+        a_ = a;
+        b_ = b;
+        out_ = out;
+    }
+
+    // One of these alone; the others stay.
+    void read_a(const void* a) noexcept { a_ = a; }
+    void read_b(const void* b) noexcept { b_ = b; }
+    void write(void* out) noexcept { out_ = out; }
+
+  protected:
+    template <class Value>
+    [[nodiscard]] const Value* a() const noexcept {
+        return static_cast<const Value*>(a_);
+    }
+    template <class Value>
+    [[nodiscard]] const Value* b() const noexcept {
+        return static_cast<const Value*>(b_);
+    }
+    template <class Value>
+    [[nodiscard]] Value* out() const noexcept {
+        return static_cast<Value*>(out_);
+    }
+    [[nodiscard]] std::int64_t lag() const noexcept { return lag_; }
+
+  private:
+    const void* a_ = nullptr;
+    const void* b_ = nullptr;
+    void* out_ = nullptr;
+    std::int64_t lag_;
+};
+
+// A kernel whose state is one value, from which all that keeps and takes back state follows.
+template <class State>
+class Scalar : public Kernel {
+  public:
+    Scalar(std::int64_t operand_lag, const State& initial) noexcept
+        : Kernel(operand_lag), initial_(initial), state_(initial), saved_(initial) {}
+
+    void reset() noexcept override { state_ = initial_; }
+    void checkpoint(std::size_t /*count*/) noexcept override { saved_ = state_; }
+    void rollback() noexcept override { state_ = saved_; }
+    void transfer(Snapshot& snapshot) override { snapshot.item(state_); }
+
+  protected:
+    [[nodiscard]] State& state() noexcept { return state_; }
+
+  private:
+    State initial_;
+    State state_;
+    State saved_;
+};
+
+} // namespace rtamt::discrete

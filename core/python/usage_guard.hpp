@@ -1,0 +1,86 @@
+// Who may use a monitor: one thread at a time, and nobody brings samples after the end.
+//
+// A thread that is inside may have given up the GIL, or be in a Python operator that calls back.
+// Values are read before the guard is asked: reading them may run Python code, too. What is
+// refused is refused with a Python exception set.
+#pragma once
+
+#include "arrays.hpp"
+
+#include <nanobind/nanobind.h>
+
+#include <cstddef>
+#include <utility>
+
+namespace rtamt::python {
+
+namespace nb = nanobind;
+
+class UsageGuard {
+  public:
+    // `refused` is the class of the exception that says, in a word, why samples are not taken;
+    // `in_use` makes the exception for a monitor that is in the middle of another call.
+    UsageGuard(nb::object refused, nb::object in_use)
+        : refused_(std::move(refused)), in_use_(std::move(in_use)) {}
+
+    PyObject* refuse(const char* reason) const noexcept {
+        if (PyErr_Occurred() == nullptr) PyErr_SetString(refused_.ptr(), reason);
+        return nullptr;
+    }
+
+    // Whether samples may come now; if not, a Python exception is set.
+    [[nodiscard]] bool open(bool finished) const noexcept {
+        if (!busy_ && !finished) [[likely]] {
+            return true;
+        }
+        if (busy_) set_in_use();
+        (void)refuse("finished");
+        return false;
+    }
+
+    void require_idle() const { require(!busy_); }
+
+    // What does not hold shows that somebody else has used the monitor meanwhile.
+    void require(bool holds) const {
+        if (holds) return;
+        set_in_use();
+        throw nb::python_error();
+    }
+
+    // Works with the monitor taken, for as long as `count` samples take: without the GIL if they
+    // are many.
+    template <class Work>
+    auto exclusively(std::size_t count, Work&& work) {
+        const Closed closed(busy_);
+        return without_gil(count, std::forward<Work>(work));
+    }
+
+    // The same at once, with the GIL.
+    template <class Work>
+    auto briefly(Work&& work) {
+        const Closed closed(busy_);
+        return std::forward<Work>(work)();
+    }
+
+  private:
+    struct Closed {
+        bool& flag;
+        explicit Closed(bool& busy) noexcept : flag(busy) { flag = true; }
+        ~Closed() { flag = false; }
+        Closed(const Closed&) = delete;
+        Closed& operator=(const Closed&) = delete;
+        Closed(Closed&&) = delete;
+        Closed& operator=(Closed&&) = delete;
+    };
+
+    nb::object refused_;
+    nb::object in_use_;
+    bool busy_ = false;
+
+    void set_in_use() const noexcept {
+        const auto error = nb::steal(PyObject_CallNoArgs(in_use_.ptr()));
+        if (error.is_valid()) PyErr_SetObject(error.type().ptr(), error.ptr());
+    }
+};
+
+} // namespace rtamt::python

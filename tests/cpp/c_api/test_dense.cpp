@@ -1,0 +1,191 @@
+#include "c_api/rtamt.h"
+
+#include "check.hpp"
+#include "forged.hpp"
+#include "programs.hpp"
+
+#include <cmath>
+#include <limits>
+#include <memory>
+
+using Bytes = std::vector<std::uint8_t>;
+using Samples = std::vector<rtamt_sample>;
+
+namespace {
+struct Destroy {
+    void operator()(rtamt_monitor* monitor) const { rtamt_destroy(monitor); }
+};
+using Handle = std::unique_ptr<rtamt_monitor, Destroy>;
+
+Handle create(const programs::Program& program) {
+    const Bytes bytes = programs::bytes_of(program);
+    rtamt_monitor* monitor = nullptr;
+    CHECK(rtamt_create(bytes.data(), bytes.size(), &monitor, nullptr, 0) == RTAMT_OK);
+    return Handle(monitor);
+}
+
+Handle example() {
+    return create(programs::carried(rtamt::Domain::dense));
+}
+
+using Told = std::vector<std::pair<std::int64_t, double>>;
+
+Told told(const Handle& monitor, std::uint32_t output = 0) {
+    const std::int64_t* ticks = nullptr;
+    const double* values = nullptr;
+    const std::size_t count = rtamt_told(monitor.get(), output, &ticks, &values);
+    Told events;
+    for (std::size_t i = 0; i < count; ++i)
+        events.emplace_back(ticks[i], values[i]);
+    return events;
+}
+
+Told push(const Handle& monitor, const Samples& samples) {
+    CHECK(rtamt_push(monitor.get(), samples.data(), samples.size()) == RTAMT_OK);
+    return told(monitor);
+}
+
+Bytes save(const Handle& monitor) {
+    std::size_t size = 0;
+    CHECK(rtamt_save(monitor.get(), nullptr, 0, &size) == RTAMT_OK);
+    Bytes state(size);
+    CHECK(rtamt_save(monitor.get(), state.data(), size, &size) == RTAMT_OK);
+    return state;
+}
+
+rtamt_sample sample(int i) {
+    return {i / 2 * 2 + i % 2, static_cast<double>(i * 5 % 7) - 3.0, i % 2 == 0 ? 0U : 1U};
+}
+} // namespace
+
+TEST(samples_in_events_out) {
+    const Handle monitor = example();
+    CHECK(rtamt_time(monitor.get()) == RTAMT_DENSE);
+    CHECK(push(monitor, {{0, 3.0, 0}, {0, 1.0, 1}}).empty());
+    CHECK(told(monitor, 1) == Told({{0, 3.0}}));
+    CHECK(push(monitor, {{5, 5.0, 0}}).empty());
+    CHECK(push(monitor, {{7, 2.0, 1}, {6, 4.0, 0}}) == Told({{0, 1.5}}));
+    std::int64_t until = 0;
+    CHECK(rtamt_known_until(monitor.get(), 0, &until) == 1 && until == 3);
+    CHECK(rtamt_known_until(monitor.get(), 2, &until) == 0 &&
+          rtamt_sample_count(monitor.get()) == 0);
+    CHECK(rtamt_finish(monitor.get()) == RTAMT_OK);
+    CHECK(told(monitor) == Told({{4, 0.5}}));
+    CHECK(rtamt_known_until(monitor.get(), 0, &until) == 1 && until == 7);
+    rtamt_reset(monitor.get());
+    CHECK(told(monitor).empty() && rtamt_known_until(monitor.get(), 0, &until) == 0);
+}
+
+TEST(a_refused_sample_leaves_the_monitor_as_it_was) {
+    const Handle monitor = example();
+    (void)push(monitor, {{0, 3.0, 0}, {0, 1.0, 1}});
+    const Bytes before = save(monitor);
+    const auto refusal = [&](const Samples& samples, rtamt_status expected = RTAMT_REFUSED) {
+        CHECK(rtamt_push(monitor.get(), samples.data(), samples.size()) == expected);
+        const std::string message = rtamt_message(monitor.get());
+        CHECK(save(monitor) == before);
+        return message;
+    };
+    CHECK(refusal({{2, 3.0, 0}, {3, std::numeric_limits<double>::quiet_NaN(), 1}}) ==
+          "'b' is NaN at time 0.3 s: fill the gap or leave the sample out.");
+    CHECK(refusal({{2, 3.0, 2}}) == "There is no input 2: the program has 2 (a, b).");
+    CHECK(refusal({{0, 3.0, 0}}) ==
+          "The time of 'a' does not increase: time 0 s comes after time 0 s.");
+    CHECK(refusal({{4, 3.0, 0}, {3, 3.0, 0}}) ==
+          "The time of 'a' does not increase: time 0.3 s comes after time 0.4 s.");
+    CHECK(refusal({{std::numeric_limits<std::int64_t>::max(), 3.0, 0}}) ==
+          "'a' has a sample at tick 9223372036854775807, too far from 0: subtract a start time, or "
+          "choose a coarser resolution.");
+    CHECK(refusal({{4, 0.0, 0}, {4, 0.0, 1}}, RTAMT_UNDEFINED) ==
+          "'a / b' has no value at time 0.4 s: it is 0/0, inf - inf, 0 * inf, or a root or "
+          "logarithm of a negative number; change the formula or the data so that this cannot "
+          "happen.");
+    std::uint32_t instruction = 0;
+    std::int64_t tick = 0;
+    rtamt_failure(monitor.get(), &instruction, &tick);
+    CHECK(instruction == 3 && tick == 4);
+    double known = 0.0;
+    CHECK(rtamt_step(monitor.get(), &known, 1, &known, 1) == RTAMT_REFUSED);
+    CHECK(rtamt_message(monitor.get()) ==
+          std::string("The program is for dense time: use rtamt_push."));
+    CHECK(rtamt_set_parameter(monitor.get(), 0, 2.0) == RTAMT_REFUSED);
+    CHECK(rtamt_finish(monitor.get()) == RTAMT_OK);
+    CHECK(rtamt_push(monitor.get(), nullptr, 0) == RTAMT_REFUSED);
+    CHECK(rtamt_message(monitor.get()) ==
+          std::string("The trace has ended: reset the monitor before the next sample."));
+}
+
+TEST(a_state_is_saved_restored_and_cloned_anywhere_in_a_trace) {
+    for (int cut = 0; cut < 14; ++cut) {
+        const Handle monitor = create(programs::everything_dense());
+        for (int i = 0; i < cut; ++i)
+            (void)push(monitor, {sample(i)});
+        const Bytes state = save(monitor);
+        const Handle other = create(programs::everything_dense());
+        (void)push(other, {{-4, 9.0, 0}});
+        CHECK(rtamt_restore(other.get(), state.data(), state.size()) == RTAMT_OK);
+        rtamt_monitor* copied = nullptr;
+        CHECK(rtamt_clone(monitor.get(), &copied) == RTAMT_OK);
+        const Handle copy(copied);
+        CHECK(save(other) == state && save(copy) == state);
+        for (int i = cut; i < 30; ++i) {
+            const Told expected = push(monitor, {sample(i)});
+            CHECK(push(other, {sample(i)}) == expected && push(copy, {sample(i)}) == expected);
+        }
+        for (const Handle* each : {&monitor, &other, &copy})
+            CHECK(rtamt_finish(each->get()) == RTAMT_OK);
+        CHECK(!told(monitor).empty());
+        CHECK(told(other) == told(monitor) && told(copy) == told(monitor));
+    }
+}
+
+TEST(no_damaged_state_is_restored) {
+    const Handle monitor = create(programs::everything_dense());
+    for (int i = 0; i < 11; ++i)
+        (void)push(monitor, {sample(i)});
+    const Bytes state = save(monitor);
+    for (std::size_t place = 0; place < state.size(); ++place) {
+        Bytes damaged = state;
+        damaged[place] ^= 0x40U;
+        CHECK(rtamt_restore(monitor.get(), damaged.data(), damaged.size()) == RTAMT_REFUSED);
+        CHECK(rtamt_restore(monitor.get(), state.data(), place) == RTAMT_REFUSED);
+    }
+    CHECK(save(monitor) == state);
+}
+
+TEST(a_forged_state_with_a_right_checksum_is_refused_or_does_no_harm) {
+    const programs::Program program = programs::everything_dense();
+    std::size_t refused = 0;
+    std::size_t taken = 0;
+    for (const int cut : {0, 1, 2, 5, 11, 12}) {
+        const Handle monitor = create(program);
+        for (int i = 0; i < cut; ++i)
+            (void)push(monitor, {sample(i)});
+        if (cut == 11)
+            (void)push(monitor, {{20, 1.0, 0}, {23, 2.0, 0}}); // ahead of the other input
+        if (cut == 12) CHECK(rtamt_finish(monitor.get()) == RTAMT_OK);
+        const Handle victim = create(program);
+        forged::each(save(monitor), [&](const Bytes& state) {
+            const Bytes before = save(victim);
+            if (rtamt_restore(victim.get(), state.data(), state.size()) != RTAMT_OK) {
+                ++refused;
+                CHECK(save(victim) == before);
+                return;
+            }
+            ++taken;
+            for (int i = cut; i < cut + 9; ++i) {
+                const rtamt_sample next = sample(i);
+                (void)rtamt_push(victim.get(), &next, 1);
+            }
+            const Samples jump{{40, 1.0, 0}, {40, -1.0, 1}};
+            (void)rtamt_push(victim.get(), jump.data(), jump.size());
+            const Bytes later = save(victim);
+            CHECK(rtamt_restore(victim.get(), later.data(), later.size()) == RTAMT_OK);
+            (void)rtamt_finish(victim.get());
+            (void)told(victim);
+            std::int64_t until = 0;
+            (void)rtamt_known_until(victim.get(), 0, &until);
+        });
+    }
+    CHECK(refused > 1000 && taken > 1000); // numbers that only change values are as good as others
+}

@@ -1,0 +1,332 @@
+#include "c_api/rtamt.h"
+
+#include "check.hpp"
+#include "forged.hpp"
+#include "programs.hpp"
+
+#include <array>
+#include <bit>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+using Bytes = std::vector<std::uint8_t>;
+using Row = std::array<double, 2>;
+
+constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
+
+namespace {
+struct Destroy {
+    void operator()(rtamt_monitor* monitor) const { rtamt_destroy(monitor); }
+};
+using Handle = std::unique_ptr<rtamt_monitor, Destroy>;
+
+Handle create(const Bytes& bytes) {
+    rtamt_monitor* monitor = nullptr;
+    CHECK(rtamt_create(bytes.data(), bytes.size(), &monitor, nullptr, 0) == RTAMT_OK);
+    return Handle(monitor);
+}
+
+Handle example() {
+    return create(programs::bytes_of(programs::carried()));
+}
+
+Row step(const Handle& monitor, const Row& row) {
+    Row known{};
+    CHECK(rtamt_step(monitor.get(), row.data(), 2, known.data(), 2) == RTAMT_OK);
+    return known;
+}
+
+Bytes save(const Handle& monitor) {
+    std::size_t size = 0;
+    CHECK(rtamt_save(monitor.get(), nullptr, 0, &size) == RTAMT_OK);
+    Bytes state(size);
+    CHECK(rtamt_save(monitor.get(), state.data(), size, &size) == RTAMT_OK);
+    return state;
+}
+
+bool same(const Row& a, const Row& b) {
+    return std::bit_cast<std::array<std::uint64_t, 2>>(a) ==
+           std::bit_cast<std::array<std::uint64_t, 2>>(b);
+}
+} // namespace
+
+TEST(a_program_says_what_it_is) {
+    const Handle monitor = example();
+    CHECK(rtamt_abi() == RTAMT_ABI && rtamt_time(monitor.get()) == RTAMT_DISCRETE);
+    CHECK(rtamt_name(monitor.get()) == std::string("ratio"));
+    CHECK(rtamt_formula(monitor.get()) == std::string("always[0:0.3](a / b >= limit)"));
+    CHECK(rtamt_inputs(monitor.get()) == 2 && rtamt_outputs(monitor.get()) == 2);
+    CHECK(rtamt_input(monitor.get(), 1) == std::string("b"));
+    CHECK(rtamt_output(monitor.get(), 0) == std::string("robustness"));
+    CHECK(rtamt_input(monitor.get(), 2) == nullptr && rtamt_output(monitor.get(), 2) == nullptr);
+    CHECK(rtamt_lag(monitor.get(), 0) == 3 && rtamt_lag(monitor.get(), 1) == 0);
+    CHECK(rtamt_lag(monitor.get(), 2) == -1 && rtamt_parameters(monitor.get()) == 1);
+    CHECK(rtamt_parameter(monitor.get(), 0) == std::string("limit"));
+    CHECK(rtamt_parameter(monitor.get(), 1) == nullptr);
+    CHECK(std::isnan(rtamt_parameter_value(monitor.get(), 1)));
+    std::int64_t numerator = 0;
+    std::int64_t denominator = 0;
+    rtamt_period(monitor.get(), &numerator, &denominator);
+    CHECK(numerator == 1 && denominator == 10);
+}
+
+TEST(what_is_no_program_is_refused_with_a_sentence_cut_to_the_room) {
+    Bytes damaged = programs::bytes_of(programs::carried());
+    damaged[40] ^= 1U;
+    rtamt_monitor* monitor = nullptr;
+    std::array<char, 200> message{};
+    CHECK(rtamt_create(damaged.data(), damaged.size(), &monitor, message.data(), message.size()) ==
+          RTAMT_REFUSED);
+    CHECK(monitor == nullptr);
+    CHECK(message.data() == std::string("This is not a program that can be run: its checksum does "
+                                        "not match, so it was damaged on the way."));
+    CHECK(rtamt_create(nullptr, 99, &monitor, message.data(), 21) == RTAMT_REFUSED);
+    CHECK(message.data() == std::string("This is not a progra"));
+    programs::Program anonymous = programs::carried();
+    anonymous.note.clear();
+    const Bytes bytes = programs::bytes_of(anonymous);
+    CHECK(rtamt_create(bytes.data(), bytes.size(), &monitor, message.data(), message.size()) ==
+          RTAMT_REFUSED);
+    CHECK(message.data() == std::string("This is not a program that can be carried: it has no "
+                                        "metadata, so nobody knows the names of its inputs."));
+    CHECK(rtamt_step(nullptr, nullptr, 0, nullptr, 0) == RTAMT_REFUSED);
+    CHECK(rtamt_message(nullptr) == std::string("There is no monitor: it was not created."));
+    rtamt_destroy(nullptr);
+}
+
+TEST(null_pointers_and_wrong_sizes_are_refused_by_every_function) {
+    using Call = std::function<rtamt_status(rtamt_monitor*)>;
+    const Handle monitor = example();
+    (void)step(monitor, {3.0, 1.0});
+    const Bytes before = save(monitor);
+    Row row{1.0, 1.0};
+    std::size_t size = 0;
+    std::array<std::uint8_t, 8> little{};
+    const std::vector<std::pair<Call, std::string>> wrong{
+        {[&](auto* self) { return rtamt_step(self, nullptr, 2, row.data(), 2); },
+         "The values of the sample are null: pass the address of 2, or the number 0."},
+        {[&](auto* self) { return rtamt_step(self, row.data(), 2, nullptr, 2); },
+         "The places for the outputs are null: pass the address of 2, or the number 0."},
+        {[&](auto* self) { return rtamt_step(self, nullptr, 0, nullptr, 0); },
+         "Sample 1 has the wrong number of values: expected 2 (a, b), got 0."},
+        {[&](auto* self) { return rtamt_push(self, nullptr, 1); },
+         "The samples are null: pass the address of 1, or the number 0."},
+        {[&](auto* self) { return rtamt_clone(self, nullptr); },
+         "The place for the result is null: pass an address."},
+        {[&](auto* self) { return rtamt_save(self, nullptr, 0, nullptr); },
+         "The place for the result is null: pass an address."},
+        {[&](auto* self) { return rtamt_save(self, little.data(), little.size(), &size); },
+         "The state takes " + std::to_string(before.size()) +
+             " bytes, and there is room for 8: make room for all of them."},
+        {[&](auto* self) { return rtamt_restore(self, nullptr, 9); },
+         "This is not a state of a monitor, or it was damaged on the way."},
+    };
+    for (const auto& [call, sentence] : wrong) {
+        CHECK(call(monitor.get()) == RTAMT_REFUSED);
+        CHECK(rtamt_message(monitor.get()) == sentence);
+        CHECK(call(nullptr) == RTAMT_REFUSED);
+        CHECK(save(monitor) == before);
+    }
+    CHECK(size == before.size() && little == decltype(little){});
+    const std::vector<Call> without{
+        [](auto* self) { return rtamt_failure(self, nullptr, nullptr); },
+        [](auto* self) { return rtamt_period(self, nullptr, nullptr); },
+        [&](auto* self) { return rtamt_step(self, row.data(), 2, nullptr, 0); },
+        [](auto* self) { return rtamt_finish(self); },
+        [](auto* self) { return rtamt_reset(self); },
+        [](auto* self) { return rtamt_set_parameter(self, 0, 1.0); },
+    };
+    for (const Call& call : without)
+        CHECK(call(monitor.get()) == RTAMT_OK && call(nullptr) == RTAMT_REFUSED);
+    CHECK(rtamt_time(nullptr) == RTAMT_NO_DOMAIN && rtamt_sample_count(nullptr) == -1);
+    CHECK(rtamt_name(nullptr) == nullptr && rtamt_formula(nullptr) == nullptr);
+    CHECK(rtamt_inputs(nullptr) == 0 && rtamt_input(nullptr, 0) == nullptr);
+    CHECK(rtamt_outputs(nullptr) == 0 && rtamt_output(nullptr, 0) == nullptr);
+    CHECK(rtamt_parameters(nullptr) == 0 && rtamt_parameter(nullptr, 0) == nullptr);
+    CHECK(rtamt_lag(nullptr, 0) == -1 && std::isnan(rtamt_parameter_value(nullptr, 0)));
+    CHECK(rtamt_told(nullptr, 0, nullptr, nullptr) == 0);
+    CHECK(rtamt_told(monitor.get(), 0, nullptr, nullptr) == 0);
+    CHECK(rtamt_known_until(nullptr, 0, nullptr) == -1);
+    CHECK(rtamt_known_until(monitor.get(), 0, nullptr) == 0);
+    std::array<char, 99> message{};
+    CHECK(rtamt_create(nullptr, 0, nullptr, message.data(), message.size()) == RTAMT_REFUSED);
+    CHECK(message.data() == std::string("The place for the result is null: pass an address."));
+}
+
+TEST(samples_in_robustness_out) {
+    const Handle monitor = example();
+    for (int i = 0; i < 3; ++i)
+        CHECK(std::isnan(step(monitor, {3.0 + i, 1.0})[0]));
+    CHECK(same(step(monitor, {9.0, 1.0}), {1.5, 9.0}));
+    CHECK(same(step(monitor, {9.0, 1.0}), {2.5, 9.0}));
+    std::int64_t until = 0;
+    CHECK(rtamt_known_until(monitor.get(), 0, &until) == 1 && until == 1);
+    CHECK(rtamt_sample_count(monitor.get()) == 5);
+    CHECK(rtamt_finish(monitor.get()) == RTAMT_OK);
+    const std::int64_t* steps = nullptr;
+    const double* values = nullptr;
+    CHECK(rtamt_told(monitor.get(), 0, &steps, &values) == 3);
+    CHECK(steps[0] == 2 && values[0] == 3.5 && steps[2] == 4 && values[2] == 7.5);
+    CHECK(rtamt_told(monitor.get(), 2, &steps, &values) == 0);
+    CHECK(rtamt_finish(monitor.get()) == RTAMT_REFUSED);
+    CHECK(rtamt_message(monitor.get()) ==
+          std::string("The trace has been finished before: reset the monitor."));
+    const Row row{1.0, 1.0};
+    CHECK(rtamt_step(monitor.get(), row.data(), 2, nullptr, 0) == RTAMT_REFUSED);
+    CHECK(rtamt_message(monitor.get()) ==
+          std::string("The trace has ended: reset the monitor before the next sample."));
+    rtamt_reset(monitor.get());
+    CHECK(rtamt_known_until(monitor.get(), 0, &until) == 0 &&
+          rtamt_sample_count(monitor.get()) == 0);
+    CHECK(std::isnan(step(monitor, row)[0]));
+}
+
+TEST(a_refused_sample_leaves_the_monitor_as_it_was) {
+    const Handle monitor = example();
+    (void)step(monitor, {3.0, 1.0});
+    const Bytes before = save(monitor);
+    const auto refused = [&](std::span<const double> row, std::size_t outputs) {
+        Row known{};
+        const rtamt_status status =
+            rtamt_step(monitor.get(), row.data(), row.size(), known.data(), outputs);
+        CHECK(status != RTAMT_OK && save(monitor) == before);
+        return std::string(rtamt_message(monitor.get()));
+    };
+    // Saving has its own message; the one of the step is what was said before it.
+    Row known{};
+    const Row bad{not_a_number, 1.0};
+    CHECK(rtamt_step(monitor.get(), bad.data(), 2, known.data(), 2) == RTAMT_REFUSED);
+    CHECK(rtamt_message(monitor.get()) ==
+          std::string("'a' is NaN at sample 1, time 0.1 s: fill the gap or leave the sample out."));
+    (void)refused(bad, 2);
+    const std::array<double, 3> wide{1.0, 2.0, 3.0};
+    CHECK(refused(wide, 2) == "Sample 1 has the wrong number of values: expected 2 (a, b), got 3.");
+    CHECK(refused(Row{1.0, 1.0}, 3) == "The program has 2 outputs, not 3.");
+    CHECK(refused(Row{0.0, 0.0}, 2) ==
+          "'a / b' has no value at sample 1, time 0.1 s: it is 0/0, inf - inf, 0 * inf, or a root "
+          "or logarithm of a negative number; change the formula or the data so that this cannot "
+          "happen.");
+    const Row zero{0.0, 0.0};
+    CHECK(rtamt_step(monitor.get(), zero.data(), 2, known.data(), 2) == RTAMT_UNDEFINED);
+    std::uint32_t instruction = 0;
+    std::int64_t sample = 0;
+    rtamt_failure(monitor.get(), &instruction, &sample);
+    CHECK(instruction == 3 && sample == 1);
+    const rtamt_sample dense{0, 1.0, 0};
+    CHECK(rtamt_push(monitor.get(), &dense, 1) == RTAMT_REFUSED);
+    CHECK(rtamt_message(monitor.get()) ==
+          std::string("The program is for discrete time: use rtamt_step."));
+    CHECK(save(monitor) == before);
+}
+
+TEST(parameters_are_set_before_the_first_sample) {
+    const Handle monitor = example();
+    CHECK(rtamt_parameter_value(monitor.get(), 0) == 1.5);
+    CHECK(rtamt_set_parameter(monitor.get(), 0, 2.0) == RTAMT_OK);
+    CHECK(rtamt_parameter_value(monitor.get(), 0) == 2.0);
+    for (int i = 0; i < 3; ++i)
+        (void)step(monitor, {5.0, 1.0});
+    CHECK(step(monitor, {5.0, 1.0})[0] == 3.0);
+    const auto refusal = [&](std::uint32_t parameter, double value) {
+        CHECK(rtamt_set_parameter(monitor.get(), parameter, value) == RTAMT_REFUSED);
+        return std::string(rtamt_message(monitor.get()));
+    };
+    CHECK(refusal(0, 1.0) == "The parameter 'limit' cannot change in the middle of a trace: set it "
+                             "before the first sample.");
+    CHECK(refusal(0, not_a_number) == "The parameter 'limit' may not be NaN.");
+    CHECK(refusal(1, 0.0) == "There is no parameter 1: the program has 1.");
+    rtamt_reset(monitor.get());
+    CHECK(rtamt_parameter_value(monitor.get(), 0) == 2.0);
+    CHECK(rtamt_set_parameter(monitor.get(), 0, 1.0) == RTAMT_OK);
+}
+
+TEST(a_state_is_saved_restored_and_cloned_anywhere_in_a_trace) {
+    const auto row = [](int i) { return Row{static_cast<double>(i * 7 % 5), 1.0 + i % 3}; };
+    for (int cut = 0; cut < 12; ++cut) {
+        const Handle monitor = example();
+        CHECK(rtamt_set_parameter(monitor.get(), 0, 0.25) == RTAMT_OK);
+        for (int i = 0; i < cut; ++i)
+            (void)step(monitor, row(i));
+        const Bytes state = save(monitor);
+        const Handle other = example();
+        (void)step(other, {9.0, 9.0});
+        CHECK(rtamt_restore(other.get(), state.data(), state.size()) == RTAMT_OK);
+        rtamt_monitor* copied = nullptr;
+        CHECK(rtamt_clone(monitor.get(), &copied) == RTAMT_OK);
+        const Handle copy(copied);
+        CHECK(rtamt_parameter_value(other.get(), 0) == 0.25 && save(other) == state);
+        CHECK(save(copy) == state);
+        for (int i = cut; i < 20; ++i) {
+            const Row expected = step(monitor, row(i));
+            CHECK(same(step(other, row(i)), expected) && same(step(copy, row(i)), expected));
+        }
+        CHECK(rtamt_restore(monitor.get(), state.data(), state.size()) == RTAMT_OK);
+        CHECK(save(monitor) == state);
+    }
+}
+
+TEST(no_damaged_state_is_restored) {
+    const Handle monitor = example();
+    for (int i = 0; i < 6; ++i)
+        (void)step(monitor, {5.0 + i, 2.0});
+    const Bytes state = save(monitor);
+    const Handle other = example();
+    (void)step(other, {1.0, 4.0});
+    const Bytes before = save(other);
+    for (std::size_t bit = 0; bit < 8 * state.size(); ++bit) {
+        Bytes damaged = state;
+        damaged[bit / 8] ^= static_cast<std::uint8_t>(1U << (bit % 8));
+        CHECK(rtamt_restore(other.get(), damaged.data(), damaged.size()) == RTAMT_REFUSED);
+    }
+    CHECK(rtamt_message(other.get()) ==
+          std::string("This is not a state of a monitor, or it was damaged on the way."));
+    for (std::size_t size = 0; size < state.size(); ++size)
+        CHECK(rtamt_restore(other.get(), state.data(), size) == RTAMT_REFUSED);
+    programs::Program program = programs::carried();
+    program.instructions[2].x = 7.0;
+    const Handle stranger = create(programs::bytes_of(program));
+    CHECK(rtamt_restore(stranger.get(), state.data(), state.size()) == RTAMT_REFUSED);
+    CHECK(rtamt_message(stranger.get()) ==
+          std::string("This is the state of a monitor of another program."));
+    CHECK(save(other) == before);
+}
+
+TEST(a_forged_state_with_a_right_checksum_is_refused_or_does_no_harm) {
+    const Bytes bytes = programs::bytes_of(programs::everything());
+    std::size_t refused = 0;
+    std::size_t taken = 0;
+    for (const int cut : {0, 1, 4, 6, 11, 12}) {
+        const Handle monitor = create(bytes);
+        const auto run = [](const Handle& runner, int from, int to) {
+            for (int i = from; i < to; ++i) {
+                const Row row{static_cast<double>(i * 5 % 7) - 3.0, 1.0 + i % 3};
+                double known = 0.0;
+                (void)rtamt_step(runner.get(), row.data(), 2, &known, 1);
+            }
+        };
+        run(monitor, 0, cut);
+        if (cut == 12) CHECK(rtamt_finish(monitor.get()) == RTAMT_OK);
+        const Handle victim = create(bytes);
+        forged::each(save(monitor), [&](const Bytes& state) {
+            const Bytes before = save(victim);
+            if (rtamt_restore(victim.get(), state.data(), state.size()) != RTAMT_OK) {
+                ++refused;
+                CHECK(save(victim) == before);
+                return;
+            }
+            ++taken;
+            run(victim, cut, cut + 9);
+            const Bytes later = save(victim);
+            CHECK(rtamt_restore(victim.get(), later.data(), later.size()) == RTAMT_OK);
+            (void)rtamt_finish(victim.get());
+            std::int64_t until = 0;
+            (void)rtamt_known_until(victim.get(), 0, &until);
+        });
+    }
+    CHECK(refused > 1000 && taken > 1000); // numbers that only change values are as good as others
+}

@@ -1,0 +1,29 @@
+#include "discrete/zero_copy.hpp"
+
+#include "programs.hpp"
+#include "ways.hpp"
+
+using programs::Builder;
+using rtamt::Opcode;
+using ways::Random;
+using ways::Signal;
+
+// Whoever reads an input or writes an output: kernels alone, an output that is an input, one that
+// is read by others, one that is told twice, one that is late.
+TEST(offline_gives_the_same_whoever_reads_inputs_and_outputs) {
+    Random random(11);
+    for (const std::size_t count : std::initializer_list<std::size_t>{0, 1, 3, 256, 257, 1100}) {
+        const std::vector<Signal> columns{random.signal(count), random.signal(count)};
+        Builder builder;
+        const auto a = builder.input();
+        const auto b = builder.input();
+        const auto least = builder.pointwise(Opcode::min, a, b);
+        const auto ahead = builder.unary(Opcode::slide_max, least, 5, 4);
+        const auto twice = builder.pointwise(Opcode::neg, builder.later(least, 0));
+        builder.output(a).output(least).output(ahead).output(twice).output(twice);
+        builder.output(builder.pointwise(Opcode::abs, b));
+        builder.output(builder.later(b, 300));
+        ways::check_all_ways(builder.program(), columns, count, random,
+                             "count " + std::to_string(count));
+    }
+}

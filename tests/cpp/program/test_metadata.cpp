@@ -1,0 +1,83 @@
+#include "program/metadata.hpp"
+
+#include "check.hpp"
+#include "programs.hpp"
+
+#include <stdexcept>
+
+using rtamt::Metadata;
+using rtamt::Program;
+
+static std::string refusal(const Program& program) {
+    return check::message<std::invalid_argument>([&] { (void)Metadata::parse(program); });
+}
+
+static std::string refused(const std::string& reason) {
+    return "This is not a program that can be carried: " + reason + ".";
+}
+
+static Metadata good() {
+    return Metadata::parse(programs::carried());
+}
+
+static std::string refusal_of(const Metadata& metadata) {
+    Program program = programs::carried();
+    program.note = programs::note_of(metadata);
+    return refusal(program);
+}
+
+TEST(what_was_written_is_read) {
+    const Metadata metadata = good();
+    CHECK(metadata.numerator == 1 && metadata.denominator == 10 && metadata.seconds() == 0.1);
+    CHECK(metadata.name == "ratio" && metadata.formula == "always[0:0.3](a / b >= limit)");
+    CHECK(metadata.inputs == std::vector<std::string>({"a", "b"}));
+    CHECK(metadata.outputs == std::vector<std::string>({"robustness", "ratio"}));
+    CHECK(metadata.parameters.size() == 1 && metadata.parameters[0].name == "limit");
+    CHECK(metadata.parameters[0].instructions == std::vector<std::uint32_t>({2}));
+    CHECK(metadata.meanings.at(3) == "a / b" && metadata.meanings.at(4) == "a / b - limit");
+}
+
+TEST(no_truncation_is_read) {
+    Program program = programs::carried();
+    const std::string note = program.note;
+    program.note.clear();
+    CHECK(refusal(program) ==
+          refused("it has no metadata, so nobody knows the names of its inputs"));
+    for (std::size_t size = 1; size < note.size(); ++size) {
+        program.note = note.substr(0, size);
+        CHECK(refusal(program) == refused("its metadata is shorter than it should be"));
+    }
+    program.note = note + "x";
+    CHECK(refusal(program) == refused("its metadata is longer than it should be"));
+}
+
+TEST(lengths_that_promise_the_world_are_refused) {
+    const std::string note = programs::carried().note;
+    for (std::size_t place = 16; place + 4 <= note.size(); ++place) {
+        Program program = programs::carried();
+        program.note.replace(place, 4, "\xFF\xFF\xFF\xFF");
+        const std::string answer = refusal(program);
+        CHECK_NOTE(answer == "no exception" || answer.starts_with(refused("").substr(0, 43)),
+                   answer);
+    }
+}
+
+TEST(what_makes_no_sense_is_refused) {
+    Metadata metadata = good();
+    metadata.denominator = 0;
+    CHECK(refusal_of(metadata) == refused("the length of its step is 1/0 s"));
+    metadata = good();
+    metadata.numerator = -1;
+    CHECK(refusal_of(metadata) == refused("the length of its step is -1/10 s"));
+    metadata = good();
+    metadata.parameters[0].instructions = {3};
+    CHECK(refusal_of(metadata) ==
+          refused("its parameter 'limit' is instruction 3, which is no constant"));
+    metadata.parameters[0].instructions = {6};
+    CHECK(refusal_of(metadata) == refused("its metadata speaks of instruction 6 of 6"));
+    metadata.parameters[0].instructions = {};
+    CHECK(refusal_of(metadata) == refused("its parameter 'limit' stands nowhere"));
+    metadata = good();
+    metadata.inputs[0] = std::string("a\0b", 3);
+    CHECK(refusal_of(metadata) == refused("a name in it has a zero byte"));
+}
