@@ -3,13 +3,19 @@
 from __future__ import annotations
 
 import ctypes
-from ctypes import POINTER, byref, c_char_p, c_double, c_int, c_int64, c_size_t, c_uint32, c_void_p
+from ctypes import POINTER, byref, c_char_p, c_double, c_int, c_int32, c_int64, c_size_t, c_uint32, c_void_p
 
 import numpy as np
 
 from rtamt import runtime
 
 OK, REFUSED, UNDEFINED, NO_MEMORY = range(4)
+
+
+class Value(ctypes.Structure):
+    """``rtamt_value``."""
+
+    _fields_ = (("value", c_double), ("known", c_int32))
 
 
 class Sample(ctypes.Structure):
@@ -25,7 +31,7 @@ def _load() -> ctypes.CDLL:
     library.rtamt_message.argtypes = (c_void_p,)
     library.rtamt_message.restype = c_char_p
     library.rtamt_set_parameter.argtypes = (c_void_p, c_uint32, c_double)
-    library.rtamt_step.argtypes = (c_void_p, POINTER(c_double), c_size_t, POINTER(c_double), c_size_t)
+    library.rtamt_step.argtypes = (c_void_p, POINTER(c_double), c_size_t, POINTER(Value), c_size_t)
     library.rtamt_push.argtypes = (c_void_p, POINTER(Sample), c_size_t)
     library.rtamt_finish.argtypes = (c_void_p,)
     library.rtamt_reset.argtypes = (c_void_p,)
@@ -61,11 +67,11 @@ class Monitor:
             raise RefusedError(status, LIBRARY.rtamt_message(self._handle).decode())
 
     def step(self, row, outputs=2):
-        """Return what one sample made known of each output; NaN is nothing."""
-        known = (c_double * outputs)()
+        """Return what one sample made known of each output; None is nothing."""
+        known = (Value * outputs)()
         values = (c_double * len(row))(*row)
         self._check(LIBRARY.rtamt_step(self._handle, values, len(row), known, outputs))
-        return list(known)
+        return [each.value if each.known else None for each in known]
 
     def push(self, samples):
         """Take (input, tick, value) triples; return the new events of the first output."""

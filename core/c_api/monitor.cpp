@@ -88,14 +88,14 @@ void Monitor::set_parameter(std::size_t index, double value) {
     broken_ = false;
 }
 
-void Monitor::step(std::span<const double> row, std::span<double> known) {
+void Monitor::step(std::span<const double> row, std::span<rtamt_value> known) {
     DiscreteRunner& runner = discrete();
     require_ready();
     check_row(row, known.size());
     runner.step(row.data(), known);
 }
 
-void Monitor::hold(std::span<const double> row, std::size_t count, std::span<double> known) {
+void Monitor::hold(std::span<const double> row, std::size_t count, std::span<rtamt_value> known) {
     DiscreteRunner& runner = discrete();
     require_ready();
     check_row(row, known.size());

@@ -34,10 +34,10 @@ class Monitor {
     [[nodiscard]] double parameter(std::size_t index) const noexcept;
 
     void set_parameter(std::size_t index, double value);
-    void step(std::span<const double> row, std::span<double> known);
+    void step(std::span<const double> row, std::span<rtamt_value> known);
 
     // The same sample `count` times, all of them or none; what the last one made known.
-    void hold(std::span<const double> row, std::size_t count, std::span<double> known);
+    void hold(std::span<const double> row, std::size_t count, std::span<rtamt_value> known);
     void push(std::span<const rtamt_sample> samples);
     void finish();
     void reset() noexcept;

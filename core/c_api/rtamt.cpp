@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cstring>
 #include <exception>
-#include <limits>
 #include <memory>
 #include <new>
 #include <stdexcept>
@@ -195,20 +194,22 @@ int64_t rtamt_lag(const rtamt_monitor* monitor, uint32_t output) {
     return program.instructions[program.outputs[output]].lag;
 }
 
-double rtamt_parameter_value(const rtamt_monitor* monitor, uint32_t parameter) {
-    if (parameter >= rtamt_parameters(monitor)) return std::numeric_limits<double>::quiet_NaN();
-    return monitor->monitor.parameter(parameter);
+rtamt_status rtamt_parameter_value(const rtamt_monitor* monitor, uint32_t parameter,
+                                   double* value) {
+    if (value == nullptr || parameter >= rtamt_parameters(monitor)) return RTAMT_REFUSED;
+    *value = monitor->monitor.parameter(parameter);
+    return RTAMT_OK;
 }
 
 rtamt_status rtamt_set_parameter(rtamt_monitor* monitor, uint32_t parameter, double value) {
     return error_boundary(monitor, [&](Monitor& self) { self.set_parameter(parameter, value); });
 }
 
-rtamt_status rtamt_step(rtamt_monitor* monitor, const double* values, size_t count, double* known,
-                        size_t outputs) {
+rtamt_status rtamt_step(rtamt_monitor* monitor, const double* values, size_t count,
+                        rtamt_value* results, size_t outputs) {
     return error_boundary(monitor, [&](Monitor& self) {
         self.step(items(values, count, "The values of the sample"),
-                  items(known, outputs, "The places for the outputs"));
+                  items(results, outputs, "The places for the outputs"));
     });
 }
 

@@ -6,9 +6,10 @@
  *     rtamt_monitor* monitor;
  *     char message[256];
  *     if (rtamt_create(bytes, size, &monitor, message, sizeof message) != RTAMT_OK) ...
- *     double known[2];
- *     rtamt_status status = rtamt_step(monitor, inputs, 2, known, 2);
+ *     rtamt_value robustness;
+ *     rtamt_status status = rtamt_step(monitor, inputs, 2, &robustness, 1);
  *     if (status != RTAMT_OK) puts(rtamt_message(monitor));
+ *     else if (robustness.known) printf("%g\n", robustness.value);
  *     rtamt_destroy(monitor);
  *
  * A call that fails leaves the monitor as it was. There is no global state: monitors are
@@ -16,7 +17,7 @@
  *
  * A null pointer is an error like any other: RTAMT_REFUSED for a null monitor, for null memory with
  * a size that is not 0, and for a null place that a result must go to. Functions that return no
- * status answer a null monitor as they answer for what does not exist: NULL, 0, NaN or -1. A place
+ * status answer a null monitor as they answer for what does not exist: NULL, 0 or -1. A place
  * that a result need not go to may be null, as it says there.
  */
 #ifndef RTAMT_H
@@ -62,6 +63,12 @@ typedef struct rtamt_sample {
     double value;
     uint32_t input;
 } rtamt_sample;
+
+/* A value of an output. */
+typedef struct rtamt_value {
+    double value; /* 0 where it is not known */
+    int32_t known;
+} rtamt_value;
 
 /* RTAMT_ABI as the library was built. */
 RTAMT_API uint32_t rtamt_abi(void);
@@ -111,8 +118,8 @@ RTAMT_API int64_t rtamt_lag(const rtamt_monitor* monitor, uint32_t output);
 
 /* ---- parameters: the named constants of the specification ------------------------------------ */
 
-/* NaN if there is no such parameter. */
-RTAMT_API double rtamt_parameter_value(const rtamt_monitor* monitor, uint32_t parameter);
+RTAMT_API rtamt_status rtamt_parameter_value(const rtamt_monitor* monitor, uint32_t parameter,
+                                             double* value);
 
 /* Only before the first sample, or after rtamt_reset. */
 RTAMT_API rtamt_status rtamt_set_parameter(rtamt_monitor* monitor, uint32_t parameter,
@@ -120,11 +127,11 @@ RTAMT_API rtamt_status rtamt_set_parameter(rtamt_monitor* monitor, uint32_t para
 
 /* ---- a trace --------------------------------------------------------------------------------- */
 
-/* Discrete time: takes the next sample, `count` values, one an input. Into `known` goes for each of
- * the first `outputs` outputs the value that has become known, the one `lag` samples ago, or NaN as
- * long as there is none; a known value is never NaN. Allocates nothing. */
+/* Discrete time: takes the next sample, `count` values, one an input. For each of the first
+ * `outputs` outputs, `results` receives the value that has become known, the one `lag` samples ago;
+ * it is not known in the first `lag` samples. Allocates nothing. */
 RTAMT_API rtamt_status rtamt_step(rtamt_monitor* monitor, const double* values, size_t count,
-                                  double* known, size_t outputs);
+                                  rtamt_value* results, size_t outputs);
 
 /* Dense time: takes samples; those of one input at increasing ticks. rtamt_told has what became
  * known. */

@@ -1,7 +1,6 @@
 #include "runner.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <utility>
 
 namespace rtamt::c_api {
@@ -12,7 +11,7 @@ DiscreteRunner::DiscreteRunner(Program program) : executor_(std::move(program)) 
     told_.resize(executor_.program().outputs.size());
 }
 
-void DiscreteRunner::step(const double* row, std::span<double> known) {
+void DiscreteRunner::step(const double* row, std::span<rtamt_value> known) {
     double first = 0.0;
     if (executor_.step(row, first) == discrete::Outcome::failed) {
         throw Undefined{executor_.failure().instruction, executor_.failure().sample};
@@ -22,7 +21,8 @@ void DiscreteRunner::step(const double* row, std::span<double> known) {
     last_known(known);
 }
 
-void DiscreteRunner::hold(std::span<const double> row, std::size_t count, std::span<double> known) {
+void DiscreteRunner::hold(std::span<const double> row, std::size_t count,
+                          std::span<rtamt_value> known) {
     if (count == 1) return step(row.data(), known);
     std::vector<std::vector<double>> columns;
     std::vector<const double*> pointers;
@@ -43,12 +43,12 @@ void DiscreteRunner::hold(std::span<const double> row, std::size_t count, std::s
 }
 
 // What the last sample made known of the first outputs.
-void DiscreteRunner::last_known(std::span<double> known) const noexcept {
+void DiscreteRunner::last_known(std::span<rtamt_value> known) const noexcept {
     for (std::size_t output = 0; output < known.size(); ++output) {
         const std::uint32_t instruction = program().outputs[output];
         known[output] = executor_.samples() > program().instructions[instruction].lag
-                            ? *executor_.last(instruction)
-                            : std::numeric_limits<double>::quiet_NaN();
+                            ? rtamt_value{*executor_.last(instruction), 1}
+                            : rtamt_value{0.0, 0};
     }
 }
 

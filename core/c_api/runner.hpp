@@ -5,6 +5,7 @@
 #include "../discrete/executor.hpp"
 #include "../program/program.hpp"
 #include "../program/snapshot.hpp"
+#include "rtamt.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -58,11 +59,11 @@ class DiscreteRunner final : public Runner {
   public:
     explicit DiscreteRunner(Program program);
 
-    // One value an input; the answers of the first outputs, NaN where there is none yet.
-    void step(const double* row, std::span<double> known);
+    // One value an input; the answers of the first outputs.
+    void step(const double* row, std::span<rtamt_value> known);
 
     // The same sample `count` times, all of them or none.
-    void hold(std::span<const double> row, std::size_t count, std::span<double> known);
+    void hold(std::span<const double> row, std::size_t count, std::span<rtamt_value> known);
     [[nodiscard]] std::int64_t samples() const noexcept { return executor_.samples(); }
 
     [[nodiscard]] const Program& program() const noexcept override { return executor_.program(); }
@@ -77,7 +78,7 @@ class DiscreteRunner final : public Runner {
   private:
     discrete::Executor executor_;
 
-    void last_known(std::span<double> known) const noexcept;
+    void last_known(std::span<rtamt_value> known) const noexcept;
 };
 
 class DenseRunner final : public Runner {

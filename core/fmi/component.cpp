@@ -152,13 +152,13 @@ void Component::advance_discrete(double time, double end) {
         refuse("The step begins at " + shown(time) + " s, but the last one ended at " +
                shown(now_.reached) + " s.");
     }
-    std::vector<double> known(2 * now_.told.size());
+    std::vector<rtamt_value> known(2 * now_.told.size());
     monitor_->hold(now_.inputs, static_cast<std::size_t>(last - first), known);
     for (std::size_t i = 0; i < now_.told.size(); ++i) {
-        if (std::isnan(known[2 * i])) continue;
+        if (known[2 * i].known == 0) continue;
         const std::int64_t until = *monitor_->runner().known_until(2 * i);
-        now_.told[i] = {.robustness = known[2 * i],
-                        .verdict = known[2 * i + 1],
+        now_.told[i] = {.robustness = known[2 * i].value,
+                        .verdict = known[2 * i + 1].value,
                         .since = now_.start + static_cast<double>(until) * step(),
                         .known = true};
     }

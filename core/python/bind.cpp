@@ -305,14 +305,14 @@ NB_MODULE(_core, m) {
         .def("restore", &Monitor::restore, nb::arg("state"),
              "Go on as the monitor of this state would, which was made like this one.")
         .def("last", &Monitor::last, nb::arg("instruction"),
-             "The value of an instruction at the last slot.")
+             "The value of an instruction at the last slot, or None before the first.")
         .def("latest", &Monitor::latest, nb::arg("output"),
              "The value of an output that the last sample made known, or None.")
         .def("recent", &Monitor::recent, nb::arg("count"),
              "The times of the last samples, as many as values can be outstanding and one more.")
         .def_prop_ro("samples", &Monitor::samples, "How many samples came.")
         .def_prop_ro("violations", &Monitor::violations, "How many gaps were out of tolerance.")
-        .def_prop_ro("last_time", &Monitor::last_time, "The time of the last sample, or NaN.")
+        .def_prop_ro("last_time", &Monitor::last_time, "The time of the last sample, or None.")
         .def_prop_ro("state_bytes", &Monitor::state_bytes, "Bytes of state.");
 
     nb::class_<DenseMonitor>(m, "DenseMonitor", nb::type_slots(dense_monitor_slots),

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <cstring>
 #include <initializer_list>
-#include <limits>
 #include <memory>
 #include <new>
 #include <stdexcept>
@@ -122,7 +121,8 @@ DenseMonitor::DenseMonitor(Program program, const std::vector<nb::str>& names,
                            Exceptions exceptions)
     : calls_(std::move(calls)), executor_(std::move(program)),
       names_(names, executor_.program().inputs, ignored), exceptions_(std::move(exceptions)),
-      usage_(exceptions_.refused, exceptions_.in_use), row_(names.size()), events_(names.size()),
+      usage_(exceptions_.refused, exceptions_.in_use), row_(names.size()),
+      given_(std::make_unique<bool[]>(names.size())), events_(names.size()),
       results_(executor_.program().outputs.size()), spare_(results_.size()),
       until_(results_.size()), counts_(names.size()) {}
 
@@ -192,18 +192,20 @@ bool DenseMonitor::read(PyObject* time, const Values& values) noexcept {
     const bool whole = whole_;
     const auto tick = told ? read_time(time) : std::nullopt;
     if (!tick) return usage_.refuse("time") != nullptr;
-    for (double& value : row_)
-        value = std::numeric_limits<double>::quiet_NaN();
+    const Places own = places();
+    own.clear();
     // A time of any other kind may have run Python code.
     if (!(PyFloat_Check(time) || PyLong_CheckExact(time)) ||
-        read_values(values, PlainNumbers{}, row_) != nullptr) {
+        read_values(values, PlainNumbers{}, own) != nullptr) {
         Row row(row_.size());
         if (!row) return PyErr_NoMemory() != nullptr;
-        if (const char* wrong = read_values(values, numbers_, row.values())) {
+        const Places read = row.places();
+        if (const char* wrong = read_values(values, numbers_, read)) {
             return usage_.refuse(wrong) != nullptr;
         }
         if (!ready()) return false;
-        std::ranges::copy(row.values(), row_.begin());
+        std::copy_n(read.values, read.size, own.values);
+        std::copy_n(read.given, read.size, own.given);
     }
     time_ = *tick;
     return (told == told_ && rate == rate_ && whole == whole_ && bind_buffers()) ||
@@ -242,13 +244,14 @@ std::optional<std::int64_t> DenseMonitor::read_time(PyObject* time) const noexce
 // Answers what is wrong, or null.
 template <class Values, class Numbers>
 const char* DenseMonitor::read_values(const Values& values, const Numbers& numbers,
-                                      std::span<double> row) const noexcept {
+                                      const Places& places) const noexcept {
     std::size_t guess = 0;
     return values.each([&](PyObject* name, PyObject* value) -> const char* {
         const auto index = names_.place(name, guess, Numbers::plain);
         if (!index) return names_.ignored(name, Numbers::plain) ? nullptr : "names";
         guess = *index + 1;
-        return numbers.read(value, row[*index]) ? nullptr : "value";
+        places.given[*index] = true;
+        return numbers.read(value, places.values[*index]) ? nullptr : "value";
     });
 }
 
@@ -257,7 +260,7 @@ bool DenseMonitor::bind_buffers() noexcept {
     if (time_ > executor_.last_possible()) return false;
     for (std::size_t input = 0; input < row_.size(); ++input) {
         events_[input] = {};
-        if (std::isnan(row_[input])) continue;
+        if (!given_[input]) continue;
         if (time_ <= executor_.last_time(input).value_or(-dense::never - 1)) return false;
         events_[input] = {&time_, &row_[input], 1};
     }

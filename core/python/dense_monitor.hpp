@@ -91,7 +91,8 @@ class DenseMonitor {
     Exceptions exceptions_;
     UsageGuard usage_;
     std::int64_t time_ = 0;                          // of the instant that is being taken
-    std::vector<double> row_;                        // its values, NaN where there is none
+    std::vector<double> row_;                        // its values
+    std::unique_ptr<bool[]> given_;                  // for which inputs there is one
     std::vector<dense::Events> events_;              // the same
     std::vector<dense::EventList> results_;          // of the last update, an output each
     std::vector<dense::EventList> spare_;            // of the next one, which may fail
@@ -107,13 +108,14 @@ class DenseMonitor {
     bool whole_ = false;
 
     void transfer(Snapshot& snapshot);
+    [[nodiscard]] Places places() noexcept { return {row_.data(), given_.get(), row_.size()}; }
     void require_output(std::size_t output) const;
     [[nodiscard]] PyObject* fail(const dense::Failure& failure) const noexcept;
     [[nodiscard]] bool ready() const noexcept { return usage_.open(executor_.finished()); }
     [[nodiscard]] std::optional<std::int64_t> read_time(PyObject* time) const noexcept;
     template <class Values, class Numbers>
     [[nodiscard]] const char* read_values(const Values& values, const Numbers& numbers,
-                                          std::span<double> row) const noexcept;
+                                          const Places& places) const noexcept;
     template <class Values>
     [[nodiscard]] bool read(PyObject* time, const Values& values) noexcept;
     [[nodiscard]] bool bind_buffers() noexcept;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 #include <string>
 #include <type_traits>
@@ -13,9 +12,6 @@ using discrete::Failure;
 using discrete::Outcome;
 
 namespace {
-
-// No input has this value, so it marks those that have none yet.
-constexpr double missing = std::numeric_limits<double>::quiet_NaN();
 
 // How many samples a value may come late, and the last one: those that a caller may have to name.
 [[nodiscard]] std::size_t history_of(const Program& program) noexcept {
@@ -41,7 +37,7 @@ Monitor::Monitor(Program program, const std::vector<nb::str>& names, double peri
       clock_(period, tolerance, strict, history_of(executor_.program())),
       names_(names, executor_.program().inputs, ignored), exceptions_(std::move(exceptions)),
       usage_(exceptions_.refused, exceptions_.in_use), row_(names.size()),
-      previous_(names.size(), missing) {
+      given_(std::make_unique<bool[]>(names.size())), previous_(names.size()) {
     if (!(period > 0.0) || !std::isfinite(period) || !(tolerance >= 0.0)) {
         throw std::invalid_argument(
             "The period must be positive and finite, the tolerance 0 or more.");
@@ -50,19 +46,27 @@ Monitor::Monitor(Program program, const std::vector<nb::str>& names, double peri
 
 // ---- one sample ---------------------------------------------------------------------------------
 
-// Has `read(numbers, time, row)` read a sample, which answers what is wrong, or null. Plain
+// Has `read(numbers, time, places)` read a sample, which answers what is wrong, or null. Plain
 // numbers, which run no Python code, are read into row_ at once. `keeps`: an input that is left out
 // keeps its value.
 template <bool timed, bool keeps, class Read>
 PyObject* Monitor::sample(const Read& read) noexcept {
     if (!ready()) return nullptr;
     double time = 0.0;
-    if constexpr (keeps) std::ranges::copy(previous_, row_.begin());
-    if (read(PlainNumbers{}, time, std::span(row_)) != nullptr) [[unlikely]] {
+    const Places places = this->places();
+    const bool first = executor_.samples() == 0;
+    if constexpr (keeps) {
+        if (first) {
+            places.clear();
+        } else {
+            std::ranges::copy(previous_, row_.begin());
+        }
+    }
+    if (read(PlainNumbers{}, time, places) != nullptr) [[unlikely]] {
         return sample_carefully<timed, keeps>(read);
     }
     if (timed && !clock_.accepts(time)) return usage_.refuse("time");
-    if (keeps && !whole()) return usage_.refuse("names");
+    if (keeps && first && !places.whole()) return usage_.refuse("names");
     return take<timed>(time);
 }
 
@@ -73,29 +77,28 @@ PyObject* Monitor::sample_carefully(const Read& read) noexcept {
     double time = 0.0;
     Row row(row_.size());
     if (!row) return PyErr_NoMemory();
-    if (const char* wrong = read(numbers_, time, row.values())) return usage_.refuse(wrong);
+    const Places places = row.places();
+    if (const char* wrong = read(numbers_, time, places)) return usage_.refuse(wrong);
     if (!ready()) return nullptr;
-    if constexpr (keeps) row.complete(previous_);
-    std::ranges::copy(row.values(), row_.begin());
+    if (keeps && executor_.samples() != 0) row.complete(previous_);
     if (timed && !clock_.accepts(time)) return usage_.refuse("time");
-    return whole() ? take<timed>(time) : usage_.refuse("names");
-}
-
-bool Monitor::whole() const noexcept {
-    return std::ranges::none_of(row_, [](double value) { return std::isnan(value); });
+    if (!places.whole()) return usage_.refuse("names");
+    std::copy_n(places.values, places.size, row_.begin());
+    return take<timed>(time);
 }
 
 template <class Values>
 PyObject* Monitor::update(PyObject* time, const Values& values) noexcept {
     return sample<true, false>(
-        [&](const auto& numbers, double& t, std::span<double> row) -> const char* {
+        [&](const auto& numbers, double& t, const Places& places) -> const char* {
             if (!numbers.read(time, t) || std::fabs(t) >= implausible) return "time";
             if (values.count() != names_.count()) return "names";
             std::size_t guess = 0;
             return values.each([&](PyObject* name, PyObject* value) -> const char* {
                 const auto index = names_.place(name, guess++, numbers.plain);
                 if (!index) return "names";
-                return numbers.read(value, row[*index]) ? nullptr : "value";
+                places.given[*index] = true;
+                return numbers.read(value, places.values[*index]) ? nullptr : "value";
             });
         });
 }
@@ -105,7 +108,7 @@ template PyObject* Monitor::update(PyObject* time, const InDict& values) noexcep
 
 PyObject* Monitor::update_pairs(PyObject* time, PyObject* pairs) noexcept {
     return sample<true, true>(
-        [&](const auto& numbers, double& t, std::span<double> row) -> const char* {
+        [&](const auto& numbers, double& t, const Places& places) -> const char* {
             if (!numbers.read(time, t)) return "time";
             constexpr bool plain = std::remove_cvref_t<decltype(numbers)>::plain;
             if (!PyList_Check(pairs) && !PyTuple_Check(pairs)) return "pairs";
@@ -119,7 +122,8 @@ PyObject* Monitor::update_pairs(PyObject* time, PyObject* pairs) noexcept {
                 const auto name = held<plain>(PySequence_Fast_GET_ITEM(pair.ptr(), 0));
                 const auto value = held<plain>(PySequence_Fast_GET_ITEM(pair.ptr(), 1));
                 if (const auto index = names_.place(name.ptr(), guess, plain)) {
-                    if (!numbers.read(value.ptr(), row[*index])) return "value";
+                    places.given[*index] = true;
+                    if (!numbers.read(value.ptr(), places.values[*index])) return "value";
                     guess = *index + 1;
                 } else if (!names_.ignored(name.ptr(), plain)) {
                     return "names";
@@ -132,9 +136,10 @@ PyObject* Monitor::update_pairs(PyObject* time, PyObject* pairs) noexcept {
 PyObject* Monitor::step(std::span<PyObject* const> values) noexcept {
     if (values.size() != names_.count()) return ready() ? usage_.refuse("count") : nullptr;
     return sample<false, false>(
-        [&](const auto& numbers, double& /*time*/, std::span<double> row) -> const char* {
+        [&](const auto& numbers, double& /*time*/, const Places& places) -> const char* {
             for (std::size_t i = 0; i < values.size(); ++i) {
-                if (!numbers.read(values[i], row[i])) return "value";
+                places.given[i] = true;
+                if (!numbers.read(values[i], places.values[i])) return "value";
             }
             return nullptr;
         });
@@ -226,7 +231,7 @@ void Monitor::reset() {
     usage_.require_idle();
     executor_.reset();
     clock_.reset();
-    std::ranges::fill(previous_, missing);
+    std::ranges::fill(previous_, 0.0);
 }
 
 nb::bytes Monitor::state() {
@@ -259,9 +264,9 @@ std::uint64_t Monitor::violations() const {
     return clock_.violations();
 }
 
-double Monitor::last_time() const {
+std::optional<double> Monitor::last_time() const {
     usage_.require_idle();
-    return clock_.stamps().last().value_or(missing);
+    return clock_.stamps().last();
 }
 
 std::size_t Monitor::state_bytes() const {
@@ -269,12 +274,12 @@ std::size_t Monitor::state_bytes() const {
     return executor_.state_bytes() + clock_.stamps().bytes();
 }
 
-double Monitor::last(std::uint32_t instruction) const {
+std::optional<double> Monitor::last(std::uint32_t instruction) const {
     usage_.require_idle();
     if (instruction >= executor_.program().instructions.size()) {
         throw std::out_of_range("There is no instruction " + std::to_string(instruction) + ".");
     }
-    return executor_.last(instruction).value_or(missing);
+    return executor_.last(instruction);
 }
 
 std::optional<double> Monitor::latest(std::size_t output) const {

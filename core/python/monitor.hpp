@@ -55,14 +55,15 @@ class Monitor {
     [[nodiscard]] nb::bytes state();
     void restore(const nb::bytes& state);
 
-    [[nodiscard]] double last(std::uint32_t instruction) const;
+    // None before the first sample.
+    [[nodiscard]] std::optional<double> last(std::uint32_t instruction) const;
     // What an output is worth that the last sample made known.
     [[nodiscard]] std::optional<double> latest(std::size_t output) const;
     [[nodiscard]] Result recent(std::size_t count) const;
 
     [[nodiscard]] std::int64_t samples() const;
     [[nodiscard]] std::uint64_t violations() const;
-    [[nodiscard]] double last_time() const;
+    [[nodiscard]] std::optional<double> last_time() const;
     [[nodiscard]] std::size_t state_bytes() const;
 
   private:
@@ -73,17 +74,18 @@ class Monitor {
     Names names_;
     Exceptions exceptions_;
     UsageGuard usage_;
-    std::vector<double> row_;      // the sample that is being taken
-    std::vector<double> previous_; // the last sample that was taken; NaN where there is none
+    std::vector<double> row_;       // the sample that is being taken
+    std::unique_ptr<bool[]> given_; // which of its values the call gave
+    std::vector<double> previous_;  // the last sample that was taken, if there is one
 
     void transfer(Snapshot& snapshot);
+    [[nodiscard]] Places places() noexcept { return {row_.data(), given_.get(), row_.size()}; }
     [[nodiscard]] bool ready() const noexcept { return usage_.open(executor_.finished()); }
     [[nodiscard]] double time_of(std::int64_t sample, const std::optional<Column>& times) const;
     template <bool timed, bool keeps, class Read>
     [[nodiscard]] PyObject* sample(const Read& read) noexcept;
     template <bool timed, bool keeps, class Read>
     RTAMT_COLD [[nodiscard]] PyObject* sample_carefully(const Read& read) noexcept;
-    [[nodiscard]] bool whole() const noexcept;
     template <bool timed>
     [[nodiscard]] PyObject* take(double time) noexcept;
 };

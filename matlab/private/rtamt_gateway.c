@@ -26,7 +26,7 @@ typedef struct session {
     rtamt_monitor* taken; /* has every sample that was taken */
     rtamt_monitor* ahead; /* NULL, or level with `taken`, or one sample ahead */
     double* row;          /* that sample */
-    double* known;        /* and what it made known, of each output */
+    rtamt_value* known;   /* and what it made known, of each output */
     struct session* next;
 } session;
 
@@ -119,7 +119,7 @@ static void create(int results, mxArray* result[], int count, const mxArray* arg
     if (fresh != NULL) {
         fresh->taken = monitor;
         fresh->row = calloc(rtamt_inputs(monitor) + 1U, sizeof(double));
-        fresh->known = calloc(rtamt_outputs(monitor) + 1U, sizeof(double));
+        fresh->known = calloc(rtamt_outputs(monitor) + 1U, sizeof(rtamt_value));
         if (fresh->row == NULL || fresh->known == NULL) {
             release(fresh);
             fresh = NULL;
@@ -190,6 +190,14 @@ static mxArray* row_of(const double* values, size_t count) {
     return array;
 }
 
+/* A Simulink signal has a value in every step: NaN until the first is known. */
+static mxArray* known_row(const rtamt_value* values, size_t count) {
+    mxArray* array = mxCreateDoubleMatrix(1, (mwSize)count, mxREAL);
+    for (size_t i = 0; i < count; ++i)
+        mxGetPr(array)[i] = values[i].known ? values[i].value : mxGetNaN();
+    return array;
+}
+
 static void peek(int results, mxArray* result[], int count, const mxArray* arguments[]) {
     session* self = *find(count, arguments);
     size_t size = 0;
@@ -202,7 +210,7 @@ static void peek(int results, mxArray* result[], int count, const mxArray* argum
         check(rtamt_step(self->ahead, values, size, self->known, outputs), self->ahead);
         memcpy(self->row, values, size * sizeof(double));
     }
-    result[0] = row_of(self->known, outputs);
+    result[0] = known_row(self->known, outputs);
 }
 
 static void step(int results, mxArray* result[], int count, const mxArray* arguments[]) {
@@ -212,8 +220,8 @@ static void step(int results, mxArray* result[], int count, const mxArray* argum
     const size_t outputs = rtamt_outputs(self->taken);
     const int was_ahead = is_ahead(self);
     (void)results;
-    result[0] = mxCreateDoubleMatrix(1, (mwSize)outputs, mxREAL);
-    check(rtamt_step(self->taken, values, size, mxGetPr(result[0]), outputs), self->taken);
+    check(rtamt_step(self->taken, values, size, self->known, outputs), self->taken);
+    result[0] = known_row(self->known, outputs);
     if (!was_ahead || !is_row(self, values, size)) forget_ahead(self);
 }
 

@@ -76,7 +76,7 @@ void go_on(rtamt_monitor* monitor, Domain domain, unsigned seed) {
         const double value = static_cast<double>((i * 5 + seed) % 7) - 3.0;
         if (domain == Domain::discrete) {
             const std::array<double, 2> row{value, 1.0 + i % 3};
-            double known = 0.0;
+            rtamt_value known{};
             (void)taken(monitor, rtamt_step(monitor, row.data(), row.size(), &known, 1));
         } else {
             const auto tick =

@@ -172,7 +172,7 @@ def test_program(drawn: tuple[str, list[Formula]], columns: dict[str, Any]) -> N
     try:
         for row in rows:
             for values, value in zip(known, monitor.step(row, len(known)), strict=True):
-                values.extend([] if np.isnan(value) else [value])
+                values.extend([] if value is None else [value])
         monitor.finish()
     except c_api.RefusedError:
         return

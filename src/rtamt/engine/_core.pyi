@@ -69,8 +69,8 @@ class Monitor:
     def restore(self, state: bytes) -> None:
         """Go on as the monitor of this state would, which was made like this one."""
 
-    def last(self, instruction: int) -> float:
-        """The value of an instruction at the last slot."""
+    def last(self, instruction: int) -> float | None:
+        """The value of an instruction at the last slot, or None before the first."""
 
     def latest(self, output: int) -> float | None:
         """The value of an output that the last sample made known, or None."""
@@ -87,8 +87,8 @@ class Monitor:
         """How many gaps were out of tolerance."""
 
     @property
-    def last_time(self) -> float:
-        """The time of the last sample, or NaN."""
+    def last_time(self) -> float | None:
+        """The time of the last sample, or None."""
 
     @property
     def state_bytes(self) -> int:

@@ -316,8 +316,7 @@ class Monitor(OnlineMonitor):
 
     @property
     def _last_time(self) -> float | None:
-        time = float(self._backend.last_time)
-        return None if isnan(time) else time
+        return self._backend.last_time  # type: ignore[no-any-return]
 
     def _next_time(self) -> float:
         last = self._last_time

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections import deque
 from fractions import Fraction
-from math import inf, isfinite, isnan, nan
+from math import inf, isfinite, isnan
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -80,13 +80,13 @@ class PythonMonitor:
 
     @property
     @alone
-    def last_time(self) -> float:
-        """The stamp of the last sample; NaN before the first."""
+    def last_time(self) -> float | None:
+        """The stamp of the last sample; None before the first."""
         return self._last_time
 
     @property
-    def _last_time(self) -> float:
-        return self._stamps[-1] if self._stamps else nan
+    def _last_time(self) -> float | None:
+        return self._stamps[-1] if self._stamps else None
 
     @property
     @alone
@@ -186,8 +186,9 @@ class PythonMonitor:
             raise Refused("finished")
         last = self._last_time
         if time is None:
-            time = last + self._period if self._stamps else 0.0
-        if not isfinite(time) or time < last or (self._strict and time == last):
+            time = 0.0 if last is None else last + self._period
+        late = last is not None and (time < last or (self._strict and time == last))
+        if not isfinite(time) or late:
             raise Refused("time")
         off = self._off(last, time)
         if off and self._strict:
@@ -209,9 +210,9 @@ class PythonMonitor:
         if not self._stamps:
             self._monitor.start = time * self._unit
 
-    def _off(self, before: float, time: float) -> bool:
-        """Tell whether a gap misses the period by more than the tolerance; before the first sample is NaN."""
-        return abs(time - before - self._period) > self._tolerance * self._period
+    def _off(self, before: float | None, time: float) -> bool:
+        """Return whether a gap misses the period by more than the tolerance; no sample before is no gap."""
+        return before is not None and abs(time - before - self._period) > self._tolerance * self._period
 
 
 class _Questioned(ReferenceMonitor):

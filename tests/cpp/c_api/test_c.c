@@ -66,8 +66,9 @@ int main(void) {
         return fail(message);
     }
     double value = 2.5;
-    double known = 0.0;
-    if (rtamt_step(monitor, &value, 1, &known, 1) != RTAMT_OK || known != 2.5) {
+    rtamt_value known = {0.0, 0};
+    if (rtamt_step(monitor, &value, 1, &known, 1) != RTAMT_OK || !known.known ||
+        known.value != 2.5) {
         return fail("a sample in, its robustness out");
     }
     value = NAN;

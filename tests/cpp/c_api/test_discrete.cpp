@@ -16,6 +16,7 @@
 
 using Bytes = std::vector<std::uint8_t>;
 using Row = std::array<double, 2>;
+using Values = std::array<rtamt_value, 2>;
 
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
@@ -35,10 +36,16 @@ Handle example() {
     return create(programs::bytes_of(programs::carried()));
 }
 
-Row step(const Handle& monitor, const Row& row) {
-    Row known{};
+Values step(const Handle& monitor, const Row& row) {
+    Values known{};
     CHECK(rtamt_step(monitor.get(), row.data(), 2, known.data(), 2) == RTAMT_OK);
     return known;
+}
+
+double parameter(const Handle& monitor) {
+    double value = 0.0;
+    CHECK(rtamt_parameter_value(monitor.get(), 0, &value) == RTAMT_OK);
+    return value;
 }
 
 Bytes save(const Handle& monitor) {
@@ -49,9 +56,15 @@ Bytes save(const Handle& monitor) {
     return state;
 }
 
-bool same(const Row& a, const Row& b) {
-    return std::bit_cast<std::array<std::uint64_t, 2>>(a) ==
-           std::bit_cast<std::array<std::uint64_t, 2>>(b);
+bool same(const Values& a, const Values& b) {
+    return std::ranges::equal(a, b, [](const rtamt_value& left, const rtamt_value& right) {
+        return left.known == right.known && std::bit_cast<std::uint64_t>(left.value) ==
+                                                std::bit_cast<std::uint64_t>(right.value);
+    });
+}
+
+Values known(double a, double b) {
+    return {rtamt_value{a, 1}, rtamt_value{b, 1}};
 }
 } // namespace
 
@@ -68,7 +81,9 @@ TEST(a_program_says_what_it_is) {
     CHECK(rtamt_lag(monitor.get(), 2) == -1 && rtamt_parameters(monitor.get()) == 1);
     CHECK(rtamt_parameter(monitor.get(), 0) == std::string("limit"));
     CHECK(rtamt_parameter(monitor.get(), 1) == nullptr);
-    CHECK(std::isnan(rtamt_parameter_value(monitor.get(), 1)));
+    double none = 0.0;
+    CHECK(rtamt_parameter_value(monitor.get(), 1, &none) == RTAMT_REFUSED);
+    CHECK(rtamt_parameter_value(monitor.get(), 0, nullptr) == RTAMT_REFUSED);
     std::int64_t numerator = 0;
     std::int64_t denominator = 0;
     rtamt_period(monitor.get(), &numerator, &denominator);
@@ -104,11 +119,12 @@ TEST(null_pointers_and_wrong_sizes_are_refused_by_every_function) {
     const Handle monitor = example();
     (void)step(monitor, {3.0, 1.0});
     const Bytes before = save(monitor);
-    Row row{1.0, 1.0};
+    const Row row{1.0, 1.0};
+    Values places{};
     std::size_t size = 0;
     std::array<std::uint8_t, 8> little{};
     const std::vector<std::pair<Call, std::string>> wrong{
-        {[&](auto* self) { return rtamt_step(self, nullptr, 2, row.data(), 2); },
+        {[&](auto* self) { return rtamt_step(self, nullptr, 2, places.data(), 2); },
          "The values of the sample are null: pass the address of 2, or the number 0."},
         {[&](auto* self) { return rtamt_step(self, row.data(), 2, nullptr, 2); },
          "The places for the outputs are null: pass the address of 2, or the number 0."},
@@ -148,7 +164,8 @@ TEST(null_pointers_and_wrong_sizes_are_refused_by_every_function) {
     CHECK(rtamt_inputs(nullptr) == 0 && rtamt_input(nullptr, 0) == nullptr);
     CHECK(rtamt_outputs(nullptr) == 0 && rtamt_output(nullptr, 0) == nullptr);
     CHECK(rtamt_parameters(nullptr) == 0 && rtamt_parameter(nullptr, 0) == nullptr);
-    CHECK(rtamt_lag(nullptr, 0) == -1 && std::isnan(rtamt_parameter_value(nullptr, 0)));
+    CHECK(rtamt_lag(nullptr, 0) == -1 &&
+          rtamt_parameter_value(nullptr, 0, nullptr) == RTAMT_REFUSED);
     CHECK(rtamt_told(nullptr, 0, nullptr, nullptr) == 0);
     CHECK(rtamt_told(monitor.get(), 0, nullptr, nullptr) == 0);
     CHECK(rtamt_known_until(nullptr, 0, nullptr) == -1);
@@ -161,9 +178,9 @@ TEST(null_pointers_and_wrong_sizes_are_refused_by_every_function) {
 TEST(samples_in_robustness_out) {
     const Handle monitor = example();
     for (int i = 0; i < 3; ++i)
-        CHECK(std::isnan(step(monitor, {3.0 + i, 1.0})[0]));
-    CHECK(same(step(monitor, {9.0, 1.0}), {1.5, 9.0}));
-    CHECK(same(step(monitor, {9.0, 1.0}), {2.5, 9.0}));
+        CHECK(step(monitor, {3.0 + i, 1.0})[0].known == 0);
+    CHECK(same(step(monitor, {9.0, 1.0}), known(1.5, 9.0)));
+    CHECK(same(step(monitor, {9.0, 1.0}), known(2.5, 9.0)));
     std::int64_t until = 0;
     CHECK(rtamt_known_until(monitor.get(), 0, &until) == 1 && until == 1);
     CHECK(rtamt_sample_count(monitor.get()) == 5);
@@ -183,7 +200,7 @@ TEST(samples_in_robustness_out) {
     rtamt_reset(monitor.get());
     CHECK(rtamt_known_until(monitor.get(), 0, &until) == 0 &&
           rtamt_sample_count(monitor.get()) == 0);
-    CHECK(std::isnan(step(monitor, row)[0]));
+    CHECK(step(monitor, row)[0].known == 0);
 }
 
 TEST(a_refused_sample_leaves_the_monitor_as_it_was) {
@@ -191,14 +208,14 @@ TEST(a_refused_sample_leaves_the_monitor_as_it_was) {
     (void)step(monitor, {3.0, 1.0});
     const Bytes before = save(monitor);
     const auto refused = [&](std::span<const double> row, std::size_t outputs) {
-        Row known{};
+        Values known{};
         const rtamt_status status =
             rtamt_step(monitor.get(), row.data(), row.size(), known.data(), outputs);
         CHECK(status != RTAMT_OK && save(monitor) == before);
         return std::string(rtamt_message(monitor.get()));
     };
     // Saving has its own message; the one of the step is what was said before it.
-    Row known{};
+    Values known{};
     const Row bad{not_a_number, 1.0};
     CHECK(rtamt_step(monitor.get(), bad.data(), 2, known.data(), 2) == RTAMT_REFUSED);
     CHECK(rtamt_message(monitor.get()) ==
@@ -226,12 +243,12 @@ TEST(a_refused_sample_leaves_the_monitor_as_it_was) {
 
 TEST(parameters_are_set_before_the_first_sample) {
     const Handle monitor = example();
-    CHECK(rtamt_parameter_value(monitor.get(), 0) == 1.5);
+    CHECK(parameter(monitor) == 1.5);
     CHECK(rtamt_set_parameter(monitor.get(), 0, 2.0) == RTAMT_OK);
-    CHECK(rtamt_parameter_value(monitor.get(), 0) == 2.0);
+    CHECK(parameter(monitor) == 2.0);
     for (int i = 0; i < 3; ++i)
         (void)step(monitor, {5.0, 1.0});
-    CHECK(step(monitor, {5.0, 1.0})[0] == 3.0);
+    CHECK(step(monitor, {5.0, 1.0})[0].value == 3.0);
     const auto refusal = [&](std::uint32_t parameter, double value) {
         CHECK(rtamt_set_parameter(monitor.get(), parameter, value) == RTAMT_REFUSED);
         return std::string(rtamt_message(monitor.get()));
@@ -241,7 +258,7 @@ TEST(parameters_are_set_before_the_first_sample) {
     CHECK(refusal(0, not_a_number) == "The parameter 'limit' may not be NaN.");
     CHECK(refusal(1, 0.0) == "There is no parameter 1: the program has 1.");
     rtamt_reset(monitor.get());
-    CHECK(rtamt_parameter_value(monitor.get(), 0) == 2.0);
+    CHECK(parameter(monitor) == 2.0);
     CHECK(rtamt_set_parameter(monitor.get(), 0, 1.0) == RTAMT_OK);
 }
 
@@ -259,10 +276,10 @@ TEST(a_state_is_saved_restored_and_cloned_anywhere_in_a_trace) {
         rtamt_monitor* copied = nullptr;
         CHECK(rtamt_clone(monitor.get(), &copied) == RTAMT_OK);
         const Handle copy(copied);
-        CHECK(rtamt_parameter_value(other.get(), 0) == 0.25 && save(other) == state);
+        CHECK(parameter(other) == 0.25 && save(other) == state);
         CHECK(save(copy) == state);
         for (int i = cut; i < 20; ++i) {
-            const Row expected = step(monitor, row(i));
+            const Values expected = step(monitor, row(i));
             CHECK(same(step(other, row(i)), expected) && same(step(copy, row(i)), expected));
         }
         CHECK(rtamt_restore(monitor.get(), state.data(), state.size()) == RTAMT_OK);
@@ -305,7 +322,7 @@ TEST(a_forged_state_with_a_right_checksum_is_refused_or_does_no_harm) {
         const auto run = [](const Handle& runner, int from, int to) {
             for (int i = from; i < to; ++i) {
                 const Row row{static_cast<double>(i * 5 % 7) - 3.0, 1.0 + i % 3};
-                double known = 0.0;
+                rtamt_value known{};
                 (void)rtamt_step(runner.get(), row.data(), 2, &known, 1);
             }
         };

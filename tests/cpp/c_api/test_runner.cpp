@@ -20,14 +20,14 @@ TEST(a_runner_is_for_the_domain_of_its_program) {
 
 TEST(in_discrete_time_known_values_follow_their_lags) {
     DiscreteRunner runner(carried());
-    std::array<double, 2> known{};
+    std::array<rtamt_value, 2> known{};
     CHECK(!runner.begun() && !runner.known_until(0) && !runner.known_until(1));
     for (int i = 0; i < 5; ++i) {
         const std::array<double, 2> row{3.0 + i, 1.0};
         runner.step(row.data(), known);
-        CHECK(std::isnan(known[0]) == (i < 3) && known[1] == 3.0 + i);
+        CHECK((known[0].known == 0) == (i < 3) && known[1].value == 3.0 + i);
     }
-    CHECK(known[0] == 2.5 && runner.begun() && runner.samples() == 5);
+    CHECK(known[0].value == 2.5 && runner.begun() && runner.samples() == 5);
     CHECK(runner.known_until(0) == 1 && runner.known_until(1) == 4);
     runner.finish();
     CHECK(runner.told(0).count == 3 && runner.told(0).times[0] == 2 && runner.told(1).count == 0);

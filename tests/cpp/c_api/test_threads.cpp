@@ -36,7 +36,7 @@ auto at_once(Work&& work) {
 }
 
 using Row = std::array<double, 2>;
-using Bits = std::vector<std::uint64_t>; // of numbers, among them NaN
+using Bits = std::vector<std::uint64_t>; // of numbers
 
 Row row(int i) {
     return {static_cast<double>(i * 5 % 7) - 3.0, 1.0 + i % 3};
@@ -51,11 +51,11 @@ rtamt_monitor* create(const std::vector<std::uint8_t>& bytes) {
 }
 
 void step(rtamt_monitor* monitor, int i, Bits& bits) {
-    double known = 0.0;
+    rtamt_value known{};
     if (rtamt_step(monitor, row(i).data(), 2, &known, 1) != RTAMT_OK) {
         bits.push_back(std::string(rtamt_message(monitor)).size());
     }
-    bits.push_back(std::bit_cast<std::uint64_t>(known));
+    bits.push_back(std::bit_cast<std::uint64_t>(known.value));
 }
 
 // All that a monitor of discrete time can be asked.
@@ -142,7 +142,7 @@ TEST(threads_take_turns_with_a_monitor) {
     (void)at_once([&](int thread) {
         for (int i = 0; i < samples; ++i) {
             const std::scoped_lock guard(turn);
-            double known = 0.0;
+            rtamt_value known{};
             if (rtamt_step(monitor, row(i + thread).data(), 2, &known, 1) == RTAMT_OK) ++taken;
         }
         return 0;
