@@ -18,7 +18,7 @@ from rtamt.errors import (
     UsageError,
 )
 from rtamt.language.operators import STL
-from rtamt.results import Result
+from rtamt.results import Result, first_violation
 from rtamt.signals.outcomes import Interval, Verdict, VerdictRun
 from rtamt.signals.signal import Signal
 from rtamt.specification import Specification
@@ -62,7 +62,6 @@ if TYPE_CHECKING:
         TimeInterpretation,
     )
     from rtamt.signals.trace import Channel, Trace
-    from rtamt.verdicts.first_violation import first_violation
     from rtamt.verdicts.streaming import StreamResult, check_stream
 
 __version__ = "1.0.0.dev0"
@@ -141,7 +140,6 @@ _LATER = {
     "check_stream": "rtamt.verdicts.streaming",
     "evaluate_all": "rtamt.batch",
     "evaluate_batch": "rtamt.batch",
-    "first_violation": "rtamt.verdicts.first_violation",
     "read": "rtamt.readers.read",
     "scan": "rtamt.readers.read",
 }

@@ -2,20 +2,23 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
-from rtamt.errors import EvaluationError, UsageError, did_you_mean
+from rtamt.errors import UsageError, did_you_mean
 from rtamt.language.formula import variables
 from rtamt.language.grammar import is_number
 from rtamt.rewrite.check import check_bounds, check_dense
-from rtamt.rewrite.semantics import boolean, no_verdict
 from rtamt.signals.discrete import DiscreteTrace
+from rtamt.signals.trace import show_time
+from rtamt.verdicts import offline as verdicts
+from rtamt.verdicts.offline import Judged, judge
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Sequence
 
     from matplotlib.figure import Figure
 
@@ -41,6 +44,8 @@ class Result:
     signal: Signal
     #: What predicates were worth: a name, or the function that was given.
     semantics: str | PredicateSemantics = "standard"
+    #: What is known already: of a requirement what its program has found, of several with different starts each.
+    known: Judged | Mapping[str, Result] | None = None
 
     def __repr__(self) -> str:
         of = self.specification.name or self.specification.formula
@@ -50,8 +55,8 @@ class Result:
     def requirements(self) -> Mapping[str, Result]:
         """What the evaluation gives for each requirement, by name, in the order of the text.
 
-        All are read over the same trace, so that the robustness of the result is the minimum of theirs, at
-        every instant, and it is satisfied where all of them are.
+        The robustness of the result is the minimum of theirs, and it is satisfied where all of them are. In dense
+        time each has a trace of its own, which starts when all variables that it reads have started.
 
         >>> import rtamt
         >>> spec = rtamt.parse("require low: always(x <= 3); require high: always(x >= 1)")
@@ -64,18 +69,17 @@ class Result:
         specs = self.specification.requirements
         if len(specs) == 1:
             return MappingProxyType(dict.fromkeys(specs, self))
-        formulas = tuple(spec.apply_semantics(spec.formula, self.semantics) for spec in specs.values())
-        signals = self.specification.signals_of(formulas, self.trace)
-        return MappingProxyType(
-            {
-                name: Result(spec, self.trace, signal, self.semantics)
-                for (name, spec), signal in zip(specs.items(), signals, strict=True)
-            }
-        )
+        if isinstance(self.known, Mapping):
+            return self.known
+        spec = self.specification
+        outputs = [one.outputs(self.semantics) for one in specs.values()]
+        return requirements_of(spec, judge(outputs, self.trace, spec.signals_of), self.semantics)
 
     @property
     def robustness(self) -> float:
         """ρ at the first instant: how far the recording is from violating (or satisfying)."""
+        if isinstance(self.known, Mapping):
+            return min(part.robustness for part in self.known.values())
         return float(self.signal.values[0]) + 0.0  # no minus before a zero
 
     @cached_property
@@ -88,12 +92,17 @@ class Result:
         >>> [rtamt.parse(text).evaluate({"x": [3]}).satisfied for text in ("x >= 3", "x > 3")]
         [True, False]
         """
-        lowered = boolean(self.specification.formula)
-        try:
-            truth = self.specification.signal_of(lowered, self.trace)
-        except EvaluationError as error:
-            raise no_verdict(error) from error
-        return bool(truth.values[0] > 0)
+        return self._first_violation is None
+
+    @cached_property
+    def _first_violation(self) -> Any:
+        spec = self.specification
+        if len(spec.requirements) > 1:
+            violations = [part._first_violation for part in self.requirements.values()]
+            return min((each for each in violations if each is not None), default=None)
+        if isinstance(self.known, Judged) and self.known.violations:
+            return self.known.violations[0]
+        return verdicts.first_violation(spec.outputs().truth, self.trace, spec.signals_of)
 
     def explain(self, at: Any = None) -> Explanation:
         """Tell why the formula is satisfied or violated: which instants of which signals are responsible.
@@ -116,6 +125,7 @@ class Result:
         """
         from rtamt.explain.explain import explain
 
+        self._require_one_start("explain")
         spec = self.specification
         return explain(
             spec.formula,
@@ -145,6 +155,7 @@ class Result:
         from rtamt.plot.figure import draw, matplotlib
         from rtamt.plot.scene import scene
 
+        self._require_one_start("plot")
         canvas = matplotlib("pyplot").figure() if figure is None else figure
         draw(scene(self, at), rows, canvas)
         return canvas
@@ -164,6 +175,7 @@ class Result:
         from rtamt.plot.scene import scene
         from rtamt.plot.tree import draw_tree
 
+        self._require_one_start("plot")
         canvas = matplotlib("pyplot").figure() if figure is None else figure
         draw_tree(scene(self, at), canvas)
         return canvas
@@ -180,6 +192,8 @@ class Result:
         >>> result["x + 1"].values
         array([2., 3.])
         """
+        if len(self.specification.requirements) > 1 and name in self.specification.requirements:
+            return self.requirements[name].signal
         formula = self.specification.named(name)
         names = tuple(self.trace.columns)
         for variable in variables(formula):
@@ -196,3 +210,39 @@ class Result:
         if not is_number(formula):
             formula = self.specification.apply_semantics(formula, self.semantics)
         return self.specification.signal_of(formula, self.trace)
+
+    def _require_one_start(self, what: str) -> None:
+        """Raise :class:`UsageError` where requirements have traces that start at different times."""
+        if isinstance(self.known, Mapping):
+            starts = {name: part.signal.times[0] for name, part in self.known.items()}
+            first = min(starts, key=lambda name: starts[name])
+            last = max(starts, key=lambda name: starts[name])
+            raise UsageError(
+                f"the requirements start at different times, '{first}' at {show_time(starts[first])} and '{last}' at "
+                f"{show_time(starts[last])}; {what} one of them, such as result.requirements['{first}']"
+            )
+
+
+def requirements_of(
+    spec: Specification, judged: Sequence[Judged], semantics: str | PredicateSemantics
+) -> Mapping[str, Result]:
+    """Return the results of the requirements of a specification, by name."""
+    return MappingProxyType(
+        {
+            name: Result(one, each.trace, each.signal, semantics, each)
+            for (name, one), each in zip(spec.requirements.items(), judged, strict=True)
+        }
+    )
+
+
+def first_violation(result: Result) -> Any:
+    """Return when a requirement is first violated, in the times of the recording; None where it holds.
+
+    For ``always φ`` the earliest instant of its window at which φ does not hold, for a conjunction the
+    earliest of its parts, for any other formula the first instant of the recording. Boolean semantics.
+
+    >>> import rtamt
+    >>> rtamt.first_violation(rtamt.parse("always(x >= 3)").evaluate({"time": [0, 1, 2], "x": [5, 1, 0]}))
+    1.0
+    """
+    return result._first_violation

@@ -8,7 +8,6 @@ from functools import cached_property, partial
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Literal, overload
 
-from rtamt.compiler import standalone
 from rtamt.engine.dense_monitor import DenseMonitor
 from rtamt.engine.monitor import Monitor
 from rtamt.engine.offline import Evaluators, Query
@@ -21,15 +20,19 @@ from rtamt.language.parser import parse_formula
 from rtamt.language.printer import to_text
 from rtamt.language.specfile import parse_document
 from rtamt.language.units import check_unit
-from rtamt.results import Result
+from rtamt.results import Result, requirements_of
 from rtamt.rewrite.check import check_bounds, check_dense
 from rtamt.rewrite.horizon import horizon
 from rtamt.rewrite.pastify import pastify
 from rtamt.rewrite.semantics import apply_semantics, semantics_of
 from rtamt.settings import names_of, positive_period, time_domain
+from rtamt.signals.dense import DenseTrace
 from rtamt.signals.discrete import DiscreteTrace
 from rtamt.signals.regular import TOLERANCE
 from rtamt.signals.ticks import NANOSECOND
+from rtamt.verdicts.offline import by_start, judge, judge_apart
+from rtamt.verdicts.outputs import Outputs, outputs_of
+from rtamt.verdicts.standalone import carried_program
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -38,7 +41,6 @@ if TYPE_CHECKING:
     from rtamt.language.document import Document
     from rtamt.rewrite.semantics import PredicateSemantics
     from rtamt.settings import Duration, Semantics
-    from rtamt.signals.dense import DenseTrace
     from rtamt.signals.signal import Signal
 
 
@@ -184,7 +186,24 @@ class Specification:
         query = self.query(time, period, resolution, semantics, time_unit)
         recording = query.record(data, self.input_names, self.declared, tolerance)
         self._check(query, recording)
+        if isinstance(recording, DenseTrace) and len(self.requirements) > 1:
+            outputs = [one.outputs(query.semantics) for one in self.requirements.values()]
+            if len(by_start(outputs, recording)) > 1:
+                signal, judged = judge_apart(outputs, recording, self.signals_of)
+                parts = requirements_of(self, judged, query.semantics)
+                return Result(self, recording, signal, query.semantics, parts)
         return Result(self, recording, self.signal_of(query.formula, recording), query.semantics)
+
+    def judge(self, data: Any) -> Mapping[str, Result]:
+        """Evaluate each requirement over a finished recording: robustness and verdicts of all from one program.
+
+        ``data`` and errors as for :meth:`evaluate`, which computes verdicts when they are asked for.
+        """
+        query = self.query()
+        recording = query.record(data, self.input_names, self.declared, TOLERANCE)
+        self._check(query, recording)
+        outputs = [one.outputs() for one in self.requirements.values()]
+        return requirements_of(self, judge(outputs, recording, self.signals_of), query.semantics)
 
     def query(
         self,
@@ -337,10 +356,8 @@ class Specification:
         step = self._resolution(resolution) if domain == "dense" else self._period(period) or Fraction(1)
         chosen = self._semantics(semantics)
         several = self.requirements if len(self.requirements) > 1 else {}
-        parts = {
-            name: (one.formula, one.apply_semantics(one.formula, chosen)) for name, one in several.items()
-        }
-        return standalone.carried_program(
+        parts = {name: one.outputs(chosen) for name, one in several.items()}
+        return carried_program(
             self.formula,
             applied=self.apply_semantics(self.formula, chosen),
             parts=parts,
@@ -362,6 +379,16 @@ class Specification:
         if applied is None:
             applied = self._lowered[formula, chosen] = apply_semantics(formula, chosen, self.roles)
         return applied
+
+    def outputs(
+        self, semantics: str | PredicateSemantics | None = None, formula: Formula | None = None
+    ) -> Outputs:
+        """Return what is computed to judge the requirement: robustness under a semantics, and truth.
+
+        ``formula``: one that replaces that of the specification, such as its pastified form.
+        """
+        judged = self.formula if formula is None else formula
+        return outputs_of(judged, self.apply_semantics(judged, semantics))
 
     def signal_of(self, formula: Formula, trace: DiscreteTrace | DenseTrace) -> Signal:
         """Return the robustness signal of any formula over a normalised recording."""

@@ -18,10 +18,10 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 import rtamt
-from rtamt.compiler.standalone import carried_program
 from rtamt.engine.monitor import Monitor
 from rtamt.errors import EvaluationError
 from rtamt.language.formula import variables
+from rtamt.verdicts.standalone import carried_program
 from tests.strategies import formulas, traces
 
 ROOT = Path(__file__).parents[2]

@@ -12,12 +12,12 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from rtamt.compiler.program import Program
-from rtamt.compiler.standalone import carried_program
 from rtamt.engine.dense_monitor import DenseMonitor
 from rtamt.engine.monitor import Monitor
 from rtamt.errors import EvaluationError
 from rtamt.language.formula import Apply, Const, Formula, fold, variables
 from rtamt.rewrite.semantics import SEMANTICS, apply_semantics, boolean
+from rtamt.verdicts.standalone import carried_program
 from tests import c_api
 from tests.strategies import dense_chunkings, dense_traces, formulas, traces
 

@@ -11,11 +11,23 @@ from hypothesis import strategies as st
 import rtamt
 from rtamt.errors import EvaluationError
 from rtamt.language.printer import to_text
-from rtamt.search.robust_interval import RobustInterval
+from rtamt.verdicts.robust_interval import RobustInterval
 from tests.strategies import formulas, traces
 
 # Without arithmetic every recording has a value for every formula.
 FORMULAS = formulas(unbounded_future=True, arithmetic=False, infinite=False)
+
+
+def outlook_of(spec, samples=None):
+    """Return the outlook of a specification whose period or tick is 1 s."""
+    return RobustInterval(
+        spec.formula,
+        spec.signals_of,
+        applied=spec.apply_semantics,
+        time=spec.time,
+        step=Fraction(1),
+        samples=samples,
+    )
 
 
 @given(FORMULAS, traces(max_size=12), st.data())
@@ -25,7 +37,7 @@ def test_a_settled_verdict_is_that_of_every_continuation(formula, columns, data)
     assume(names)
     n = len(columns[names[0]])
     known = data.draw(st.integers(1, n))
-    outlook = RobustInterval(spec, Fraction(1), n)
+    outlook = outlook_of(spec, n)
     assume(outlook.able)
     times = np.arange(n, dtype=float)
     settled = outlook.after(times[:known], {name: columns[name][:known] for name in names})
@@ -52,7 +64,7 @@ def test_in_dense_time_too(formula, data):
     values = st.integers(-3, 3).map(float)
     columns = {name: np.array(data.draw(st.lists(values, min_size=n, max_size=n))) for name in names}
     known = data.draw(st.integers(1, n))
-    outlook = RobustInterval(spec, None, None)
+    outlook = outlook_of(spec)
     assume(outlook.able)
     settled = outlook.after(times[:known], {name: columns[name][:known] for name in names})
     try:

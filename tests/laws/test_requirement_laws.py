@@ -25,7 +25,7 @@ from rtamt.language.formula import Apply, Formula, Var, fold
 from rtamt.language.grammar import is_number
 from rtamt.language.parser import parse_formula
 from rtamt.language.specfile import parse_document
-from rtamt.verdicts.first_violation import first_violation
+from rtamt.results import first_violation
 from tests import c_api
 from tests.strategies import chunkings, dense_traces, formulas, traces
 
@@ -43,7 +43,9 @@ def several(draw: st.DrawFn, **more: Any) -> tuple[str, list[Formula]]:
 
 
 def value_at(signal: Any, times: Any) -> Any:
-    return signal.values[np.searchsorted(signal.times, times, side="right") - 1]
+    """Return the value of a signal at each of the times: +inf before it starts."""
+    values = signal.values[np.maximum(np.searchsorted(signal.times, times, side="right") - 1, 0)]
+    return np.where(times < signal.times[0], np.inf, values)
 
 
 def minimum(signals: list[Any], times: Any) -> Any:
@@ -80,22 +82,37 @@ def test_discrete_evaluation(drawn: tuple[str, list[Formula]], columns: dict[str
 def test_dense_evaluation(drawn: tuple[str, list[Formula]], trace: Any, backend: str) -> None:
     spec = rtamt.parse(drawn[0], backend=backend, time="dense", resolution=1)
     assume(spec.input_names)
+    data = {name: (times.astype(float), values) for name, (times, values) in trace.items()}
     try:
-        result = spec.evaluate(
-            {name: (times.astype(float), values) for name, (times, values) in trace.items()}
-        )
+        result = spec.evaluate(data)
         parts = list(result.requirements.values())
         satisfied = [part.satisfied for part in parts]
     except EvaluationError:
         return
+    for part in parts:
+        assert part.signal.times[-1] == result.signal.times[-1]
+        if part.specification.input_names:
+            assert_same(part, part.specification.evaluate(data))
     times = np.unique(np.concatenate([part.signal.times for part in (result, *parts)]))
     np.testing.assert_array_equal(
         value_at(result.signal, times), minimum([part.signal for part in parts], times)
     )
-    assert {part.signal.times[0] for part in parts} == {result.signal.times[0]}
+    assert result.signal.times[0] == min(part.signal.times[0] for part in parts)
     assert (result.robustness, result.satisfied) == (min(part.robustness for part in parts), all(satisfied))
     when = [first_violation(part) for part in parts if not part.satisfied]
     assert first_violation(result) == min(when, default=None)
+
+
+def assert_same(part: rtamt.Result, alone: rtamt.Result) -> None:
+    """A requirement means the same in a file as alone, where it is reported up to its own last sample only."""
+    told = [(each.robustness, each.satisfied, first_violation(each)) for each in (part, alone)]
+    assert told[0] == told[1]
+    assert part.signal.times[0] == alone.signal.times[0]
+    np.testing.assert_array_equal(value_at(part.signal, alone.signal.times), alone.signal.values)
+    np.testing.assert_array_equal(
+        value_at(part.signal, times := part.signal.times[part.signal.times <= alone.signal.times[-1]]),
+        value_at(alone.signal, times),
+    )
 
 
 @settings(max_examples=40)

@@ -174,6 +174,11 @@ def has_own_clocks(spec: Specification, trace: str, reading: Reading) -> bool:
     return spec.time == "dense" or is_bag(trace) or reading.resample is not None
 
 
+def is_resampled(spec: Specification, trace: str, reading: Reading) -> bool:
+    """Tell whether each requirement is sampled anew, from when all variables that it reads have started."""
+    return reading.resample is not None or (spec.time == "discrete" and is_bag(trace))
+
+
 def on_clock(data: Trace, spec: Specification, trace: str, reading: Reading) -> Trace:
     """Return what a requirement reads of a recording, on the clock that the options choose.
 

@@ -14,13 +14,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rtamt.cli.command import NO_STAMPS, stamp_text
-from rtamt.cli.reading_options import choice_for, has_own_clocks, how_to_mend, on_clock, read_for
+from rtamt.cli.reading_options import choice_for, how_to_mend, is_resampled, on_clock, read_for
 from rtamt.errors import BoundError, StlError, TraceError
 from rtamt.readers.assemble import chunks_of
 from rtamt.readers.read import opened
 from rtamt.readers.sql import is_url, shown
+from rtamt.results import first_violation
 from rtamt.signals.discrete import DiscreteTrace
-from rtamt.verdicts.first_violation import first_violation
 from rtamt.verdicts.streaming import check_stream, check_streamable
 
 if TYPE_CHECKING:
@@ -138,8 +138,6 @@ def _is_large(trace: str, reading: Reading) -> bool:
 
 def _in_chunks(requirement: Requirement, trace: str, reading: Reading) -> list[Outcome]:
     """Check in chunks if format and formula allow it, else read the recording whole."""
-    if requirement.rows and has_own_clocks(requirement.spec, trace, reading):
-        return [o for row in requirement.rows for o in _in_chunks(row, trace, reading)]
     begin = time.perf_counter()
     chunks: _Chunks | None = None
     found: StreamResult | None = None
@@ -181,10 +179,10 @@ def _in_chunks(requirement: Requirement, trace: str, reading: Reading) -> list[O
 def _check(requirement: Requirement, trace: str, data: Trace | None, reading: Reading) -> list[Outcome]:
     """Check over a recording that is in memory, or read what the requirement needs of it.
 
-    Several requirements share one evaluation; where there is none, each is checked alone, and so it is where signals
-    may begin at different times: a signal that begins late hides nothing from requirements that do not read it.
+    Several requirements share one evaluation; where there is none, each is checked alone, and so it is where each
+    has samples of its own.
     """
-    if requirement.rows and has_own_clocks(requirement.spec, trace, reading):
+    if requirement.rows and is_resampled(requirement.spec, trace, reading):
         return [o for row in requirement.rows for o in _check(row, trace, data, reading)]
     begin = time.perf_counter()
     spec, whole = requirement.spec, data
@@ -195,8 +193,8 @@ def _check(requirement: Requirement, trace: str, data: Trace | None, reading: Re
         if spec.time == "dense" and whole.start is None:
             raise TraceError(NO_STAMPS)
         whole = on_clock(whole, spec, trace, reading)
-        result = spec.evaluate(whole)
-        parts = result.requirements.values() if requirement.rows else [result]
+        alone = len(spec.requirements) == 1
+        parts = spec.judge(whole).values() if requirement.rows or alone else [spec.evaluate(whole)]
     except StlError as error:
         if requirement.rows:
             return [o for row in requirement.rows for o in _check(row, trace, data, reading)]

@@ -1,12 +1,11 @@
 """Compile a formula to a program: instructions, delays, parameters, and bytes that run without Python.
 
-==========  =====================================================================
-module      purpose
-==========  =====================================================================
-lower       formula to instructions: value numbering, lags, alignment of operands
-plan        formulas to one program (online) or a sequence of programs (offline)
-program     the program: instructions, serialisation, disassembly
-metadata    names, period and labels stored with a program
-standalone  compile a specification to a program that runs without Python
-==========  =====================================================================
+========  =====================================================================
+module    purpose
+========  =====================================================================
+lower     formula to instructions: value numbering, lags, alignment of operands
+plan      formulas to one program (online) or a sequence of programs (offline)
+program   the program: instructions, serialisation, disassembly
+metadata  names, period and labels stored with a program
+========  =====================================================================
 """

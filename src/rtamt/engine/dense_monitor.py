@@ -176,7 +176,11 @@ class DenseMonitor(OnlineMonitor):
         >>> monitor["x >= 3"]
         Signal(times=array([0.5]), values=array([-2.]))
         """
-        return self._signal(self._backend.told(self._output(name)))
+        return self._signal(self.known(name))
+
+    def known(self, name: str) -> Samples:
+        """Return the same as ticks and values."""
+        return self._backend.told(self._output(name))  # type: ignore[no-any-return]
 
     def points(self) -> list[list[tuple[int, float]]]:
         """Return what the last update made known as pairs of tick and value, for loops in which a microsecond counts.

@@ -239,8 +239,12 @@ class Monitor(OnlineMonitor):
         """
         if self._finished:
             raise self._is_finished()
+        return self.push(*arrays.columns_of(data, self.input_names, self._declared, self._unit))
+
+    def push(self, stamps: Stamps | None, given: Mapping[str, arrays.FloatArray], n: int) -> Signal:
+        """Take a chunk of ``n`` samples as ``arrays.columns_of`` returns it; not for several threads."""
         samples = self.samples
-        (times, told), columns = self._chunk(data)
+        (times, told), columns = self._chunk(stamps, given, n)
         before = self._recent(min(self._oldest, samples))
         try:
             known = self._backend.push(times, columns, samples)
@@ -248,11 +252,11 @@ class Monitor(OnlineMonitor):
             raise self._no_value(error) from None
         if self._unit is not None or self._told is not None or (len(told) and told is not times):
             self._remember(told)
-        stamps = np.concatenate((before, told)) if len(before) else told
+        every = np.concatenate((before, told)) if len(before) else told
         news = []
         for lag, values in zip(self._lags, known, strict=True):
             first = len(before) - min(lag, samples)
-            news.append(Signal(stamps[first : first + len(values)], values))
+            news.append(Signal(every[first : first + len(values)], values))
         self._news = samples + len(times), news
         return news[0]
 
@@ -376,9 +380,10 @@ class Monitor(OnlineMonitor):
 
     # ---- what goes wrong -------------------------------------------------------------------------
 
-    def _chunk(self, data: Any) -> tuple[Stamps, list[arrays.FloatArray]]:
+    def _chunk(
+        self, stamps: Stamps | None, columns: Mapping[str, arrays.FloatArray], n: int
+    ) -> tuple[Stamps, list[arrays.FloatArray]]:
         last = self._last_time
-        stamps, columns, n = arrays.columns_of(data, self.input_names, self._declared, self._unit)
         if stamps is None:
             times = np.array(self._next_time() + float(self._period) * np.arange(n), dtype=np.float64)
             stamps = Stamps(times, times if self._unit is None and self._told is None else self._later(n))

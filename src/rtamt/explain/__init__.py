@@ -8,7 +8,6 @@ samples; no interval can be removed.
 module     purpose
 =========  ===================================================================
 explain    a formula and a recording to an explanation
-structure  split a formula into predicates, minimum and maximum
 signals    values of sub-formulas, and where they hold
 time_axis  a recording divided into cells; evaluation with replaced predicates
 instants   sets of times as intervals

@@ -15,9 +15,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rtamt.explain.structure import CHOOSING, NEGATION, opcode, window_of
 from rtamt.language.formula import Apply, Const, Formula, Var
 from rtamt.language.records import Shift, Since, Tense, Until, Window
+from rtamt.rewrite.structure import CHOOSING, NEGATION, opcode, window_of
 
 if TYPE_CHECKING:
     from fractions import Fraction

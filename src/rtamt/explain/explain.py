@@ -8,26 +8,26 @@ from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import EvaluationError
 from rtamt.explain.critical import Point, Walk
-from rtamt.explain.instants import NEVER, Steps, two_valued
+from rtamt.explain.instants import Steps, two_valued
 from rtamt.explain.minimise import Forcing, intervals_of, minimal
 from rtamt.explain.necessary import Needs
 from rtamt.explain.propagate import Demands
 from rtamt.explain.report import CriticalPoint, Explanation, Stretch
 from rtamt.explain.sentences import predicate_text, sentences
 from rtamt.explain.signals import Signals, truths
-from rtamt.explain.structure import Structure, literal, reaches
 from rtamt.explain.time_axis import timeline
 from rtamt.language.formula import postorder
 from rtamt.language.printer import PAGE, to_text
 from rtamt.rewrite.semantics import boolean, no_verdict
+from rtamt.rewrite.structure import NEVER, Structure, literal, reaches
 from rtamt.signals.discrete import DiscreteTrace
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
     from rtamt.explain.minimise import Interval
-    from rtamt.explain.structure import Leaf
     from rtamt.language.formula import Formula
+    from rtamt.rewrite.structure import Leaf
     from rtamt.signals.dense import DenseTrace
 
 #: How many places are tried for one that overturns the verdict alone.

@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
+from rtamt.rewrite.structure import NEVER
+
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
@@ -18,9 +20,6 @@ if TYPE_CHECKING:
 
     Ints: TypeAlias = NDArray[np.int64]
     Floats: TypeAlias = NDArray[np.float64]
-
-#: Later than every cell, and so small that a few of them still add up within 64 bits.
-NEVER = 2**60
 
 
 @dataclass(frozen=True, slots=True, eq=False)

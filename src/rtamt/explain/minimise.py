@@ -14,14 +14,14 @@ from typing import TYPE_CHECKING
 
 from rtamt.explain.instants import NONE, Cells, Steps, two_valued
 from rtamt.explain.signals import truths
-from rtamt.explain.structure import literal, reaches
+from rtamt.rewrite.structure import literal, reaches
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
     from rtamt.explain.propagate import Demands
-    from rtamt.explain.structure import Place, Structure
     from rtamt.explain.time_axis import Timeline
+    from rtamt.rewrite.structure import Place, Structure
 
 
 @dataclass(frozen=True, slots=True)

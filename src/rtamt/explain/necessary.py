@@ -13,15 +13,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rtamt.explain.instants import NEVER, NONE, Cells
+from rtamt.explain.instants import NONE, Cells
 from rtamt.explain.propagate import Asked, Demands
 from rtamt.language.formula import Var
+from rtamt.rewrite.structure import NEVER
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from rtamt.explain.structure import Place
     from rtamt.language.formula import Apply, Formula
+    from rtamt.rewrite.structure import Place
 
 
 class Needs(Demands):

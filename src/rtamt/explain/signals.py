@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rtamt.explain.instants import Cells, Steps, two_valued
-from rtamt.explain.structure import CHOOSING, NEGATION, opcode
 from rtamt.language.formula import Apply, Const, Formula, Var, children
+from rtamt.rewrite.structure import CHOOSING, NEGATION, opcode
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from rtamt.explain.structure import Structure
     from rtamt.explain.time_axis import Timeline
+    from rtamt.rewrite.structure import Structure
 
 
 class Signals:

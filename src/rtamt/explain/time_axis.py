@@ -10,11 +10,12 @@ import numpy as np
 
 from rtamt.engine import dense_evaluate, evaluate
 from rtamt.errors import StlError, UsageError, shown
-from rtamt.explain.instants import NEVER, Steps
+from rtamt.explain.instants import Steps
 from rtamt.language.formula import Apply, postorder
 from rtamt.reference import dense as dense_reference
 from rtamt.reference import discrete as reference
 from rtamt.rewrite.desugar import desugar
+from rtamt.rewrite.structure import NEVER
 from rtamt.signals.arrays import is_number, stamps
 from rtamt.signals.dense import DenseTrace
 from rtamt.signals.discrete import DiscreteTrace

@@ -11,7 +11,8 @@ from __future__ import annotations
 
 from bisect import bisect_left, bisect_right
 
-from rtamt.explain.instants import NEVER, NONE, Cells
+from rtamt.explain.instants import NONE, Cells
+from rtamt.rewrite.structure import NEVER
 
 
 def witnesses(asked: Cells, found: Cells, before: int, after: int, *, whole: bool) -> Cells:

@@ -8,5 +8,6 @@ desugar    expand derived operators
 horizon    how far a formula looks ahead (the paper's Definition 3)
 pastify    bounded future to past (the paper's Definition 4)
 semantics  replace predicates according to a semantics; the table of semantics
+structure  split a formula into predicates, minimum and maximum
 =========  ==========================================================================
 """

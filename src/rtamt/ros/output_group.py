@@ -141,9 +141,10 @@ def _watched(output: Output, period: Fraction | None) -> tuple[Watched, Watched]
         past = spec.pastified(period)
     except SpecificationError as error:
         raise type(error)(f"'{output.name}': {error.message}", error.text, error.span) from None
+    robustness, truth = spec.outputs(formula=past)
     return (
-        Watched(output.name, spec.apply_semantics(past), spec.text),
-        Watched(f"truth of {output.name}", spec.apply_semantics(past, "boolean"), spec.text),
+        Watched(output.name, robustness, spec.text),
+        Watched(f"truth of {output.name}", truth, spec.text),
     )
 
 

@@ -9,21 +9,20 @@
 >>> print(falsify(problem, optimizer="random", seed=1).falsified)
 True
 
-===============  ========================================================
-module           purpose
-===============  ========================================================
-problem          the requirement, the plant, and the inputs that vary
-inputs           ranges, and input signals built from them
-falsify          falsification
-sensitivity      sensitivity analysis
-optimizers       optimizers of scipy, cma and optuna behind one interface
-executor         run simulations in batches, in one or several processes
-robust_interval  stop a simulation when its verdict is final
-log              record evaluations as JSON lines; resume a search
-config           problem files (TOML)
-fmu              an FMU as the plant
-plot             plots of a search
-===============  ========================================================
+===========  ========================================================
+module       purpose
+===========  ========================================================
+problem      the requirement, the plant, and the inputs that vary
+inputs       ranges, and input signals built from them
+falsify      falsification
+sensitivity  sensitivity analysis
+optimizers   optimizers of scipy, cma and optuna behind one interface
+executor     run simulations in batches, in one or several processes
+log          record evaluations as JSON lines; resume a search
+config       problem files (TOML)
+fmu          an FMU as the plant
+plot         plots of a search
+===========  ========================================================
 """
 
 from rtamt.search.falsify import Falsification, falsify

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
+from fractions import Fraction
 from math import inf
 from typing import TYPE_CHECKING, Any
 
@@ -12,8 +13,8 @@ import numpy as np
 from rtamt.errors import StlError, UsageError, did_you_mean, shown
 from rtamt.search.inputs import Range
 from rtamt.search.log import Evaluation
-from rtamt.search.robust_interval import RobustInterval
 from rtamt.signals.arrays import TIME, is_number
+from rtamt.verdicts.robust_interval import RobustInterval
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -123,14 +124,15 @@ class Problem:
         told = data if isinstance(data, Mapping) else getattr(data, "columns", ())
         if all(name in told for name in self.spec.input_names):  # a plant may tell more than is asked
             data = {name: data[name] for name in (TIME, *self.spec.input_names) if name in told}
-        result = self.spec.evaluate(data)
-        return Evaluation(number, dict(point), result.robustness, result.satisfied)
+        results = self.spec.judge(data).values()
+        robustness = min(result.robustness for result in results)
+        return Evaluation(number, dict(point), robustness, all(result.satisfied for result in results))
 
     def _stepwise(
         self, samples: Iterable[Any], point: Mapping[str, float], number: int, whole: bool
     ) -> Evaluation:
         total = self._total()
-        outlook = RobustInterval(self.spec, self.spec.period, total)
+        outlook = self._outlook(total)
         watched = not whole and outlook.able and (total is not None or self.spec.time == "dense")
         # In dense time nobody knows how many samples will come: look again after a hundredth more.
         look = max(1, (total or LOOKS) // LOOKS)
@@ -161,6 +163,18 @@ class Problem:
         if self.spec.time == "dense":
             return self._whole({name: (times, column) for name, column in columns.items()}, point, number)
         return self._whole({TIME: times, **columns}, point, number)
+
+    def _outlook(self, samples: int | None) -> RobustInterval:
+        spec = self.spec
+        step = spec.resolution if spec.time == "dense" else spec.period or Fraction(1)
+        return RobustInterval(
+            spec.formula,
+            spec.signals_of,
+            applied=spec.apply_semantics,
+            time=spec.time,
+            step=step,
+            samples=samples,
+        )
 
     def _total(self) -> int | None:
         """Return how many samples a simulation has in discrete time, None if nothing says so."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -38,6 +38,14 @@ class DenseTrace:
     def end(self) -> int:
         """The latest last tick."""
         return max(int(ticks[-1]) for ticks, _ in self.columns.values())
+
+    def held_until(self, tick: int) -> DenseTrace:
+        """Return the trace up to a later tick: every variable holds its last value, as it does for ever."""
+        if tick <= self.end:
+            return self
+        name, (ticks, values) = next(iter(self.columns.items()))
+        held = np.append(ticks, tick), np.append(values, values[-1])
+        return replace(self, columns={**self.columns, name: held})
 
     def signal(self, ticks: TickArray, values: arrays.FloatArray) -> Signal:
         """Return events as a signal up to the end: a point for every change, and one at the end."""

@@ -1,10 +1,16 @@
 """Determine whether a requirement holds, and when it is first violated.
 
-===============  =================================================================
+Everything that decides about a requirement is here: specifications, results, searches, nodes and commands use it.
+
+===============  ==================================================================
 module           purpose
-===============  =================================================================
+===============  ==================================================================
+outputs          robustness and Boolean truth: the two outputs of a requirement
 decompose        split a formula into windows that start at the first sample
-first_violation  the first violation, for complete signals or chunks
+trackers         the value and the first violation of a formula that was split
+offline          first violations in a finished trace
 streaming        ``check_stream``: check a recording in chunks with bounded memory
-===============  =================================================================
+robust_interval  stop a simulation as soon as its verdict is final
+standalone       compile a requirement to a program that runs without Python
+===============  ==================================================================
 """

@@ -5,38 +5,41 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from dataclasses import dataclass, field
 from fractions import Fraction
+from functools import partial
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rtamt.engine.dense_evaluate import reach
 from rtamt.engine.dense_monitor import DenseMonitor
 from rtamt.engine.monitor import Monitor
+from rtamt.engine.online import Watched
 from rtamt.errors import TraceError, UsageError
+from rtamt.language.formula import Const
 from rtamt.language.units import check_unit
 from rtamt.rewrite.check import check_bounds, check_dense
-from rtamt.rewrite.desugar import desugar
 from rtamt.rewrite.horizon import horizon
 from rtamt.rewrite.semantics import semantics_of
 from rtamt.settings import positive_period, time_domain
 from rtamt.signals import arrays, dense_arrays
 from rtamt.signals.regular import TOLERANCE, check_increasing, infer_period
+from rtamt.signals.signal import Signal
 from rtamt.signals.ticks import TimeScale
 from rtamt.verdicts.decompose import Leaf, anchor, check_in_chunks
-from rtamt.verdicts.first_violation import Tracker, align_inputs, value_of, violation_of
+from rtamt.verdicts.offline import end_of
+from rtamt.verdicts.outputs import align_inputs, own_variables
+from rtamt.verdicts.trackers import Tracker, Trackers
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping
+    from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
     from rtamt.language.formula import Formula
     from rtamt.rewrite.semantics import PredicateSemantics
     from rtamt.settings import Duration, Semantics
-    from rtamt.signals.arrays import FloatArray
+    from rtamt.signals.arrays import FloatArray, Stamps
     from rtamt.signals.dense_arrays import Samples
-    from rtamt.signals.signal import Signal
     from rtamt.specification import Specification
-    from rtamt.verdicts.first_violation import Positions
+    from rtamt.verdicts.trackers import Positions
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,56 +102,108 @@ def check_streamable(spec: Specification) -> None:
         check_in_chunks(anchor(alone.apply_semantics(alone.formula)), alone.text)
 
 
-class _RequirementInChunks:
-    """One requirement over chunks: the leaves of its robustness and of its truth, and what becomes of them."""
+class _Requirement:
+    """One requirement over chunks: its robustness, its truth and its minimum, from the leaves of each."""
 
     def __init__(self, spec: Specification, semantics: str | PredicateSemantics | None) -> None:
-        formula = spec.apply_semantics(spec.formula, semantics)
         self.spec = spec
-        self._robust = anchor(formula)
+        outputs = spec.outputs(semantics)
+        self._robust = anchor(outputs.robustness)
         check_in_chunks(self._robust, spec.text)
-        self._boolean = anchor(spec.apply_semantics(spec.formula, "boolean"))
-        # The whole formula last, for its minimum, where it can be known online.
-        whole = [] if horizon(formula) is None else [Leaf(formula, "min", end=None)]
-        self.leaves = [*self._robust.leaves, *self._boolean.leaves, *whole]
-        self.trackers: list[Tracker] = []
+        self._truth = anchor(outputs.truth)
+        # The whole formula, for its minimum, where it can be known online.
+        bounded = horizon(outputs.robustness) is not None
+        self._whole = Leaf(outputs.robustness, "min", end=None) if bounded else None
+        self._robustness: Trackers
+        self._verdict: Trackers
+        self._minimum: Tracker | None = None
 
-    def begin(self, unit: Fraction, dense: bool) -> None:
+    @property
+    def leaves(self) -> Iterator[Leaf]:
+        """The leaves of robustness and truth."""
+        yield from self._robust.leaves
+        yield from self._truth.leaves
+
+    @property
+    def formulas(self) -> Iterator[Formula]:
+        """The formulas whose signals this requirement reads."""
+        yield from (leaf.formula for leaf in self.leaves)
+        if self._whole is not None:
+            yield self._whole.formula
+
+    def begin(self, unit: Fraction, dense: bool, outputs: Mapping[Formula, _Output]) -> None:
         """Make the trackers, once the length of a period or tick (``unit``, seconds) is known."""
-        self.trackers = [Tracker(leaf, unit, dense) for leaf in self.leaves]
-
-    def take(self, formula: Formula, positions: Positions, values: FloatArray, last: int | None) -> None:
-        """Take what became known of a leaf's formula; ``last``: the last position that the minimum is about."""
-        judged = len(self._robust.leaves) + len(self._boolean.leaves)
-        for i, (leaf, tracker) in enumerate(zip(self.leaves, self.trackers, strict=True)):
-            if leaf.formula != formula:
-                continue
-            if i == judged and last is not None:
-                inside = positions <= last
-                tracker.take(positions[inside], values[inside])
-            else:
-                tracker.take(positions, values)
+        self._robustness, self._verdict = (
+            Trackers(each, unit, dense) for each in (self._robust, self._truth)
+        )
+        for tracker in (*self._robustness.leaves, *self._verdict.leaves):
+            outputs[tracker.leaf.formula].trackers.append(tracker)
+        if self._whole is not None:
+            self._minimum = Tracker(self._whole, unit, dense)
+            outputs[self._whole.formula].minima.append(self._minimum)
 
     def result(self, time: Callable[[int], Any], samples: int, period: Fraction | None) -> StreamResult:
         """Return what came of all chunks; ``time``: from a position to a time as the caller tells it."""
-        for tracker in self.trackers:
-            tracker.finish()
-        n = len(self._robust.leaves)
-        robust, boolean = self.trackers[:n], self.trackers[n : n + len(self._boolean.leaves)]
-        whole = self.trackers[n + len(boolean) :]
-        satisfied = value_of(self.spec, self._boolean.skeleton, boolean) > 0
+        evaluate = self.spec.signals_of
+        self._robustness.finish()
+        self._verdict.finish()
+        violated = self._verdict.violation(evaluate)
+        if self._minimum is not None:
+            self._minimum.finish()
         return StreamResult(
-            value_of(self.spec, self._robust.skeleton, robust) + 0.0,  # as of an evaluation
-            satisfied,
-            None if satisfied else time(violation_of(self.spec, self._boolean, boolean)),
-            whole[0].value if whole else None,
+            self._robustness.value(evaluate) + 0.0,  # as of an evaluation
+            violated is None,
+            None if violated is None else time(violated),
+            None if self._minimum is None else self._minimum.value,
             samples,
             period,
         )
 
 
+class _Output:
+    """One output of a monitor: the trackers that read it, and how far it was known."""
+
+    def __init__(self) -> None:
+        self.trackers: list[Tracker] = []
+        #: Of minima, which end with the last sample.
+        self.minima: list[Tracker] = []
+        self.known = 0
+        self.last: Any = None  # the last stamp at which it was known
+
+    def take(self, positions: Positions, values: FloatArray, last: int | None = None) -> None:
+        """Take what became known; ``last``: the last position that minima are about."""
+        for tracker in self.trackers:
+            tracker.take(positions, values)
+        if last is not None:
+            inside = positions <= last
+            positions, values = positions[inside], values[inside]
+        for tracker in self.minima:
+            tracker.take(positions, values)
+
+
+class _Group:
+    """Requirements with a common trace: one program computes all leaves of all of them."""
+
+    def __init__(self, requirements: Mapping[str, _Requirement], names: Sequence[str]) -> None:
+        self.requirements = requirements
+        self.names = tuple(names)
+        formulas = dict.fromkeys(f for each in requirements.values() for f in each.formulas)
+        self.formulas = tuple(formulas) or (Const(float("inf")),)  # a constant has no leaves
+        self.outputs = {formula: _Output() for formula in self.formulas}
+        self.start: int | None = None
+
+    def begin(self, unit: Fraction, dense: bool) -> tuple[Formula, list[Watched]]:
+        """Make the trackers; return what a monitor computes: its result, and what it watches."""
+        for each in self.requirements.values():
+            each.begin(unit, dense, self.outputs)
+        first, *others = self.formulas
+        return align_inputs(first, self.names), [
+            Watched(str(i), formula, None) for i, formula in enumerate(others, 1)
+        ]
+
+
 class _Stream(ABC):
-    """Requirements over chunks: a monitor for each leaf of any of them."""
+    """Requirements over chunks."""
 
     def __init__(self, spec: Specification, semantics: Semantics | None, unit: str | None) -> None:
         if not spec.input_names:
@@ -156,9 +211,8 @@ class _Stream(ABC):
         chosen = None if semantics is None else semantics_of(semantics)
         self.spec = spec
         self.unit = None if unit is None else check_unit(unit)
-        self.declared = tuple(declaration.name for declaration in spec.document.declarations)
-        self.parts = {name: _RequirementInChunks(alone, chosen) for name, alone in spec.requirements.items()}
-        self.monitors: dict[Formula, Any] = {}
+        self.declared = spec.declared
+        self.requirements = {name: _Requirement(one, chosen) for name, one in spec.requirements.items()}
         self.samples = 0
 
     @abstractmethod
@@ -169,30 +223,9 @@ class _Stream(ABC):
     def finish(self) -> StreamResult:
         """Say that no more chunks will come; return what came of all of them."""
 
-    def begin(self, unit: Fraction, make: Callable[[Formula], Any], dense: bool) -> None:
-        """Make monitors and trackers, once the length of a period or tick (``unit``, seconds) is known."""
-        for part in self.parts.values():
-            part.begin(unit, dense)
-        for formula in dict.fromkeys(leaf.formula for each in self.parts.values() for leaf in each.leaves):
-            self.monitors[formula] = make(align_inputs(formula, self.spec.input_names))
-
-    def told(
-        self, formula: Formula, positions: Positions, values: FloatArray, last: int | None = None
-    ) -> None:
-        """Hand on what a monitor told; ``last``: the last position that the minimum is about."""
-        for part in self.parts.values():
-            part.take(formula, positions, values, last)
-
-    @abstractmethod
-    def time(self, position: int) -> Any:
-        """Return a position at which something was violated as the caller tells time."""
-
-    def result(self, period: Fraction | None) -> StreamResult:
-        """Return what came of all chunks."""
-        if not self.samples:
-            raise TraceError("the trace is empty: give at least one sample")
-        found = {name: each.result(self.time, self.samples, period) for name, each in self.parts.items()}
-        results = tuple(found.values())
+    def result(self, found: Mapping[str, StreamResult], period: Fraction | None) -> StreamResult:
+        """Return what came of all chunks, from the results of the requirements."""
+        results = tuple(found[name] for name in self.requirements)
         violations = [each.first_violation for each in results if not each.satisfied]
         minima = [each.minimum for each in results]
         return StreamResult(
@@ -202,8 +235,13 @@ class _Stream(ABC):
             None if None in minima else min(minimum for minimum in minima if minimum is not None),
             self.samples,
             period,
-            MappingProxyType(found),
+            MappingProxyType({name: found[name] for name in self.requirements}),
         )
+
+    def require_samples(self) -> None:
+        """Raise :class:`TraceError` where no chunk had a sample."""
+        if not self.samples:
+            raise TraceError("the trace is empty: give at least one sample")
 
 
 class _DiscreteStream(_Stream):
@@ -218,58 +256,69 @@ class _DiscreteStream(_Stream):
         super().__init__(spec, semantics, unit)
         self._period = spec.period if period is None else positive_period(period)
         self._tolerance = tolerance
-        self._told: dict[Formula, int] = {}
-        self._last: dict[Formula, Any] = {}  # the last stamp of which each monitor told something
-        self._kept: dict[
-            int, Any
-        ] = {}  # the stamps of positions where something is violated, and of the first
+        self._group = _Group(self.requirements, spec.input_names)
+        self._monitor: Monitor | None = None
+        # The stamps of positions where something is violated, and of the first.
+        self._kept: dict[int, Any] = {}
 
     def take(self, chunk: Any) -> None:
         stamps, columns, n = arrays.columns_of(chunk, self.spec.input_names, self.declared, self.unit)
         if not n:
             return
-        if not self.monitors:
-            if stamps is not None:
-                check_increasing(stamps.seconds)
-            if self._period is None:
-                self._period = Fraction(1) if stamps is None else infer_period(stamps.seconds)
-            check_bounds(self.spec.formula, self._period, self.spec.text)
-            self.begin(self._period, self._monitor, dense=False)
-        for formula, monitor in self.monitors.items():
-            data = columns if stamps is None else {arrays.TIME: stamps.told, **columns}
-            self._take(formula, monitor.update_many(data))
+        if self._monitor is None:
+            self._monitor = self._begin(stamps)
+        self._known(self._monitor, self._monitor.push(stamps, columns, n))
         self.samples += n
 
-    def _monitor(self, formula: Formula) -> Monitor:
-        assert self._period is not None
+    def _begin(self, stamps: Stamps | None) -> Monitor:
+        if stamps is not None:
+            check_increasing(stamps.seconds)
+        if self._period is None:
+            self._period = Fraction(1) if stamps is None else infer_period(stamps.seconds)
+        check_bounds(self.spec.formula, self._period, self.spec.text)
+        formula, watch = self._group.begin(self._period, dense=False)
         return Monitor(
-            formula, period=self._period, tolerance=self._tolerance, backend=self.spec.backend, unit=self.unit
+            formula,
+            period=self._period,
+            tolerance=self._tolerance,
+            backend=self.spec.backend,
+            watch=watch,
+            unit=self.unit,
         )
 
-    def _take(self, formula: Formula, signal: Signal) -> None:
-        begin = self._told.get(formula, 0)
-        self._told[formula] = begin + len(signal)
-        self.told(formula, np.arange(begin, begin + len(signal)), signal.values)
-        # A tracker judges a position when the next one comes: the stamp before is wanted, too.
-        trackers = (tracker for part in self.parts.values() for tracker in part.trackers)
-        for position in {0, *(tracker.violated for tracker in trackers if tracker.violated is not None)}:
-            if position == begin - 1:
-                self._kept.setdefault(position, self._last[formula])
-            elif begin <= position < begin + len(signal):
-                self._kept.setdefault(position, arrays.plain(signal.times[position - begin]))
-        if len(signal):
-            self._last[formula] = arrays.plain(signal.times[-1])
+    def _known(self, monitor: Monitor, first: Signal) -> None:
+        """Hand on what became known, the first output and those that are watched."""
+        for i, output in enumerate(self._group.outputs.values()):
+            signal = monitor[str(i)] if i else first
+            assert isinstance(signal, Signal)
+            begin = output.known
+            output.known += len(signal)
+            output.take(np.arange(begin, output.known), signal.values)
+            # A tracker judges a position when the next one comes: the stamp before is wanted, too.
+            violated = (t.violated for t in output.trackers if t.violated is not None)
+            for position in {0, *violated}:
+                if position == begin - 1:
+                    self._kept.setdefault(position, output.last)
+                elif begin <= position < output.known:
+                    self._kept.setdefault(position, arrays.plain(signal.times[position - begin]))
+            if len(signal):
+                output.last = arrays.plain(signal.times[-1])
 
-    def time(self, position: int) -> Any:
+    def _time(self, position: int) -> Any:
         if position in self._kept:
             return self._kept[position]
-        # The last one, which was judged at the end: there all monitors stand alike.
-        return next(iter(self._last.values()))
+        # The last one, which was judged at the end: there all outputs stand alike.
+        return next(iter(self._group.outputs.values())).last
 
     def finish(self) -> StreamResult:
-        for formula, monitor in self.monitors.items():
-            self._take(formula, monitor.finish())
-        return self.result(self._period)
+        self.require_samples()
+        assert self._monitor is not None
+        self._known(self._monitor, self._monitor.finish())
+        found = {
+            name: each.result(self._time, self.samples, self._period)
+            for name, each in self.requirements.items()
+        }
+        return self.result(found, self._period)
 
 
 class _DenseStream(_Stream):
@@ -277,14 +326,24 @@ class _DenseStream(_Stream):
         super().__init__(spec, semantics, unit)
         check_dense(spec.formula, spec.text)
         check_bounds(spec.formula, spec.resolution, spec.text, "resolution")
-        self.begin(spec.resolution, self._monitor, dense=True)
+        self._groups = [(group, self._monitor(group)) for group in self._grouped()]
         self._scale: TimeScale | None = None
-        self._start: int | None = None
         self._counts: dict[str, int] = {}
+        self._first: dict[str, int] = {}
         self._last: dict[str, tuple[int, float]] = {}
 
-    def _monitor(self, formula: Formula) -> DenseMonitor:
-        return DenseMonitor(formula, resolution=self.spec.resolution, backend=self.spec.backend)
+    def _grouped(self) -> Iterator[_Group]:
+        """Yield the requirements that read the same variables: each trace starts when its variables have started."""
+        alike: dict[frozenset[str], dict[str, _Requirement]] = {}
+        for name, each in self.requirements.items():
+            variables = own_variables(each.spec.formula, self.spec.input_names)
+            alike.setdefault(frozenset(variables), {})[name] = each
+        for names, some in alike.items():
+            yield _Group(some, [name for name in self.spec.input_names if name in names])
+
+    def _monitor(self, group: _Group) -> DenseMonitor:
+        formula, watch = group.begin(self.spec.resolution, dense=True)
+        return DenseMonitor(formula, resolution=self.spec.resolution, backend=self.spec.backend, watch=watch)
 
     def take(self, chunk: Any) -> None:
         arrays.require_no_unit(chunk, self.unit)
@@ -302,36 +361,53 @@ class _DenseStream(_Stream):
             samples[name] = dense_arrays.samples_of(
                 column, name, self._scale, self._counts.get(name, 0), last
             )
-        for formula, monitor in self.monitors.items():
-            self._take(formula, monitor.push(samples, self._scale))
         for name, (ticks, values) in samples.items():
             if len(ticks):
+                self._first.setdefault(name, int(ticks[0]))
                 self._last[name] = int(ticks[-1]), float(values[-1])
                 self._counts[name] = self._counts.get(name, 0) + len(ticks)
+        for group, monitor in self._groups:
+            self._known(group, monitor, monitor.push(samples, self._scale))
         self.samples += max(map(len, times))
 
-    def _take(self, formula: Formula, known: Samples, last: int | None = None) -> None:
-        ticks, values = known
-        if self._start is None and len(ticks):
-            self._start = int(ticks[0])
-        self.told(formula, ticks - (self._start or 0), values, last)
+    def _start(self, group: _Group) -> int:
+        """Return when the trace of a group starts, once all of its variables have."""
+        return max(self._first[name] for name in group.names)
 
-    def time(self, position: int) -> Any:
-        assert self._scale is not None
-        assert self._start is not None
-        return self._scale.time(self._start + position)
+    def _known(self, group: _Group, monitor: DenseMonitor, first: Samples, end: int | None = None) -> None:
+        """Hand on what became known, the first output and those that are watched; ``end``: that of the trace."""
+        if not all(name in self._first for name in group.names):
+            return
+        start = self._start(group)
+        for i, output in enumerate(group.outputs.values()):
+            ticks, values = monitor.known(str(i)) if i else first
+            output.take(ticks - start, values, None if end is None else end - start)
 
     def finish(self) -> StreamResult:
+        self.require_samples()
         for name in self.spec.input_names:
             if name not in self._last:
                 raise TraceError(f"'{name}' has no samples: give at least one", variable=name)
         assert self._scale is not None
         end = max(tick for tick, _ in self._last.values())
-        for formula, monitor in self.monitors.items():
+        found: dict[str, StreamResult] = {}
+        for group, monitor in self._groups:
             # The last values hold for ever, and past windows slide on over them until all has settled.
-            settled = np.array([end + reach(desugar(formula), self.spec.resolution) + 1])
-            held = {name: (settled, np.array([value])) for name, (_, value) in self._last.items()}
-            known = monitor.push(held, self._scale)
-            self._take(formula, known, end - (self._start or 0))
-            self._take(formula, monitor.rest(), end - (self._start or 0))
-        return self.result(None)
+            start = self._start(group)
+            leaves = (leaf for each in group.requirements.values() for leaf in each.leaves)
+            until = max((end_of(leaf, start, end, self.spec.resolution) for leaf in leaves), default=end)
+            behind = [(name, self._last[name]) for name in group.names]
+            held = {
+                name: (np.array([until]), np.array([value])) for name, (last, value) in behind if last < until
+            }
+            self._known(group, monitor, monitor.push(held, self._scale), end)
+            self._known(group, monitor, monitor.rest(), end)
+            time = partial(self._time, start)
+            found |= {
+                name: each.result(time, self.samples, None) for name, each in group.requirements.items()
+            }
+        return self.result(found, None)
+
+    def _time(self, start: int, position: int) -> Any:
+        assert self._scale is not None
+        return self._scale.time(start + position)

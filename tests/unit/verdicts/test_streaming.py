@@ -12,9 +12,11 @@ from hypothesis import strategies as st
 from pyarrow import feather, parquet
 
 import rtamt
+from rtamt.engine.native import core
 from rtamt.language.operators import STL
 from rtamt.readers import arrow, csv, rows
-from rtamt.verdicts.first_violation import first_violation
+from rtamt.results import first_violation
+from rtamt.signals import arrays, dense_arrays
 from tests import strategies
 
 
@@ -268,3 +270,49 @@ def test_no_minus_before_a_zero_as_in_an_evaluation(time):
     recording = {"time": [0.0, 1.0], "x": [1.0, 2.0]}
     answers = [spec.evaluate(recording).robustness, rtamt.check_stream(spec, [recording]).robustness]
     assert list(map(str, answers)) == ["0.0", "0.0"]
+
+
+def test_each_chunk_is_normalised_once(monkeypatch):
+    counts = {"discrete": 0, "dense": 0}
+    discrete, dense = arrays.columns_of, dense_arrays.columns_of
+
+    def counted(time, function):
+        def call(*args):
+            counts[time] += 1
+            return function(*args)
+
+        return call
+
+    monkeypatch.setattr(arrays, "columns_of", counted("discrete", discrete))
+    monkeypatch.setattr(dense_arrays, "columns_of", counted("dense", dense))
+    spec = rtamt.parse("always(x >= 3) and eventually(y >= 1); always[0:1](x >= y)")
+    chunks = [{"time": [t, t + 1], "x": [5, 4], "y": [1, 0]} for t in (0, 2, 4)]
+    for time in counts:
+        assert rtamt.check_stream(spec, chunks, time=time).samples == 6
+    assert counts == {"discrete": 3, "dense": 3}
+
+
+@pytest.mark.parametrize("time", ["discrete", "dense"])
+def test_robustness_and_verdicts_of_all_requirements_come_from_one_program(time, monkeypatch):
+    spec = rtamt.parse("require A: always(x >= 3); require B: eventually(y >= x)", time=time)
+    name = "dense_evaluate" if time == "dense" else "evaluate"
+    runs = []
+    run = getattr(core(), name)
+    monkeypatch.setattr(core(), name, lambda *args: runs.append(args) or run(*args))
+    found = spec.judge({"time": [0, 1, 2], "x": [5, 4, 2], "y": [0, 0, 4]})
+    assert {key: (part.robustness, part.satisfied) for key, part in found.items()} == {
+        "A": (-1.0, False),
+        "B": (2.0, True),
+    }
+    assert (first_violation(found["A"]), first_violation(found["B"])) == (2.0, None)
+    assert len(runs) == 2  # one for what unbounded future reads, and one for the rest
+
+
+def test_a_value_that_does_not_exist_after_all_that_is_read_is_no_error():
+    # After the last sample the windows of 'once' empty, and 1/0 is read by nobody.
+    spec = rtamt.parse("always(x >= 0) and eventually[0:1](1 / (once[0:5] x) > 0)", time="dense")
+    data = {"x": ([0.0, 1.0, 4.0], [2, 0, 0])}
+    result = spec.evaluate(data)
+    assert (result.satisfied, first_violation(result)) == (True, None)
+    (part,) = spec.judge(data).values()
+    assert (part.robustness, part.satisfied) == (result.robustness, True)

@@ -12,7 +12,6 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING, TypeGuard
 
-from rtamt.explain.instants import NEVER
 from rtamt.language.formula import Apply, Const, Formula, Interval, Span, Var, fold, postorder, variables
 from rtamt.language.operators import STL
 from rtamt.language.records import Bounds, Pointwise, Shift, Since, Sort, Tense, Until, Window
@@ -20,6 +19,10 @@ from rtamt.rewrite.desugar import desugar
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
+
+#: Later than every cell (a sample, in dense time a tick), and so small that a few of them still add up
+#: within 64 bits.
+NEVER = 2**60
 
 #: Opcodes of the instructions that choose one of their operands.
 CHOOSING = ("min", "max")

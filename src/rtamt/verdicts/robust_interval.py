@@ -15,20 +15,20 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rtamt.explain.structure import Structure, literal
 from rtamt.language.formula import Apply, Formula, postorder
 from rtamt.language.records import Tense
 from rtamt.reference import discrete as reference
-from rtamt.rewrite.semantics import boolean as truth_of
+from rtamt.rewrite.structure import Structure, literal
 from rtamt.signals import arrays
 from rtamt.signals.dense import record_dense
 from rtamt.signals.discrete import record_discrete
+from rtamt.verdicts.outputs import outputs_of
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Callable, Iterator, Mapping
 
     from rtamt.signals.arrays import FloatArray
-    from rtamt.specification import Specification
+    from rtamt.verdicts.outputs import Evaluate
 
     #: Stamps (seconds) and a column of values for each variable, all of one length.
     Columns = Mapping[str, FloatArray]
@@ -56,18 +56,30 @@ class Settled:
 
 
 class RobustInterval:
-    """Tells of the first samples of a simulation whether they settle the verdict.
+    """Determines whether the first samples of a simulation settle the verdict of a formula.
 
-    ``samples`` is how many there are at the end in discrete time (dense time needs none). A formula with
-    arithmetic over temporal operators, or with an operator that cannot be taken apart, is never settled
-    before the end: :attr:`able` is false.
+    ``applied`` returns a predicate under the semantics of the robustness. ``time`` is the time domain and
+    ``step`` the seconds of a period or tick. ``samples`` is how many there are at the end in discrete time
+    (dense time needs none). A formula with arithmetic over temporal operators, or with an operator that cannot
+    be taken apart, is never settled before the end: :attr:`able` is false.
     """
 
-    def __init__(self, spec: Specification, period: Fraction | None, samples: int | None) -> None:
-        self._spec = spec
-        self._period = period
+    def __init__(
+        self,
+        formula: Formula,
+        evaluate: Evaluate,
+        *,
+        applied: Callable[[Formula], Formula],
+        time: str,
+        step: Fraction,
+        samples: int | None,
+    ) -> None:
+        self._evaluate = evaluate
+        self._applied = applied
+        self._time = time
+        self._step = step
         self._samples = samples
-        structure = Structure.of(spec.formula, None)
+        structure = Structure.of(formula, None)
         self._leaves = structure.leaves
         self._over_predicates = structure.polar[structure.core, 1]
         self.able = all(_at_one_instant(leaf.formula) for leaf in self._leaves.values())
@@ -77,7 +89,7 @@ class RobustInterval:
         n = len(times)
         if not self.able or not n:
             return None
-        truth = self._over(times, columns, truth=True)
+        distance, truth = self._over(times, columns)
         verdict = self._verdict(times, truth, n)
         if verdict is None:
             return None
@@ -88,7 +100,6 @@ class RobustInterval:
                 low = middle + 1
             else:
                 high = middle
-        distance = self._over(times, columns, truth=False)
         worst, best = (self._value(times, distance, n, best=best) for best in (False, True))
         return Settled(verdict, low, worst, best)
 
@@ -97,19 +108,24 @@ class RobustInterval:
             return False
         return True if self._value(times, truth, n, best=False) > 0 else None
 
-    def _over(self, times: FloatArray, columns: Columns, *, truth: bool) -> dict[str, FloatArray]:
-        """Return each predicate's truth (+inf, -inf) or distance at every sample."""
+    def _over(self, times: FloatArray, columns: Columns) -> Iterator[dict[str, FloatArray]]:
+        """Yield each predicate's distance, then its truth (+inf, -inf), at every sample: both from one program."""
+        outputs = {
+            name: outputs_of(leaf.formula, self._applied(leaf.formula)) for name, leaf in self._leaves.items()
+        }
+        read = tuple(f for name, both in outputs.items() if not self._leaves[name].fixed for f in both)
         recording = self._recording(times, columns, tuple(columns))
-        found = {}
-        for name, leaf in self._leaves.items():
-            formula = truth_of(leaf.formula) if truth else self._spec.apply_semantics(leaf.formula)
-            if leaf.fixed:  # it reads no variable: one value for ever
-                found[name] = reference.evaluate(formula, {}, 1, Fraction(1))
-                continue
-            signal = self._spec.signal_of(formula, recording)
-            last = np.searchsorted(signal.times, times, side="right") - 1
-            found[name] = signal.values[last]
-        return found
+        signals = dict(zip(read, self._evaluate(read, recording), strict=True)) if read else {}
+        for output in range(2):
+            found = {}
+            for name, both in outputs.items():
+                signal = signals.get(both[output])
+                if signal is None:  # it reads no variable: one value for ever
+                    found[name] = reference.evaluate(both[output], {}, 1, Fraction(1))
+                else:
+                    last = np.searchsorted(signal.times, times, side="right") - 1
+                    found[name] = signal.values[last]
+            yield found
 
     def _value(self, times: FloatArray, predicates: Columns, n: int, *, best: bool) -> float:
         """Return the robustness at the first instant if what follows n samples is at its best or worst."""
@@ -122,16 +138,16 @@ class RobustInterval:
             for sign in (1, -1):
                 unknown = np.full(rest, inf if (sign > 0) == best else -inf)
                 columns[literal(name, sign)] = np.concatenate((values[:n], unknown))
-        gap = float(self._spec.resolution if self._period is None else self._period)
-        later = times[n - 1] + gap * np.arange(1, rest + 1)
+        later = times[n - 1] + float(self._step) * np.arange(1, rest + 1)
         recording = self._recording(np.concatenate((times[:n], later)), columns, tuple(columns))
-        return float(self._spec.signal_of(self._over_predicates, recording).values[0])
+        (signal,) = self._evaluate((self._over_predicates,), recording)
+        return float(signal.values[0])
 
     def _recording(self, times: FloatArray, columns: Columns, names: tuple[str, ...]) -> Any:
-        if self._spec.time == "dense":
+        if self._time == "dense":
             data = {name: (times, column) for name, column in columns.items()}
-            return record_dense(data, names, self._spec.resolution)
-        return record_discrete({arrays.TIME: times, **columns}, names, self._period)
+            return record_dense(data, names, self._step)
+        return record_discrete({arrays.TIME: times, **columns}, names, self._step)
 
 
 def _at_one_instant(formula: Formula) -> bool:

@@ -13,7 +13,7 @@ from rtamt.language.formula import Apply, Const, Formula, Var, fold, postorder, 
 from rtamt.language.printer import PAGE, excerpt, to_text
 from rtamt.rewrite.check import check_bounds, check_dense, check_online
 from rtamt.rewrite.desugar import as_written, desugar
-from rtamt.rewrite.semantics import boolean
+from rtamt.verdicts.outputs import Outputs, outputs_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -32,7 +32,7 @@ def carried_program(
     period: Fraction,
     domain: str,
     applied: Formula | None = None,
-    parts: Mapping[str, tuple[Formula, Formula]] | None = None,
+    parts: Mapping[str, Outputs] | None = None,
     text: str | None = None,
     name: str | None = None,
 ) -> Program:
@@ -40,7 +40,7 @@ def carried_program(
 
     ``period``: seconds of a step, as for ``compile_program``. ``applied``: the formula whose robustness is
     told, where a semantics says so; the verdict is that of ``formula`` all the same. ``parts``: by name the
-    formula and the applied formula of each of several requirements. ``text``: what errors point at. A
+    outputs of each of several requirements. ``text``: what errors point at. A
     constant that is also the bound of an interval decides how long windows are, and is no parameter.
 
     >>> from fractions import Fraction
@@ -61,8 +61,8 @@ def carried_program(
         raise UsageError("the formula reads no variable, so in dense time nothing says when to evaluate it")
     structural = _bounds(formula)
     values: dict[str, float] = {}
-    pairs = {"": (formula, applied or formula)} | {f".{name}": pair for name, pair in (parts or {}).items()}
-    judged = [each for own, worth in pairs.values() for each in (worth, boolean(own))]
+    pairs = {"": outputs_of(formula, applied)} | {f".{name}": pair for name, pair in (parts or {}).items()}
+    judged = [output for pair in pairs.values() for output in pair]
     told = [_with_parameters(desugar(each), structural, values) for each in judged]
     program = compile_program(told, period, inputs, domain=domain, parameters=values)
     places = {

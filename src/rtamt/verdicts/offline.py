@@ -1,0 +1,237 @@
+"""Robustness and verdicts of requirements over a finished trace: all outputs of all of them from one program."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
+
+import numpy as np
+
+from rtamt.engine.dense_evaluate import reach
+from rtamt.errors import EvaluationError
+from rtamt.rewrite.desugar import desugar
+from rtamt.rewrite.semantics import no_verdict
+from rtamt.signals.dense import DenseTrace
+from rtamt.signals.discrete import DiscreteTrace
+from rtamt.signals.signal import Signal
+from rtamt.signals.ticks import TimeScale
+from rtamt.verdicts.decompose import anchor
+from rtamt.verdicts.outputs import own_variables
+from rtamt.verdicts.trackers import Trackers
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+    from fractions import Fraction
+
+    from rtamt.language.formula import Formula
+    from rtamt.signals.dense_arrays import Samples
+    from rtamt.verdicts.decompose import Leaf
+    from rtamt.verdicts.outputs import Evaluate, Outputs
+    from rtamt.verdicts.trackers import Tracker
+
+AnyTrace = TypeVar("AnyTrace", bound=DiscreteTrace | DenseTrace)
+
+#: Values of all outputs of one program: what many requirements read of a long trace must fit into memory.
+ROOM = 2**24
+
+
+class Judged(NamedTuple):
+    """What one requirement has over its trace.
+
+    ``violations``: when it is first violated (see :func:`first_violation`), in the times of the trace; empty
+    where nobody asked, or where an operation of the truth has no value.
+    """
+
+    trace: DiscreteTrace | DenseTrace
+    signal: Signal
+    violations: tuple[Any, ...]
+
+
+def judge(outputs: Sequence[Outputs], trace: DiscreteTrace | DenseTrace, evaluate: Evaluate) -> list[Judged]:
+    """Return robustness and verdict of each requirement, each over the trace of its own variables.
+
+    Raises :class:`EvaluationError` where a robustness has no value.
+    """
+    found: dict[int, Judged] = {}
+    for numbers in by_start(outputs, trace):
+        whole = trace_of([outputs[i].truth for i in numbers], trace)
+        size = max(1, ROOM // max(1, _samples(whole)))
+        for first in range(0, len(numbers), size):
+            some = numbers[first : first + size]
+            judged = _judge([outputs[i] for i in some], whole, trace, evaluate)
+            found.update(zip(some, judged, strict=True))
+    return [found[i] for i in range(len(outputs))]
+
+
+def judge_apart(
+    outputs: Sequence[Outputs], trace: DenseTrace, evaluate: Evaluate
+) -> tuple[Signal, list[Judged]]:
+    """Return the same of requirements whose traces start at different instants, and their common signal.
+
+    That begins with the first requirement: at each instant it is the minimum over those that have started.
+    """
+    scale = trace.scale  # instants that differ by a tick may be equal as the caller tells time
+    found = judge(outputs, replace(trace, scale=TimeScale.in_ticks(scale.tick)), evaluate)
+    ticks, values = minimum([(each.signal.times, each.signal.values) for each in found])
+    judged = [
+        Judged(
+            trace_of([output.truth], trace),
+            Signal(scale.times(each.signal.times), each.signal.values),
+            tuple(None if tick is None else scale.time(tick) for tick in each.violations),
+        )
+        for output, each in zip(outputs, found, strict=True)
+    ]
+    return Signal(scale.times(ticks), values), judged
+
+
+def first_violation(truth: Formula, trace: DiscreteTrace | DenseTrace, evaluate: Evaluate) -> Any:
+    """Return when a formula is first violated, in the times of the trace; None where it holds.
+
+    For ``always φ`` that is the earliest instant of its window at which φ does not hold, for a conjunction the
+    earliest of its parts, for any other formula the first instant of the trace. Raises
+    :class:`EvaluationError` where an operation of the truth has no value.
+    """
+    try:
+        _, violations = _outputs((), [truth], trace, evaluate)
+    except EvaluationError as error:
+        raise no_verdict(error) from error
+    return violations[0]
+
+
+# ---- traces ----------------------------------------------------------------------------------------
+
+
+def trace_of(formulas: Sequence[Formula], trace: AnyTrace) -> AnyTrace:
+    """Return the trace of formulas: in dense time it starts when all variables that they read have started."""
+    if isinstance(trace, DiscreteTrace):
+        return trace
+    names = {name for formula in formulas for name in own_variables(formula, tuple(trace.columns))}
+    own: Any = {name: trace.columns[name] for name in trace.columns if name in names}
+    return replace(trace, columns=own)
+
+
+def by_start(outputs: Sequence[Outputs], trace: DiscreteTrace | DenseTrace) -> list[list[int]]:
+    """Return the numbers of the requirements whose traces start at the same instant."""
+    groups: dict[int, list[int]] = {}
+    for i, each in enumerate(outputs):
+        start = trace_of([each.truth], trace).start if isinstance(trace, DenseTrace) else 0
+        groups.setdefault(start, []).append(i)
+    return list(groups.values())
+
+
+def minimum(signals: Sequence[Samples]) -> Samples:
+    """Return the minimum, at each instant, of those step functions that have started; all of them end together.
+
+    Ticks and values: a point for every change, and one at the end.
+    """
+    ticks = np.unique(np.concatenate([own for own, _ in signals]))
+    values = np.full(len(ticks), np.inf)
+    for own, of in signals:
+        first = int(ticks.searchsorted(own[0]))
+        places = own.searchsorted(ticks[first:], "right") - 1
+        np.minimum(values[first:], of[places], out=values[first:])
+    kept = np.ones(len(ticks), bool)
+    kept[1:-1] = values[1:-1] != values[:-2]
+    return ticks[kept], values[kept]
+
+
+def _samples(trace: DiscreteTrace | DenseTrace) -> int:
+    if isinstance(trace, DiscreteTrace):
+        return len(trace)
+    return sum(len(ticks) for ticks, _ in trace.columns.values())
+
+
+# ---- outputs ---------------------------------------------------------------------------------------
+
+
+def _judge(
+    outputs: Sequence[Outputs],
+    trace: DiscreteTrace | DenseTrace,
+    whole: DiscreteTrace | DenseTrace,
+    evaluate: Evaluate,
+) -> Iterator[Judged]:
+    """Yield what requirements have over their common trace; robustness is reported to the end of the ``whole``."""
+    if isinstance(trace, DenseTrace) and isinstance(whole, DenseTrace):
+        trace = trace.held_until(whole.end)
+    robustness = tuple(each.robustness for each in outputs)
+    try:
+        signals, found = _outputs(robustness, [each.truth for each in outputs], trace, evaluate)
+    except EvaluationError:  # of one of the truths, or indeed of a robustness
+        signals, found = evaluate(robustness, trace), []
+    for i, (each, signal) in enumerate(zip(outputs, signals, strict=True)):
+        yield Judged(trace_of([each.truth], whole), signal, tuple(found[i : i + 1]))
+
+
+def _outputs(
+    formulas: tuple[Formula, ...],
+    truths: Sequence[Formula],
+    trace: DiscreteTrace | DenseTrace,
+    evaluate: Evaluate,
+) -> tuple[list[Signal], list[Any]]:
+    """Return the signals of formulas, and when truths are first violated."""
+    dense = isinstance(trace, DenseTrace)
+    unit = trace.scale.tick if isinstance(trace, DenseTrace) else trace.period
+    found = [Trackers(anchor(truth), unit, dense) for truth in truths]
+    trackers = [tracker for each in found for tracker in each.leaves]
+    if isinstance(trace, DenseTrace):
+        signals, leaves = _dense_signals(formulas, trackers, trace, evaluate)
+    else:
+        signals, leaves = _signals(formulas, trackers, trace, evaluate)
+    for tracker in trackers:
+        signal = leaves[tracker.leaf]
+        positions = signal.times - trace.start if isinstance(trace, DenseTrace) else np.arange(len(signal))
+        tracker.take(positions, signal.values)
+    for each in found:
+        each.finish()
+    return signals, [_time(each.violation(evaluate), trace) for each in found]
+
+
+def _signals(
+    formulas: tuple[Formula, ...],
+    trackers: Sequence[Tracker],
+    trace: DiscreteTrace | DenseTrace,
+    evaluate: Evaluate,
+) -> tuple[list[Signal], dict[Leaf, Signal]]:
+    """Return the signals of formulas and of leaves, all from one program."""
+    asked = tuple(dict.fromkeys((*formulas, *(tracker.leaf.formula for tracker in trackers))))
+    known = dict(zip(asked, evaluate(asked, trace), strict=True)) if asked else {}
+    return [known[f] for f in formulas], {tracker.leaf: known[tracker.leaf.formula] for tracker in trackers}
+
+
+def _dense_signals(
+    formulas: tuple[Formula, ...], trackers: Sequence[Tracker], trace: DenseTrace, evaluate: Evaluate
+) -> tuple[list[Signal], dict[Leaf, Signal]]:
+    """Return the same, of leaves in ticks and as far as each is read after the last sample."""
+    in_ticks = replace(trace, scale=TimeScale.in_ticks(trace.scale.tick))
+    ends: dict[int, list[Tracker]] = {trace.end: []}
+    for tracker in trackers:
+        end = end_of(tracker.leaf, trace.start, trace.end, trace.scale.tick)
+        ends.setdefault(end, []).append(tracker)
+    try:
+        signals, leaves = _signals(formulas, trackers, in_ticks.held_until(max(ends)), evaluate)
+    except EvaluationError:
+        if len(ends) == 1:
+            raise
+        # What has no value perhaps lies after all that its formula reads.
+        signals, leaves = _signals(formulas, (), in_ticks, evaluate)
+        for end, some in ends.items():
+            leaves |= _signals((), some, in_ticks.held_until(end), evaluate)[1]
+    return [trace.signal(signal.times, signal.values) for signal in signals], leaves
+
+
+def end_of(leaf: Leaf, start: int, end: int, tick: Fraction) -> int:
+    """Return the last tick at which the formula of a leaf is read, from a trace of these ticks.
+
+    A window without an end is read until the formula has settled over the last values.
+    """
+    if leaf.end is None:
+        return end + reach(desugar(leaf.formula), tick) + 1
+    return max(end, start + int(leaf.end / tick))
+
+
+def _time(position: int | None, trace: DiscreteTrace | DenseTrace) -> Any:
+    if position is None:
+        return None
+    if isinstance(trace, DiscreteTrace):
+        return trace.stamp(position)
+    return trace.scale.time(trace.start + position)

@@ -1,0 +1,55 @@
+"""The two outputs of a requirement: robustness and Boolean truth, from one program."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, NamedTuple, TypeAlias
+
+from rtamt.language.formula import Const, Formula, Var, variables
+from rtamt.language.operators import STL
+from rtamt.rewrite.semantics import boolean
+from rtamt.signals.dense import DenseTrace
+from rtamt.signals.discrete import DiscreteTrace
+from rtamt.signals.signal import Signal
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+#: Returns the signal of each formula over a trace, all from one program: an ``Evaluators`` of the engine.
+Evaluate: TypeAlias = Callable[[tuple[Formula, ...], DiscreteTrace | DenseTrace], list[Signal]]
+
+
+class Outputs(NamedTuple):
+    """The formulas of the two outputs of a requirement.
+
+    ``robustness``: under the semantics that was chosen. ``truth``: +inf where the requirement holds and -inf
+    where it does not, the same under every semantics; never derived from the sign of the robustness.
+    """
+
+    robustness: Formula
+    truth: Formula
+
+
+def outputs_of(formula: Formula, applied: Formula | None = None) -> Outputs:
+    """Return the outputs of a requirement; ``applied``: the formula with its semantics, if it is not standard.
+
+    >>> from rtamt.language.parser import parse_formula
+    >>> print(*outputs_of(parse_formula("x >= 3")), sep=", ")
+    x >= 3, x >= 3
+    """
+    return Outputs(formula if applied is None else applied, boolean(formula))
+
+
+def own_variables(formula: Formula, every: Sequence[str]) -> tuple[str, ...]:
+    """Return the variables whose samples make the trace of a formula; a constant has that of ``every`` variable."""
+    return variables(formula) or tuple(every)
+
+
+def align_inputs(formula: Formula, names: Sequence[str]) -> Formula:
+    """Return a formula with the same values that reads all the names: so several formulas begin and end together."""
+    if not names:
+        return formula
+    everything: Formula = Var(names[0])
+    for name in names[1:]:
+        everything = STL["and"](everything, Var(name))
+    return STL["and"](formula, STL["or"](Const(float("inf")), everything))

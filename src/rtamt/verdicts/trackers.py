@@ -1,0 +1,119 @@
+"""The value of a formula at the first instant, and where it is first violated, from its leaves' signals."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rtamt.language.formula import Var
+from rtamt.signals.discrete import DiscreteTrace
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from rtamt.language.formula import Formula
+    from rtamt.signals.arrays import FloatArray
+    from rtamt.verdicts.decompose import Anchored, Leaf
+    from rtamt.verdicts.outputs import Evaluate
+
+    Positions = NDArray[np.int64]
+
+
+class Tracker:
+    """One leaf of an anchored formula: takes its signal in chunks, keeps the value and the first violation.
+
+    Positions count periods or ticks (``unit`` seconds each) from the first instant. A value holds up
+    to the next position; the last one, in dense time, for ever.
+    """
+
+    def __init__(self, leaf: Leaf, unit: Fraction, dense: bool) -> None:
+        self.leaf = leaf
+        self._begin = int(leaf.begin / unit)
+        self._end = None if leaf.end is None else int(leaf.end / unit)
+        self._dense = dense
+        self._pending: tuple[int, float] | None = None
+        self.value = float("-inf") if leaf.reduce == "max" else float("inf")
+        #: The earliest position of the window at which the value is below 0.
+        self.violated: int | None = None
+
+    def take(self, positions: Positions, values: FloatArray) -> None:
+        """Take what became known of the leaf's formula."""
+        if not len(positions):
+            return
+        if self._pending is not None:
+            position, value = self._pending
+            positions, values = np.concatenate(([position], positions)), np.concatenate(([value], values))
+        self._reduce(positions[:-1], positions[1:], values)
+        self._pending = (int(positions[-1]), float(values[-1]))
+
+    def finish(self) -> None:
+        """Take the last value: nothing comes after it."""
+        if self._pending is not None:
+            position, value = self._pending
+            stop = max(position, self._begin) + 1 if self._dense else position + 1
+            self._reduce(np.array([position]), np.array([stop]), np.array([value]))
+            self._pending = None
+
+    def _reduce(self, starts: Positions, stops: Positions, values: FloatArray) -> None:
+        inside = stops > self._begin
+        if self._end is not None:
+            inside &= starts <= self._end
+        where = np.flatnonzero(inside)
+        if not len(where):
+            return
+        found = values[where]
+        if self.leaf.reduce is None:
+            self.value = float(found[0])
+        elif self.leaf.reduce == "min":
+            self.value = min(self.value, float(found.min()))
+        else:
+            self.value = max(self.value, float(found.max()))
+        below = found < 0
+        if self.violated is None and below.any():
+            self.violated = max(int(starts[where[int(below.argmax())]]), self._begin)
+
+
+class Trackers:
+    """The leaves of one anchored formula over a trace.
+
+    ``unit``: seconds of a period or tick. Hand on the signals of ``leaves``, then call :meth:`finish`.
+    """
+
+    def __init__(self, anchored: Anchored, unit: Fraction, dense: bool) -> None:
+        self._anchored = anchored
+        self.leaves = [Tracker(leaf, unit, dense) for leaf in anchored.leaves]
+
+    def finish(self) -> None:
+        """End the trace."""
+        for tracker in self.leaves:
+            tracker.finish()
+
+    def value(self, evaluate: Evaluate) -> float:
+        """Return the value of the formula at the first instant."""
+        return self._value(self._anchored.skeleton, evaluate)
+
+    def violation(self, evaluate: Evaluate) -> int | None:
+        """Return the first position at which the formula, a truth, is violated; None where it holds.
+
+        That is the earliest one at which a part that must hold is violated. A part that is no window of
+        ``always`` is violated at the first instant.
+        """
+        if self.value(evaluate) > 0:
+            return None
+        found = []
+        for part in self._anchored.conjuncts():
+            leaf = self._anchored.leaf(part)
+            if leaf is not None and leaf.reduce == "min":
+                found += [t.violated for t in self.leaves if t.leaf == leaf and t.violated is not None]
+            elif not self._value(part, evaluate) > 0:
+                found.append(0)
+        return min(found)
+
+    def _value(self, skeleton: Formula, evaluate: Evaluate) -> float:
+        if isinstance(skeleton, Var):
+            return self.leaves[int(skeleton.name[1:])].value
+        columns = {f"#{i}": np.array([tracker.value]) for i, tracker in enumerate(self.leaves)}
+        (signal,) = evaluate((skeleton,), DiscreteTrace(np.zeros(1), columns, Fraction(1)))
+        return float(signal.values[0])
