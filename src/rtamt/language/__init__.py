@@ -9,6 +9,7 @@ module             purpose
 operators          the table: every operator of the language, once
 records            the records ``Operator`` and ``Language`` (an immutable set of operators)
 definitions        the discrete-time meaning of each operator: one pure function
+enclosures         interval extensions: operators of one instant on operands known up to bounds
 dense_definitions  the dense-time meaning of temporal operators, at one time
 formula            formulas: three immutable node types
 lexer              text to tokens

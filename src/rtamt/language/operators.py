@@ -20,6 +20,7 @@ from typing import Any
 
 from rtamt.language import definitions as d
 from rtamt.language import dense_definitions as dense
+from rtamt.language import enclosures as e
 from rtamt.language.formula import Const, Formula, Interval
 from rtamt.language.records import (
     Blocks,
@@ -122,7 +123,13 @@ def _prefix(name: str, spellings: str, power: int, doc: str, example: str, **mor
 
 
 def _truth(code: str, spelling: str, definition: Any, **more: Any) -> Operator:
-    more = more or {"kernel": Pointwise(f"holds_{code}")}
+    if not more:
+        slopes = e.slopes(0, 0) if code == "eq" else e.slopes(1, -1)
+        more = {
+            "kernel": Pointwise(f"holds_{code}"),
+            "extension": getattr(e, f"holds_{code}"),
+            "slopes": slopes,
+        }
     doc, example = f"+inf where a {spelling} b, else -inf.", f"x {spelling} 3"
     return _infix(f"holds_{code}", spelling, 90, doc, example, operands=(N, N), definition=definition, **more)
 
@@ -148,31 +155,33 @@ STL: Language = Language.of((
              d.false, expansion=lambda _i: Const(-inf)),
     # ---- numbers -----------------------------------------------------------------------------
     _function("abs", 1, "Absolute value.", "abs(x) <= 2", latex=r"\left|{0}\right|",
-              definition=d.abs_, kernel=Pointwise("abs")),
+              definition=d.abs_, kernel=Pointwise("abs"), extension=e.abs_, slopes=e.slopes(0)),
     _function("sqrt", 1, "Square root.", "sqrt(x) <= 2", latex=r"\sqrt{{{0}}}",
-              definition=d.sqrt, kernel=Pointwise("sqrt", partial=True)),
+              definition=d.sqrt, kernel=Pointwise("sqrt", partial=True), extension=e.sqrt, slopes=e.slopes(1)),
     _function("exp", 1, "The exponential function.", "exp(x) <= 2",
-              definition=d.exp, kernel=Pointwise("exp")),
+              definition=d.exp, kernel=Pointwise("exp"), extension=e.exp, slopes=e.slopes(1)),
     _function("pow", 2, "The first operand to the power of the second.", "pow(x, 2) <= 4",
-              latex=r"{{{0}}}^{{{1}}}", definition=d.pow_, kernel=Pointwise("pow", partial=True)),
+              latex=r"{{{0}}}^{{{1}}}", definition=d.pow_, kernel=Pointwise("pow", partial=True),
+              extension=e.pow_, slopes=e.slopes(None, None)),
     _function("log", 2, "The logarithm of the first operand to the base of the second.", "log(x, 10) >= 1",
-              latex=r"\log_{{{1}}}({0})", definition=d.log, kernel=Pointwise("log", partial=True)),
+              latex=r"\log_{{{1}}}({0})", definition=d.log, kernel=Pointwise("log", partial=True),
+              extension=e.log, slopes=e.slopes(None, None)),
     _function("ln", 1, "The natural logarithm.", "ln(x) >= 0", latex=r"\ln({0})",
-              definition=d.ln, kernel=Pointwise("ln", partial=True)),
+              definition=d.ln, kernel=Pointwise("ln", partial=True), extension=e.ln, slopes=e.slopes(1)),
     _function("min", 2, "The smallest operand.", "min(x, y) >= 0", latex=r"\min({0}, {1})",
-              definition=d.and_, kernel=Pointwise("min"), folds=True),
+              definition=d.and_, kernel=Pointwise("min"), extension=e.and_, slopes=e.slopes(1, 1), folds=True),
     _function("max", 2, "The largest operand.", "max(x, y) >= 0", latex=r"\max({0}, {1})",
-              definition=d.or_, kernel=Pointwise("max"), folds=True),
+              definition=d.or_, kernel=Pointwise("max"), extension=e.or_, slopes=e.slopes(1, 1), folds=True),
     _prefix("neg", "-", 120, "Minus.", "-x >= 2", operands=(N,), result=N, latex="-{0}",
-            definition=d.neg, kernel=Pointwise("neg")),
+            definition=d.neg, kernel=Pointwise("neg"), extension=e.neg, slopes=e.slopes(-1)),
     _infix("mul", "*", 110, "Product.", "2 * x <= 3", operands=(N, N), result=N, latex=r"{0} \cdot {1}",
-           definition=d.mul, kernel=Pointwise("mul", partial=True)),
+           definition=d.mul, kernel=Pointwise("mul", partial=True), extension=e.mul, slopes=e.of_product),
     _infix("div", "/", 110, "Quotient.", "x / 2 <= 3", operands=(N, N), result=N, latex=r"{0} / {1}",
-           definition=d.div, kernel=Pointwise("div", partial=True)),
+           definition=d.div, kernel=Pointwise("div", partial=True), extension=e.div, slopes=e.of_quotient),
     _infix("add", "+", 100, "Sum.", "x + y <= 3", operands=(N, N), result=N, latex="{0} + {1}",
-           definition=d.add, kernel=Pointwise("add", partial=True)),
+           definition=d.add, kernel=Pointwise("add", partial=True), extension=e.add, slopes=e.slopes(1, 1)),
     _infix("sub", "-", 100, "Difference.", "x - y <= 3", operands=(N, N), result=N, latex="{0} - {1}",
-           definition=d.sub, kernel=Pointwise("sub", partial=True)),
+           definition=d.sub, kernel=Pointwise("sub", partial=True), extension=e.sub, slopes=e.slopes(1, -1)),
     # ---- predicates --------------------------------------------------------------------------
     _infix("ge", ">=", 90, "At least: a - b.", "x >= 3", operands=(N, N), latex=r"{0} \geq {1}", dual="lt",
            definition=d.ge, expansion=lambda a, b, _i: STL["sub"](a, b), truth=lambda a, b, _i: _GE(a, b)),
@@ -192,9 +201,9 @@ STL: Language = Language.of((
     _prefix("not", "not !", 80, "Negation: minus.", "not (x >= 3)", latex=r"\neg {0}",
             definition=d.neg, expansion=lambda a, _i: STL["neg"](a)),
     _infix("and", "and & &&", 40, "Both: the smaller value.", "x >= 3 and y >= 3", latex=r"{0} \wedge {1}",
-           dual="or", definition=d.and_, kernel=Pointwise("min")),
+           dual="or", definition=d.and_, kernel=Pointwise("min"), extension=e.and_, slopes=e.slopes(1, 1)),
     _infix("or", "or | ||", 30, "At least one: the larger value.", "x >= 3 or y >= 3", latex=r"{0} \vee {1}",
-           dual="and", definition=d.or_, kernel=Pointwise("max")),
+           dual="and", definition=d.or_, kernel=Pointwise("max"), extension=e.or_, slopes=e.slopes(1, 1)),
     _infix("implies", "-> implies", 20, "If the first then the second: max(-a, b).", "x >= 3 -> y >= 3",
            latex=r"{0} \to {1}", fixity=Fixity.RIGHT,
            definition=d.implies, expansion=lambda a, b, _i: STL["or"](STL["not"](a), b)),

@@ -152,6 +152,10 @@ class Operator:
     guards: tuple[str | None, ...] = ()
     folds: bool = False  # a function that also takes more operands: f(a, b, c) is f(f(a, b), c)
     truth: Expansion | None = None  # of a predicate: the formula that is +inf where it holds, else -inf
+    # Of an operator of one instant, what bounds need (enclosures.py): the bounds of the result from those of
+    # the operands, and how the result moves with each operand.
+    extension: Callable[..., Any] | None = None
+    slopes: Callable[..., tuple[int | None, ...]] | None = None
 
     def check(self) -> None:
         """Raise :class:`UsageError` where the record cannot be an operator."""

@@ -7,6 +7,10 @@ module              purpose
 ==================  ============================================================
 discrete            the definition in discrete time
 dense               the definition in dense time
+discrete_bounds     bounds in discrete time, of traces that are known in part
+dense_bounds        bounds in dense time
+earliest            verdicts, each at the first sample that decides it
+causation           by how much the newest sample alone violates or satisfies a formula
 definition_adapter  run an operator that has only a definition inside the engine
 ==================  ============================================================
 """

@@ -1,0 +1,168 @@
+"""The definition of causation: by how much the newest sample alone violates or satisfies a formula.
+
+Z. Zhang et al., "Online causation monitoring of signal temporal logic", CAV 2023. With b the newest sample
+and [L, U] the bounds after it, the violation causation ``viol`` at t is how bad the newest sample makes the formula
+at t, and ``sat`` how good: for a fixed t the minimum of ``viol`` over the samples so far is U, and the maximum
+of ``sat`` is L. So a predicate elsewhere than at b is worth what is known of it without any sample: -inf to +inf, but
+a constant is what it is, and an absolute value is not negative. In discrete time, for exact samples.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+from rtamt.errors import SpecificationError
+from rtamt.language.formula import Apply, Formula, postorder
+from rtamt.language.operators import Bounds, Pointwise, Shift, Since, Tense, Until, Window
+from rtamt.language.printer import excerpt
+from rtamt.reference.discrete_bounds import bounds
+from rtamt.rewrite.desugar import desugar, written
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+    from fractions import Fraction
+
+    from rtamt.reference.discrete_bounds import Knowledge
+
+#: One operand at one sample.
+_Part = tuple[Formula, int]
+
+
+class Causation(NamedTuple):
+    """Violation and satisfaction causation at one sample."""
+
+    viol: float
+    sat: float
+
+
+def causation(formula: Formula, known: Knowledge, period: Fraction, m: int) -> list[Causation]:
+    """Return how the last sample of ``known`` affects the formula at samples 0 to m - 1.
+
+    Raises :class:`SpecificationError` at arithmetic on formulas in time, which has no causation.
+
+    >>> from fractions import Fraction
+    >>> import numpy as np
+    >>> from rtamt.language.enclosures import Enclosure
+    >>> from rtamt.language.parser import parse_formula
+    >>> from rtamt.reference.discrete_bounds import Knowledge
+    >>> x = np.array([4.0, 1.0, 2.0])
+    >>> causation(parse_formula("always(x >= 3)"), Knowledge({"x": Enclosure(x, x)}, 3), Fraction(1), 1)
+    [Causation(viol=-1.0, sat=-inf)]
+    """
+    core = desugar(formula)
+    for node in postorder(core):
+        if not _connects(node) and any(map(_in_time, postorder(node))):
+            culprit = excerpt(written(node, [formula]))
+            raise SpecificationError(
+                f"'{culprit}' is arithmetic on a formula in time, which has no causation; use another verdict mode"
+            )
+    causes = _Causes(known, period, m + known.n + sum(_reach(node, period) + 1 for node in postorder(core)))
+    return [causes.at(core, t) for t in range(m)]
+
+
+class _Causes:
+    """The recursion over sub-formulas and samples; ``end`` is a sample after all that can matter."""
+
+    def __init__(self, known: Knowledge, period: Fraction, end: int) -> None:
+        self._known = known
+        self._period = period
+        self._end = end
+        self._found: dict[_Part, Causation] = {}
+        self._bounds: dict[Formula, list[tuple[float, float]]] = {}
+
+    def at(self, node: Formula, t: int) -> Causation:
+        found = self._found.get((node, t))
+        if found is None:
+            found = self._found[node, t] = self._cause(node, t)
+        return found
+
+    def _cause(self, node: Formula, t: int) -> Causation:
+        lower, upper = self._limits(node, t)
+        if not isinstance(node, Apply) or not _connects(node):
+            if t != self._known.n - 1:  # what is known without any sample
+                lower, upper = self._limits(node, None)
+            return Causation(upper, lower)
+        kernel, args = node.op.kernel, node.args
+        if isinstance(kernel, Shift):
+            there = t + (1 if node.op.tense is Tense.FUTURE else -1)
+            return self.at(args[0], there) if there >= 0 else Causation(kernel.fill, kernel.fill)
+        if isinstance(kernel, Pointwise) and kernel.opcode == "neg":
+            viol, sat = self.at(args[0], t)
+            return Causation(-sat, -viol)
+        if isinstance(kernel, Pointwise | Window):
+            inside = [(arg, u) for arg in args for u in self._window(node, t)]
+            smallest = (kernel.opcode if isinstance(kernel, Pointwise) else kernel.reduce) == "min"
+            alternatives = [inside] if smallest else [[part] for part in inside]
+            if not inside:
+                return Causation(upper, lower)
+        else:
+            alternatives = [
+                [(args[1], u), *((args[0], v) for v in held)] for u, held in self._targets(node, t)
+            ]
+            if not alternatives:
+                return Causation(upper, lower)
+        # φ is the best of its alternatives, and each is as bad as the worst of its parts.
+        viol = max(min(self.at(*part).viol for parts in alternatives for part in parts), upper)
+        sat = max(self._all(parts) for parts in alternatives)
+        return Causation(viol, sat)
+
+    def _all(self, parts: list[_Part]) -> float:
+        """Return the satisfaction causation of parts that must all hold."""
+        return min(max(self.at(*part).sat for part in parts), *(self._limits(*part)[0] for part in parts))
+
+    def _limits(self, node: Formula, t: int | None) -> tuple[float, float]:
+        """Return the bounds at a sample; None: where no sample has come."""
+        if t is None:
+            lower, upper = bounds(node, self._known.until(0), self._period)
+            return float(lower[0]), float(upper[0])
+        if node not in self._bounds:
+            found = bounds(node, self._known, self._period)
+            self._bounds[node] = list(zip(found.lower.tolist(), found.upper.tolist(), strict=True))
+        every = self._bounds[node]
+        return every[min(t, len(every) - 1)]
+
+    def _window(self, node: Apply, t: int) -> Iterable[int]:
+        if node.op.tense is Tense.NONE:
+            return (t,)
+        begin, end = _interval(node, self._period)
+        if node.op.tense is Tense.FUTURE:
+            return range(t + begin, self._end if end is None else t + end + 1)
+        return range(0 if end is None else max(t - end, 0), t - begin + 1)
+
+    def _targets(self, node: Apply, t: int) -> Iterable[tuple[int, range]]:
+        """Return the samples at which the second operand may hold, each with those at which the first must."""
+        begin, end = _interval(node, self._period)
+        if isinstance(node.op.kernel, Since):
+            return [(u, range(u + 1, t + 1)) for u in self._window(node, t)]
+        if node.op.tense is Tense.FUTURE:
+            return [(u, range(t, u)) for u in self._window(node, t)]
+        assert end is not None, "the grammar asks for a bound"
+        first = max(t - end, 0)
+        return [(u, range(first, u)) for u in range(max(t - end + begin, 0), t + 1)]
+
+
+def _connects(node: Formula) -> bool:
+    """Tell whether an operator only takes minima, maxima and negations of its operands."""
+    kernel = node.op.kernel if isinstance(node, Apply) else None
+    if isinstance(kernel, Pointwise):
+        return kernel.opcode in ("min", "max", "neg")
+    return isinstance(kernel, Window | Shift | Since | Until)
+
+
+def _in_time(node: Formula) -> bool:
+    return isinstance(node, Apply) and node.op.tense is not Tense.NONE
+
+
+def _interval(node: Apply, period: Fraction) -> tuple[int, int | None]:
+    if node.interval is None:
+        return 0, None
+    begin, end = node.interval.begin, node.interval.end
+    return int(begin / period), None if end is None else int(end / period)
+
+
+def _reach(node: Formula, period: Fraction) -> int:
+    """Return how far an operator reads at most, of unbounded ones how far it has to wait."""
+    if not _in_time(node) or not isinstance(node, Apply) or node.op.bounds is Bounds.NONE:
+        return 1
+    begin, end = _interval(node, period)
+    return begin if end is None else end

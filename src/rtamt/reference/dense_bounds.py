@@ -1,0 +1,177 @@
+"""The definition of bounds in dense time: formula and partial knowledge of signals to [L, U] at every instant.
+
+As in discrete time (``discrete_bounds.py``), on step functions. A sample is known to hold its value up to the next
+one of its variable; the newest sample holds it for the tick of its own time, and after that only the
+declared range is known, until no more samples come: then the value is held for ever.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from math import inf, isnan
+from typing import TYPE_CHECKING, NamedTuple, TypeAlias
+
+import numpy as np
+
+from rtamt.language.dense_definitions import QUARTERS, Steps, merged
+from rtamt.language.enclosures import Enclosure
+from rtamt.language.formula import Apply, Const, Formula, Var, fold
+from rtamt.language.undefined_value import undefined
+from rtamt.reference.definition_adapter import signal_of
+from rtamt.reference.discrete_bounds import ANYTHING, Range, componentwise, pointwise
+from rtamt.rewrite.check import check_dense
+from rtamt.rewrite.desugar import desugar, written
+from rtamt.rewrite.horizon import horizons
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+    from fractions import Fraction
+
+    #: Times in ticks, and the lower and the upper bound of the value from each of them on.
+    Samples: TypeAlias = tuple[Sequence[int], Sequence[float], Sequence[float]]
+
+
+class StepBounds(NamedTuple):
+    """[L, U] over time: from each of ``times`` (ticks, strictly increasing) up to the next, the last for ever."""
+
+    times: tuple[int, ...]
+    lower: tuple[float, ...]
+    upper: tuple[float, ...]
+
+    def at(self, tick: int) -> Range:
+        """Return the bounds at a tick, not before the first of ``times``."""
+        i = int(np.searchsorted(self.times, tick, "right")) - 1
+        return self.lower[i], self.upper[i]
+
+
+@dataclass(frozen=True, slots=True)
+class DenseKnowledge:
+    """What is known of signals: the samples of every variable that have come, each with bounds of its value.
+
+    ``ranges`` are the declared ones, which hold after a variable's newest sample; without one it may be
+    anything. ``finished``: no more samples will come.
+    """
+
+    samples: Mapping[str, Samples]
+    ranges: Mapping[str, Range] = field(default_factory=dict)
+    finished: bool = False
+
+    @property
+    def start(self) -> int | None:
+        """The tick at which the trace begins; None while a variable has no sample."""
+        firsts = [times[0] if len(times) else None for times, _, _ in self.samples.values()]
+        return None if None in firsts else max(int(first) for first in firsts if first is not None)
+
+
+def bounds(formula: Formula, known: DenseKnowledge, tick: Fraction) -> StepBounds:
+    """Return [L, U] of a formula from the start of the trace on; ``tick`` is seconds.
+
+    Before the trace has started nothing but the ranges is known, and time counts from tick 0. Raises
+    what :func:`rtamt.reference.discrete_bounds.bounds` raises.
+
+    >>> from fractions import Fraction
+    >>> from rtamt.language.parser import parse_formula
+    >>> soon = parse_formula("eventually[0:2](x >= 3)")
+    >>> bounds(soon, DenseKnowledge({"x": ([0, 5], [1, 4], [1, 4])}, {"x": (0, 5)}), Fraction(1))
+    StepBounds(times=(0, 3, 4, 6), lower=(-2.0, 1.0, 1.0, -3.0), upper=(-2.0, 1.0, 2.0, 2.0))
+    """
+    check_dense(formula)
+    core = desugar(formula)
+    start = known.start
+    origin = (0 if start is None else start) * QUARTERS
+    signals = {name: _signal(name, known, origin, started=start is not None) for name in known.samples}
+    ahead = horizons(core, tick)
+    complete = None if start is None else min(int(times[-1]) for times, _, _ in known.samples.values())
+    last = None if start is None else max(int(times[-1]) for times, _, _ in known.samples.values())
+
+    def step(node: Formula, below: tuple[_Signal, ...]) -> _Signal:
+        value = _apply(node, below, signals, origin, tick)
+        depth = ahead[id(node)]
+        final = None if complete is None or depth is None else complete - int(depth / tick)
+        if known.finished:
+            final = last
+        return _defined(value, node, formula, final, tick)
+
+    with np.errstate(all="ignore"):
+        lower, upper = fold(core, step)
+    times = sorted({*lower.times, *upper.times})
+    return StepBounds(
+        tuple(t // QUARTERS for t in times),
+        tuple(lower.at(t) for t in times),
+        tuple(upper.at(t) for t in times),
+    )
+
+
+class _Signal(NamedTuple):
+    lower: Steps
+    upper: Steps
+
+
+def _signal(name: str, known: DenseKnowledge, origin: int, *, started: bool) -> _Signal:
+    """Return the bounds of a variable from the start of the trace on, in quarters of a tick."""
+    low, high = known.ranges.get(name, ANYTHING)
+    if not started:
+        return _Signal(Steps((origin,), (low,)), Steps((origin,), (high,)))
+    stamps, lower, upper = known.samples[name]
+    times = [int(t) * QUARTERS for t in stamps]
+    columns = [list(map(float, lower)), list(map(float, upper))]
+    if not known.finished:
+        times.append(times[-1] + QUARTERS)
+        columns[0].append(low)
+        columns[1].append(high)
+    steps = []
+    for values in columns:
+        whole = Steps(tuple(times), tuple(values))
+        later = [t for t in times if t > origin]
+        steps.append(merged([origin, *later], [whole.at(t) for t in (origin, *later)]))
+    return _Signal(*steps)
+
+
+def _apply(
+    node: Formula, below: tuple[_Signal, ...], signals: Mapping[str, _Signal], origin: int, tick: Fraction
+) -> _Signal:
+    """Return one sub-formula's bounds from those of its operands."""
+    if isinstance(node, Const):
+        constant = Steps((origin,), (node.value,))
+        return _Signal(constant, constant)
+    if isinstance(node, Var):
+        return signals[node.name]
+    if not isinstance(node, Apply):
+        raise TypeError(f"not a formula: {node!r}")
+    if node.op.extension is not None:
+        times = sorted({t for x in below for steps in x for t in steps.times})
+        operands = tuple(
+            Enclosure(*(np.array([steps.at(t) for t in times]) for steps in signal)) for signal in below
+        )
+        lower, upper = pointwise(node, operands)
+        return _Signal(merged(times, lower.tolist()), merged(times, upper.tolist()))
+    componentwise(node)
+    window = _window(node, tick)
+    return _Signal(
+        signal_of(node, tuple(x.lower for x in below), *window),
+        signal_of(node, tuple(x.upper for x in below), *window),
+    )
+
+
+def _defined(value: _Signal, node: Formula, formula: Formula, final: int | None, tick: Fraction) -> _Signal:
+    """Raise the error for a final value that does not exist; one that is not final may be anything."""
+    times = sorted({*value.lower.times, *value.upper.times})
+    pairs = [(value.lower.at(t), value.upper.at(t)) for t in times]
+    wrong = [i for i, pair in enumerate(pairs) if any(map(isnan, pair))]
+    if not wrong:
+        return value
+    first = times[wrong[0]]
+    if final is not None and first <= final * QUARTERS:
+        seconds = float(first * tick / QUARTERS)
+        raise undefined(written(node, [formula]), f"time {seconds:.15g} s")
+    for i in wrong:
+        pairs[i] = (-inf, inf)
+    return _Signal(merged(times, [low for low, _ in pairs]), merged(times, [high for _, high in pairs]))
+
+
+def _window(node: Apply, tick: Fraction) -> tuple[int, int | None]:
+    """Return the bounds of a node's interval in quarters of a tick; one that was left out is [0, inf)."""
+    if node.interval is None:
+        return 0, None
+    begin, end = node.interval.begin, node.interval.end
+    return int(begin / tick) * QUARTERS, None if end is None else int(end / tick) * QUARTERS

@@ -1,0 +1,188 @@
+"""The definition of bounds in discrete time: formula and partial knowledge of a trace to [L, U] at every sample.
+
+The bounds of a predicate come from interval arithmetic. Above the predicates negation swaps and negates the
+bounds, and everything else applies its definition to the lower and to the upper bounds (RoSI: J. Deshmukh
+et al., "Robust online monitoring of signal temporal logic", 2017). Windows are not cut at the newest sample: the
+trace goes on, with samples of which only the declared range is known. Once it is finished they are cut.
+
+It shares nothing with the engines but the formula, and trusts its caller as ``discrete.py`` does.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from math import inf
+from typing import TYPE_CHECKING, TypeAlias
+
+import numpy as np
+
+from rtamt.errors import SpecificationError
+from rtamt.language.enclosures import Enclosure, extended
+from rtamt.language.formula import Apply, Const, Formula, Var, fold
+from rtamt.language.operators import Bounds, Pointwise, Shift, Since, Tense, Until, Window
+from rtamt.language.undefined_value import at_sample, undefined
+from rtamt.rewrite.desugar import desugar, written
+from rtamt.rewrite.horizon import horizons
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+    from fractions import Fraction
+
+    from numpy.typing import NDArray
+
+Range: TypeAlias = tuple[float, float]
+
+#: What is known of a number of which nothing is known.
+ANYTHING: Range = (-inf, inf)
+
+
+@dataclass(frozen=True, slots=True)
+class Knowledge:
+    """What is known of a trace: bounds of every variable at each of the ``n`` samples that have come.
+
+    ``ranges`` are the declared ones, which hold for all later samples; without one, a variable may be
+    anything. ``finished``: no more samples will come. ``closed``: how many samples, from the first on,
+    are as well known as they will ever be; by default all n.
+    """
+
+    columns: Mapping[str, Enclosure]
+    n: int
+    ranges: Mapping[str, Range] = field(default_factory=dict)
+    finished: bool = False
+    closed: int | None = None
+
+    def until(self, n: int) -> Knowledge:
+        """Return what was known after the first ``n`` samples."""
+        columns = {name: Enclosure(x.lower[:n], x.upper[:n]) for name, x in self.columns.items()}
+        return Knowledge(columns, n, self.ranges)
+
+
+def bounds(formula: Formula, known: Knowledge, period: Fraction, start: float = 0.0) -> Enclosure:
+    """Return [L, U] of a formula at sample 0, 1, …: the last entry is that of all later samples.
+
+    Of a finished trace there are n entries. ``period`` and ``start``, the time of sample 0, are seconds.
+
+    Raises :class:`EvaluationError` where an operation has no value whatever the trace is that agrees
+    with what is known, at a sample from which on no better knowledge comes; and
+    :class:`SpecificationError` at an operator that has no interval extension.
+
+    >>> from fractions import Fraction
+    >>> import numpy as np
+    >>> from rtamt.language.parser import parse_formula
+    >>> soon = parse_formula("eventually[0:2](x >= 3)")
+    >>> x = np.array([4.0, 1.0])
+    >>> bounds(soon, Knowledge({"x": Enclosure(x, x)}, 2, {"x": (0.0, 5.0)}), Fraction(1))
+    Enclosure(lower=array([ 1., -2., -3.]), upper=array([2., 2., 2.]))
+    """
+    core = desugar(formula)
+    ahead = horizons(core, period)
+    closed = known.n if known.closed is None else known.closed
+
+    def step(node: Formula, below: tuple[Enclosure, ...]) -> Enclosure:
+        value = _apply(node, below, known, period)
+        wrong = np.isnan(value.lower) | np.isnan(value.upper)
+        if wrong.any():
+            depth = ahead[id(node)]
+            final = known.n if known.finished else 0 if depth is None else closed - int(depth / period)
+            i = int(wrong.argmax())
+            if i < final:
+                culprit = written(node, [formula])
+                raise undefined(culprit, at_sample(i, start + float(i * period)))
+            value = Enclosure(np.where(wrong, -inf, value.lower), np.where(wrong, inf, value.upper))
+        return value
+
+    with np.errstate(all="ignore"):
+        return _merged(fold(core, step), known)
+
+
+def _merged(value: Enclosure, known: Knowledge) -> Enclosure:
+    """Return bounds without the entries at the end that repeat, those of the samples that came aside."""
+    if known.finished:
+        return value
+    n = len(value.lower)
+    while n > max(1, known.n) and all(ends[n - 1] == ends[n - 2] for ends in value):
+        n -= 1
+    return Enclosure(value.lower[:n], value.upper[:n])
+
+
+def _apply(node: Formula, below: tuple[Enclosure, ...], known: Knowledge, period: Fraction) -> Enclosure:
+    """Return one sub-formula's bounds from those of its operands."""
+    if isinstance(node, Const):
+        value = np.full(known.n if known.finished else 1, node.value)
+        return Enclosure(value, value)
+    if isinstance(node, Var):
+        lower, upper = known.columns[node.name]
+        if known.finished:
+            return Enclosure(lower, upper)
+        low, high = known.ranges.get(node.name, ANYTHING)
+        return Enclosure(np.append(lower, low), np.append(upper, high))
+    if not isinstance(node, Apply):
+        raise TypeError(f"not a formula: {node!r}")
+    if node.op.extension is not None:
+        return pointwise(node, tuple(_padded(x, _longest(below)) for x in below))
+    componentwise(node)
+    window = () if node.op.bounds is Bounds.NONE else _window(node, period)
+    if known.finished:
+        return _by_bound(node, below, window)
+    # Operands are constant after their last entry. So is the result: of an operator of the future from
+    # there on, and of the past when the window has left all that came before.
+    behind, ahead = _reach(node, window)
+    n = _longest(below) + behind
+    lower, upper = _by_bound(node, tuple(_padded(x, n + ahead) for x in below), window)
+    return Enclosure(lower[:n], upper[:n])
+
+
+def pointwise(node: Apply, operands: tuple[Enclosure, ...]) -> Enclosure:
+    """Return the bounds that an operator of one instant makes of those of its operands."""
+    assert node.op.extension is not None
+    assert node.op.definition is not None
+    return extended(node.op.definition, node.op.extension, operands)
+
+
+def componentwise(node: Apply) -> None:
+    """Raise :class:`SpecificationError` unless an operator takes minima and maxima of its operands in time."""
+    if not isinstance(node.op.kernel, Window | Shift | Since | Until):
+        # No operator of the table comes here: pointwise ones have an extension or expand to such.
+        assert not isinstance(node.op.kernel, Pointwise)
+        raise SpecificationError(
+            f"the operator '{node.op.name}' has no interval extension, which bounds need; "
+            f"give its record one (extension=...), or an expansion"
+        )
+
+
+def _by_bound(node: Apply, operands: tuple[Enclosure, ...], window: tuple[int | None, ...]) -> Enclosure:
+    definition: Callable[..., NDArray[np.float64]] | None = node.op.definition
+    assert definition is not None
+    return Enclosure(
+        definition(*(x.lower for x in operands), *window), definition(*(x.upper for x in operands), *window)
+    )
+
+
+def _longest(operands: tuple[Enclosure, ...]) -> int:
+    return max(len(x.lower) for x in operands)
+
+
+def _padded(x: Enclosure, n: int) -> Enclosure:
+    """Return bounds of n samples: the last entry is that of all later ones."""
+    more = max(0, n - len(x.lower))
+    return Enclosure(np.pad(x.lower, (0, more), "edge"), np.pad(x.upper, (0, more), "edge"))
+
+
+def _reach(node: Apply, window: tuple[int | None, ...]) -> tuple[int, int]:
+    """Return for how many samples an operator of the past remembers, and how many one of the future reads ahead."""
+    if window:
+        begin, end = window
+        assert begin is not None
+        reach = begin + 1 if end is None else end + 1
+    else:
+        assert node.op.reach is not None
+        reach = node.op.reach
+    return (reach, 0) if node.op.tense is Tense.PAST else (0, reach)
+
+
+def _window(node: Apply, period: Fraction) -> tuple[int, int | None]:
+    """Return the bounds of a node's interval in samples; one that was left out is [0, inf)."""
+    if node.interval is None:
+        return 0, None
+    end = node.interval.end
+    return int(node.interval.begin / period), None if end is None else int(end / period)

@@ -1,0 +1,201 @@
+"""What the text of a formula says about its bounds and its verdicts before the end of the trace.
+
+Bounds are sound for every formula. They are tight (attained by some trace that agrees with what is known) where
+every sample enters with one polarity: :func:`loose`. In discrete time the end of a trace cuts windows, so that
+a formula may end differently from what was decided while the trace went on: :func:`ends_differently`.
+"""
+
+from __future__ import annotations
+
+from math import inf
+from typing import TYPE_CHECKING, NamedTuple, TypeAlias
+
+import numpy as np
+
+from rtamt.language.enclosures import Enclosure, extended
+from rtamt.language.formula import Apply, Const, Formula, Var, children, fold, postorder, variables
+from rtamt.language.operators import Bounds, Since, Tense, Until
+from rtamt.rewrite.desugar import desugar
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+    from fractions import Fraction
+
+#: From the first to the last instant, in seconds from the present one, at which a sub-formula is read.
+_Span: TypeAlias = "tuple[Fraction | float, Fraction | float]"
+
+_PRESENT: _Span = (0, 0)
+
+
+class _Use(NamedTuple):
+    """One use of a variable: the formula moves with it, with or (-1) against it.
+
+    Of arithmetic that rises and falls with the variable, ``inside`` is that, and ``sign`` how the formula
+    moves with it.
+    """
+
+    sign: int
+    span: _Span
+    inside: Formula | None = None
+
+    def agrees(self, other: _Use, *, dense: bool) -> bool:
+        """Tell whether one value of a sample makes both as bad as they can be."""
+        apart = self.span[1] < other.span[0] or other.span[1] < self.span[0]
+        # In dense time one sample is read at many instants.
+        return (apart and not dense) or (self.sign == other.sign and self.inside == other.inside)
+
+
+def loose(formula: Formula, period: Fraction | None) -> str | None:
+    """Return a variable that may make bounds wider than necessary; None: they are tight.
+
+    ``period``: seconds; None means dense time. Functions of the C library (``exp``, ``ln``) leave bounds up to
+    four units in the last place wider.
+
+    >>> from fractions import Fraction
+    >>> from rtamt.language.parser import parse_formula
+    >>> formulas = ["always(x >= 3 -> eventually[0:5] y >= 3)", "x > 0 or x < 5", "x > 0 or prev(x < 5)"]
+    >>> [loose(parse_formula(text), Fraction(1)) for text in formulas]
+    [None, 'x', None]
+    """
+    core = desugar(formula)
+    constants = _constants(core)
+    # Parents first: by identity of a node and sign, at which instants it is read.
+    spans: dict[tuple[int, int], _Span] = {(id(core), 1): _PRESENT}
+    uses: dict[str, list[_Use]] = {name: [] for name in variables(core)}
+    for node in reversed(list(postorder(core))):
+        for sign in (1, -1):
+            span = spans.get((id(node), sign))
+            if span is None or not variables(node):
+                continue
+            if isinstance(node, Var):
+                uses[node.name].append(_Use(sign, span))
+                continue
+            assert isinstance(node, Apply)
+            moves = _moves(node, constants)
+            if None in moves or (
+                0 in moves and (_repeats(node) or (period is None and len(variables(node)) > 1))
+            ):
+                return variables(node)[0]
+            if 0 in moves:
+                for name in variables(node):
+                    uses[name].append(_Use(sign, span, node))
+                continue
+            for k, (operand, move) in enumerate(zip(node.args, moves, strict=True)):
+                assert move is not None
+                key = (id(operand), sign * move)
+                read = _read(node, k, span, period)
+                before = spans.get(key, read)
+                spans[key] = min(before[0], read[0]), max(before[1], read[1])
+    for name, every in uses.items():
+        if any(not one.agrees(other, dense=period is None) for one in every for other in every):
+            return name
+    return None
+
+
+def _moves(node: Apply, constants: Mapping[int, float]) -> tuple[int | None, ...]:
+    """Return how an operator's value moves with each operand; see ``enclosures.slopes``."""
+    if node.op.tense is not Tense.NONE:
+        return (1,) * len(node.args)
+    if node.op.slopes is None:
+        return (None,) * len(node.args)
+    slopes = node.op.slopes(*(constants.get(id(operand)) for operand in node.args))
+    return tuple(
+        1 if not variables(operand) else slope for operand, slope in zip(node.args, slopes, strict=True)
+    )
+
+
+def _repeats(node: Formula) -> bool:
+    """Tell whether arithmetic reads a variable twice, or a formula in time."""
+    if any(isinstance(part, Apply) and part.op.tense is not Tense.NONE for part in postorder(node)):
+        return True
+
+    def reads(part: Formula, below: tuple[int, ...]) -> int:
+        return 1 if isinstance(part, Var) else sum(below)
+
+    return fold(node, reads) > len(variables(node)) or any(
+        isinstance(part, Apply) and None in _moves(part, _constants(node)) for part in postorder(node)
+    )
+
+
+def _constants(formula: Formula) -> dict[int, float]:
+    """Return the values of the numbers that read no variable, by identity: those that are written as such."""
+    found: dict[int, float] = {}
+    for node in postorder(formula):
+        if isinstance(node, Const):
+            found[id(node)] = node.value
+        elif (
+            isinstance(node, Apply)
+            and node.op.extension is not None
+            and all(id(x) in found for x in node.args)
+        ):
+            assert node.op.definition is not None
+            found[id(node)] = float(node.op.definition(*(np.array([found[id(x)]]) for x in node.args))[0])
+    return found
+
+
+def _read(node: Apply, operand: int, span: _Span, period: Fraction | None) -> _Span:
+    """Return when an operand is read, from when the node is."""
+    op = node.op
+    if op.tense is Tense.NONE:
+        return span
+    begin: Fraction | float
+    end: Fraction | float
+    if op.bounds is Bounds.NONE:
+        assert period is not None
+        begin = end = period
+    elif node.interval is None:
+        begin, end = 0, inf
+    else:
+        begin, end = node.interval.begin, inf if node.interval.end is None else node.interval.end
+    if isinstance(op.kernel, Since | Until) and (operand == 0 or op.tense is Tense.PAST):
+        # φ at every instant up to ψ; of precedes, ψ may be at the present one too.
+        begin = begin if isinstance(op.kernel, Since) and operand == 1 else 0
+    if op.tense is Tense.PAST:
+        begin, end = -end, -begin
+    return span[0] + begin, span[1] + end
+
+
+def ends_differently(formula: Formula, ranges: Mapping[str, tuple[float, float]]) -> Apply | None:
+    """Return an operator that may lose at the end of a discrete trace what was known while it went on.
+
+    None: bounds and verdicts that were reported hold at the end too. Such an operator looks ahead, over an
+    operand of which something is known at instants that have no sample yet: one that reads the past, or
+    a constant, or a variable with a declared range. For verdicts, give the formula in its Boolean
+    semantics (``boolean``).
+
+    >>> from rtamt.language.parser import parse_formula
+    >>> formulas = ["always[0:5](x >= 3)", "eventually[1:2] once[0:5](x >= 3)"]
+    >>> [ends_differently(parse_formula(text), {}) for text in formulas]
+    [None, <formula eventually[1:2](once[0:5](x - 3))>]
+    """
+    unseen: dict[int, Enclosure | None] = {}  # None: not the same at all these instants
+
+    def known(node: Formula) -> bool:
+        found = unseen[id(node)]
+        return found is None or found.lower[0] > -inf or found.upper[0] < inf
+
+    with np.errstate(all="ignore"):
+        for node in postorder(desugar(formula)):
+            if isinstance(node, Apply) and node.op.tense is Tense.FUTURE and any(map(known, node.args)):
+                return node
+            unseen[id(node)] = _unseen(node, [unseen[id(operand)] for operand in children(node)], ranges)
+    return None
+
+
+def _unseen(
+    node: Formula, below: list[Enclosure | None], ranges: Mapping[str, tuple[float, float]]
+) -> Enclosure | None:
+    """Return the bounds of a sub-formula where no sample has come yet."""
+    if isinstance(node, Const | Var):
+        low, high = (node.value,) * 2 if isinstance(node, Const) else ranges.get(node.name, (-inf, inf))
+        return Enclosure(np.array([low]), np.array([high]))
+    assert isinstance(node, Apply)
+    operands = [x for x in below if x is not None]
+    if len(operands) < len(below) or node.op.tense is Tense.PAST:
+        return None
+    if node.op.extension is None:
+        return Enclosure(
+            np.array([-inf]), np.array([inf])
+        )  # of the future, over operands that may be anything
+    assert node.op.definition is not None
+    return extended(node.op.definition, node.op.extension, operands)

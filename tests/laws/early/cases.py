@@ -1,0 +1,214 @@
+"""Random formulas, traces and partial knowledge of them, all drawn from a ``random.Random``."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from fractions import Fraction
+from typing import TYPE_CHECKING
+
+from rtamt.language.formula import Apply, Const, Formula, Interval, Var, variables
+from rtamt.language.operators import STL, Bounds, Operator, Sort, Tense
+from rtamt.rewrite.horizon import horizon
+
+if TYPE_CHECKING:
+    from random import Random
+
+Range = tuple[float, float]
+#: What is known of a sample: bounds, or None where it is missing.
+Known = Range | None
+
+ANYTHING: Range = (-math.inf, math.inf)
+#: Functions that have no value everywhere, or whose bounds are widened: drawn seldom.
+ODD = ("sqrt", "exp", "pow", "log", "ln", "div")
+
+
+def formula(
+    rng: Random, names: tuple[str, ...], *, depth: int = 3, dense: bool = False, **kinds: bool
+) -> Formula:
+    """Draw a formula; ``kinds`` are what it may hold: ``odd`` functions, ``past``, ``arithmetic``, ``unbounded``."""
+
+    def allowed(op: Operator) -> bool:
+        return (
+            not (dense and op.discrete_only)
+            and (kinds.get("odd", True) or op.name not in ODD)
+            and (kinds.get("past", True) or op.tense is not Tense.PAST)
+            and (kinds.get("arithmetic", True) or op.result is Sort.FORMULA)
+        )
+
+    by_sort = {sort: [op for op in STL if op.result is sort and allowed(op)] for sort in Sort}
+
+    def number(depth: int) -> Formula:
+        if depth == 0 or not by_sort[Sort.NUMBER] or rng.random() < 0.6:
+            return Var(rng.choice(names)) if rng.random() < 0.75 else Const(rng.randint(-4, 4) / 2)
+        return apply(rng.choice(by_sort[Sort.NUMBER]), depth)
+
+    def apply(op: Operator, depth: int) -> Formula:
+        if op.name in ODD and rng.random() < 0.7:
+            return number(0)
+        operands = [draw(sort, depth - 1) for sort in op.operands]
+        return Apply(op, tuple(operands), _interval(rng, op, unbounded=kinds.get("unbounded", False)))
+
+    def draw(sort: Sort, depth: int) -> Formula:
+        if sort is Sort.NUMBER:
+            return number(max(depth, 0))
+        if depth <= 0:
+            odd = rng.random() < 0.3
+            return Var(rng.choice(names)) if odd else apply(STL[rng.choice(("ge", "gt", "le", "lt"))], 1)
+        return apply(rng.choice(by_sort[sort]), depth)
+
+    return draw(Sort.FORMULA, depth)
+
+
+def _reading(rng: Random, **kinds: bool) -> Formula:
+    """Draw a formula that reads a variable."""
+    while True:
+        drawn = formula(rng, ("x", "y"), depth=rng.randint(1, 3), **kinds)
+        if variables(drawn):
+            return drawn
+
+
+def _interval(rng: Random, op: Operator, *, unbounded: bool) -> Interval | None:
+    if op.bounds is Bounds.NONE:
+        return None
+    begin, length = rng.randint(0, 2), rng.randint(0, 3)
+    if op.bounds is Bounds.OPTIONAL and (unbounded or op.tense is Tense.PAST) and rng.random() < 0.3:
+        return None if rng.random() < 0.5 else Interval(Fraction(begin), None)
+    return Interval(Fraction(begin), Fraction(begin + length))
+
+
+@dataclass(frozen=True)
+class Case:
+    """A formula, and a trace of discrete time that goes on for a horizon after the n samples that come."""
+
+    formula: Formula
+    names: tuple[str, ...]
+    ranges: dict[str, Range]
+    #: The whole trace.
+    truth: dict[str, list[float]]
+    #: Of each sample that comes, what is known of each variable: always bounds that hold the truth.
+    samples: list[dict[str, Known]]
+
+    @property
+    def n(self) -> int:
+        return len(self.samples)
+
+    @property
+    def exact(self) -> bool:
+        return all(each is not None and each[0] == each[1] for row in self.samples for each in row.values())
+
+    def known(self, name: str, i: int) -> Range:
+        """Return the bounds of a variable at a sample."""
+        found = self.samples[i][name]
+        return self.ranges.get(name, ANYTHING) if found is None else found
+
+
+def value(rng: Random, low: float = -4.0, high: float = 4.0) -> float:
+    return min(max(rng.randint(-8, 8) / 2, low), high)
+
+
+def _ranges(rng: Random, names: tuple[str, ...], share: float) -> dict[str, Range]:
+    chosen = [name for name in names if rng.random() < share]
+    return {name: (min(ends), max(ends)) for name in chosen if (ends := (value(rng), value(rng)))}
+
+
+def _known(rng: Random, true: float, limits: Range, *, exact: bool) -> Known:
+    kind = "exact" if exact else rng.choice(("exact", "exact", "bounds", "missing"))
+    if kind == "missing":
+        return None
+    if kind == "exact":
+        return true, true
+    low, high = limits
+    return max(true - rng.randint(0, 4) / 2, low), min(true + rng.randint(0, 4) / 2, high)
+
+
+def case(
+    rng: Random, *, exact: bool | None = None, ranges: bool | None = None, most: int = 8, **kinds: bool
+) -> Case:
+    """Draw a case of discrete time with bounded future; ``exact`` and ``ranges``: whether, by default either."""
+    drawn = _reading(rng, **kinds)
+    names, depth = variables(drawn), horizon(drawn)
+    assert depth is not None
+    limits = _ranges(rng, names, 0.4) if ranges is None else _ranges(rng, names, 1.0) if ranges else {}
+    sharp = rng.random() < 0.5 if exact is None else exact
+    n = rng.randint(1, most)
+    truth = {
+        name: [value(rng, *limits.get(name, ANYTHING)) for _ in range(n + int(depth) + 1)] for name in names
+    }
+    samples = [
+        {name: _known(rng, truth[name][i], limits.get(name, ANYTHING), exact=sharp) for name in names}
+        for i in range(n)
+    ]
+    return Case(drawn, names, limits, truth, samples)
+
+
+@dataclass(frozen=True)
+class DenseCase:
+    """A formula, signals, and the updates in which their samples come: ticks, and what is known of some variables."""
+
+    formula: Formula
+    names: tuple[str, ...]
+    ranges: dict[str, Range]
+    updates: list[tuple[int, dict[str, Known]]]
+    #: Of each variable all samples, also later ones that never come: times and values.
+    truth: dict[str, tuple[list[int], list[float]]] = field(default_factory=dict)
+
+    @property
+    def exact(self) -> bool:
+        return all(
+            each is not None and each[0] == each[1] for _, row in self.updates for each in row.values()
+        )
+
+    def bounded(self, k: int) -> list[tuple[int, dict[str, Range]]]:
+        """Return the first k updates with the bounds of every variable in them."""
+        return [
+            (t, {name: self.ranges.get(name, ANYTHING) if v is None else v for name, v in row.items()})
+            for t, row in self.updates[:k]
+        ]
+
+
+def dense_case(
+    rng: Random,
+    *,
+    exact: bool | None = None,
+    ranges: bool | None = None,
+    ordered: bool | None = None,
+    **kinds: bool,
+) -> DenseCase:
+    """Draw a case of dense time; ``ordered``: whether the updates come in the order of their times."""
+    drawn = _reading(rng, dense=True, **{"unbounded": True, **kinds})
+    names = variables(drawn)
+    limits = _ranges(rng, names, 0.4) if ranges is None else _ranges(rng, names, 1.0) if ranges else {}
+    sharp = rng.random() < 0.5 if exact is None else exact
+    origin = rng.choice((0, 0, -5, 7))
+    truth: dict[str, tuple[list[int], list[float]]] = {}
+    came: dict[str, int] = {}
+    for name in names:
+        n = rng.randint(1, 6)
+        times = [origin + rng.choice((0, 0, 1, 3))]
+        while len(times) < n + 3:
+            times.append(times[-1] + rng.choice((1, 1, 2, 2, 3, 4)))
+        truth[name] = times, [value(rng, *limits.get(name, ANYTHING)) for _ in times]
+        came[name] = n
+    known = {
+        name: [_known(rng, v, limits.get(name, ANYTHING), exact=sharp) for v in values[: came[name]]]
+        for name, (_, values) in truth.items()
+    }
+    updates: list[tuple[int, dict[str, Known]]] = []
+    if rng.random() < 0.6 if ordered is None else ordered:
+        for t in sorted({t for name in names for t in truth[name][0][: came[name]]}):
+            row = {
+                name: known[name][truth[name][0].index(t)]
+                for name in names
+                if t in truth[name][0][: came[name]]
+            }
+            updates.append((t, row))
+    else:
+        order = [name for name in names for _ in range(came[name])]
+        rng.shuffle(order)
+        begun = dict.fromkeys(names, 0)
+        for name in order:
+            k = begun[name]
+            begun[name] += 1
+            updates.append((truth[name][0][k], {name: known[name][k]}))
+    return DenseCase(drawn, names, limits, updates, truth)

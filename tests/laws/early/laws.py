@@ -1,0 +1,359 @@
+"""The laws of bounds and early verdicts. Each takes a case and an implementation, and asserts.
+
+``"bounds"`` are [L, U] of a formula at an instant, given what is known of the signals so far.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rtamt.errors import EvaluationError
+from rtamt.language.formula import Apply, postorder
+from rtamt.language.operators import STL
+from rtamt.reference import dense as dense_reference
+from rtamt.reference import discrete as reference
+from rtamt.reference import discrete_bounds, earliest
+from rtamt.reference.causation import causation
+from rtamt.reference.discrete_bounds import ANYTHING
+from rtamt.rewrite.early import ends_differently, loose
+from rtamt.rewrite.horizon import horizon
+from rtamt.rewrite.semantics import boolean
+from tests.laws.early.monitors import DEFINITION, PERIOD, TICK
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from rtamt.language.formula import Formula
+    from tests.laws.early.cases import Case, DenseCase
+    from tests.laws.early.monitors import Implementation
+
+
+class NothingToCheck(Exception):  # noqa: N818 - no error
+    """The case has no value to check: an operation in it has none, or it is outside the class of the law."""
+
+
+def rho(formula: Formula, columns: Mapping[str, list[float]], n: int) -> list[float]:
+    """Return the robustness over whole columns, whose end cuts windows."""
+    arrays = {name: np.array(column[:n], float) for name, column in columns.items()}
+    try:
+        return reference.evaluate(formula, arrays, n, PERIOD).tolist()
+    except EvaluationError:
+        raise NothingToCheck from None
+
+
+def _horizon(formula: Formula) -> int:
+    depth = horizon(formula)
+    assert depth is not None
+    return int(depth)
+
+
+def _given(known: Any) -> Any:
+    """Return what an update takes: a number where the bounds are one."""
+    return known[0] if known is not None and known[0] == known[1] else known
+
+
+def _monitors(case: Case, made: Implementation) -> Any:
+    """Yield a monitor of the bounds of a case before the first and after every sample."""
+    monitor = made.interval(case.formula, case.names, case.ranges, 0)
+    yield 0, monitor
+    for i, row in enumerate(case.samples):
+        monitor.update(i, **{name: _given(known) for name, known in row.items()})
+        yield i + 1, monitor
+
+
+def _all_bounds(case: Case, made: Implementation) -> list[list[tuple[float, float]]]:
+    """Return the bounds at every sample of the whole trace: before the first and after every sample."""
+    instants = range(len(next(iter(case.truth.values()))) - _horizon(case.formula))
+    found = []
+    try:
+        for _, monitor in _monitors(case, made):
+            each = [monitor.interval(t) for t in instants]
+            found.append([(bounds.lower, bounds.upper) for bounds in each])
+    except EvaluationError:
+        raise NothingToCheck from None
+    return found
+
+
+# ---- discrete time ------------------------------------------------------------------------------
+
+
+def sound(case: Case, made: Implementation) -> None:
+    """The robustness of the whole trace lies within the bounds, at every instant and from the beginning."""
+    expected = rho(case.formula, case.truth, len(next(iter(case.truth.values()))))
+    for bounds in _all_bounds(case, made):
+        for (lower, upper), value in zip(bounds, expected, strict=False):
+            assert lower <= value <= upper
+
+
+def narrowing(case: Case, made: Implementation) -> None:
+    """With every sample the bounds at every instant only become narrower."""
+    for before, after in itertools.pairwise(_all_bounds(case, made)):
+        for (wide_lower, wide_upper), (lower, upper) in zip(before, after, strict=True):
+            assert wide_lower <= lower <= upper <= wide_upper
+
+
+def delayed(case: Case, made: Implementation) -> None:
+    """Of exact samples the bounds meet one horizon later, in the robustness."""
+    assert case.exact
+    expected = rho(case.formula, case.truth, len(next(iter(case.truth.values()))))
+    for n, bounds in enumerate(_all_bounds(case, made)):
+        for t in range(n - _horizon(case.formula)):
+            assert bounds[t] == (expected[t], expected[t])
+
+
+def finished(case: Case, made: Implementation) -> None:
+    """At the end the bounds are the robustness of the samples, within all that was told before, outside one class."""
+    assert case.exact
+    expected = rho(case.formula, case.truth, case.n)
+    before = _all_bounds(case, made)
+    *_, (_, monitor) = _monitors(case, made)
+    monitor.finish()
+    narrow = ends_differently(case.formula, case.ranges) is None
+    for t in range(case.n):
+        final = monitor.interval(t)
+        assert (final.lower, final.upper) == (expected[t], expected[t])
+        for bounds in before if narrow else ():
+            assert bounds[t][0] <= expected[t] <= bounds[t][1]
+
+
+def as_defined(case: Case, made: Implementation) -> None:
+    """After every sample and at the end, the bounds at every instant are those of the definition."""
+    if made is DEFINITION:
+        raise NothingToCheck
+    assert _all_bounds(case, made) == _all_bounds(case, DEFINITION)
+
+
+def any_order(case: Case, made: Implementation, order: list[int]) -> None:
+    """Whatever the order in which samples come within the lateness, the final bounds are the same."""
+    finals = []
+    for arrival in (range(case.n), order):
+        monitor = made.interval(case.formula, case.names, case.ranges, case.n)
+        for i in arrival:
+            monitor.update(i, **{name: _given(known) for name, known in case.samples[i].items()})
+        monitor.finish()
+        try:
+            finals.append([monitor.interval(t) for t in range(case.n)])
+        except EvaluationError:
+            raise NothingToCheck from None
+    assert finals[0] == finals[1]
+
+
+def tight(case: Case, made: Implementation, most: int = 200) -> None:
+    """Where the static check claims it, some trace that agrees with the samples attains each bound.
+
+    Tried are all halves, at which arithmetic turns around unless a factor moves that place.
+    """
+    moved = any(isinstance(node, Apply) and node.op is STL["mul"] for node in postorder(case.formula))
+    if moved or loose(case.formula, PERIOD) is not None:
+        raise NothingToCheck
+    length = len(next(iter(case.truth.values())))
+    choices = []
+    for name in case.names:
+        for i in range(length):
+            low, high = case.known(name, i) if i < case.n else case.ranges.get(name, ANYTHING)
+            choices.append([k / 2 for k in range(round(2 * low), round(2 * high) + 1)])
+    if math.prod(map(len, choices)) > most:
+        raise NothingToCheck
+    reached = [
+        rho(
+            case.formula,
+            {name: list(row[k * length : (k + 1) * length]) for k, name in enumerate(case.names)},
+            length,
+        )
+        for row in itertools.product(*choices)
+    ]
+    bounds = _all_bounds(case, made)[-1]
+    for t, (lower, upper) in enumerate(bounds):
+        assert min(values[t] for values in reached) == lower
+        assert max(values[t] for values in reached) == upper
+
+
+def eager(case: Case, made: Implementation) -> None:
+    """Every verdict comes once, with the earliest sample that decides it; outside one class it is that of the end."""
+    monitor = made.eager(case.formula, case.names, case.ranges)
+    told = []
+    try:
+        for i, row in enumerate(case.samples):
+            told.append(monitor.update(i, **{name: _given(known) for name, known in row.items()}))
+        told.append(monitor.finish())
+        known = _definition(case)
+        expected = earliest.verdicts(case.formula, known, PERIOD)
+    except EvaluationError:
+        raise NothingToCheck from None
+    got = [[(each.time, each.satisfied, each.decided_at) for each in each_update] for each_update in told]
+    assert got == [[tuple(each) for each in each_update] for each_update in expected]
+    _settled_signs(case, got)
+
+
+def _settled_signs(case: Case, got: list[list[tuple[int, bool, int]]]) -> None:
+    """Check verdicts against the bounds of the definition, whose signs they are, and against the end."""
+    truth = boolean(case.formula)
+    known = _definition(case)
+    stages = [discrete_bounds.bounds(truth, known.until(n), PERIOD) for n in range(1, case.n + 1)]
+    stages.append(discrete_bounds.bounds(truth, known, PERIOD))
+    seen = set()
+    for k, news in enumerate(got):
+        for t, satisfied, decided_at in news:
+            assert t not in seen
+            seen.add(t)
+            settled = [
+                j
+                for j, stage in enumerate(stages)
+                for i in [min(t, len(stage.lower) - 1)]
+                if (stage.lower[i] > 0 if satisfied else stage.upper[i] < 0)
+            ]
+            first = min(settled[0], case.n - 1)
+            assert decided_at == first
+            assert k == (max(t, settled[0]) if settled[0] < case.n else case.n)
+    if case.exact:
+        assert seen == set(range(case.n))
+        if ends_differently(truth, case.ranges) is None:
+            final = rho(truth, case.truth, case.n)
+            assert all(satisfied == (final[t] > 0) for news in got for t, satisfied, _ in news)
+
+
+def _definition(case: Case) -> discrete_bounds.Knowledge:
+    monitor = DEFINITION.interval(case.formula, case.names, case.ranges, 0)
+    for i, row in enumerate(case.samples):
+        monitor.update(i, **row)
+    monitor.finish()
+    return monitor.known
+
+
+def causes(case: Case) -> None:
+    """The bounds are the extremes of the causation of all samples so far."""
+    assert case.exact
+    assert not case.ranges
+    known = _definition(case)
+    m = case.n + 2
+    viol, sat = [math.inf] * m, [-math.inf] * m
+    for n in range(1, case.n + 1):
+        try:
+            bounds = discrete_bounds.bounds(case.formula, known.until(n), PERIOD)
+            news = causation(case.formula, known.until(n), PERIOD, m)
+        except EvaluationError:
+            raise NothingToCheck from None
+        for t in range(m):
+            viol[t], sat[t] = min(viol[t], news[t].viol), max(sat[t], news[t].sat)
+            i = min(t, len(bounds.lower) - 1)
+            assert (sat[t], viol[t]) == (bounds.lower[i], bounds.upper[i])
+
+
+# ---- dense time ---------------------------------------------------------------------------------
+
+
+def _span(case: DenseCase) -> tuple[int, int]:
+    times = [t for t, _ in case.truth.values()]
+    return max(t[0] for t in times), max(t[-1] for t in times)
+
+
+def _dense_rho(formula: Formula, signals: Mapping[str, tuple[list[int], list[float]]]) -> Any:
+    try:
+        return dense_reference.evaluate(formula, signals, TICK)
+    except EvaluationError:
+        raise NothingToCheck from None
+
+
+def _values(steps: Any, ticks: range) -> list[float]:
+    return steps.values[np.searchsorted(steps.times, list(ticks), side="right") - 1].tolist()
+
+
+def _dense_bounds(case: DenseCase, made: Implementation) -> list[list[tuple[float, float]]]:
+    """Return the bounds at every tick of the trace, after every update from the first on that starts it."""
+    monitor = made.dense_interval(case.formula, case.names, case.ranges)
+    ticks = range(_span(case)[0], _span(case)[1] + 1)
+    missing = set(case.names)
+    found = []
+    try:
+        for t, row in case.updates:
+            monitor.update(t, **{name: _given(known) for name, known in row.items()})
+            missing -= set(row)
+            if not missing:
+                each = [monitor.interval(k) for k in ticks]
+                found.append([(bounds.lower, bounds.upper) for bounds in each])
+    except EvaluationError:
+        raise NothingToCheck from None
+    return found
+
+
+def dense_sound(case: DenseCase, made: Implementation) -> None:
+    """The robustness of the signals with all later samples lies within the bounds."""
+    ticks = range(_span(case)[0], _span(case)[1] + 1)
+    expected = _values(_dense_rho(case.formula, case.truth), ticks)
+    for bounds in _dense_bounds(case, made):
+        for (lower, upper), value in zip(bounds, expected, strict=True):
+            assert lower <= value <= upper
+
+
+def dense_narrowing(case: DenseCase, made: Implementation) -> None:
+    """With every update the bounds at every instant only become narrower."""
+    for before, after in itertools.pairwise(_dense_bounds(case, made)):
+        for (wide_lower, wide_upper), (lower, upper) in zip(before, after, strict=True):
+            assert wide_lower <= lower <= upper <= wide_upper
+
+
+def dense_finished(case: DenseCase, made: Implementation) -> None:
+    """At the end the bounds are the robustness of the samples, within all that was told before."""
+    assert case.exact
+    came: dict[str, tuple[list[int], list[float]]] = {name: ([], []) for name in case.names}
+    monitor = made.dense_interval(case.formula, case.names, case.ranges)
+    for t, row in case.updates:
+        for name, known in row.items():
+            came[name][0].append(t)
+            came[name][1].append(known[0])
+        monitor.update(t, **{name: _given(known) for name, known in row.items()})
+    start, end = max(t[0] for t, _ in came.values()), max(t[-1] for t, _ in came.values())
+    expected = _values(_dense_rho(case.formula, came), range(start, end + 1))
+    monitor.finish()
+    final = [monitor.interval(t) for t in range(start, end + 1)]
+    assert [(each.lower, each.upper) for each in final] == [(value, value) for value in expected]
+    for bounds in _dense_bounds(case, made):
+        for (lower, upper), value in zip(bounds, expected, strict=False):
+            assert lower <= value <= upper
+
+
+def dense_as_defined(case: DenseCase, made: Implementation) -> None:
+    """After every update the bounds at every tick are those of the definition."""
+    if made is DEFINITION:
+        raise NothingToCheck
+    assert _dense_bounds(case, made) == _dense_bounds(case, DEFINITION)
+
+
+def dense_eager(case: DenseCase, made: Implementation) -> None:
+    """Every tick has its verdict once, from the earliest update that decides it; that of the end agrees."""
+    monitor = made.dense_eager(case.formula, case.names, case.ranges)
+    told = []
+    try:
+        for t, row in case.updates:
+            told.append(monitor.update(t, **{name: _given(known) for name, known in row.items()}))
+        told.append(monitor.finish())
+        expected = earliest.dense_verdicts(
+            case.formula, case.bounded(len(case.updates)), case.names, TICK, case.ranges, finished=True
+        )
+    except EvaluationError:
+        raise NothingToCheck from None
+    got = [
+        {t: (run.satisfied, run.decided_at) for run in news for t in range(run.begin, run.end)}
+        for news in told
+    ]
+    assert [sum(run.end - run.begin for run in news) for news in told] == [len(each) for each in got]
+    assert got == [{t: (satisfied, at) for t, satisfied, at in news} for news in expected]
+    if case.exact:
+        _dense_signs(case, got)
+
+
+def _dense_signs(case: DenseCase, got: list[dict[int, tuple[bool, int]]]) -> None:
+    """Check verdicts of exact samples against the truth at the end, and that none is missing or comes twice."""
+    known = earliest.after(case.bounded(len(case.updates)), case.names, case.ranges, finished=True)
+    assert known.start is not None
+    end = max(t for t, _ in case.updates)
+    signals = {name: (list(times), list(lower)) for name, (times, lower, _) in known.samples.items()}
+    final = _values(_dense_rho(boolean(case.formula), signals), range(known.start, end + 1))
+    assert sorted(t for news in got for t in news) == list(range(known.start, end + 1))
+    for news in got:
+        for t, (satisfied, _) in news.items():
+            assert satisfied == (final[t - known.start] > 0)

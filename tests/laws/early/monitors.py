@@ -1,0 +1,146 @@
+"""The monitors that must obey the laws of early verdicts, all with the interface of the library's own.
+
+An implementation is four functions, which make a monitor of a formula: to add the engine's, add one to
+:data:`IMPLEMENTATIONS`. The first one is the definition, which evaluates all that came again at every question.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rtamt import Interval, Verdict, VerdictRun
+from rtamt.language.enclosures import Enclosure
+from rtamt.reference import dense_bounds, discrete_bounds, earliest
+from rtamt.reference.discrete_bounds import ANYTHING, Knowledge
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    from rtamt.language.formula import Formula
+    from tests.laws.early.cases import Range
+
+PERIOD = TICK = Fraction(1)
+
+
+@dataclass(frozen=True)
+class Implementation:
+    """How monitors are made: of a formula, its variables, declared ranges, and in discrete time the lateness.
+
+    Times are whole seconds: the period and the tick are 1 s. A monitor of bounds has ``update(t, x=…)``, which
+    takes a number, bounds or None (missing), ``interval(t)`` and ``finish()``; one of verdicts has
+    ``update`` and ``finish``, which return lists of ``Verdict``, in dense time of ``VerdictRun``.
+    """
+
+    name: str
+    interval: Callable[[Formula, tuple[str, ...], Mapping[str, Range], int], Any]
+    eager: Callable[[Formula, tuple[str, ...], Mapping[str, Range]], Any]
+    dense_interval: Callable[[Formula, tuple[str, ...], Mapping[str, Range]], Any]
+    dense_eager: Callable[[Formula, tuple[str, ...], Mapping[str, Range]], Any]
+
+
+def _bounds(value: Any, limits: Range) -> Range:
+    if value is None:
+        return limits
+    return value if isinstance(value, tuple) else (value, value)
+
+
+class _Discrete:
+    """What all monitors of the definition share in discrete time: the samples so far."""
+
+    def __init__(
+        self, formula: Formula, names: tuple[str, ...], ranges: Mapping[str, Range], _lateness: int = 0
+    ) -> None:
+        self._formula, self._names, self._ranges = formula, names, ranges
+        self._rows: dict[int, dict[str, Range]] = {}
+        self._finished = False
+
+    def _take(self, t: int, values: Mapping[str, Any]) -> None:
+        self._rows[t] = {name: _bounds(v, self._limits(name)) for name, v in values.items()}
+
+    def _limits(self, name: str) -> Range:
+        return self._ranges.get(name, ANYTHING)
+
+    @property
+    def known(self) -> Knowledge:
+        n = max(self._rows, default=-1) + 1
+        columns = {}
+        for name in self._names:
+            ends = [self._rows[i][name] if i in self._rows else self._limits(name) for i in range(n)]
+            columns[name] = Enclosure(*(np.array([each[k] for each in ends], float) for k in (0, 1)))
+        return Knowledge(columns, n, self._ranges, self._finished)
+
+
+class _Intervals(_Discrete):
+    def update(self, t: int, **values: Any) -> None:
+        self._take(t, values)
+
+    def interval(self, t: int = 0) -> Interval:
+        found = discrete_bounds.bounds(self._formula, self.known, PERIOD)
+        i = min(t, len(found.lower) - 1)
+        return Interval(float(found.lower[i]), float(found.upper[i]))
+
+    def finish(self) -> None:
+        self._finished = True
+
+
+class _Eager(_Discrete):
+    def update(self, t: int, **values: Any) -> list[Verdict]:
+        self._take(t, values)
+        return self._told()
+
+    def finish(self) -> list[Verdict]:
+        self._finished = True
+        return self._told()
+
+    def _told(self) -> list[Verdict]:
+        return [Verdict(*each) for each in earliest.verdicts(self._formula, self.known, PERIOD)[-1]]
+
+
+class _Dense:
+    """The same in dense time."""
+
+    def __init__(self, formula: Formula, names: tuple[str, ...], ranges: Mapping[str, Range]) -> None:
+        self._formula, self._names, self._ranges = formula, names, ranges
+        self._updates: list[tuple[int, dict[str, Range]]] = []
+        self._finished = False
+
+    def _take(self, t: int, values: Mapping[str, Any]) -> None:
+        row = {name: _bounds(v, self._ranges.get(name, ANYTHING)) for name, v in values.items()}
+        self._updates.append((t, row))
+
+
+class _DenseIntervals(_Dense):
+    def update(self, t: int, **values: Any) -> None:
+        self._take(t, values)
+
+    def interval(self, t: int) -> Interval:
+        known = earliest.after(self._updates, self._names, self._ranges, finished=self._finished)
+        return Interval(*dense_bounds.bounds(self._formula, known, TICK).at(t))
+
+    def finish(self) -> None:
+        self._finished = True
+
+
+class _DenseEager(_Dense):
+    def update(self, t: int, **values: Any) -> list[VerdictRun]:
+        self._take(t, values)
+        return self._told()
+
+    def finish(self) -> list[VerdictRun]:
+        self._finished = True
+        return self._told()
+
+    def _told(self) -> list[VerdictRun]:
+        told = earliest.dense_verdicts(
+            self._formula, self._updates, self._names, TICK, self._ranges, finished=self._finished
+        )
+        return [VerdictRun(*run) for run in earliest.runs(told[-1])]
+
+
+DEFINITION = Implementation("definition", _Intervals, _Eager, _DenseIntervals, _DenseEager)
+
+IMPLEMENTATIONS = [DEFINITION]

@@ -1,0 +1,129 @@
+"""The laws on random cases: ``python -m tests.laws.early.soak 1000000 [SEED]`` checks each on its share of so many.
+
+A failure prints the seed of its case, which :data:`LAWS` reproduces: ``law(random.Random(seed), made)``.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections import Counter
+from random import Random
+from typing import TYPE_CHECKING
+
+from tests.laws.early import laws
+from tests.laws.early.cases import case, dense_case
+from tests.laws.early.monitors import DEFINITION, IMPLEMENTATIONS
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from tests.laws.early.monitors import Implementation
+
+    Law = Callable[[Random, Implementation], None]
+
+
+def sound(rng: Random, made: Implementation) -> None:
+    laws.sound(case(rng), made)
+
+
+def narrowing(rng: Random, made: Implementation) -> None:
+    laws.narrowing(case(rng), made)
+
+
+def delayed(rng: Random, made: Implementation) -> None:
+    laws.delayed(case(rng, exact=True), made)
+
+
+def finished(rng: Random, made: Implementation) -> None:
+    laws.finished(case(rng, exact=True), made)
+
+
+def as_defined(rng: Random, made: Implementation) -> None:
+    laws.as_defined(case(rng), made)
+
+
+def any_order(rng: Random, made: Implementation) -> None:
+    drawn = case(rng)
+    order = list(range(drawn.n))
+    rng.shuffle(order)
+    laws.any_order(drawn, made, order)
+
+
+def tight(rng: Random, made: Implementation) -> None:
+    drawn = case(rng, ranges=True, most=2, odd=False)
+    laws.tight(drawn, made)
+
+
+def eager(rng: Random, made: Implementation) -> None:
+    laws.eager(case(rng), made)
+
+
+def causes(rng: Random, made: Implementation) -> None:
+    if made is not DEFINITION:
+        raise laws.NothingToCheck
+    laws.causes(case(rng, exact=True, ranges=False, arithmetic=False))
+
+
+def dense_sound(rng: Random, made: Implementation) -> None:
+    laws.dense_sound(dense_case(rng), made)
+
+
+def dense_narrowing(rng: Random, made: Implementation) -> None:
+    laws.dense_narrowing(dense_case(rng), made)
+
+
+def dense_finished(rng: Random, made: Implementation) -> None:
+    laws.dense_finished(dense_case(rng, exact=True), made)
+
+
+def dense_as_defined(rng: Random, made: Implementation) -> None:
+    laws.dense_as_defined(dense_case(rng), made)
+
+
+def dense_eager(rng: Random, made: Implementation) -> None:
+    laws.dense_eager(dense_case(rng), made)
+
+
+LAWS: list[Law] = [
+    sound,
+    narrowing,
+    delayed,
+    finished,
+    as_defined,
+    any_order,
+    tight,
+    eager,
+    causes,
+    dense_sound,
+    dense_narrowing,
+    dense_finished,
+    dense_as_defined,
+    dense_eager,
+]
+
+#: Laws that compare an implementation with the definition.
+COMPARISONS: list[Law] = [as_defined, dense_as_defined]
+
+
+def main(count: int, first: int = 0) -> None:
+    """Check every law for every implementation on its share of ``count`` cases, from seed ``first`` on."""
+    own = [law for law in LAWS if law not in COMPARISONS]
+    pairs = [(law, made) for made in IMPLEMENTATIONS for law in (own if made is DEFINITION else LAWS)]
+    checked: Counter[str] = Counter()
+    for seed in range(first, first + count):
+        law, made = pairs[seed % len(pairs)]
+        try:
+            law(Random(seed), made)  # noqa: S311 - no secret
+        except laws.NothingToCheck:
+            checked["without a value to check"] += 1
+        except BaseException:
+            print(f"{law.__name__} of {made.name}, seed {seed}", flush=True)
+            raise
+        else:
+            checked[f"{law.__name__} of {made.name}"] += 1
+    for name, cases in sorted(checked.items()):
+        print(f"{cases:>9,}  {name}")
+
+
+if __name__ == "__main__":
+    main(*map(int, sys.argv[1:]))
