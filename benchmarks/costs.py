@@ -22,6 +22,7 @@ from rtamt.compiler.plan import compile_program
 from rtamt.engine.native import core
 from rtamt.language.parser import parse_formula
 from rtamt.rewrite.desugar import desugar
+from rtamt.signals.dense import Dense
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -141,7 +142,7 @@ def dense_offline(text: str) -> Callable[[], float]:
     n = 1_000_000
     random = np.random.default_rng(1)
     tick = Fraction(1, 10**9)
-    program = compile_program((desugar(parse_formula(text)),), tick, domain="dense")
+    program = compile_program((desugar(parse_formula(text)),), tick, domain=Dense)
     code = program.to_bytes()
     columns = [
         (np.cumsum(random.integers(1, 2 * 10**8, size=n)), random.normal(size=n)) for _ in program.inputs

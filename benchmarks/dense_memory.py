@@ -13,6 +13,7 @@ from rtamt.compiler.plan import compile_program
 from rtamt.engine.native import core
 from rtamt.language.parser import parse_formula
 from rtamt.rewrite.desugar import desugar
+from rtamt.signals.dense import Dense
 
 CHUNK = 100_000
 EVENTS = 100_000_000
@@ -28,7 +29,7 @@ def main() -> None:
     """Run every formula over the same events, and print state and memory after each power of ten."""
     events = int(float(sys.argv[1])) if len(sys.argv) > 1 else EVENTS
     for text in FORMULAS:
-        program = compile_program((desugar(parse_formula(text)),), Fraction(1, 10**9), domain="dense")
+        program = compile_program((desugar(parse_formula(text)),), Fraction(1, 10**9), domain=Dense)
         monitor = core().DenseMonitor(program.to_bytes(), list(program.inputs))
         random = np.random.default_rng(1)
         gaps, values = random.integers(1, 2 * 10**8, size=CHUNK), random.normal(size=CHUNK)

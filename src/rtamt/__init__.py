@@ -19,6 +19,8 @@ from rtamt.errors import (
 )
 from rtamt.language.operators import STL
 from rtamt.results import Result, first_violation
+from rtamt.signals.dense import Dense
+from rtamt.signals.discrete import Discrete
 from rtamt.signals.outcomes import Interval, Verdict, VerdictRun
 from rtamt.signals.signal import Signal
 from rtamt.specification import Specification
@@ -70,7 +72,9 @@ __all__ = [
     "STL",
     "BoundError",
     "Channel",
+    "Dense",
     "DenseMonitor",
+    "Discrete",
     "EvaluationError",
     "IAStlInputRobustnessDenseTimeOfflineSpecification",
     "IAStlInputRobustnessDenseTimeOnlineSpecification",

@@ -7,16 +7,13 @@ import threading
 from collections.abc import Iterable, Sized
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
-from dataclasses import replace
 from functools import partial
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any
 
 from rtamt.engine.offline import Evaluators
 from rtamt.errors import StlError, UsageError, placed, shown
 from rtamt.results import Result
 from rtamt.signals.arrays import is_number
-from rtamt.signals.discrete import DiscreteTrace
-from rtamt.signals.regular import TOLERANCE
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Hashable, Iterator, Sequence
@@ -24,16 +21,13 @@ if TYPE_CHECKING:
     from typing_extensions import Unpack
 
     from rtamt.engine.offline import Query
-    from rtamt.settings import Reading
-    from rtamt.signals.dense import DenseTrace
+    from rtamt.settings import EvaluationSettings
+    from rtamt.signals.domain import DomainTrace
     from rtamt.specification import Specification
 
 
 #: Samples from which on the engine lets other threads run: `many` in core/python/arrays.hpp.
 LONG = 4096
-
-AnyRecording = TypeVar("AnyRecording", bound="DiscreteTrace | DenseTrace")
-
 
 # ---- many recordings -----------------------------------------------------------------------------
 
@@ -43,8 +37,8 @@ def evaluate_batch(
     traces: Iterable[Any],
     *,
     workers: int | None = None,
-    tolerance: float = TOLERANCE,
-    **reading: Unpack[Reading],
+    tolerance: float | None = None,
+    **reading: Unpack[EvaluationSettings],
 ) -> list[Result]:
     """Evaluate one requirement over many finished recordings, in threads; results in their order.
 
@@ -129,7 +123,11 @@ class _Work:
 
 
 def evaluate_all(
-    specs: Sequence[Specification], data: Any, *, tolerance: float = TOLERANCE, **reading: Unpack[Reading]
+    specs: Sequence[Specification],
+    data: Any,
+    *,
+    tolerance: float | None = None,
+    **reading: Unpack[EvaluationSettings],
 ) -> list[Result]:
     """Evaluate many requirements over one finished recording, in one program; results in their order.
 
@@ -149,60 +147,50 @@ def evaluate_all(
     queries = []
     for number, spec in enumerate(specs):
         with _place(number):
-            queries.append(spec.query(**reading))
+            queries.append(spec.query(tolerance=tolerance, **reading))
     # One program serves all that read the recording alike.
     alike: dict[Hashable, list[int]] = {}
     for number, (spec, query) in enumerate(zip(specs, queries, strict=True)):
-        alike.setdefault((query.time, query.step, query.unit, spec.backend), []).append(number)
+        alike.setdefault((query.domain, query.unit, spec.backend), []).append(number)
     results: dict[int, Result] = {}
     for numbers in alike.values():
         asked = {number: (specs[number], queries[number]) for number in numbers}
-        results.update(_evaluate_alike(asked, data, tolerance))
+        results.update(_evaluate_alike(asked, data))
     return [results[number] for number in range(len(specs))]
 
 
 _Asked = dict[int, tuple["Specification", "Query"]]
 
 
-def _evaluate_alike(asked: _Asked, data: Any, tolerance: float) -> Iterator[tuple[int, Result]]:
+def _evaluate_alike(asked: _Asked, data: Any) -> Iterator[tuple[int, Result]]:
     """Yield numbers and results of queries that read the recording by the same clock."""
     names = tuple(dict.fromkeys(name for spec, _ in asked.values() for name in spec.input_names))
     known = {name for spec, _ in asked.values() for name in spec.declared}
     spec, query = next(iter(asked.values()))
-    whole = query.record(data, names, known, tolerance)
-    parts: Iterable[tuple[DiscreteTrace | DenseTrace, list[int]]] = [(whole, list(asked))]
-    if not isinstance(whole, DiscreteTrace):
-        parts = _together(asked, whole)
-    else:
-        for number, (_, query) in asked.items():
+    whole = query.record(data, names, known)
+    for number, (_, query) in asked.items():
+        if query.domain.step is None:  # else checked without the recording
             with _place(number):
-                query.check(whole)
+                whole.check(query.formula, query.text)
     evaluators = Evaluators(spec.backend)
-    for recording, numbers in parts:
+    for recording, numbers in _with_one_extent(asked, whole):
         formulas = tuple(asked[number][1].formula for number in numbers)
         for number, signal in zip(numbers, evaluators(formulas, recording), strict=True):
             spec, query = asked[number]
-            yield number, Result(spec, _of(whole, spec.input_names), signal, query.semantics)
+            yield number, Result(spec, whole.select(spec.input_names), signal, query.semantics)
 
 
-def _together(asked: _Asked, whole: DenseTrace) -> Iterator[tuple[DenseTrace, list[int]]]:
-    """Yield the parts of a dense recording that one program can run over, and whose queries each answers.
+def _with_one_extent(asked: _Asked, whole: DomainTrace) -> Iterator[tuple[DomainTrace, list[int]]]:
+    """Yield the parts of a recording that one program can run over, and whose queries each answers.
 
     A recording begins and ends with the signals that a formula reads.
     """
-    spans: dict[tuple[int, int], list[int]] = {}
+    extents: dict[Hashable, list[int]] = {}
     for number, (spec, _) in asked.items():
-        own = _of(whole, spec.input_names)
-        spans.setdefault((own.start, own.end), []).append(number)
-    for numbers in spans.values():
+        extents.setdefault(whole.select(spec.input_names).extent, []).append(number)
+    for numbers in extents.values():
         names = dict.fromkeys(name for number in numbers for name in asked[number][0].input_names)
-        yield _of(whole, names), numbers
-
-
-def _of(recording: AnyRecording, names: Iterable[str]) -> AnyRecording:
-    """Return a recording of these variables alone."""
-    own: Any = {name: recording.columns[name] for name in names}
-    return replace(recording, columns=own)
+        yield whole.select(names), numbers
 
 
 @contextmanager

@@ -11,8 +11,6 @@ from typing import TYPE_CHECKING, Any
 from rtamt.errors import UsageError, did_you_mean
 from rtamt.language.formula import variables
 from rtamt.language.grammar import is_number
-from rtamt.rewrite.check import check_bounds, check_dense
-from rtamt.signals.discrete import DiscreteTrace
 from rtamt.signals.trace import show_time
 from rtamt.verdicts import offline as verdicts
 from rtamt.verdicts.offline import Judged, judge
@@ -24,7 +22,7 @@ if TYPE_CHECKING:
 
     from rtamt.explain.report import Explanation
     from rtamt.rewrite.semantics import PredicateSemantics
-    from rtamt.signals.dense import DenseTrace
+    from rtamt.signals.domain import DomainTrace
     from rtamt.signals.signal import Signal
     from rtamt.specification import Specification
 
@@ -39,7 +37,7 @@ class Result:
     """
 
     specification: Specification
-    trace: DiscreteTrace | DenseTrace
+    trace: DomainTrace
     #: ρ at every sample, in dense time at every change and at the end: ``.times`` and ``.values``.
     signal: Signal
     #: What predicates were worth: a name, or the function that was given.
@@ -202,11 +200,7 @@ class Result:
                     f"'{name}' reads '{variable}', which the formula does not{did_you_mean(variable, names)}; "
                     f"the recording was read for {', '.join(names)} only"
                 )
-        if isinstance(self.trace, DiscreteTrace):
-            check_bounds(formula, self.trace.period, name)
-        else:
-            check_dense(formula, name)
-            check_bounds(formula, self.trace.scale.tick, name, "resolution")
+        self.trace.check(formula, name)
         if not is_number(formula):
             formula = self.specification.apply_semantics(formula, self.semantics)
         return self.specification.signal_of(formula, self.trace)

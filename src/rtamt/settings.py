@@ -4,26 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from enum import Enum
-from fractions import Fraction
 from math import isnan
 from types import MappingProxyType
 from typing import TYPE_CHECKING, TypeAlias, TypedDict
 
+from rtamt.engine.backend import BACKENDS
 from rtamt.errors import UsageError, did_you_mean, shown
 from rtamt.language.formula import variables
 from rtamt.language.operators import Language
-from rtamt.language.units import duration
 from rtamt.rewrite.semantics import ROLES, PredicateSemantics
 from rtamt.signals.arrays import is_number
 
 if TYPE_CHECKING:
     from rtamt.language.document import Document
+    from rtamt.language.units import Duration
+    from rtamt.signals.domain import TimeDomain
 
-BACKENDS = ("cpp", "python")
-TIMES = ("discrete", "dense")
-
-#: Seconds, or text with a unit, such as ``"100ms"``.
-Duration: TypeAlias = str | float | Fraction
 #: A name, a member of an enumeration whose text is a name, or a function of a predicate and roles.
 Semantics: TypeAlias = str | Enum | PredicateSemantics
 
@@ -36,16 +32,16 @@ class Settings(TypedDict, total=False):
     backend: str
     constants: Mapping[str, float] | None
     language: Language
-    time: str
+    time: str | TimeDomain
     resolution: Duration
     semantics: Semantics
     roles: Mapping[str, str] | None
 
 
-class Reading(TypedDict, total=False):
-    """How :meth:`Specification.evaluate` reads a recording, for functions that pass it on."""
+class EvaluationSettings(TypedDict, total=False):
+    """The settings of :meth:`Specification.evaluate`, for functions that pass them on."""
 
-    time: str | None
+    time: str | TimeDomain | None
     period: Duration | None
     resolution: Duration | None
     semantics: Semantics | None
@@ -79,23 +75,6 @@ def _check_mapping(what: str, given: object, example: str) -> None:
         raise UsageError(
             f"{what} is {shown(given)}, expected a mapping from name to value, such as {example}"
         )
-
-
-def time_domain(time: str) -> str:
-    """Return a time domain's name; raise :class:`UsageError` for any other text."""
-    if time not in TIMES:
-        raise UsageError(
-            f"unknown time domain {shown(time)}; choose from {', '.join(TIMES)}{did_you_mean(time, TIMES)}"
-        )
-    return time
-
-
-def positive_period(period: Duration, what: str = "sampling period") -> Fraction:
-    """Return a sampling period, or ``what`` else it is, in seconds, exact."""
-    exact = duration(period)
-    if exact <= 0:
-        raise UsageError(f"the {what} is {shown(period)}; it must be positive")
-    return exact
 
 
 def roles_of(document: Document, given: Mapping[str, str]) -> Mapping[str, str]:

@@ -8,8 +8,7 @@ from functools import cached_property, partial
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Literal, overload
 
-from rtamt.engine.dense_monitor import DenseMonitor
-from rtamt.engine.monitor import Monitor
+from rtamt.engine.domains import engine_of
 from rtamt.engine.offline import Evaluators, Query
 from rtamt.engine.online import Watched
 from rtamt.language.formula import Formula, variables
@@ -19,16 +18,15 @@ from rtamt.language.operators import STL, Language
 from rtamt.language.parser import parse_formula
 from rtamt.language.printer import to_text
 from rtamt.language.specfile import parse_document
-from rtamt.language.units import check_unit
+from rtamt.language.units import check_unit, positive_period
 from rtamt.results import Result, requirements_of
-from rtamt.rewrite.check import check_bounds, check_dense
 from rtamt.rewrite.horizon import horizon
 from rtamt.rewrite.pastify import pastify
 from rtamt.rewrite.semantics import apply_semantics, semantics_of
-from rtamt.settings import names_of, positive_period, time_domain
-from rtamt.signals.dense import DenseTrace
-from rtamt.signals.discrete import DiscreteTrace
-from rtamt.signals.regular import TOLERANCE
+from rtamt.settings import names_of
+from rtamt.signals.discrete import DISCRETE
+from rtamt.signals.domain import TimeDomain
+from rtamt.signals.domains import time_domain
 from rtamt.signals.ticks import NANOSECOND
 from rtamt.verdicts.offline import by_start, judge, judge_apart
 from rtamt.verdicts.outputs import Outputs, outputs_of
@@ -38,9 +36,16 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
     from rtamt.compiler.program import Program
+    from rtamt.engine.dense_monitor import DenseMonitor
+    from rtamt.engine.monitor import Monitor
+    from rtamt.engine.online import OnlineMonitor
     from rtamt.language.document import Document
+    from rtamt.language.units import Duration
     from rtamt.rewrite.semantics import PredicateSemantics
-    from rtamt.settings import Duration, Semantics
+    from rtamt.settings import Semantics
+    from rtamt.signals.dense import Dense
+    from rtamt.signals.discrete import Discrete
+    from rtamt.signals.domain import DomainTrace
     from rtamt.signals.signal import Signal
 
 
@@ -56,18 +61,24 @@ class Specification:
     """
 
     document: Document
+    domain: TimeDomain = DISCRETE
+    #: The settings of evaluations and monitors in another time domain than ``domain``.
     period: Fraction | None = None
+    resolution: Fraction = NANOSECOND
     unit: str = "s"
     backend: str = "cpp"
     language: Language = STL
-    time: str = "discrete"
-    resolution: Fraction = NANOSECOND
     semantics: str | PredicateSemantics = "standard"
     #: From a variable to ``"input"`` or ``"output"``: what the text declares, and what was given.
     roles: Mapping[str, str] = field(default_factory=dict)
 
     def __repr__(self) -> str:
         return f"<specification {f'{self.name}: ' if self.name else ''}{self.formula}>"
+
+    @property
+    def time(self) -> str:
+        """The name of the time domain: ``"discrete"`` or ``"dense"``."""
+        return self.domain.name
 
     @property
     def formula(self) -> Formula:
@@ -146,15 +157,16 @@ class Specification:
         >>> print(rtamt.parse("x >= 3 -> eventually[0:5](y >= 3)").pastified())
         once[5:5](x >= 3) -> once[0:5](y >= 3)
         """
-        return pastify(self.formula, self._period(period) or Fraction(1), self.text, self.unit)
+        step = self.period if period is None else positive_period(period)
+        return pastify(self.formula, step or Fraction(1), self.text, self.unit)
 
     def evaluate(
         self,
         data: Any,
         *,
-        time: str | None = None,
+        time: str | TimeDomain | None = None,
         period: Duration | None = None,
-        tolerance: float = TOLERANCE,
+        tolerance: float | None = None,
         resolution: Duration | None = None,
         semantics: Semantics | None = None,
         time_unit: str | None = None,
@@ -169,9 +181,10 @@ class Specification:
         that of the specification, else the median gap of the stamps, else 1 s. ``tolerance``: the
         fraction of the period by which a gap between samples may miss it.
 
-        With ``time="dense"`` signals change at any instant, each on its own clock: ``data`` maps a
-        variable to (times, values), or to a list of [time, value] pairs. ``resolution``: the length of a
-        tick, in which time is counted (default 1 ns); bounds must be multiples of it.
+        ``time``: ``"discrete"``, ``"dense"``, or a time domain with its settings: ``rtamt.Discrete(period=...)``,
+        ``rtamt.Dense(resolution=...)``. In dense time signals change at any instant, each on its own time base:
+        ``data`` maps a variable to (times, values), or to a list of [time, value] pairs. ``resolution``: the length
+        of a tick, in which time is counted (default 1 ns); bounds must be multiples of it.
 
         ``semantics``: as for :func:`parse`, by default that of the specification.
 
@@ -183,10 +196,10 @@ class Specification:
         >>> result.robustness, result.satisfied, result.signal.values
         (1.0, True, array([1., 1., 3.]))
         """
-        query = self.query(time, period, resolution, semantics, time_unit)
-        recording = query.record(data, self.input_names, self.declared, tolerance)
+        query = self.query(time, period, tolerance, resolution, semantics, time_unit)
+        recording = query.record(data, self.input_names, self.declared)
         self._check(query, recording)
-        if isinstance(recording, DenseTrace) and len(self.requirements) > 1:
+        if recording.domain.continuous and len(self.requirements) > 1:
             outputs = [one.outputs(query.semantics) for one in self.requirements.values()]
             if len(by_start(outputs, recording)) > 1:
                 signal, judged = judge_apart(outputs, recording, self.signals_of)
@@ -200,53 +213,43 @@ class Specification:
         ``data`` and errors as for :meth:`evaluate`, which computes verdicts when they are asked for.
         """
         query = self.query()
-        recording = query.record(data, self.input_names, self.declared, TOLERANCE)
+        recording = query.record(data, self.input_names, self.declared)
         self._check(query, recording)
         outputs = [one.outputs() for one in self.requirements.values()]
         return requirements_of(self, judge(outputs, recording, self.signals_of), query.semantics)
 
     def query(
         self,
-        time: str | None = None,
+        time: str | TimeDomain | None = None,
         period: Duration | None = None,
+        tolerance: float | None = None,
         resolution: Duration | None = None,
         semantics: Semantics | None = None,
         time_unit: str | None = None,
     ) -> Query:
         """Return what :meth:`evaluate` asks of a recording; arguments and errors are those of it."""
-        if time is None and period is None and resolution is None and semantics is None and time_unit is None:
+        if time is period is tolerance is resolution is semantics is time_unit is None:
             return self._own_query
-        return self._query_of(time, period, resolution, semantics, time_unit)
+        return self._query_of(self._domain(time, period, tolerance, resolution), semantics, time_unit)
 
     @cached_property
     def _own_query(self) -> Query:
-        return self._query_of(None, None, None, None)
+        return self._query_of(self.domain, None, None)
 
-    def _query_of(
-        self,
-        time: str | None,
-        period: Duration | None,
-        resolution: Duration | None,
-        semantics: Semantics | None,
-        time_unit: str | None = None,
-    ) -> Query:
+    def _query_of(self, domain: TimeDomain, semantics: Semantics | None, time_unit: str | None) -> Query:
         unit = None if time_unit is None else check_unit(time_unit)
         chosen = self._semantics(semantics)
         formula = self.apply_semantics(self.formula, chosen)
-        if self._time(time) == "discrete":
-            return Query(formula, self.text, "discrete", self._period(period), chosen, unit)
-        tick = self._resolution(resolution)
-        check_dense(formula, self.text)
-        check_bounds(formula, tick, self.text, "resolution")
-        return Query(formula, self.text, "dense", tick, chosen, unit)
+        domain.check(formula, self.text)
+        return Query(formula, self.text, domain, chosen, unit)
 
     @overload
     def monitor(
         self,
         *,
-        time: Literal["discrete"] | None = None,
+        time: Literal["discrete"] | Discrete | None = None,
         period: Duration | None = None,
-        tolerance: float = TOLERANCE,
+        tolerance: float | None = None,
         semantics: Semantics | None = None,
         watch: str | Iterable[str] = (),
         time_unit: str | None = None,
@@ -256,7 +259,7 @@ class Specification:
     def monitor(
         self,
         *,
-        time: Literal["dense"],
+        time: Literal["dense"] | Dense,
         resolution: Duration | None = None,
         semantics: Semantics | None = None,
         watch: str | Iterable[str] = (),
@@ -266,14 +269,14 @@ class Specification:
     def monitor(
         self,
         *,
-        time: str | None = None,
+        time: str | TimeDomain | None = None,
         period: Duration | None = None,
-        tolerance: float = TOLERANCE,
+        tolerance: float | None = None,
         resolution: Duration | None = None,
         semantics: Semantics | None = None,
         watch: str | Iterable[str] = (),
         time_unit: str | None = None,
-    ) -> Monitor | DenseMonitor:
+    ) -> OnlineMonitor:
         """Return an online monitor; of dense time where that is asked for here or in :func:`parse`.
 
         ``period`` as in :meth:`evaluate`, by default 1 s. ``tolerance``: the fraction of the period
@@ -309,22 +312,11 @@ class Specification:
             watch=names,
             time_unit=time_unit,
         )
-        if self._time(time) == "dense":
-            return DenseMonitor(
-                formula,
-                text=self.text,
-                resolution=self._resolution(resolution),
-                backend=self.backend,
-                declared=self.declared,
-                watch=watched,
-                factory=factory,
-                unit=time_unit,
-            )
-        return Monitor(
+        domain = self._domain(time, period, tolerance, resolution).online
+        return engine_of(domain).monitor(
             formula,
+            domain,
             text=self.text,
-            period=self._period(period) or Fraction(1),
-            tolerance=tolerance,
             backend=self.backend,
             declared=self.declared,
             watch=watched,
@@ -335,7 +327,7 @@ class Specification:
     def compile(
         self,
         *,
-        time: str | None = None,
+        time: str | TimeDomain | None = None,
         period: Duration | None = None,
         resolution: Duration | None = None,
         semantics: Semantics | None = None,
@@ -352,8 +344,7 @@ class Specification:
         >>> program.lags, len(program.to_bytes())
         ((2, 2), 459)
         """
-        domain = self._time(time)
-        step = self._resolution(resolution) if domain == "dense" else self._period(period) or Fraction(1)
+        domain = self._domain(time, period, None, resolution).online
         chosen = self._semantics(semantics)
         several = self.requirements if len(self.requirements) > 1 else {}
         parts = {name: one.outputs(chosen) for name, one in several.items()}
@@ -361,7 +352,6 @@ class Specification:
             self.formula,
             applied=self.apply_semantics(self.formula, chosen),
             parts=parts,
-            period=step,
             domain=domain,
             text=self.text,
             name=self.name,
@@ -390,11 +380,11 @@ class Specification:
         judged = self.formula if formula is None else formula
         return outputs_of(judged, self.apply_semantics(judged, semantics))
 
-    def signal_of(self, formula: Formula, trace: DiscreteTrace | DenseTrace) -> Signal:
+    def signal_of(self, formula: Formula, trace: DomainTrace) -> Signal:
         """Return the robustness signal of any formula over a normalised recording."""
         return self.signals_of((formula,), trace)[0]
 
-    def signals_of(self, formulas: tuple[Formula, ...], trace: DiscreteTrace | DenseTrace) -> list[Signal]:
+    def signals_of(self, formulas: tuple[Formula, ...], trace: DomainTrace) -> list[Signal]:
         """Return the robustness signals of formulas over a normalised recording, all from one program."""
         return self._evaluators(formulas, trace)
 
@@ -435,11 +425,11 @@ class Specification:
     def _lowered(self) -> dict[tuple[Formula, str], Formula]:
         return {}
 
-    def _check(self, query: Query, recording: DiscreteTrace | DenseTrace) -> None:
-        if isinstance(recording, DiscreteTrace):  # many recordings have the same period
-            key = (query.formula, recording.period.as_integer_ratio())  # fractions are slow to hash
+    def _check(self, query: Query, recording: DomainTrace) -> None:
+        if query.domain.step is None:  # else checked without a recording; many recordings have the same step
+            key = (query.formula, recording.step.as_integer_ratio())  # fractions are slow to hash
             if key not in self._checked:
-                query.check(recording)
+                recording.check(query.formula, self.text)
                 self._checked.add(key)
 
     @cached_property
@@ -455,14 +445,24 @@ class Specification:
         """The names that the text declares: data may have them, also where the formula reads none of them."""
         return tuple(declaration.name for declaration in self.document.declarations)
 
-    def _period(self, period: Duration | None) -> Fraction | None:
-        return self.period if period is None else positive_period(period)
-
-    def _time(self, time: str | None) -> str:
-        return self.time if time is None else time_domain(time)
-
-    def _resolution(self, resolution: Duration | None) -> Fraction:
-        return self.resolution if resolution is None else positive_period(resolution, "resolution")
+    def _domain(
+        self,
+        time: str | TimeDomain | None,
+        period: Duration | None = None,
+        tolerance: float | None = None,
+        resolution: Duration | None = None,
+    ) -> TimeDomain:
+        """Return the time domain that is asked for; settings that are left out are those of the specification."""
+        if isinstance(time, TimeDomain):
+            return time_domain(time, period, tolerance, resolution)
+        if time is period is tolerance is resolution is None:
+            return self.domain
+        return time_domain(
+            self.domain.name if time is None else time,
+            self.period if period is None else period,
+            self.domain.tolerance if tolerance is None else tolerance,
+            self.resolution if resolution is None else resolution,
+        )
 
     def _semantics(self, semantics: Semantics | None) -> str | PredicateSemantics:
         return self.semantics if semantics is None else semantics_of(semantics)
@@ -471,7 +471,7 @@ class Specification:
         # The text says it all, and is read without recursion however long it is.
         declared = {declaration.name for declaration in self.document.declarations}
         given = {name: v for name, v in self.document.constants.items() if name not in declared}
-        names = ("period", "unit", "backend", "language", "time", "resolution", "semantics")
+        names = ("domain", "period", "resolution", "unit", "backend", "language", "semantics")
         settings = {name: getattr(self, name) for name in names}
         return _factory, (self.text, given, {**settings, "roles": dict(self.roles)}, self.document.selected)
 

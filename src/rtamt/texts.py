@@ -9,17 +9,16 @@ from rtamt.errors import UsageError, shown
 from rtamt.language.formula import outermost
 from rtamt.language.operators import STL, Language
 from rtamt.language.specfile import parse_document
-from rtamt.rewrite.check import check_bounds, check_dense
+from rtamt.language.units import positive_period
 from rtamt.rewrite.semantics import semantics_of
 from rtamt.settings import (
     check_backend,
     check_constants,
     check_language,
-    positive_period,
     roles_of,
-    time_domain,
 )
-from rtamt.signals.ticks import NANOSECOND
+from rtamt.signals.discrete import Discrete
+from rtamt.signals.domains import time_domain
 from rtamt.specification import Specification
 
 if TYPE_CHECKING:
@@ -28,7 +27,9 @@ if TYPE_CHECKING:
 
     from typing_extensions import Unpack
 
-    from rtamt.settings import Duration, Semantics, Settings
+    from rtamt.language.units import Duration
+    from rtamt.settings import Semantics, Settings
+    from rtamt.signals.domain import TimeDomain
 
 
 def parse(
@@ -39,8 +40,8 @@ def parse(
     backend: str = "cpp",
     constants: Mapping[str, float] | None = None,
     language: Language = STL,
-    time: str = "discrete",
-    resolution: Duration = NANOSECOND,
+    time: str | TimeDomain = Discrete.name,
+    resolution: Duration | None = None,
     semantics: Semantics = "standard",
     roles: Mapping[str, str] | None = None,
 ) -> Specification:
@@ -49,7 +50,8 @@ def parse(
     ``period``: the sampling period, seconds or text such as ``"100ms"``; if it is given, every bound
     must be a multiple of it. ``unit``: of bounds without one. ``backend``: ``"cpp"`` or ``"python"``.
     ``constants``: named numbers. ``time``: ``"discrete"``, or ``"dense"`` with ticks of ``resolution``
-    seconds, for evaluations and monitors that say nothing else. Raises :class:`SpecificationError`
+    seconds, for evaluations and monitors that say nothing else; or a time domain with its settings,
+    ``rtamt.Discrete(...)`` or ``rtamt.Dense(...)``. Raises :class:`SpecificationError`
     with the place in the text.
 
     ``semantics``: what a predicate is worth. By name: ``"standard"``, its robustness; ``"boolean"``,
@@ -71,25 +73,22 @@ def parse(
     check_backend(backend)
     check_constants({} if constants is None else constants)
     document = parse_document(text, language=language, unit=unit, constants=constants)
-    exact = None if period is None else positive_period(period)
-    tick = positive_period(resolution, "resolution")
+    domain = time_domain(time, period, None, resolution)
     spec = Specification(
         document,
-        exact,
+        domain,
+        domain.period if period is None else positive_period(period),
+        domain.resolution if resolution is None else positive_period(resolution, "resolution"),
         unit,
         backend,
         language,
-        time_domain(time),
-        tick,
         semantics_of(semantics),
         roles_of(document, {} if roles is None else roles),
     )
+    checked = dict.fromkeys((domain, Discrete(spec.period)))
     for formula in outermost([assertion.formula for assertion in document.assertions]):
-        if spec.time == "dense":
-            check_dense(formula, text)
-            check_bounds(formula, tick, text, "resolution")
-        if exact is not None:
-            check_bounds(formula, exact, text)
+        for each in checked:
+            each.check(formula, text)
     return spec
 
 

@@ -21,9 +21,12 @@ from rtamt.compiler.plan import compile_program
 from rtamt.engine import _core
 from rtamt.language.parser import parse_formula
 from rtamt.rewrite.desugar import desugar
+from rtamt.signals.domains import DOMAINS
 
 if TYPE_CHECKING:
     from hypothesis.strategies import DrawFn
+
+    from rtamt.signals.domain import TimeDomain
 
 FORMULAS = (
     "x >= 3 -> eventually[0:5](y >= 3)",
@@ -32,7 +35,6 @@ FORMULAS = (
     "x precedes[1:3] sqrt(abs(x)) / max(y, -x)",
 )
 CORPUS = Path(__file__).parent / "corpus" / "program"
-DOMAINS = ("discrete", "dense")
 HEADER, RECORD, CHECKSUM = 32, 40, 4
 # Of a record the operands, the width and the lag: offset, kind, least and largest value.
 FIELDS = (
@@ -48,11 +50,11 @@ LONGEST_TAIL = 10_000  # slots that the end of a trace takes
 REFUSED = "This is not a program that can be run: "
 
 
-def compiled(text: str, domain: str) -> bytes:
+def compiled(text: str, domain: type[TimeDomain]) -> bytes:
     return compile_program((desugar(parse_formula(text)),), Fraction(1), domain=domain).to_bytes()
 
 
-PROGRAMS = [compiled(text, domain) for text in FORMULAS for domain in DOMAINS]
+PROGRAMS = [compiled(text, domain) for text in FORMULAS for domain in DOMAINS.values()]
 
 
 def sealed(body: bytes) -> bytes:
@@ -91,12 +93,12 @@ def damaged(draw: DrawFn) -> bytes:
 
 def run(program: bytes) -> None:
     """Load a program and run it over a short trace, every way there is."""
-    domain = DOMAINS[program[10] % 2] if len(program) > 10 else "discrete"
+    dense = len(program) > 10 and program[10] % 2 == 1
     inputs = struct.unpack_from("<I", program, 16)[0] if len(program) >= HEADER else 0
     inputs = min(inputs, len(program))
     values = [np.array([(3 * i + k) % 5 - 2.0 for i in range(N)]) for k in range(inputs)]
     names = [f"v{k}" for k in range(inputs)]
-    if domain == "dense":
+    if dense:
         monitor: Any = _core.DenseMonitor(program, names)
         if min(monitor.last_possible, 2**61) < 10_000:
             return
@@ -109,7 +111,7 @@ def run(program: bytes) -> None:
         monitor = _core.Monitor(program, names)
         columns = values
     try:
-        if domain == "dense":
+        if dense:
             monitor.push(columns)
             _core.dense_evaluate(program, columns)
         else:

@@ -8,7 +8,6 @@ import shutil
 import subprocess
 import sys
 from collections.abc import Callable
-from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
@@ -21,6 +20,7 @@ import rtamt
 from rtamt.engine.monitor import Monitor
 from rtamt.errors import EvaluationError
 from rtamt.language.formula import variables
+from rtamt.signals.discrete import Discrete
 from rtamt.verdicts.standalone import carried_program
 from tests.strategies import formulas, traces
 
@@ -156,7 +156,7 @@ def cases(draw: st.DrawFn) -> Case | None:
     if not names or len(expected) < 2:
         return None
     taken = np.array([[row[name] for name in names] for row in rows[: len(expected)]])
-    program = carried_program(formula, period=Fraction(1), domain="discrete").to_bytes()
+    program = carried_program(formula, Discrete(period=1)).to_bytes()
     return program, list(names), taken, expected
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from fractions import Fraction
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
@@ -17,15 +17,21 @@ from rtamt.engine.monitor import Monitor
 from rtamt.errors import EvaluationError
 from rtamt.language.formula import Apply, Const, Formula, fold, variables
 from rtamt.rewrite.semantics import SEMANTICS, apply_semantics, boolean
+from rtamt.signals.dense import Dense
+from rtamt.signals.discrete import Discrete
 from rtamt.verdicts.standalone import carried_program
 from tests import c_api
 from tests.strategies import dense_chunkings, dense_traces, formulas, traces
 
+if TYPE_CHECKING:
+    from rtamt.signals.domain import TimeDomain
+
 ONE = Fraction(1)
+SAMPLES, TICKS = Discrete(ONE), Dense(ONE)
 
 
-def carried(formula: Formula, domain: str = "discrete", applied: Formula | None = None) -> bytes:
-    return carried_program(formula, period=ONE, domain=domain, applied=applied).to_bytes()
+def carried(formula: Formula, domain: TimeDomain = SAMPLES, applied: Formula | None = None) -> bytes:
+    return carried_program(formula, domain, applied=applied).to_bytes()
 
 
 def draw_judged(data: st.DataObject, formula: Formula) -> Formula:
@@ -94,8 +100,8 @@ def test_events_in_the_same_events_out(data: st.DataObject) -> None:
     trace = {name: column for name, column in data.draw(dense_traces()).items() if name in names}
     updates = data.draw(dense_chunkings(trace))
     judged = draw_judged(data, formula)
-    code = carried(formula, "dense", judged)
-    here, there = DenseMonitor(judged, resolution=ONE), c_api.Monitor(code)
+    code = carried(formula, TICKS, judged)
+    here, there = DenseMonitor(judged, TICKS), c_api.Monitor(code)
     cut = data.draw(st.integers(0, len(updates)))
     try:
         for i, update in enumerate(updates):
@@ -128,10 +134,10 @@ def assert_same_steps(got: tuple[Any, Any], expected: Any) -> None:
 @settings(max_examples=50)
 @given(st.data())
 def test_what_is_written_is_read(data: st.DataObject) -> None:
-    domain = data.draw(st.sampled_from(("discrete", "dense")))
-    formula = data.draw(formulas(discrete=domain == "discrete"))
+    domain = data.draw(st.sampled_from((SAMPLES, TICKS)))
+    formula = data.draw(formulas(discrete=domain == SAMPLES))
     assume(variables(formula))
-    program = carried_program(formula, period=ONE, domain=domain)
+    program = carried_program(formula, domain)
     code = program.to_bytes()
     read = Program.from_bytes(code)
     assert read.to_bytes() == code
@@ -144,7 +150,7 @@ def test_what_is_written_is_read(data: st.DataObject) -> None:
 def test_a_parameter_has_the_value_that_is_set(data: st.DataObject) -> None:
     formula, columns = data.draw(formulas()), data.draw(traces())
     named = fold(formula, name_finite_numbers)
-    program = carried_program(named, period=ONE, domain="discrete")
+    program = carried_program(named, SAMPLES)
     names = list(program.metadata.parameters)
     values = {name: data.draw(st.integers(-6, 6)) / 2 for name in names}
 

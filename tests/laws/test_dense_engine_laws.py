@@ -17,7 +17,7 @@ from rtamt.language.formula import Formula, variables
 from rtamt.reference import dense as dense_reference
 from rtamt.rewrite.desugar import desugar
 from rtamt.rewrite.horizon import horizon
-from rtamt.signals.dense import DenseTrace, record_dense
+from rtamt.signals.dense import Dense, DenseTrace, record_dense
 from tests.strategies import dense_chunkings, dense_traces, formulas
 
 TICK = Fraction(1)
@@ -86,7 +86,7 @@ def test_online_and_finish_is_offline_and_never_late(backend: str, data: st.Data
     assume(expected is not None)
     depth = horizon(formula)
     assert depth is not None
-    monitor = DenseMonitor(formula, resolution=TICK, backend=backend)
+    monitor = DenseMonitor(formula, Dense(TICK), backend=backend)
     for _ in range(2):  # a reset monitor is a new one
         told: list[tuple[int, float]] = []
         last: dict[str, int] = {}
@@ -122,7 +122,7 @@ def test_a_failed_update_leaves_the_monitor_as_it_was(data: st.DataObject) -> No
     trace = read_by(formula, data.draw(dense_traces(NAMES)))
     expected = by_definition(formula, trace)
     assume(expected is not None)
-    monitor = DenseMonitor(formula, resolution=TICK)
+    monitor = DenseMonitor(formula, Dense(TICK))
     told: list[tuple[int, float]] = []
     last: dict[str, int] = {}
     for update in data.draw(dense_chunkings(trace)):
@@ -135,7 +135,7 @@ def test_a_failed_update_leaves_the_monitor_as_it_was(data: st.DataObject) -> No
             for name in trace
         }
         before = monitor.memory
-        probe = DenseMonitor(formula, resolution=TICK)
+        probe = DenseMonitor(formula, Dense(TICK))
         try:
             probe.update_many(bad)
         except EvaluationError:

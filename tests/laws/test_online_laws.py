@@ -21,6 +21,7 @@ from rtamt.errors import EvaluationError
 from rtamt.language.formula import Formula, postorder, variables
 from rtamt.reference import dense as dense_reference
 from rtamt.reference import discrete as reference
+from rtamt.signals.dense import Dense
 from tests.oracle import zero
 from tests.strategies import chunkings, dense_chunkings, dense_traces, formulas, traces
 
@@ -114,7 +115,7 @@ def test_in_dense_time_too_what_is_watched_is_what_an_offline_evaluation_says(
     trace = {name: column for name, column in data.draw(dense_traces(NAMES)).items() if name in names}
     every = [formula, *parts]
     whole = {name: (np.array(times), values) for name, (times, values) in trace.items()}
-    monitor = DenseMonitor(formula, resolution=ONE, backend=backend, watch=watch)
+    monitor = DenseMonitor(formula, Dense(ONE), backend=backend, watch=watch)
     told: list[list[tuple[float, float]]] = [[] for _ in every]
 
     def tell(result: Signal) -> None:
@@ -172,8 +173,8 @@ def test_in_dense_time_too_a_copy_goes_on_as_the_original_would(data: st.DataObj
     trace = {name: column for name, column in data.draw(dense_traces(NAMES)).items() if name in names}
     updates = data.draw(dense_chunkings(trace))
     seen = data.draw(st.integers(0, len(updates)))
-    monitor = DenseMonitor(formula, resolution=ONE, backend=backend)
-    alone = DenseMonitor(formula, resolution=ONE, backend=backend)
+    monitor = DenseMonitor(formula, Dense(ONE), backend=backend)
+    alone = DenseMonitor(formula, Dense(ONE), backend=backend)
     try:
         for update in updates[:seen]:
             monitor.update_many(seconds(update, names))
@@ -211,7 +212,7 @@ def test_one_instant_at_a_time_is_a_chunk_of_one(kind: str, data: st.DataObject)
     assume(names)
     resolution = ONE if kind == "seconds" else Fraction(1, 10**9)
     unit = "ns" if kind == "ns" else None
-    quick, long = (DenseMonitor(formula, resolution=resolution, unit=unit) for _ in range(2))
+    quick, long = (DenseMonitor(formula, Dense(resolution), unit=unit) for _ in range(2))
     time = 0
     for _ in range(data.draw(st.integers(1, 12))):
         time += data.draw(st.sampled_from([1, 1, 2, 5]))

@@ -52,7 +52,7 @@ def run(args: argparse.Namespace) -> int:
         code = program.to_bytes()
         write_output(args.output, code)
         say(
-            f"{args.output}: {len(program.instructions)} instructions, {len(code)} bytes, {program.domain} time"
+            f"{args.output}: {len(program.instructions)} instructions, {len(code)} bytes, {program.domain.name} time"
         )
     if args.dump:
         say(program.disassemble())

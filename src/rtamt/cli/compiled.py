@@ -39,7 +39,7 @@ def compiled(path: str) -> Program | None:
 def _check(program: Program, code: bytes) -> None:
     """Raise :class:`UsageError` for what no core runs: an impossible width, an operand that is not there."""
     try:
-        if program.domain == "discrete":
+        if not program.domain.continuous:
             core().memory(code)
         else:
             core().DenseMonitor(code, list(program.inputs))
@@ -60,8 +60,7 @@ def listing(program: Program) -> Iterator[str]:
     )
     yield f"parameters {', '.join(values) or 'none'}"
     yield f"outputs    {', '.join(metadata.outputs)}"
-    step = "period    " if program.domain == "discrete" else "tick      "
-    yield f"{step} {format_duration(program.period)}, {program.domain} time"
+    yield f"{program.domain.unit.step:<10} {format_duration(program.period)}, {program.domain.name} time"
     yield f"horizon    {format_duration(max(program.lags) * program.period)}"
     yield "program"
     for line in program.disassemble().splitlines():

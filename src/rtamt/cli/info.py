@@ -21,7 +21,7 @@ from rtamt.cli.reading_options import add_reading_options, recording
 from rtamt.cli.terminal import printed, say
 from rtamt.compiler.plan import compile_program
 from rtamt.engine.native import core
-from rtamt.engine.user_operators import calls_of
+from rtamt.engine.user_operators import SampleDriver, calls_of
 from rtamt.errors import BoundError, SpecificationError, UsageError
 from rtamt.language.printer import excerpt
 from rtamt.language.units import format_duration
@@ -134,9 +134,9 @@ def gather(spec: Specification) -> Facts:
             check_bounds(spec.formula, step, spec.text)
     except BoundError as error:
         return replace(facts, offline_only=error.message)
-    program = compile_program((desugar(applied),), step, spec.input_names, domain=spec.time)
+    program = compile_program((desugar(applied),), step, spec.input_names, domain=type(spec.domain))
     unknown = dense or spec.backend == "python"
-    memory = None if unknown else int(core().memory(program.code(), calls_of(program)))
+    memory = None if unknown else int(core().memory(program.code(), calls_of(program, SampleDriver)))
     return replace(facts, program=program, memory=memory)
 
 

@@ -20,7 +20,6 @@ from rtamt.readers.assemble import chunks_of
 from rtamt.readers.read import opened
 from rtamt.readers.sql import is_url, shown
 from rtamt.results import first_violation
-from rtamt.signals.discrete import DiscreteTrace
 from rtamt.verdicts.streaming import check_stream, check_streamable
 
 if TYPE_CHECKING:
@@ -30,7 +29,6 @@ if TYPE_CHECKING:
     from rtamt.cli.reading_options import Reading
     from rtamt.language.document import Requirement as Written
     from rtamt.results import Result
-    from rtamt.signals.dense import DenseTrace
     from rtamt.signals.trace import Trace
     from rtamt.specification import Specification
     from rtamt.verdicts.streaming import StreamResult
@@ -219,8 +217,8 @@ def _outcome(requirement: Requirement, trace: str, result: Result, data: Trace, 
         "satisfied" if satisfied else "violated",
         result.robustness,
         None if violated is None else _told(violated),
-        _samples(recording),
-        recording.period if isinstance(recording, DiscreteTrace) else None,
+        recording.samples,
+        recording.domain.period,
         notes=data.losses,
         seconds=time.perf_counter() - begin,
         result=result,
@@ -229,13 +227,6 @@ def _outcome(requirement: Requirement, trace: str, result: Result, data: Trace, 
 
 def _failed(requirement: Requirement, trace: str, error: str, begin: float) -> Outcome:
     return Outcome(requirement.label, shown(trace), "error", error=error, seconds=time.perf_counter() - begin)
-
-
-def _samples(recording: DiscreteTrace | DenseTrace) -> int:
-    """Return the number of samples; in dense time that of the instants at which any variable has one."""
-    if isinstance(recording, DiscreteTrace):
-        return len(recording)
-    return len(np.unique(np.concatenate([ticks for ticks, _ in recording.columns.values()])))
 
 
 def _told(moment: Any) -> float | str | Decimal:

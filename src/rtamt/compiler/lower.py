@@ -11,15 +11,19 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from math import copysign, inf
 from types import MappingProxyType
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 from rtamt.compiler.program import CallSite, Instruction, Program
 from rtamt.language.formula import Apply, Const, Formula, Var, postorder
 from rtamt.language.operators import Bounds, Pointwise, Shift, Since, Tense, Until, Window
+from rtamt.signals.dense import Dense
+from rtamt.signals.discrete import Discrete
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
     from fractions import Fraction
+
+    from rtamt.signals.domain import TimeDomain
 
 _IDENTITY = {"max": -inf, "min": inf}
 
@@ -27,7 +31,8 @@ _IDENTITY = {"max": -inf, "min": inf}
 class Lowering(ABC):
     """The instructions so far; emitting one that is there already returns the old one."""
 
-    domain: str
+    #: The time domain of its programs.
+    domain: ClassVar[type[TimeDomain]]
     #: The width of the window [0, 0].
     point: int
 
@@ -242,6 +247,11 @@ class Lowering(ABC):
         assert ahead is not None, "unbounded future is cut off before"
         return ahead
 
+    @staticmethod
+    @abstractmethod
+    def until_just_before(period: Fraction) -> Fraction:
+        """Return how much shorter than a the closed window is that stands for [0, a)."""
+
     @abstractmethod
     def until_within(self, node: Apply, hold: int, goal: int, bounds: tuple[int, int], known: int) -> int:
         """Return until over [begin, end] = ``bounds``, known at lag ``known``."""
@@ -257,7 +267,7 @@ class Lowering(ABC):
 class DiscreteLowering(Lowering):
     """Steps are samples; a closed window has one more of them than its length."""
 
-    domain = "discrete"
+    domain = Discrete
     point = 1
 
     @staticmethod
@@ -282,7 +292,7 @@ class DiscreteLowering(Lowering):
 class DenseLowering(Lowering):
     """Steps are ticks; a closed window has its length."""
 
-    domain = "dense"
+    domain = Dense
     point = 0
 
     @staticmethod
@@ -306,6 +316,6 @@ class DenseLowering(Lowering):
         return self.emit(Instruction("min", after, first, lag=known), node)
 
 
-LOWERINGS: Mapping[str, type[DiscreteLowering] | type[DenseLowering]] = MappingProxyType(
+LOWERINGS: Mapping[type[TimeDomain], type[Lowering]] = MappingProxyType(
     {lowering.domain: lowering for lowering in (DiscreteLowering, DenseLowering)}
 )

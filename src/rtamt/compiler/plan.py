@@ -15,11 +15,13 @@ from rtamt.language.formula import Apply, Formula, Interval, Var, fold, folds, p
 from rtamt.language.operators import STL, Until, Window
 from rtamt.rewrite.check import reads_unbounded_future
 from rtamt.rewrite.horizon import horizon
+from rtamt.signals.discrete import Discrete
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from rtamt.compiler.program import Program
+    from rtamt.signals.domain import TimeDomain
 
 
 #: A scan that the core does not know.
@@ -71,7 +73,7 @@ def compile_program(
     period: Fraction,
     inputs: tuple[str, ...] | None = None,
     clip: int | None = None,
-    domain: str = "discrete",
+    domain: type[TimeDomain] = Discrete,
     parameters: Mapping[str, float] | None = None,
 ) -> Program:
     """Compile core formulas (see ``desugar``) whose future is bounded into one program.
@@ -106,7 +108,7 @@ def compile_plan(
     outputs: Sequence[Formula],
     period: Fraction,
     clip: int | None = None,
-    domain: str = "discrete",
+    domain: type[TimeDomain] = Discrete,
     inputs: tuple[str, ...] = (),
 ) -> Plan:
     """Compile core formulas for an offline evaluation; arguments as for :func:`compile_program`.
@@ -134,7 +136,7 @@ def _cut(
     names: tuple[str, ...],
     period: Fraction,
     clip: int | None,
-    domain: str,
+    domain: type[TimeDomain],
     number: int,
 ) -> tuple[tuple[Formula, ...], Stage]:
     """Replace the innermost operators of unbounded future by inputs that a new stage computes."""

@@ -22,6 +22,8 @@ from typing import TYPE_CHECKING
 
 from rtamt.compiler.metadata import Metadata, damaged
 from rtamt.errors import UsageError, shown
+from rtamt.signals.discrete import Discrete
+from rtamt.signals.domains import DOMAINS
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -29,6 +31,7 @@ if TYPE_CHECKING:
 
     from rtamt.language.formula import Apply, Formula
     from rtamt.language.operators import Operator
+    from rtamt.signals.domain import TimeDomain
 
 #: In the order of the core's enumeration; a test compares the two.
 OPCODES = (
@@ -39,7 +42,7 @@ OPCODES = (
 )  # fmt: skip
 
 #: Time domains, in the order of their codes.
-DOMAINS = ("discrete", "dense")
+_DOMAINS = tuple(DOMAINS.values())
 
 NO_OPERAND = 0xFFFFFFFF
 _HEADER = struct.Struct("<8sHBBIIIII")
@@ -126,7 +129,7 @@ class Program:
     period: Fraction
     value_of: Mapping[Formula, int] = field(default_factory=lambda: MappingProxyType({}))
     origins: tuple[Formula | None, ...] = ()
-    domain: str = "discrete"
+    domain: type[TimeDomain] = Discrete
     calls: tuple[CallSite, ...] = ()
     metadata: Metadata | None = None
 
@@ -154,7 +157,7 @@ class Program:
     @cached_property
     def _code(self) -> bytes:
         note = b"" if self.metadata is None else self.metadata.to_bytes(self.inputs, self.period)
-        domain = DOMAINS.index(self.domain)
+        domain = _DOMAINS.index(self.domain)
         counts = (len(self.instructions), len(self.inputs), len(self.outputs), len(note), 0)
         parts = [_HEADER.pack(MAGIC, _VERSION, domain, 0, *counts)]
         for ins in self.instructions:
@@ -191,7 +194,7 @@ class Program:
         body, (checksum,) = code[:-_CHECKSUM], struct.unpack("<I", code[-_CHECKSUM:])
         if zlib.crc32(body) != checksum:
             raise damaged("its checksum does not match, so it was damaged on the way")
-        if length == 0 or domain >= len(DOMAINS):
+        if length == 0 or domain >= len(_DOMAINS):
             raise damaged("it has no metadata" if length == 0 else f"its time domain is {domain}")
         records = _RECORD.iter_unpack(body[_HEADER.size : _HEADER.size + _RECORD.size * size])
         instructions = tuple(_instruction(i, record, inputs) for i, record in enumerate(records))
@@ -200,7 +203,7 @@ class Program:
         if any(place >= size for place in told):
             raise damaged("it has an output that is no instruction")
         metadata, names, period = Metadata.from_bytes(body[end:], inputs, outputs)
-        return Program(instructions, names, told, period, domain=DOMAINS[domain], metadata=metadata)
+        return Program(instructions, names, told, period, domain=_DOMAINS[domain], metadata=metadata)
 
     def disassemble(self) -> str:
         """Return a listing: index, lag in samples, instruction.

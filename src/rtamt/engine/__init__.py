@@ -3,6 +3,8 @@
 ====================  ============================================================================
 module                purpose
 ====================  ============================================================================
+domains               the engine of each time domain: back ends and monitor
+backend               the interface of a back end
 offline               evaluate queries on a recording; cache compiled plans
 evaluate              offline evaluation in discrete time
 dense_evaluate        offline evaluation in dense time

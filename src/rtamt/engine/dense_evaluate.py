@@ -2,19 +2,24 @@
 
 from __future__ import annotations
 
+from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from rtamt.compiler.plan import DEFINED, compile_plan
+from rtamt.engine.backend import BACKENDS as NAMES
+from rtamt.engine.backend import Backend
 from rtamt.engine.native import core, culprit, not_made
-from rtamt.engine.user_operators import calls_of, defined_signal
+from rtamt.engine.user_operators import EventDriver, calls_of, defined_signal
 from rtamt.language.formula import Apply, fold
 from rtamt.language.undefined_value import undefined
+from rtamt.reference import dense as reference
 from rtamt.rewrite.desugar import desugar
+from rtamt.signals.dense import Dense
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Callable, Mapping, Sequence
     from fractions import Fraction
 
     from rtamt.compiler.plan import Plan, Scan
@@ -26,6 +31,36 @@ if TYPE_CHECKING:
     from rtamt.signals.ticks import TimeScale
 
 
+class Compiled(Backend):
+    """The compiled core."""
+
+    def evaluator(self, formulas: tuple[Formula, ...], step: Fraction, inputs: tuple[str, ...]) -> Evaluator:
+        """See :class:`Backend`."""
+        return Evaluator(formulas, step, inputs)
+
+
+class Defined(Backend):
+    """The definition."""
+
+    def evaluator(
+        self,
+        formulas: tuple[Formula, ...],
+        step: Fraction,
+        inputs: tuple[str, ...],  # noqa: ARG002
+    ) -> Callable[[DenseTrace], list[Samples]]:
+        """See :class:`Backend`."""
+
+        def evaluated(trace: DenseTrace) -> list[Samples]:
+            steps = (reference.evaluate(f, trace.columns, step) for f in formulas)
+            return [(each.times, each.values) for each in steps]
+
+        return evaluated
+
+
+#: By name.
+BACKENDS: Mapping[str, Backend] = MappingProxyType(dict(zip(NAMES, (Compiled(), Defined()), strict=True)))
+
+
 class Evaluator:
     """Evaluates the same formulas over recordings of ``inputs``, compiled once."""
 
@@ -33,7 +68,7 @@ class Evaluator:
         self._asked = tuple(formulas)
         formulas = tuple(map(desugar, formulas))
         # Also what these formulas do not read says where the recording starts and ends.
-        self._plan = compile_plan(formulas, tick, domain="dense", inputs=inputs)
+        self._plan = compile_plan(formulas, tick, domain=Dense, inputs=inputs)
         # What unbounded future reads must have settled: past windows slide on after the last sample.
         self._settled = max(reach(formula, tick) for formula in formulas) if self._plan.stages else 0
 
@@ -81,7 +116,7 @@ def run(
     _core = core()
     try:
         values: list[Samples] = _core.dense_evaluate(
-            program.code(), [columns[name] for name in program.inputs], extra, calls_of(program)
+            program.code(), [columns[name] for name in program.inputs], extra, calls_of(program, EventDriver)
         )
     except RuntimeError as error:
         raise not_made(program, error) from None

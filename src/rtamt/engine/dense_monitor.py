@@ -13,20 +13,20 @@ from rtamt.engine.gate import alone, in_use
 from rtamt.engine.native import compiled, core, culprit, not_made
 from rtamt.engine.online import OnlineMonitor, Watched, depth_of
 from rtamt.engine.python_backend import Refused
-from rtamt.engine.user_operators import calls_of
+from rtamt.engine.user_operators import EventDriver, calls_of
 from rtamt.errors import TraceError, UsageError
 from rtamt.language.undefined_value import undefined
 from rtamt.language.units import check_unit
-from rtamt.rewrite.check import check_bounds, check_dense, check_online
+from rtamt.rewrite.check import check_online
 from rtamt.rewrite.desugar import desugar
 from rtamt.signals import arrays, dense_arrays
+from rtamt.signals.dense import DENSE, Dense
 from rtamt.signals.dense_arrays import TickSignal
 from rtamt.signals.signal import Signal
-from rtamt.signals.ticks import NANOSECOND, TimeScale
+from rtamt.signals.ticks import TimeScale
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Mapping, Sequence
-    from fractions import Fraction
 
     from rtamt.errors import EvaluationError
     from rtamt.language.formula import Formula
@@ -56,9 +56,9 @@ class DenseMonitor(OnlineMonitor):
     def __init__(
         self,
         formula: Formula,
+        domain: Dense = DENSE,
         *,
         text: str | None = None,
-        resolution: Fraction = NANOSECOND,
         backend: str = "cpp",
         declared: Collection[str] = (),
         watch: Sequence[Watched] = (),
@@ -68,23 +68,19 @@ class DenseMonitor(OnlineMonitor):
         parts: bool = False,
     ) -> None:
         for watched in (Watched("", formula, text), *watch):
-            check_dense(watched.formula, watched.text)
-            check_bounds(watched.formula, resolution, watched.text, "resolution")
+            domain.check(watched.formula, watched.text)
             check_online(watched.formula, watched.text)
         super().__init__(formula, watch, declared, factory)
-        if not self.input_names:
-            raise UsageError(
-                "the formula reads no variable, so in dense time nothing says when to evaluate it"
-            )
+        domain.check_inputs(self.input_names)
         self._depth = depth_of(formula)
-        self._tick = resolution
+        self._tick = domain.resolution
         self._given_scale = scale
         self._unit = None if unit is None else check_unit(unit)
         self._scale: TimeScale | None = None
         self._program = None
         if backend != "python":
             outputs = [desugar(formula) for formula in self._formulas]
-            program = compile_program(outputs, resolution, self.input_names, domain="dense")
+            program = compile_program(outputs, self._tick, self.input_names, domain=Dense)
             every = range(len(program.instructions)) if parts else ()
             self._program = replace(program, outputs=(*program.outputs, *every))
         self._connect(self._open())
@@ -94,7 +90,10 @@ class DenseMonitor(OnlineMonitor):
             return PythonDenseMonitor(self._formulas, self.input_names, self._tick)
         try:
             return core().DenseMonitor(
-                self._program.code(), list(self.input_names), self._unread, calls=calls_of(self._program)
+                self._program.code(),
+                list(self.input_names),
+                self._unread,
+                calls=calls_of(self._program, EventDriver),
             )
         except RuntimeError as error:
             raise not_made(self._program, error) from None

@@ -16,16 +16,15 @@ from rtamt.engine.online import OnlineMonitor, Watched, depth_of
 from rtamt.errors import TraceError, UsageError, shown
 from rtamt.language.undefined_value import at_sample, undefined
 from rtamt.language.units import UNITS, check_unit
-from rtamt.rewrite.check import check_bounds, check_online
+from rtamt.rewrite.check import check_online
 from rtamt.rewrite.desugar import desugar
 from rtamt.signals import arrays
 from rtamt.signals.arrays import Stamps, plain
 from rtamt.signals.counting import implausible, is_implausible
+from rtamt.signals.discrete import DISCRETE, Discrete
 from rtamt.signals.regular import (
-    TOLERANCE,
     check_increasing,
     check_regular,
-    check_tolerance,
     irregular,
     not_increasing,
 )
@@ -69,23 +68,24 @@ class Monitor(OnlineMonitor):
     def __init__(
         self,
         formula: Formula,
+        domain: Discrete = DISCRETE,
         *,
         text: str | None = None,
-        period: Fraction = Fraction(1),
-        tolerance: float = TOLERANCE,
         backend: str = "cpp",
         declared: Collection[str] = (),
         watch: Sequence[Watched] = (),
         factory: Callable[[], OnlineMonitor] | None = None,
         unit: str | None = None,
     ) -> None:
+        domain = domain.online
+        period = domain.period
+        assert period is not None
         for watched in (Watched("", formula, text), *watch):
-            check_bounds(watched.formula, period, watched.text)
+            domain.check(watched.formula, watched.text)
             check_online(watched.formula, watched.text)
-        check_tolerance(tolerance)
         super().__init__(formula, watch, declared, factory)
         self._period = period
-        self._tolerance = tolerance
+        self._tolerance = domain.tolerance
         self._depths = [depth_of(formula, period) for formula in self._formulas]
         self._lags = [int(depth / period) for depth in self._depths]
         self._oldest = max(self._lags)  # samples that may still have a value to come

@@ -6,7 +6,7 @@ import sys
 from functools import update_wrapper
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from rtamt.engine.user_operators import calls_of
+from rtamt.engine.user_operators import SampleDriver, calls_of
 from rtamt.errors import EvaluationError, UsageError
 from rtamt.language.formula import Apply
 from rtamt.language.printer import excerpt
@@ -64,7 +64,7 @@ def core_monitor(
     gaps that miss the period and takes the sample; samples of ``ignored`` variables are skipped.
     """
     _core = core()
-    code, calls = program.code(), calls_of(program)
+    code, calls = program.code(), calls_of(program, SampleDriver)
     try:
         return _core.Monitor(code, list(program.inputs), period, tolerance, strict, frozenset(ignored), calls)
     except RuntimeError as error:

@@ -11,7 +11,7 @@ from __future__ import annotations
 import copy
 import ctypes
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
@@ -27,6 +27,8 @@ from rtamt.reference.definition_adapter import (
     signal_of,
     values_of,
 )
+from rtamt.signals.dense import Dense
+from rtamt.signals.discrete import Discrete
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -37,16 +39,20 @@ if TYPE_CHECKING:
     from rtamt.compiler.program import CallSite, Program
     from rtamt.language.formula import Apply
     from rtamt.language.operators import Operator
+    from rtamt.signals.domain import TimeDomain
 
     Array = NDArray[np.float64]
     Events = tuple[NDArray[np.int64], Array]
 
 
-def calls_of(program: Program) -> list[tuple[Any, int, int, float, tuple[int, ...]]]:
-    """Return what the core needs for the calls of a program: of each the kernel, interval, step and operands."""
+def calls_of(program: Program, driver: type[_Driver]) -> list[tuple[Any, int, int, float, tuple[int, ...]]]:
+    """Return what the core needs for the calls of a program: of each the kernel, interval, step and operands.
+
+    ``driver``: that of the program's time domain.
+    """
     return [
         (
-            _kernel(site, program.domain),
+            _kernel(site, driver),
             site.begin,
             -1 if site.end is None else site.end,
             float(program.period),
@@ -56,24 +62,19 @@ def calls_of(program: Program) -> list[tuple[Any, int, int, float, tuple[int, ..
     ]
 
 
-def _kernel(site: CallSite, domain: str) -> Any:
+def _kernel(site: CallSite, driver: type[_Driver]) -> Any:
     """Return the capsule of a compiled kernel, or a function that makes a driver."""
-    kernel = site.op.kernel
+    kernel, name = site.op.kernel, driver.domain.name
     if isinstance(kernel, Compiled):
-        name = kernel.discrete if domain == "discrete" else kernel.dense
-        if name is not None:
-            return _capsule(site.op, kernel.library, name)
-    blocks = None
-    if isinstance(kernel, Blocks):
-        blocks = kernel.discrete if domain == "discrete" else kernel.dense
+        symbol = getattr(kernel, name)
+        if symbol is not None:
+            return _capsule(site.op, kernel.library, symbol)
+    blocks = getattr(kernel, name) if isinstance(kernel, Blocks) else None
     if blocks is not None:
         make = blocks if site.op.bounds is Bounds.NONE else partial(blocks, site.begin, site.end)
     else:
-        defined = DefinedSamples if domain == "discrete" else DefinedEvents
-        if domain == "dense":
-            check_dense_meaning(site.op)
-        make = partial(defined, site.node, site.begin, site.end, site.ahead)
-    driver = SampleDriver if domain == "discrete" else EventDriver
+        driver.check_defined(site.op)
+        make = partial(driver.defined, site.node, site.begin, site.end, site.ahead)
     return partial(driver, site.node, len(site.operands), make, site.ahead)
 
 
@@ -97,6 +98,15 @@ def _capsule(op: Operator, library: str, name: str) -> Any:
 
 class _Driver:
     """What both time domains share: the user's object, its checkpoint, and what is said when it fails."""
+
+    #: Whose operands it takes.
+    domain: ClassVar[type[TimeDomain]]
+    #: What runs the definition of an operator without a kernel.
+    defined: ClassVar[Callable[..., Any]]
+
+    @staticmethod
+    def check_defined(op: Operator) -> None:
+        """Raise :class:`UsageError` for an operator that has no definition in the time domain."""
 
     def __init__(self, node: Apply, operands: int, make: Callable[[], Any], ahead: int) -> None:
         self.operands = operands
@@ -155,6 +165,9 @@ class _Driver:
 class SampleDriver(_Driver):
     """A call in discrete time."""
 
+    domain = Discrete
+    defined = DefinedSamples
+
     def _begin(self) -> None:
         super()._begin()
         self._return_to((0, 0, np.empty(0), False))
@@ -193,6 +206,10 @@ class SampleDriver(_Driver):
 
 class EventDriver(_Driver):
     """A call in dense time; the core looks at what it gives."""
+
+    domain = Dense
+    defined = DefinedEvents
+    check_defined = staticmethod(check_dense_meaning)
 
     def _progress(self) -> Any:
         return None

@@ -20,7 +20,6 @@ from rtamt.language.formula import postorder
 from rtamt.language.printer import PAGE, to_text
 from rtamt.rewrite.semantics import boolean, no_verdict
 from rtamt.rewrite.structure import NEVER, Structure, literal, reaches
-from rtamt.signals.discrete import DiscreteTrace
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -28,7 +27,7 @@ if TYPE_CHECKING:
     from rtamt.explain.minimise import Interval
     from rtamt.language.formula import Formula
     from rtamt.rewrite.structure import Leaf
-    from rtamt.signals.dense import DenseTrace
+    from rtamt.signals.domain import DomainTrace
 
 #: How many places are tried for one that overturns the verdict alone.
 _TRIED = 64
@@ -36,7 +35,7 @@ _TRIED = 64
 
 def explain(
     formula: Formula,
-    recording: DiscreteTrace | DenseTrace,
+    recording: DomainTrace,
     *,
     backend: str = "cpp",
     at: Any = None,
@@ -59,7 +58,7 @@ class _Explainer:
     def __init__(
         self,
         formula: Formula,
-        recording: DiscreteTrace | DenseTrace,
+        recording: DomainTrace,
         backend: str,
         text: str | None,
         semantics: Callable[[Formula], Formula],
@@ -67,7 +66,7 @@ class _Explainer:
         self._formula = formula
         self._text = text
         self._line = timeline(recording, backend)
-        self._dense = not isinstance(recording, DiscreteTrace)
+        self._dense = recording.domain.continuous
         self._structure = Structure.of(formula, self._line.period if self._dense else None)
         leaves = self._structure.leaves
         predicates = [leaf.formula for leaf in leaves.values()]

@@ -4,22 +4,21 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from rtamt.engine import dense_evaluate, evaluate
-from rtamt.errors import StlError, UsageError, shown
+from rtamt.errors import UsageError
 from rtamt.explain.instants import Steps
 from rtamt.language.formula import Apply, postorder
 from rtamt.reference import dense as dense_reference
 from rtamt.reference import discrete as reference
 from rtamt.rewrite.desugar import desugar
 from rtamt.rewrite.structure import NEVER
-from rtamt.signals.arrays import is_number, stamps
-from rtamt.signals.dense import DenseTrace
-from rtamt.signals.discrete import DiscreteTrace
-from rtamt.signals.regular import TOLERANCE
+from rtamt.signals.dense import Dense, DenseTrace
+from rtamt.signals.discrete import Discrete, DiscreteTrace
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -27,6 +26,7 @@ if TYPE_CHECKING:
 
     from rtamt.language.formula import Formula
     from rtamt.signals.dense_arrays import Samples
+    from rtamt.signals.domain import DomainTrace, TimeDomain
 
     #: From a function of cells for each variable to one for each formula.
     Runner = Callable[[Mapping[str, Steps]], list[Steps]]
@@ -116,24 +116,11 @@ class DiscreteTimeline(Timeline):
 
     def cell(self, at: Any) -> int:
         """See :class:`Timeline`."""
-        times = self._recording.times
-        try:
-            seconds: Any = stamps([at], self._recording.unit).seconds[0]
-        except StlError:
-            seconds = None
-        if is_number(seconds) and math.isfinite(seconds):
-            nearest = int(np.abs(times - float(seconds)).argmin())
-            if abs(float(times[nearest]) - float(seconds)) <= TOLERANCE * float(self.period):
-                return nearest
-        told = at if isinstance(at, np.datetime64) else shown(at)
-        raise UsageError(
-            f"there is no sample at {told}; the recording has {self.end}, "
-            f"from {self.show(0)} to {self.show(self.last)}"
-        )
+        return self._recording.position(at)
 
     def time(self, cell: int) -> Any:
         """See :class:`Timeline`."""
-        return self._recording.stamp(cell)
+        return self._recording.time(cell)
 
     def show(self, cell: int) -> str:
         """See :class:`Timeline`."""
@@ -200,27 +187,17 @@ class DenseTimeline(Timeline):
 
     def cell(self, at: Any) -> int:
         """See :class:`Timeline`."""
-        scale = self._recording.scale
-        try:
-            found = int(scale.widened([[at]]).ticks([at], "at")[0]) - self._start
-        except (StlError, TypeError, ValueError):
-            found = -1
-        if 0 <= found <= self._last:
-            return found
-        raise UsageError(
-            f"{shown(at)} is no instant of the recording, "
-            f"which lasts from {self.show(0)} to {self.show(self._last)}"
-        )
+        return self._recording.position(at)
 
     def time(self, cell: int) -> Any:
         """See :class:`Timeline`."""
         if cell >= NEVER // 2:
             return None
-        return self._recording.scale.time(cell + self._start)
+        return self._recording.time(cell)
 
     def show(self, cell: int) -> str:
         """See :class:`Timeline`."""
-        return self._recording.scale.show(cell + self._start)
+        return self._recording.show(cell)
 
     @property
     def last(self) -> int:
@@ -249,11 +226,14 @@ class DenseTimeline(Timeline):
         return grain or 1
 
 
-def timeline(recording: DiscreteTrace | DenseTrace, backend: str) -> Timeline:
+_TIMELINES: Mapping[type[TimeDomain], Callable[[Any, str], Timeline]] = MappingProxyType(
+    {Discrete: DiscreteTimeline, Dense: DenseTimeline}
+)
+
+
+def timeline(recording: DomainTrace, backend: str) -> Timeline:
     """Return the cells of a recording."""
-    if isinstance(recording, DiscreteTrace):
-        return DiscreteTimeline(recording, backend)
-    return DenseTimeline(recording, backend)
+    return _TIMELINES[type(recording.domain)](recording, backend)
 
 
 def _held(columns: Mapping[str, Samples], after: int) -> dict[str, Samples]:

@@ -143,7 +143,7 @@ def _logs(root: Element) -> None:
 
 def _experiment(root: Element, unit: Unit) -> None:
     # In dense time a step has no natural length.
-    step = {"stepSize": repr(float(unit.program.period))} if unit.program.domain == "discrete" else {}
+    step = {"stepSize": repr(float(unit.program.period))} if not unit.program.domain.continuous else {}
     _add(root, "DefaultExperiment", startTime="0", **step)
 
 

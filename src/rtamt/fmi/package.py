@@ -17,7 +17,8 @@ from rtamt.fmi.description import Unit, description, identifier
 if TYPE_CHECKING:
     import os
 
-    from rtamt.settings import Duration, Semantics
+    from rtamt.language.units import Duration
+    from rtamt.settings import Semantics
     from rtamt.specification import Specification
 
 #: Each version with the names it has for the systems that a library may be for.

@@ -19,12 +19,15 @@ from functools import lru_cache
 from math import isfinite
 from numbers import Rational, Real
 from types import MappingProxyType
-from typing import TYPE_CHECKING, SupportsFloat
+from typing import TYPE_CHECKING, SupportsFloat, TypeAlias
 
 from rtamt.errors import UsageError, shown
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
+
+#: Seconds, or text with a unit, such as ``"100ms"``.
+Duration: TypeAlias = str | float | Fraction
 
 #: Seconds in each unit, the largest first.
 UNITS: Mapping[str, Fraction] = MappingProxyType(
@@ -116,6 +119,14 @@ def duration(value: str | SupportsFloat, unit: str = "s") -> Fraction:
             f"the duration {shown(value)} is beyond what can be counted in seconds; check its unit"
         )
     return number * UNITS[unit]
+
+
+def positive_period(period: Duration, what: str = "sampling period") -> Fraction:
+    """Return a sampling period, or ``what`` else it is, in seconds, exact; raise :class:`UsageError` for 0."""
+    exact_period = duration(period)
+    if exact_period <= 0:
+        raise UsageError(f"the {what} is {shown(period)}; it must be positive")
+    return exact_period
 
 
 def decimal(number: Fraction) -> str | None:

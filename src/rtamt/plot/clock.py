@@ -7,12 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rtamt.signals.arrays import stamps
-from rtamt.signals.discrete import DiscreteTrace
-
 if TYPE_CHECKING:
     from rtamt.signals.arrays import FloatArray
-    from rtamt.signals.dense import DenseTrace
+    from rtamt.signals.domain import DomainTrace
 
 #: Stamps that start later than this many seconds are told from their start on.
 _FAR = 1e5
@@ -23,37 +20,27 @@ class Clock:
     """Positions are seconds after ``origin``: a date, or a number of seconds (0, unless stamps start far from it)."""
 
     origin: float | np.datetime64
-    recording: DiscreteTrace | DenseTrace
+    recording: DomainTrace
 
     @staticmethod
-    def of(recording: DiscreteTrace | DenseTrace) -> Clock:
+    def of(recording: DomainTrace) -> Clock:
         """Return the clock of a recording."""
-        if isinstance(recording, DiscreteTrace):
-            first = float(recording.times[0])
-            if recording.dated:
-                return Clock(recording.stamps[0], recording)
-            return Clock(first if abs(first) > _FAR else 0.0, recording)
-        start = recording.scale.times(np.array([recording.start], np.int64))[0]
-        if isinstance(start, np.datetime64):
-            return Clock(start, recording)
-        seconds = float(recording.start * recording.scale.tick)
-        return Clock(seconds if abs(seconds) > _FAR else 0.0, recording)
+        origin = recording.origin
+        near = not isinstance(origin, np.datetime64) and abs(origin) <= _FAR
+        return Clock(0.0 if near else origin, recording)
 
     def positions(self, times: Any) -> FloatArray:
         """Return times, as signals and explanations tell them, as positions."""
-        recording = self.recording
-        if isinstance(recording, DiscreteTrace):
-            seconds = stamps(times, recording.unit).seconds
-            return seconds - recording.times[0] if self.origin else seconds
-        return self.ticked(recording.scale.ticks(times, "time"))
+        return self.recording.seconds(times, elapsed=self._elapsed)
 
-    def ticked(self, ticks: Any) -> FloatArray:
-        """Return ticks of dense time as positions."""
-        assert not isinstance(self.recording, DiscreteTrace)
-        zero = self.recording.start if self.origin else 0
-        tick = self.recording.scale.tick  # nearly always 1/n: one division rounds once
-        seconds: FloatArray = (np.asarray(ticks, np.int64) - zero) * float(tick.numerator) / tick.denominator
-        return seconds
+    def recorded(self, name: str) -> tuple[FloatArray, FloatArray]:
+        """Return the positions and the values of a variable."""
+        return self.recording.points(name, elapsed=self._elapsed)
+
+    @property
+    def _elapsed(self) -> bool:
+        """Whether positions count from the first instant."""
+        return bool(self.origin)
 
     def position(self, time: Any) -> float:
         """Return one time as a position."""
@@ -73,16 +60,12 @@ class Clock:
     @property
     def end(self) -> float:
         """The last instant that was recorded."""
-        if isinstance(self.recording, DiscreteTrace):
-            return self.position(self.recording.times[-1])
-        return float(self.ticked([self.recording.end])[0])
+        return self.recording.ends(elapsed=self._elapsed)[1]
 
     @property
     def start(self) -> float:
         """The first instant at which the formula is evaluated."""
-        if isinstance(self.recording, DiscreteTrace):
-            return self.position(self.recording.times[0])
-        return float(self.ticked([self.recording.start])[0])
+        return self.recording.ends(elapsed=self._elapsed)[0]
 
     @property
     def label(self) -> str:

@@ -6,8 +6,6 @@ from collections import deque
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from rtamt.explain.sentences import predicate_text
 from rtamt.language.formula import Apply, Var, variables
 from rtamt.language.records import Bounds, Fixity
@@ -15,7 +13,6 @@ from rtamt.plot.clock import Clock
 from rtamt.plot.lines import Line, Range, ranges
 from rtamt.plot.panels import groups
 from rtamt.rewrite.semantics import boolean, is_predicate
-from rtamt.signals.discrete import DiscreteTrace
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -124,7 +121,7 @@ class _Painter:
         self._spec = result.specification
         self._explanation = result.explain(at)
         self._clock = Clock.of(result.trace)
-        self._dense = not isinstance(result.trace, DiscreteTrace)
+        self._dense = result.trace.domain.continuous
 
     def scene(self) -> Scene:
         formulas = _sub_formulas(self._spec.formula)
@@ -176,23 +173,14 @@ class _Painter:
         return tuple(found)
 
     def _recorded(self, name: str) -> Line:
-        trace, clock = self._result.trace, self._clock
-        if isinstance(trace, DiscreteTrace):
-            return Line(name, clock.positions(trace.stamps), trace.columns[name], trace.units.get(name, ""))
-        ticks, values = trace.columns[name]
-        positions = clock.ticked(ticks)
-        if positions[-1] < clock.end:  # the last value holds
-            positions, values = np.append(positions, clock.end), np.append(values, values[-1])
-        return Line(name, positions, np.asarray(values), trace.units.get(name, ""))
+        return Line(name, *self._clock.recorded(name), self._result.trace.units.get(name, ""))
 
     def _line(self, name: str, signal: Signal) -> Line:
         return Line(name, self._clock.positions(signal.times), signal.values)
 
     def _because(self, stretches: Sequence[Stretch]) -> tuple[Range, ...]:
         """Return the stretches as they are drawn, within the recording."""
-        half = 0.0
-        if isinstance(self._result.trace, DiscreteTrace):
-            half = float(self._result.trace.period) / 2
+        half = float(self._result.trace.domain.period or 0) / 2  # around a sample
         clock = self._clock
         found = dict.fromkeys(
             (

@@ -7,19 +7,18 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import UsageError
-from rtamt.language.units import check_unit
+from rtamt.language.units import check_unit, positive_period
 from rtamt.readers import frames
 from rtamt.readers.assemble import Choice, chunks_of, trace_of
 from rtamt.readers.formats import FORMATS, format_of
 from rtamt.readers.sql import is_url, open_sql
-from rtamt.settings import positive_period
 from rtamt.signals.arrays import TIME
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
 
+    from rtamt.language.units import Duration
     from rtamt.readers.source import Source
-    from rtamt.settings import Duration
     from rtamt.signals.trace import Trace
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from decimal import Decimal
 from fractions import Fraction
 
@@ -11,27 +12,43 @@ from rtamt.language.operators import Bounds, Tense
 from rtamt.language.units import format_duration
 from rtamt.rewrite.desugar import spelled_out
 
-#: The longest bound; sums of many such lags still fit into an int64.
-_MOST_PERIODS = 2**44
-_MOST_TICKS = 2**56
-#: The longest sum of bounds of nested operators in dense time, where it is added to stamps.
-_FARTHEST_TICKS = 2**61
+
+@dataclass(frozen=True, slots=True)
+class BoundUnit:
+    """The step in which a time domain counts bounds: how messages name it, and how many can be counted.
+
+    ``setting``: the setting that is the length of a step. ``steps``: several of them. ``longer``: the
+    setting with which fewer are needed. ``most``: the longest bound. ``farthest``: the longest sum of
+    bounds of nested operators; None where sums of the longest bounds fit into an int64.
+    """
+
+    setting: str
+    steps: str
+    longer: str
+    most: int
+    farthest: int | None
+
+    @property
+    def step(self) -> str:
+        """One of the steps."""
+        return self.steps[:-1]
+
+
+#: Sampling periods, between the samples of discrete time.
+PERIODS = BoundUnit("sampling period", "periods", "a longer period", 2**44, None)
+#: Ticks; the sum of bounds is limited because it is added to timestamps.
+TICKS = BoundUnit("resolution", "ticks", "a coarser resolution", 2**56, 2**61)
 
 
 def check_bounds(
-    formula: Formula, period: Fraction, text: str | None = None, what: str = "sampling period"
+    formula: Formula, step: Fraction, text: str | None = None, unit: BoundUnit = PERIODS
 ) -> None:
-    """Raise :class:`BoundError` unless every bound is a whole multiple of ``period`` (seconds).
-
-    ``what`` is how the message calls the period: in dense time it is the resolution.
+    """Raise :class:`BoundError` unless every bound is a whole multiple of ``step`` (seconds), which ``unit`` names.
 
     >>> from fractions import Fraction
     >>> from rtamt.language.parser import parse_formula
     >>> check_bounds(parse_formula("always[0:1] x"), Fraction(1, 10))
     """
-    discrete = what == "sampling period"
-    steps, most = ("periods", _MOST_PERIODS) if discrete else ("ticks", _MOST_TICKS)
-    longer = "a longer period" if discrete else "a coarser resolution"
     for node in postorder(spelled_out(formula)):
         if not isinstance(node, Apply) or node.interval is None:
             continue
@@ -39,25 +56,25 @@ def check_bounds(
             if bound is None:
                 continue
             count, rest = divmod(  # of integers: a division of fractions costs ten times as much
-                bound.numerator * period.denominator, bound.denominator * period.numerator
+                bound.numerator * step.denominator, bound.denominator * step.numerator
             )
             if rest != 0:
                 raise BoundError(
-                    f"The operator bound must be a multiple of the {what}: "
-                    f"{format_duration(bound)} is not a whole number of {steps} of {format_duration(period)}; "
-                    f"change the bound or the {steps[:-1]}",
+                    f"The operator bound must be a multiple of the {unit.setting}: "
+                    f"{format_duration(bound)} is not a whole number of {unit.steps} of {format_duration(step)}; "
+                    f"change the bound or the {unit.step}",
                     text,
                     node.interval.span or node.span,
                 )
-            if count > most:
+            if count > unit.most:
                 raise BoundError(
-                    f"{format_duration(bound)} is {_short(count)} {steps} of {format_duration(period)}, "
-                    f"more than can be counted; shorten the bound, leave it open with inf, or choose {longer}",
+                    f"{format_duration(bound)} is {_short(count)} {unit.steps} of {format_duration(step)}, "
+                    f"more than can be counted; shorten the bound, leave it open with inf, or choose {unit.longer}",
                     text,
                     node.interval.span or node.span,
                 )
-    if not discrete:
-        _check_sums(spelled_out(formula), period, text)
+    if unit.farthest is not None:
+        _check_sums(spelled_out(formula), step, text, unit, unit.farthest)
 
 
 def _short(count: int) -> str:
@@ -65,10 +82,10 @@ def _short(count: int) -> str:
     return f"{float(count):.3g}" if count < 10**300 else f"{Decimal(count):.3g}"
 
 
-def _check_sums(formula: Formula, tick: Fraction, text: str | None) -> None:
+def _check_sums(formula: Formula, step: Fraction, text: str | None, unit: BoundUnit, farthest: int) -> None:
     """Raise :class:`BoundError` at an operator whose bounds, with those of its operands, reach too far."""
     reach: dict[int, Fraction] = {}
-    none, farthest = Fraction(0), _FARTHEST_TICKS * tick
+    none, limit = Fraction(0), farthest * step
     for node in postorder(formula):
         far = none
         for operand in children(node):
@@ -76,11 +93,11 @@ def _check_sums(formula: Formula, tick: Fraction, text: str | None) -> None:
                 far = max(far, reach[id(operand)])
         if isinstance(node, Apply) and node.interval is not None:
             far += node.interval.begin if node.interval.end is None else node.interval.end
-            if far > farthest:
+            if far > limit:
                 raise BoundError(
-                    f"the bounds from here inwards add up to {format_duration(far)}, {_short(int(far / tick))} ticks "
-                    f"of {format_duration(tick)}, more than can be counted; shorten them, or choose a coarser "
-                    f"resolution",
+                    f"the bounds from here inwards add up to {format_duration(far)}, {_short(int(far / step))} "
+                    f"{unit.steps} of {format_duration(step)}, more than can be counted; shorten them, or choose "
+                    f"{unit.longer}",
                     text,
                     node.interval.span or node.span,
                 )

@@ -6,18 +6,18 @@ from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import StlError, UsageError
-from rtamt.language.units import duration
+from rtamt.language.units import duration, positive_period
 from rtamt.ros.fields import reader, stamp_of
 from rtamt.ros.output_group import DenseWatch, DiscreteWatch, Robustness, Verdict, group_outputs
 from rtamt.ros.report import Condition, Level, Notice
-from rtamt.settings import positive_period, time_domain
+from rtamt.signals.domains import time_domain
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Container, Mapping, Sequence
 
+    from rtamt.language.units import Duration
     from rtamt.ros.binding import Binding
     from rtamt.ros.output_group import Record, Standing, Watch
-    from rtamt.settings import Duration
 
 #: After how many silent periods a topic is stale, unless a time is set; in dense time, seconds.
 STALE_PERIODS = 10
@@ -80,7 +80,7 @@ class RosMonitor:
         stale: Duration | None = None,
     ) -> None:
         self.binding = binding
-        self.time = time_domain(time)
+        self.time = time_domain(time).name
         self.period = self._period(period)
         self._stale = self._stale_after(stale)
         # How far the clock may go from one look at it to the next; 0 for any distance.

@@ -10,7 +10,7 @@ from rtamt.errors import UsageError
 from rtamt.language.units import UNITS
 from rtamt.ros.binding import bind
 from rtamt.ros.monitor import RosMonitor
-from rtamt.settings import time_domain
+from rtamt.signals.domains import time_domain
 from rtamt.texts import load
 
 if TYPE_CHECKING:
@@ -34,7 +34,7 @@ class Options:
         """Read the specification and make its monitor; raise :class:`StlError` where that cannot be."""
         if not self.spec:
             raise UsageError("no specification was given: name a file, or set the parameter spec")
-        dense = time_domain(self.time) == "dense"
+        dense = time_domain(self.time).continuous
         if dense and self.period:
             raise UsageError("dense time has no sampling period: leave out --period, or --time dense")
         if not dense and not self.period:

@@ -14,6 +14,8 @@ from rtamt.language.formula import Apply, Const, postorder, variables
 from rtamt.language.operators import STL
 from rtamt.language.records import Pointwise
 from rtamt.rewrite.horizon import horizon
+from rtamt.signals.dense import Dense
+from rtamt.signals.discrete import Discrete
 from rtamt.signals.ticks import NANOSECOND
 
 if TYPE_CHECKING:
@@ -161,7 +163,7 @@ class DiscreteWatch(Watch):
         first, *_ = every = [watched for pair in self.formulas for watched in pair]
         backend = outputs[0].specification.backend
         self._monitor: Monitor = Monitor(
-            first.formula, text=first.text, period=period, backend=backend, watch=every
+            first.formula, Discrete(period), text=first.text, backend=backend, watch=every
         )
         self._step = int(period / NANOSECOND)
         self.due: int | None = None
@@ -311,7 +313,7 @@ class DenseWatch(Watch):
         backend = outputs[0].specification.backend
         # Stamps are integers of nanoseconds, and so are ticks: what comes out needs no conversion.
         self._monitor: DenseMonitor = DenseMonitor(
-            first.formula, text=first.text, resolution=NANOSECOND, backend=backend, watch=every, unit="ns"
+            first.formula, Dense(NANOSECOND), text=first.text, backend=backend, watch=every, unit="ns"
         )
         self._start: int | None = None
         self._held: deque[tuple[int, dict[str, float]]] = deque(maxlen=HELD)

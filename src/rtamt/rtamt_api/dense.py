@@ -14,7 +14,7 @@ from rtamt.language.formula import Apply, Var, folds, outermost, postorder, vari
 from rtamt.language.operators import Tense
 from rtamt.language.printer import EXCERPT, canonical
 from rtamt.language.units import UNITS
-from rtamt.rewrite.check import check_bounds, check_dense, has_future
+from rtamt.rewrite.check import TICKS, check_bounds, check_dense, has_future
 from rtamt.rtamt_api.backends import check_language, dense_signal, is_compiled
 from rtamt.rtamt_api.declarations import head_of
 from rtamt.rtamt_api.explained import ExplainedSpecification
@@ -53,7 +53,7 @@ class DenseTimeSpecification(Formulas):
 
     def _check(self, formula: Formula, text: str) -> None:
         # Operators that dense time does not have are read, as by RTAMT: only their values do not exist.
-        check_bounds(formula, NANOSECOND, text, "resolution")
+        check_bounds(formula, NANOSECOND, text, TICKS)
         for node in postorder(formula):
             if isinstance(node, Var) and node.name == arrays.TIME:
                 # The engine's recordings keep their stamps under this name.

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from rtamt.errors import UsageError
 from rtamt.language.formula import Var, variables
 from rtamt.language.printer import canonical
@@ -13,14 +11,13 @@ from rtamt.rewrite.semantics import apply_semantics, semantics_of
 from rtamt.rtamt_api.backends import is_compiled
 from rtamt.rtamt_api.failures import raises_rtamt
 from rtamt.rtamt_api.formulas import Formulas
-from rtamt.signals.discrete import DiscreteTrace
 
 if TYPE_CHECKING:
     from rtamt.explain.report import Explanation
     from rtamt.language.document import Document
     from rtamt.language.formula import Formula
     from rtamt.rewrite.semantics import PredicateSemantics
-    from rtamt.signals.dense import DenseTrace
+    from rtamt.signals.domain import DomainTrace
 
 
 class Explainer:
@@ -38,14 +35,14 @@ class ExplainedSpecification(Formulas):
     def __init__(self) -> None:
         super().__init__()
         self.explainer = Explainer()
-        self._evaluated: tuple[Formula, DiscreteTrace | DenseTrace, str | PredicateSemantics] | None = None
+        self._evaluated: tuple[Formula, DomainTrace, str | PredicateSemantics] | None = None
 
     def _parsed(self, document: Document) -> None:
         super()._parsed(document)
         self._evaluated = None
         self.explainer = Explainer()
 
-    def _remember(self, formula: Formula, recording: DiscreteTrace | DenseTrace) -> None:
+    def _remember(self, formula: Formula, recording: DomainTrace) -> None:
         """Keep what was evaluated, and under which semantics, until it is to be explained."""
         self._evaluated = formula, recording, semantics_of(self._semantics)
 
@@ -88,13 +85,11 @@ class ExplainedSpecification(Formulas):
         return found
 
 
-def _places(
-    formula: Formula, recording: DiscreteTrace | DenseTrace, explanation: Explanation
-) -> dict[str, list[list[Any]]]:
+def _places(formula: Formula, recording: DomainTrace, explanation: Explanation) -> dict[str, list[list[Any]]]:
     """Return where the predicates and variables of an implicant make a formula fail, by canonical text."""
 
     def place(time: Any) -> Any:
-        return int(np.searchsorted(recording.times, time)) if isinstance(recording, DiscreteTrace) else time
+        return time if recording.domain.continuous else recording.position(time)
 
     if explanation.satisfied:
         return {}

@@ -3,8 +3,10 @@
 ============  =================================================================
 module        purpose
 ============  =================================================================
-discrete      discrete-time traces: one value of every variable per sample
-dense         dense-time traces: timestamps per signal, counted in ticks
+domain        the interfaces of a time domain and of a trace in one
+domains       the list of time domains
+discrete      discrete time and its traces: one value of every variable per sample
+dense         dense time and its traces: timestamps per signal, counted in ticks
 signal        ``Signal``: the result of evaluations and monitors
 outcomes      bounds and verdicts that are known before the whole trace is
 trace         ``Trace``: named signals, each with its own time base; resampling

@@ -1,27 +1,92 @@
-"""The trace of dense time: every signal on its own timestamps, counted in ticks."""
+"""Dense time: every signal on its own timestamps, counted in ticks, constant between them."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from rtamt.errors import TraceError, UsageError
+from rtamt.errors import StlError, TraceError, UsageError, shown
+from rtamt.language.units import positive_period
+from rtamt.rewrite.check import TICKS, check_bounds, check_dense
 from rtamt.signals import arrays, dense_arrays
+from rtamt.signals.domain import DomainTrace, TimeDomain
 from rtamt.signals.signal import Signal
-from rtamt.signals.ticks import TimeScale
+from rtamt.signals.ticks import NANOSECOND, TimeScale
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Mapping, Sequence
+    from collections.abc import Collection, Iterable, Mapping, Sequence
     from fractions import Fraction
 
+    from numpy.typing import NDArray
+
+    from rtamt.language.formula import Formula
+    from rtamt.language.units import Duration
     from rtamt.signals.dense_arrays import Samples
     from rtamt.signals.ticks import TickArray
 
 
+@dataclass(frozen=True, init=False)
+class Dense(TimeDomain):
+    """Dense time: every variable may change at any instant, and holds its value up to its next sample.
+
+    ``resolution``: the length of a tick, in which time is counted: seconds, or text such as ``"1us"``.
+    Bounds must be multiples of it.
+
+    >>> import rtamt
+    >>> spec = rtamt.parse("eventually[0:1](x >= 3)", time=rtamt.Dense(resolution="1us"))
+    >>> spec.evaluate({"x": ([0, 0.7, 5], [1, 4, 0])}).robustness
+    1.0
+    """
+
+    name: ClassVar[str] = "dense"
+    summary: ClassVar[str] = "signals change at any instant"
+    continuous: ClassVar[bool] = True
+    unit = TICKS
+
+    resolution: Fraction
+
+    def __init__(self, resolution: Duration = NANOSECOND) -> None:
+        object.__setattr__(self, "resolution", positive_period(resolution, "resolution"))
+
+    @classmethod
+    def of(cls, period: Duration | None, tolerance: float, resolution: Duration) -> Dense:  # noqa: ARG003
+        """See :class:`TimeDomain`."""
+        return cls(resolution)
+
+    @property
+    def step(self) -> Fraction:
+        """See :class:`TimeDomain`."""
+        return self.resolution
+
+    @property
+    def online(self) -> Dense:
+        """See :class:`TimeDomain`."""
+        return self
+
+    def check(self, formula: Formula, text: str | None = None) -> None:
+        """See :class:`TimeDomain`."""
+        check_dense(formula, text)
+        check_bounds(formula, self.resolution, text, self.unit)
+
+    def check_inputs(self, names: Collection[str]) -> None:
+        """See :class:`TimeDomain`: the instants are those of the variables."""
+        _require_variables(names)
+
+    def record(
+        self, data: Any, names: Sequence[str], declared: Collection[str] = (), unit: str | None = None
+    ) -> DenseTrace:
+        """See :class:`TimeDomain`."""
+        return record_dense(data, names, self.resolution, declared, unit=unit)
+
+
+#: Dense time with its default settings.
+DENSE = Dense()
+
+
 @dataclass(frozen=True, slots=True, eq=False)
-class DenseTrace:
+class DenseTrace(DomainTrace):
     """A finished recording in dense time: for each variable its ticks and values, none of them empty."""
 
     columns: Mapping[str, Samples]
@@ -39,13 +104,61 @@ class DenseTrace:
         """The latest last tick."""
         return max(int(ticks[-1]) for ticks, _ in self.columns.values())
 
-    def held_until(self, tick: int) -> DenseTrace:
-        """Return the trace up to a later tick: every variable holds its last value, as it does for ever."""
-        if tick <= self.end:
+    @property
+    def domain(self) -> Dense:
+        """See :class:`DomainTrace`."""
+        return Dense(self.scale.tick)
+
+    @property
+    def step(self) -> Fraction:
+        """See :class:`DomainTrace`."""
+        return self.scale.tick
+
+    @property
+    def samples(self) -> int:
+        """See :class:`DomainTrace`."""
+        return len(np.unique(np.concatenate([ticks for ticks, _ in self.columns.values()])))
+
+    @property
+    def size(self) -> int:
+        """See :class:`DomainTrace`."""
+        return sum(len(ticks) for ticks, _ in self.columns.values())
+
+    def check(self, formula: Formula, text: str | None = None) -> None:
+        """See :class:`DomainTrace`."""
+        self.domain.check(formula, text)
+
+    def select(self, names: Iterable[str]) -> DenseTrace:
+        """See :class:`DomainTrace`."""
+        return replace(self, columns={name: self.columns[name] for name in names})
+
+    def started(self, names: Collection[str]) -> DenseTrace:
+        """See :class:`DomainTrace`."""
+        return self.select(name for name in self.columns if name in names)
+
+    def held_until(self, end: int) -> DenseTrace:
+        """See :class:`DomainTrace`: every variable holds its last value for ever."""
+        if end <= self.end:
             return self
         name, (ticks, values) = next(iter(self.columns.items()))
-        held = np.append(ticks, tick), np.append(values, values[-1])
+        held = np.append(ticks, end), np.append(values, values[-1])
         return replace(self, columns={**self.columns, name: held})
+
+    def in_steps(self) -> DenseTrace:
+        """See :class:`DomainTrace`."""
+        return replace(self, scale=TimeScale.in_ticks(self.scale.tick))
+
+    def positions(self, signal: Signal) -> NDArray[np.int64]:
+        """See :class:`DomainTrace`."""
+        return signal.times - self.start
+
+    def retold(self, signal: Signal) -> Signal:
+        """See :class:`DomainTrace`."""
+        return self.signal(signal.times, signal.values)
+
+    def signals(self, values: Sequence[Samples]) -> list[Signal]:
+        """See :class:`DomainTrace`."""
+        return [self.signal(*events) for events in values]
 
     def signal(self, ticks: TickArray, values: arrays.FloatArray) -> Signal:
         """Return events as a signal up to the end: a point for every change, and one at the end."""
@@ -56,6 +169,57 @@ class DenseTrace:
         if len(ticks) and ticks[-1] < end:
             ticks, values = np.concatenate((ticks, (end,))), np.concatenate((values, values[-1:]))
         return Signal(self.scale.times(ticks), values)
+
+    def time(self, position: int) -> Any:
+        """See :class:`DomainTrace`."""
+        return self.scale.time(self.start + position)
+
+    def show(self, position: int) -> str:
+        """See :class:`DomainTrace`."""
+        return self.scale.show(self.start + position)
+
+    def position(self, at: Any) -> int:
+        """See :class:`DomainTrace`."""
+        try:
+            found = int(self.scale.widened([[at]]).ticks([at], "at")[0]) - self.start
+        except (StlError, TypeError, ValueError):
+            found = -1
+        if 0 <= found <= self.last:
+            return found
+        raise UsageError(
+            f"{shown(at)} is no instant of the recording, "
+            f"which lasts from {self.show(0)} to {self.show(self.last)}"
+        )
+
+    @property
+    def origin(self) -> float | np.datetime64:
+        """See :class:`DomainTrace`."""
+        start = self.scale.time(self.start)
+        return start if isinstance(start, np.datetime64) else float(self.start * self.scale.tick)
+
+    def seconds(self, times: Any, *, elapsed: bool) -> arrays.FloatArray:
+        """See :class:`DomainTrace`."""
+        return self._seconds(self.scale.ticks(times, arrays.TIME), elapsed)
+
+    def _seconds(self, ticks: Any, elapsed: bool) -> arrays.FloatArray:
+        tick = self.scale.tick  # nearly always 1/n: one division rounds once
+        zero = self.start if elapsed else 0
+        seconds: arrays.FloatArray = (
+            (np.asarray(ticks, np.int64) - zero) * float(tick.numerator) / tick.denominator
+        )
+        return seconds
+
+    def ends(self, *, elapsed: bool) -> tuple[float, float]:
+        """See :class:`DomainTrace`."""
+        first, last = self._seconds([self.start, self.end], elapsed).tolist()
+        return first, last
+
+    def points(self, name: str, *, elapsed: bool) -> tuple[arrays.FloatArray, arrays.FloatArray]:
+        """See :class:`DomainTrace`: the last value holds up to the end."""
+        ticks, values = self.columns[name]
+        if ticks[-1] < self.end:
+            ticks, values = np.append(ticks, self.end), np.append(values, values[-1])
+        return self._seconds(ticks, elapsed), np.asarray(values)
 
 
 def record_dense(
@@ -73,8 +237,7 @@ def record_dense(
     time, by default found out from the first variable. ``unit``: of times that are numbers, by default
     seconds. Raises :class:`TraceError`.
     """
-    if not names:
-        raise UsageError("the formula reads no variable, so in dense time nothing says when to evaluate it")
+    _require_variables(names)
     arrays.require_no_unit(data, unit)
     columns = dense_arrays.columns_of(data, names, declared)
     for name in names:
@@ -88,3 +251,8 @@ def record_dense(
     if result.start > result.end:
         raise TraceError("the signals have no instant in common")
     return result
+
+
+def _require_variables(names: Collection[str]) -> None:
+    if not names:
+        raise UsageError("the formula reads no variable, so in dense time nothing says when to evaluate it")

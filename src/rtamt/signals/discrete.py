@@ -1,29 +1,95 @@
-"""The trace of discrete time: one value of every variable at each sample, one sampling period apart."""
+"""Discrete time: one value of every variable at each sample, one sampling period apart."""
 
 from __future__ import annotations
 
 import dataclasses
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any
+from math import isfinite
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from rtamt.errors import TraceError
-from rtamt.language.units import UNITS, decimal
-from rtamt.signals.arrays import check_numbers, columns_of, plain, units_of
+from rtamt.errors import BoundError, StlError, TraceError, UsageError, shown
+from rtamt.language.units import UNITS, decimal, positive_period
+from rtamt.rewrite.check import PERIODS, check_bounds
+from rtamt.signals.arrays import check_numbers, columns_of, is_number, plain, stamps, units_of
+from rtamt.signals.domain import DomainTrace, TimeDomain
 from rtamt.signals.regular import TOLERANCE, check_increasing, check_regular, check_tolerance, infer_period
+from rtamt.signals.signal import Signal
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Mapping, Sequence
+    from collections.abc import Collection, Iterable, Mapping, Sequence
 
     from numpy.typing import NDArray
 
+    from rtamt.language.formula import Formula
+    from rtamt.language.units import Duration
     from rtamt.signals.arrays import FloatArray
 
 
+@dataclass(frozen=True, init=False)
+class Discrete(TimeDomain):
+    """Discrete time: all variables have a sample at the same instants, one sampling period apart.
+
+    ``period``: seconds, or text such as ``"100ms"``; None infers it from the timestamps (online 1 s).
+    ``tolerance``: the fraction of the period by which a gap between samples may differ from it.
+
+    >>> import rtamt
+    >>> spec = rtamt.parse("eventually[0:1](x >= 3)", time=rtamt.Discrete(period="500ms"))
+    >>> spec.evaluate({"x": [1, 2, 5]}).robustness
+    2.0
+    """
+
+    name: ClassVar[str] = "discrete"
+    summary: ClassVar[str] = "a sample of every variable once a period"
+    continuous: ClassVar[bool] = False
+    unit = PERIODS
+
+    period: Fraction | None
+    tolerance: float
+
+    def __init__(self, period: Duration | None = None, tolerance: float = TOLERANCE) -> None:
+        check_tolerance(tolerance)
+        object.__setattr__(self, "period", None if period is None else positive_period(period))
+        object.__setattr__(self, "tolerance", tolerance)
+
+    @classmethod
+    def of(cls, period: Duration | None, tolerance: float, resolution: Duration) -> Discrete:  # noqa: ARG003
+        """See :class:`TimeDomain`."""
+        return cls(period, tolerance)
+
+    @property
+    def step(self) -> Fraction | None:
+        """See :class:`TimeDomain`."""
+        return self.period
+
+    @property
+    def online(self) -> Discrete:
+        """See :class:`TimeDomain`."""
+        return self if self.period is not None else Discrete(Fraction(1), self.tolerance)
+
+    def check(self, formula: Formula, text: str | None = None) -> None:
+        """See :class:`TimeDomain`."""
+        if self.period is not None:
+            check_bounds(formula, self.period, text, self.unit)
+
+    def check_inputs(self, names: Collection[str]) -> None:
+        """See :class:`TimeDomain`: samples are instants also where a formula reads no variable."""
+
+    def record(
+        self, data: Any, names: Sequence[str], declared: Collection[str] = (), unit: str | None = None
+    ) -> DiscreteTrace:
+        """See :class:`TimeDomain`."""
+        return record_discrete(data, names, self.period, declared, self.tolerance, unit)
+
+
+#: Discrete time with its default settings.
+DISCRETE = Discrete()
+
+
 @dataclass(frozen=True, slots=True, eq=False)
-class DiscreteTrace:
+class DiscreteTrace(DomainTrace):
     """A finished recording in discrete time: one column of ``len(times)`` samples for each variable."""
 
     #: Seconds; of dates, since 1970.
@@ -43,28 +109,132 @@ class DiscreteTrace:
         return len(self.times)
 
     @property
+    def domain(self) -> Discrete:
+        """See :class:`DomainTrace`."""
+        return Discrete(self.period)
+
+    @property
+    def step(self) -> Fraction:
+        """See :class:`DomainTrace`."""
+        return self.period
+
+    @property
+    def start(self) -> int:
+        """See :class:`DomainTrace`."""
+        return 0
+
+    @property
+    def end(self) -> int:
+        """See :class:`DomainTrace`."""
+        return len(self.times) - 1
+
+    @property
+    def samples(self) -> int:
+        """See :class:`DomainTrace`."""
+        return len(self)
+
+    @property
+    def size(self) -> int:
+        """See :class:`DomainTrace`."""
+        return len(self)
+
+    def check(self, formula: Formula, text: str | None = None) -> None:
+        """See :class:`DomainTrace`."""
+        try:
+            check_bounds(formula, self.period, text)
+        except BoundError as error:
+            if not self.inferred:
+                raise
+            raise BoundError(
+                f"{error.message} (the period was taken from the time stamps; period= sets it)",
+                text,
+                error.span,
+            ) from None
+
+    def select(self, names: Iterable[str]) -> DiscreteTrace:
+        """See :class:`DomainTrace`."""
+        return dataclasses.replace(self, columns={name: self.columns[name] for name in names})
+
+    def started(self, names: Collection[str]) -> DiscreteTrace:  # noqa: ARG002
+        """See :class:`DomainTrace`: all variables start with the first sample."""
+        return self
+
+    def held_until(self, end: int) -> DiscreteTrace:  # noqa: ARG002
+        """See :class:`DomainTrace`: there is nothing after the last sample."""
+        return self
+
+    def in_steps(self) -> DiscreteTrace:
+        """See :class:`DomainTrace`."""
+        return self
+
+    def positions(self, signal: Signal) -> NDArray[np.int64]:
+        """See :class:`DomainTrace`."""
+        return np.arange(len(signal))
+
+    def retold(self, signal: Signal) -> Signal:
+        """See :class:`DomainTrace`."""
+        return signal
+
+    def signals(self, values: Sequence[FloatArray]) -> list[Signal]:
+        """See :class:`DomainTrace`; all signals share its timestamps, which cannot be written."""
+        stamps = self.stamps.view()
+        stamps.flags.writeable = False
+        return [Signal(stamps, column) for column in values]
+
+    @property
     def stamps(self) -> NDArray[Any]:
         """The time stamps as the caller tells time."""
         return self.times if self.told is None else self.told
 
-    @property
-    def dated(self) -> bool:
-        """Whether the time stamps are dates."""
-        return self.stamps.dtype.kind == "M"
+    def time(self, position: int) -> Any:
+        """See :class:`DomainTrace`: a number of Python, or a date or duration of numpy."""
+        return plain(self.stamps[position])
 
-    def stamp(self, sample: int) -> Any:
-        """Return a time stamp: a number of Python, or a date or duration of numpy."""
-        return plain(self.stamps[sample])
-
-    def show(self, sample: int) -> str:
-        """Return a time stamp for a sentence."""
-        stamp = self.stamp(sample)
+    def show(self, position: int) -> str:
+        """See :class:`DomainTrace`."""
+        stamp = self.time(position)
         if isinstance(stamp, np.datetime64):
             return str(stamp.astype("M8[ms]")) if stamp == stamp.astype("M8[ms]") else str(stamp)
         if isinstance(stamp, np.timedelta64):
             return f"{decimal(int(stamp.astype(np.int64)) * UNITS['ns'])} s"
         number = f"{stamp:.15g}" if isinstance(stamp, float) else str(stamp)
         return f"{number} {self.unit or 's'}"
+
+    def position(self, at: Any) -> int:
+        """See :class:`DomainTrace`."""
+        try:
+            seconds: Any = stamps([at], self.unit).seconds[0]
+        except StlError:
+            seconds = None
+        if is_number(seconds) and isfinite(seconds):
+            nearest = int(np.abs(self.times - float(seconds)).argmin())
+            if abs(float(self.times[nearest]) - float(seconds)) <= TOLERANCE * float(self.period):
+                return nearest
+        told = at if isinstance(at, np.datetime64) else shown(at)
+        raise UsageError(
+            f"there is no sample at {told}; the recording has {len(self)}, "
+            f"from {self.show(0)} to {self.show(self.last)}"
+        )
+
+    @property
+    def origin(self) -> float | np.datetime64:
+        """See :class:`DomainTrace`."""
+        first = self.stamps[0]
+        return first if isinstance(first, np.datetime64) else float(self.times[0])
+
+    def seconds(self, times: Any, *, elapsed: bool) -> FloatArray:
+        """See :class:`DomainTrace`."""
+        seconds = stamps(times, self.unit).seconds
+        return seconds - self.times[0] if elapsed else seconds
+
+    def ends(self, *, elapsed: bool) -> tuple[float, float]:
+        """See :class:`DomainTrace`."""
+        first, last = float(self.times[0]), float(self.times[-1])
+        return (0.0, last - first) if elapsed else (first, last)
+
+    def points(self, name: str, *, elapsed: bool) -> tuple[FloatArray, FloatArray]:
+        """See :class:`DomainTrace`."""
+        return self.seconds(self.stamps, elapsed=elapsed), self.columns[name]
 
 
 def record_discrete(
@@ -82,7 +252,6 @@ def record_discrete(
     formula reads, ``declared`` others that may be there. Without a ``period`` (seconds) it is taken
     from the stamps. ``unit``: of stamps that are numbers, by default seconds. Raises :class:`TraceError`.
     """
-    check_tolerance(tolerance)
     stamped, columns, n = columns_of(data, names, declared, unit)
     if n == 0:
         raise TraceError("the trace is empty: give at least one sample")

@@ -13,7 +13,7 @@ from rtamt.errors import EvaluationError
 from rtamt.language.formula import variables
 from rtamt.language.operators import Tense
 from rtamt.reference import dense as dense_reference
-from rtamt.signals.dense import record_dense
+from rtamt.signals.dense import Dense, record_dense
 from rtamt.testing.case import NAMES, ONE, Case, check_own_code
 from rtamt.testing.strategies import dense_chunkings, dense_traces
 
@@ -96,7 +96,7 @@ def _dense_online_is_offline(case: Case, draw: Callable[[Any], Any]) -> None:
     assume(expected is not None)
     updates = draw(dense_chunkings(trace))
     for backend in ("cpp", "python"):
-        monitor = DenseMonitor(formula, resolution=ONE, backend=backend)
+        monitor = DenseMonitor(formula, Dense(ONE), backend=backend)
         for _ in range(2):  # a reset monitor is a new one
             times: list[int] = []
             values: list[float] = []

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -11,10 +10,7 @@ from rtamt.engine.dense_evaluate import reach
 from rtamt.errors import EvaluationError
 from rtamt.rewrite.desugar import desugar
 from rtamt.rewrite.semantics import no_verdict
-from rtamt.signals.dense import DenseTrace
-from rtamt.signals.discrete import DiscreteTrace
 from rtamt.signals.signal import Signal
-from rtamt.signals.ticks import TimeScale
 from rtamt.verdicts.decompose import anchor
 from rtamt.verdicts.outputs import own_variables
 from rtamt.verdicts.trackers import Trackers
@@ -25,11 +21,10 @@ if TYPE_CHECKING:
 
     from rtamt.language.formula import Formula
     from rtamt.signals.dense_arrays import Samples
+    from rtamt.signals.domain import DomainTrace
     from rtamt.verdicts.decompose import Leaf
     from rtamt.verdicts.outputs import Evaluate, Outputs
     from rtamt.verdicts.trackers import Tracker
-
-AnyTrace = TypeVar("AnyTrace", bound=DiscreteTrace | DenseTrace)
 
 #: Values of all outputs of one program: what many requirements read of a long trace must fit into memory.
 ROOM = 2**24
@@ -42,12 +37,12 @@ class Judged(NamedTuple):
     where nobody asked, or where an operation of the truth has no value.
     """
 
-    trace: DiscreteTrace | DenseTrace
+    trace: DomainTrace
     signal: Signal
     violations: tuple[Any, ...]
 
 
-def judge(outputs: Sequence[Outputs], trace: DiscreteTrace | DenseTrace, evaluate: Evaluate) -> list[Judged]:
+def judge(outputs: Sequence[Outputs], trace: DomainTrace, evaluate: Evaluate) -> list[Judged]:
     """Return robustness and verdict of each requirement, each over the trace of its own variables.
 
     Raises :class:`EvaluationError` where a robustness has no value.
@@ -55,7 +50,7 @@ def judge(outputs: Sequence[Outputs], trace: DiscreteTrace | DenseTrace, evaluat
     found: dict[int, Judged] = {}
     for numbers in by_start(outputs, trace):
         whole = trace_of([outputs[i].truth for i in numbers], trace)
-        size = max(1, ROOM // max(1, _samples(whole)))
+        size = max(1, ROOM // max(1, whole.size))
         for first in range(0, len(numbers), size):
             some = numbers[first : first + size]
             judged = _judge([outputs[i] for i in some], whole, trace, evaluate)
@@ -64,27 +59,27 @@ def judge(outputs: Sequence[Outputs], trace: DiscreteTrace | DenseTrace, evaluat
 
 
 def judge_apart(
-    outputs: Sequence[Outputs], trace: DenseTrace, evaluate: Evaluate
+    outputs: Sequence[Outputs], trace: DomainTrace, evaluate: Evaluate
 ) -> tuple[Signal, list[Judged]]:
     """Return the same of requirements whose traces start at different instants, and their common signal.
 
     That begins with the first requirement: at each instant it is the minimum over those that have started.
     """
-    scale = trace.scale  # instants that differ by a tick may be equal as the caller tells time
-    found = judge(outputs, replace(trace, scale=TimeScale.in_ticks(scale.tick)), evaluate)
+    # In steps, since instants that differ by a tick may be equal as the caller tells time.
+    found = judge(outputs, trace.in_steps(), evaluate)
     ticks, values = minimum([(each.signal.times, each.signal.values) for each in found])
     judged = [
         Judged(
             trace_of([output.truth], trace),
-            Signal(scale.times(each.signal.times), each.signal.values),
-            tuple(None if tick is None else scale.time(tick) for tick in each.violations),
+            trace.retold(each.signal),
+            tuple(None if step is None else trace.time(step - trace.start) for step in each.violations),
         )
         for output, each in zip(outputs, found, strict=True)
     ]
-    return Signal(scale.times(ticks), values), judged
+    return trace.retold(Signal(ticks, values)), judged
 
 
-def first_violation(truth: Formula, trace: DiscreteTrace | DenseTrace, evaluate: Evaluate) -> Any:
+def first_violation(truth: Formula, trace: DomainTrace, evaluate: Evaluate) -> Any:
     """Return when a formula is first violated, in the times of the trace; None where it holds.
 
     For ``always φ`` that is the earliest instant of its window at which φ does not hold, for a conjunction the
@@ -101,21 +96,16 @@ def first_violation(truth: Formula, trace: DiscreteTrace | DenseTrace, evaluate:
 # ---- traces ----------------------------------------------------------------------------------------
 
 
-def trace_of(formulas: Sequence[Formula], trace: AnyTrace) -> AnyTrace:
-    """Return the trace of formulas: in dense time it starts when all variables that they read have started."""
-    if isinstance(trace, DiscreteTrace):
-        return trace
-    names = {name for formula in formulas for name in own_variables(formula, tuple(trace.columns))}
-    own: Any = {name: trace.columns[name] for name in trace.columns if name in names}
-    return replace(trace, columns=own)
+def trace_of(formulas: Sequence[Formula], trace: DomainTrace) -> DomainTrace:
+    """Return the trace of formulas: it starts when all variables that they read have started."""
+    return trace.started({name for f in formulas for name in own_variables(f, tuple(trace.columns))})
 
 
-def by_start(outputs: Sequence[Outputs], trace: DiscreteTrace | DenseTrace) -> list[list[int]]:
+def by_start(outputs: Sequence[Outputs], trace: DomainTrace) -> list[list[int]]:
     """Return the numbers of the requirements whose traces start at the same instant."""
     groups: dict[int, list[int]] = {}
     for i, each in enumerate(outputs):
-        start = trace_of([each.truth], trace).start if isinstance(trace, DenseTrace) else 0
-        groups.setdefault(start, []).append(i)
+        groups.setdefault(trace_of([each.truth], trace).start, []).append(i)
     return list(groups.values())
 
 
@@ -135,24 +125,17 @@ def minimum(signals: Sequence[Samples]) -> Samples:
     return ticks[kept], values[kept]
 
 
-def _samples(trace: DiscreteTrace | DenseTrace) -> int:
-    if isinstance(trace, DiscreteTrace):
-        return len(trace)
-    return sum(len(ticks) for ticks, _ in trace.columns.values())
-
-
 # ---- outputs ---------------------------------------------------------------------------------------
 
 
 def _judge(
     outputs: Sequence[Outputs],
-    trace: DiscreteTrace | DenseTrace,
-    whole: DiscreteTrace | DenseTrace,
+    trace: DomainTrace,
+    whole: DomainTrace,
     evaluate: Evaluate,
 ) -> Iterator[Judged]:
     """Yield what requirements have over their common trace; robustness is reported to the end of the ``whole``."""
-    if isinstance(trace, DenseTrace) and isinstance(whole, DenseTrace):
-        trace = trace.held_until(whole.end)
+    trace = trace.held_until(whole.end)
     robustness = tuple(each.robustness for each in outputs)
     try:
         signals, found = _outputs(robustness, [each.truth for each in outputs], trace, evaluate)
@@ -165,31 +148,26 @@ def _judge(
 def _outputs(
     formulas: tuple[Formula, ...],
     truths: Sequence[Formula],
-    trace: DiscreteTrace | DenseTrace,
+    trace: DomainTrace,
     evaluate: Evaluate,
 ) -> tuple[list[Signal], list[Any]]:
     """Return the signals of formulas, and when truths are first violated."""
-    dense = isinstance(trace, DenseTrace)
-    unit = trace.scale.tick if isinstance(trace, DenseTrace) else trace.period
-    found = [Trackers(anchor(truth), unit, dense) for truth in truths]
+    found = [Trackers(anchor(truth), trace.step, trace.domain.continuous) for truth in truths]
     trackers = [tracker for each in found for tracker in each.leaves]
-    if isinstance(trace, DenseTrace):
-        signals, leaves = _dense_signals(formulas, trackers, trace, evaluate)
-    else:
-        signals, leaves = _signals(formulas, trackers, trace, evaluate)
+    signals, leaves = _settled_signals(formulas, trackers, trace, evaluate)
     for tracker in trackers:
         signal = leaves[tracker.leaf]
-        positions = signal.times - trace.start if isinstance(trace, DenseTrace) else np.arange(len(signal))
-        tracker.take(positions, signal.values)
+        tracker.take(trace.positions(signal), signal.values)
     for each in found:
         each.finish()
-    return signals, [_time(each.violation(evaluate), trace) for each in found]
+    violations = [each.violation(evaluate) for each in found]
+    return signals, [None if position is None else trace.time(position) for position in violations]
 
 
 def _signals(
     formulas: tuple[Formula, ...],
     trackers: Sequence[Tracker],
-    trace: DiscreteTrace | DenseTrace,
+    trace: DomainTrace,
     evaluate: Evaluate,
 ) -> tuple[list[Signal], dict[Leaf, Signal]]:
     """Return the signals of formulas and of leaves, all from one program."""
@@ -198,25 +176,26 @@ def _signals(
     return [known[f] for f in formulas], {tracker.leaf: known[tracker.leaf.formula] for tracker in trackers}
 
 
-def _dense_signals(
-    formulas: tuple[Formula, ...], trackers: Sequence[Tracker], trace: DenseTrace, evaluate: Evaluate
+def _settled_signals(
+    formulas: tuple[Formula, ...], trackers: Sequence[Tracker], trace: DomainTrace, evaluate: Evaluate
 ) -> tuple[list[Signal], dict[Leaf, Signal]]:
-    """Return the same, of leaves in ticks and as far as each is read after the last sample."""
-    in_ticks = replace(trace, scale=TimeScale.in_ticks(trace.scale.tick))
-    ends: dict[int, list[Tracker]] = {trace.end: []}
-    for tracker in trackers:
-        end = end_of(tracker.leaf, trace.start, trace.end, trace.scale.tick)
-        ends.setdefault(end, []).append(tracker)
+    """Return the same, of leaves in steps and as far as each is read after the last sample."""
+    in_steps = trace.in_steps()
+    start, end = trace.extent
+    ends: dict[int, list[Tracker]] = {end: []}
+    if trace.domain.continuous:
+        for tracker in trackers:
+            ends.setdefault(end_of(tracker.leaf, start, end, trace.step), []).append(tracker)
     try:
-        signals, leaves = _signals(formulas, trackers, in_ticks.held_until(max(ends)), evaluate)
+        signals, leaves = _signals(formulas, trackers, in_steps.held_until(max(ends)), evaluate)
     except EvaluationError:
         if len(ends) == 1:
             raise
         # What has no value perhaps lies after all that its formula reads.
-        signals, leaves = _signals(formulas, (), in_ticks, evaluate)
+        signals, leaves = _signals(formulas, (), in_steps, evaluate)
         for end, some in ends.items():
-            leaves |= _signals((), some, in_ticks.held_until(end), evaluate)[1]
-    return [trace.signal(signal.times, signal.values) for signal in signals], leaves
+            leaves |= _signals((), some, in_steps.held_until(end), evaluate)[1]
+    return list(map(trace.retold, signals)), leaves
 
 
 def end_of(leaf: Leaf, start: int, end: int, tick: Fraction) -> int:
@@ -227,11 +206,3 @@ def end_of(leaf: Leaf, start: int, end: int, tick: Fraction) -> int:
     if leaf.end is None:
         return end + reach(desugar(leaf.formula), tick) + 1
     return max(end, start + int(leaf.end / tick))
-
-
-def _time(position: int | None, trace: DiscreteTrace | DenseTrace) -> Any:
-    if position is None:
-        return None
-    if isinstance(trace, DiscreteTrace):
-        return trace.stamp(position)
-    return trace.scale.time(trace.start + position)

@@ -8,15 +8,14 @@ from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 from rtamt.language.formula import Const, Formula, Var, variables
 from rtamt.language.operators import STL
 from rtamt.rewrite.semantics import boolean
-from rtamt.signals.dense import DenseTrace
-from rtamt.signals.discrete import DiscreteTrace
+from rtamt.signals.domain import DomainTrace
 from rtamt.signals.signal import Signal
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
 #: Returns the signal of each formula over a trace, all from one program: an ``Evaluators`` of the engine.
-Evaluate: TypeAlias = Callable[[tuple[Formula, ...], DiscreteTrace | DenseTrace], list[Signal]]
+Evaluate: TypeAlias = Callable[[tuple[Formula, ...], DomainTrace], list[Signal]]
 
 
 class Outputs(NamedTuple):

@@ -8,18 +8,17 @@ from typing import TYPE_CHECKING
 
 from rtamt.compiler.metadata import Metadata
 from rtamt.compiler.plan import compile_program
-from rtamt.errors import UsageError
 from rtamt.language.formula import Apply, Const, Formula, Var, fold, postorder, variables
 from rtamt.language.printer import PAGE, excerpt, to_text
-from rtamt.rewrite.check import check_bounds, check_dense, check_online
+from rtamt.rewrite.check import check_online
 from rtamt.rewrite.desugar import as_written, desugar
 from rtamt.verdicts.outputs import Outputs, outputs_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
-    from fractions import Fraction
 
     from rtamt.compiler.program import Program
+    from rtamt.signals.domain import TimeDomain
 
 #: What a standalone program tells, in this order: ρ, and +inf or -inf as the formula holds or not. Of several
 #: requirements it tells both of all together, then of each: ``robustness.R1``, ``verdict.R1``.
@@ -28,9 +27,8 @@ OUTPUTS = ("robustness", "verdict")
 
 def carried_program(
     formula: Formula,
+    domain: TimeDomain,
     *,
-    period: Fraction,
-    domain: str,
     applied: Formula | None = None,
     parts: Mapping[str, Outputs] | None = None,
     text: str | None = None,
@@ -38,33 +36,29 @@ def carried_program(
 ) -> Program:
     """Compile a requirement for carriers: outputs :data:`OUTPUTS`, its named constants as parameters.
 
-    ``period``: seconds of a step, as for ``compile_program``. ``applied``: the formula whose robustness is
+    ``domain``: with a known step. ``applied``: the formula whose robustness is
     told, where a semantics says so; the verdict is that of ``formula`` all the same. ``parts``: by name the
     outputs of each of several requirements. ``text``: what errors point at. A
     constant that is also the bound of an interval decides how long windows are, and is no parameter.
 
-    >>> from fractions import Fraction
     >>> from rtamt.language.parser import parse_formula
+    >>> from rtamt.signals.discrete import Discrete
     >>> formula = parse_formula("always[0:2](x >= limit)", constants={"limit": 3})
-    >>> program = carried_program(formula, period=Fraction(1), domain="discrete")
+    >>> program = carried_program(formula, Discrete(period=1))
     >>> dict(program.metadata.parameters), program.instructions[1].x
     ({'limit': (1,)}, 3.0)
     """
-    if domain == "dense":
-        check_dense(formula, text)
-        check_bounds(formula, period, text, "resolution")
-    else:
-        check_bounds(formula, period, text)
+    assert domain.step is not None, "a program has a fixed step"
+    domain.check(formula, text)
     check_online(formula, text)
     inputs = variables(formula)
-    if domain == "dense" and not inputs:
-        raise UsageError("the formula reads no variable, so in dense time nothing says when to evaluate it")
+    domain.check_inputs(inputs)
     structural = _bounds(formula)
     values: dict[str, float] = {}
     pairs = {"": outputs_of(formula, applied)} | {f".{name}": pair for name, pair in (parts or {}).items()}
     judged = [output for pair in pairs.values() for output in pair]
     told = [_with_parameters(desugar(each), structural, values) for each in judged]
-    program = compile_program(told, period, inputs, domain=domain, parameters=values)
+    program = compile_program(told, domain.step, inputs, domain=type(domain), parameters=values)
     places = {
         node.name: (i,)
         for i, node in enumerate(program.origins)

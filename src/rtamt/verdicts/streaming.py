@@ -16,12 +16,14 @@ from rtamt.engine.monitor import Monitor
 from rtamt.engine.online import Watched
 from rtamt.errors import TraceError, UsageError
 from rtamt.language.formula import Const
-from rtamt.language.units import check_unit
-from rtamt.rewrite.check import check_bounds, check_dense
+from rtamt.language.units import check_unit, positive_period
+from rtamt.rewrite.check import check_bounds
 from rtamt.rewrite.horizon import horizon
 from rtamt.rewrite.semantics import semantics_of
-from rtamt.settings import positive_period, time_domain
 from rtamt.signals import arrays, dense_arrays
+from rtamt.signals.dense import Dense
+from rtamt.signals.discrete import Discrete
+from rtamt.signals.domains import time_domain
 from rtamt.signals.regular import TOLERANCE, check_increasing, infer_period
 from rtamt.signals.signal import Signal
 from rtamt.signals.ticks import TimeScale
@@ -34,8 +36,9 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
     from rtamt.language.formula import Formula
+    from rtamt.language.units import Duration
     from rtamt.rewrite.semantics import PredicateSemantics
-    from rtamt.settings import Duration, Semantics
+    from rtamt.settings import Semantics
     from rtamt.signals.arrays import FloatArray, Stamps
     from rtamt.signals.dense_arrays import Samples
     from rtamt.specification import Specification
@@ -85,7 +88,7 @@ def check_stream(
     >>> result.robustness, result.satisfied, result.first_violation, result.samples
     (-1.0, False, 5.0, 6)
     """
-    dense = (spec.time if time is None else time_domain(time)) == "dense"
+    dense = (spec.domain if time is None else time_domain(time)).continuous
     stream: _Stream = (
         _DenseStream(spec, semantics, time_unit)
         if dense
@@ -279,8 +282,7 @@ class _DiscreteStream(_Stream):
         formula, watch = self._group.begin(self._period, dense=False)
         return Monitor(
             formula,
-            period=self._period,
-            tolerance=self._tolerance,
+            Discrete(self._period, self._tolerance),
             backend=self.spec.backend,
             watch=watch,
             unit=self.unit,
@@ -324,8 +326,7 @@ class _DiscreteStream(_Stream):
 class _DenseStream(_Stream):
     def __init__(self, spec: Specification, semantics: Semantics | None, unit: str | None) -> None:
         super().__init__(spec, semantics, unit)
-        check_dense(spec.formula, spec.text)
-        check_bounds(spec.formula, spec.resolution, spec.text, "resolution")
+        Dense(spec.resolution).check(spec.formula, spec.text)
         self._groups = [(group, self._monitor(group)) for group in self._grouped()]
         self._scale: TimeScale | None = None
         self._counts: dict[str, int] = {}
@@ -343,7 +344,7 @@ class _DenseStream(_Stream):
 
     def _monitor(self, group: _Group) -> DenseMonitor:
         formula, watch = group.begin(self.spec.resolution, dense=True)
-        return DenseMonitor(formula, resolution=self.spec.resolution, backend=self.spec.backend, watch=watch)
+        return DenseMonitor(formula, Dense(self.spec.resolution), backend=self.spec.backend, watch=watch)
 
     def take(self, chunk: Any) -> None:
         arrays.require_no_unit(chunk, self.unit)

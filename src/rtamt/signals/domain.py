@@ -1,0 +1,203 @@
+"""What a time domain is, and what a trace in one is: the interfaces of ``discrete`` and ``dense``."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from typing import TYPE_CHECKING, Any, ClassVar
+
+from rtamt.signals.regular import TOLERANCE
+from rtamt.signals.ticks import NANOSECOND
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Iterable, Mapping, Sequence
+    from fractions import Fraction
+
+    import numpy as np
+    from numpy.typing import NDArray
+    from typing_extensions import Self
+
+    from rtamt.language.formula import Formula
+    from rtamt.language.units import Duration
+    from rtamt.rewrite.check import BoundUnit
+    from rtamt.signals.arrays import FloatArray
+    from rtamt.signals.signal import Signal
+
+
+class TimeDomain(ABC):
+    """How time passes: in which steps bounds are counted, and how data becomes a trace.
+
+    Immutable; ``rtamt.Discrete(...)`` and ``rtamt.Dense(...)``. What evaluates and monitors formulas in a
+    time domain is its engine (``rtamt.engine.domains``).
+    """
+
+    __slots__ = ()
+
+    #: As in ``time="discrete"``.
+    name: ClassVar[str]
+    #: What is said of it in help texts.
+    summary: ClassVar[str]
+    #: Whether signals have values between their samples.
+    continuous: ClassVar[bool]
+    #: How bounds are counted, and what messages call their step.
+    unit: ClassVar[BoundUnit]
+
+    # Settings; those that do not concern a time domain have their defaults.
+    #: The sampling period in seconds; None where there is none, or where it depends on the timestamps.
+    period: Fraction | None = None
+    #: The fraction of the period by which a gap between samples may differ from it.
+    tolerance: float = TOLERANCE
+    #: The length of a tick in seconds.
+    resolution: Fraction = NANOSECOND
+
+    @classmethod
+    @abstractmethod
+    def of(cls, period: Duration | None, tolerance: float, resolution: Duration) -> TimeDomain:
+        """Return the time domain with those of the settings that concern it."""
+
+    @property
+    @abstractmethod
+    def step(self) -> Fraction | None:
+        """Seconds of one step: the sampling period or a tick; None where that depends on the timestamps."""
+
+    @property
+    @abstractmethod
+    def online(self) -> Self:
+        """The time domain of a monitor, whose step is known before the first timestamp."""
+
+    @abstractmethod
+    def check(self, formula: Formula, text: str | None = None) -> None:
+        """Raise where a formula does not fit: :class:`BoundError` for a bound, :class:`SpecificationError`.
+
+        Bounds are not checked while the step is unknown; :meth:`DomainTrace.check` does that.
+        """
+
+    @abstractmethod
+    def check_inputs(self, names: Collection[str]) -> None:
+        """Raise :class:`UsageError` where these variables do not suffice to evaluate a formula."""
+
+    @abstractmethod
+    def record(
+        self, data: Any, names: Sequence[str], declared: Collection[str] = (), unit: str | None = None
+    ) -> DomainTrace:
+        """Normalise a finished recording of the variables ``names``; the caller's data is never changed.
+
+        ``declared``: others that may be there. ``unit``: of times that are numbers, by default seconds.
+        Raises :class:`TraceError`.
+        """
+
+
+class DomainTrace(ABC):
+    """A finished recording in one time domain, normalised.
+
+    Positions count steps (samples or ticks) from the first instant at which formulas are evaluated.
+    """
+
+    __slots__ = ()
+
+    #: By variable: values, or ticks and values.
+    columns: Mapping[str, Any]
+    #: The units of the variables whose source gives them.
+    units: Mapping[str, str]
+
+    @property
+    @abstractmethod
+    def domain(self) -> TimeDomain:
+        """The time domain, whose step is known."""
+
+    @property
+    @abstractmethod
+    def step(self) -> Fraction:
+        """Seconds of one step."""
+
+    @property
+    @abstractmethod
+    def start(self) -> int:
+        """The first instant at which formulas are evaluated, in samples or ticks."""
+
+    @property
+    @abstractmethod
+    def end(self) -> int:
+        """The last instant at which a variable has a sample, in samples or ticks."""
+
+    @property
+    def last(self) -> int:
+        """The position of the last sample."""
+        return self.end - self.start
+
+    @property
+    def extent(self) -> tuple[int, int]:
+        """Where the recording begins and ends; signals from one program have the same extent."""
+        return self.start, self.end
+
+    @property
+    @abstractmethod
+    def samples(self) -> int:
+        """The number of instants at which a variable has a sample."""
+
+    @property
+    @abstractmethod
+    def size(self) -> int:
+        """The number of samples that one pass over the recording takes."""
+
+    @abstractmethod
+    def check(self, formula: Formula, text: str | None = None) -> None:
+        """Raise :class:`BoundError` or :class:`SpecificationError` where a formula does not fit."""
+
+    @abstractmethod
+    def select(self, names: Iterable[str]) -> Self:
+        """Return the recording of these variables alone."""
+
+    @abstractmethod
+    def started(self, names: Collection[str]) -> Self:
+        """Return the recording for formulas of these variables: it starts when all of them have started."""
+
+    @abstractmethod
+    def held_until(self, end: int) -> Self:
+        """Return the recording up to a later end, as far as variables have values after their last samples."""
+
+    @abstractmethod
+    def in_steps(self) -> Self:
+        """Return the recording for signals whose times are counted in steps, where that costs nothing."""
+
+    @abstractmethod
+    def positions(self, signal: Signal) -> NDArray[np.int64]:
+        """Return the positions of the points of a signal over the recording :meth:`in_steps`."""
+
+    @abstractmethod
+    def retold(self, signal: Signal) -> Signal:
+        """Return a signal over the recording :meth:`in_steps` in the caller's times, up to the end."""
+
+    @abstractmethod
+    def signals(self, values: Sequence[Any]) -> list[Signal]:
+        """Return what an evaluation computed, with the timestamps of the recording."""
+
+    @abstractmethod
+    def time(self, position: int) -> Any:
+        """Return the time of a position as the caller tells time."""
+
+    @abstractmethod
+    def show(self, position: int) -> str:
+        """Return the time of a position for a sentence."""
+
+    @abstractmethod
+    def position(self, at: Any) -> int:
+        """Return the position of a time as the caller tells it; raise :class:`UsageError` outside."""
+
+    # ---- on an axis ------------------------------------------------------------------------------
+
+    @property
+    @abstractmethod
+    def origin(self) -> float | np.datetime64:
+        """The first instant at which formulas are evaluated: a date, or seconds."""
+
+    @abstractmethod
+    def seconds(self, times: Any, *, elapsed: bool) -> FloatArray:
+        """Return times as the caller tells them in seconds: as they are, or ``elapsed`` since the origin."""
+
+    @abstractmethod
+    def ends(self, *, elapsed: bool) -> tuple[float, float]:
+        """Return the seconds of the first and the last instant; ``elapsed`` as in :meth:`seconds`."""
+
+    @abstractmethod
+    def points(self, name: str, *, elapsed: bool) -> tuple[FloatArray, FloatArray]:
+        """Return the seconds and the values of a variable up to the end of the recording."""

@@ -1,0 +1,54 @@
+"""The list of time domains; command line, messages and documentation derive from it."""
+
+from __future__ import annotations
+
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any
+
+from rtamt.errors import UsageError, did_you_mean, shown
+from rtamt.signals.dense import Dense
+from rtamt.signals.discrete import Discrete
+from rtamt.signals.domain import TimeDomain
+from rtamt.signals.regular import TOLERANCE
+from rtamt.signals.ticks import NANOSECOND
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from rtamt.language.units import Duration
+
+#: By name, in the order of their codes in programs; the first is the default.
+DOMAINS: Mapping[str, type[TimeDomain]] = MappingProxyType(
+    {domain.name: domain for domain in (Discrete, Dense)}
+)
+
+
+def time_domain(
+    time: Any,
+    period: Duration | None = None,
+    tolerance: float | None = None,
+    resolution: Duration | None = None,
+) -> TimeDomain:
+    """Return the time domain that a caller names, with the settings that concern it, or gives as an object.
+
+    Raises :class:`UsageError` for anything else, and for settings beside an object.
+
+    >>> time_domain("discrete", tolerance=0.5)
+    Discrete(period=None, tolerance=0.5)
+    """
+    if isinstance(time, TimeDomain):
+        given = {"period": period, "tolerance": tolerance, "resolution": resolution}
+        extra = [f"{name}=" for name, value in given.items() if value is not None]
+        if extra:
+            raise UsageError(f"time is {time!r}, which has its own settings: leave out {' and '.join(extra)}")
+        return time
+    if not isinstance(time, str) or time not in DOMAINS:
+        names = tuple(DOMAINS)
+        raise UsageError(
+            f"unknown time domain {shown(time)}; choose from {', '.join(names)}{did_you_mean(time, names)}"
+        )
+    return DOMAINS[time].of(
+        period,
+        TOLERANCE if tolerance is None else tolerance,
+        NANOSECOND if resolution is None else resolution,
+    )
