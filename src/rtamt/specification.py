@@ -25,8 +25,7 @@ from rtamt.rewrite.pastify import pastify
 from rtamt.rewrite.semantics import apply_semantics, semantics_of
 from rtamt.settings import names_of
 from rtamt.signals.discrete import DISCRETE
-from rtamt.signals.domain import TimeDomain
-from rtamt.signals.domains import time_domain
+from rtamt.signals.domains import Defaults, time_domain
 from rtamt.signals.ticks import NANOSECOND
 from rtamt.verdicts.offline import by_start, judge, judge_apart
 from rtamt.verdicts.outputs import Outputs, outputs_of
@@ -45,7 +44,7 @@ if TYPE_CHECKING:
     from rtamt.settings import Semantics
     from rtamt.signals.dense import Dense
     from rtamt.signals.discrete import Discrete
-    from rtamt.signals.domain import DomainTrace
+    from rtamt.signals.domain import DomainTrace, TimeDomain
     from rtamt.signals.signal import Signal
 
 
@@ -230,7 +229,7 @@ class Specification:
         """Return what :meth:`evaluate` asks of a recording; arguments and errors are those of it."""
         if time is period is tolerance is resolution is semantics is time_unit is None:
             return self._own_query
-        return self._query_of(self._domain(time, period, tolerance, resolution), semantics, time_unit)
+        return self._query_of(self.domain_for(time, period, tolerance, resolution), semantics, time_unit)
 
     @cached_property
     def _own_query(self) -> Query:
@@ -312,7 +311,7 @@ class Specification:
             watch=names,
             time_unit=time_unit,
         )
-        domain = self._domain(time, period, tolerance, resolution).online
+        domain = self.domain_for(time, period, tolerance, resolution).online
         return engine_of(domain).monitor(
             formula,
             domain,
@@ -344,7 +343,7 @@ class Specification:
         >>> program.lags, len(program.to_bytes())
         ((2, 2), 459)
         """
-        domain = self._domain(time, period, None, resolution).online
+        domain = self.domain_for(time, period, None, resolution).online
         chosen = self._semantics(semantics)
         several = self.requirements if len(self.requirements) > 1 else {}
         parts = {name: one.outputs(chosen) for name, one in several.items()}
@@ -445,24 +444,19 @@ class Specification:
         """The names that the text declares: data may have them, also where the formula reads none of them."""
         return tuple(declaration.name for declaration in self.document.declarations)
 
-    def _domain(
+    def domain_for(
         self,
-        time: str | TimeDomain | None,
+        time: str | TimeDomain | None = None,
         period: Duration | None = None,
         tolerance: float | None = None,
         resolution: Duration | None = None,
     ) -> TimeDomain:
-        """Return the time domain that is asked for; settings that are left out are those of the specification."""
-        if isinstance(time, TimeDomain):
-            return time_domain(time, period, tolerance, resolution)
+        """Return the time domain that is asked for; what is left out is that of the specification."""
         if time is period is tolerance is resolution is None:
             return self.domain
-        return time_domain(
-            self.domain.name if time is None else time,
-            self.period if period is None else period,
-            self.domain.tolerance if tolerance is None else tolerance,
-            self.resolution if resolution is None else resolution,
-        )
+        defaults = Defaults(self.period, self.domain.tolerance, self.resolution)
+        named = self.domain.name if time is None else time
+        return time_domain(named, period, tolerance, resolution, defaults)
 
     def _semantics(self, semantics: Semantics | None) -> str | PredicateSemantics:
         return self.semantics if semantics is None else semantics_of(semantics)

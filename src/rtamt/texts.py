@@ -18,7 +18,7 @@ from rtamt.settings import (
     roles_of,
 )
 from rtamt.signals.discrete import Discrete
-from rtamt.signals.domains import time_domain
+from rtamt.signals.domains import DEFAULT, time_domain
 from rtamt.specification import Specification
 
 if TYPE_CHECKING:
@@ -40,7 +40,7 @@ def parse(
     backend: str = "cpp",
     constants: Mapping[str, float] | None = None,
     language: Language = STL,
-    time: str | TimeDomain = Discrete.name,
+    time: str | TimeDomain = DEFAULT,
     resolution: Duration | None = None,
     semantics: Semantics = "standard",
     roles: Mapping[str, str] | None = None,

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from fractions import Fraction
-
 import numpy as np
 from hypothesis import assume, given
 from hypothesis import strategies as st
@@ -24,8 +22,7 @@ def outlook_of(spec, samples=None):
         spec.formula,
         spec.signals_of,
         applied=spec.apply_semantics,
-        time=spec.time,
-        step=Fraction(1),
+        domain=spec.domain_for(resolution=1).online,
         samples=samples,
     )
 

@@ -206,7 +206,7 @@ def _as_table(requirements: Sequence[Requirement], found: Sequence[Outcome], col
     for outcome in found:
         cells = ("-", "-", "-")
         if not outcome.error:
-            period = "dense" if outcome.period is None else format_duration(outcome.period)
+            period = requirements[0].spec.time if outcome.period is None else format_duration(outcome.period)
             cells = (str(outcome.samples), period, short(outcome.robustness))
         rows.append((outcome.requirement, outcome.trace, *cells, outcome.verdict))
     kinds = [_KINDS[outcome.verdict] for outcome in found]

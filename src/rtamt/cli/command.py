@@ -25,6 +25,7 @@ from rtamt.language.units import UNITS, decimal
 from rtamt.readers.formats import METADATA, SUFFIXES
 from rtamt.rewrite.semantics import SEMANTICS
 from rtamt.signals.datetimes import nanoseconds_of
+from rtamt.signals.domains import DEFAULT, DOMAINS, time_domain
 from rtamt.texts import load, parse
 
 if TYPE_CHECKING:
@@ -122,9 +123,10 @@ def add_time_option(parser: argparse.ArgumentParser) -> None:
     """Add the choice of the time domain."""
     parser.add_argument(
         "--time",
-        default="discrete",
-        metavar="{discrete,dense}",
-        help="dense: signals change at any instant, not once a period (default: discrete)",
+        default=DEFAULT,
+        metavar=f"{{{','.join(DOMAINS)}}}",
+        help="; ".join(f"{name}: {domain.summary}" for name, domain in DOMAINS.items())
+        + f" (default: {DEFAULT})",
     )
 
 
@@ -173,16 +175,16 @@ def _is_called_like_a_trace(path: str) -> bool:
     return os.path.splitext(path)[1].lower() in set(SUFFIXES) - {".txt"}
 
 
-def read_specification(args: argparse.Namespace, time: str = "discrete") -> Specification:
-    """Read SPEC: the file of that name, else the text itself; ``time``: discrete or dense."""
+def read_specification(args: argparse.Namespace, time: str) -> Specification:
+    """Read SPEC: the file of that name, else the text itself; ``time``: the name of a time domain."""
     spec: str = args.spec
     if args.backend == "cpp":
         try:
             core()
         except UsageError as error:
             raise CommandError(f"{error}; on the command line: --backend python") from None
-    if time == "dense" and args.period is not None:
-        raise CommandError("dense time has no sampling period: leave out --period, or --time dense")
+    if args.period is not None and time_domain(time, args.period).period is None:
+        raise CommandError(f"{time} time has no sampling period: leave out --period, or --time {time}")
     options: Settings = {
         "period": args.period,
         "unit": args.unit,

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
 from rtamt.cli.command import (
@@ -25,14 +24,16 @@ from rtamt.engine.user_operators import SampleDriver, calls_of
 from rtamt.errors import BoundError, SpecificationError, UsageError
 from rtamt.language.printer import excerpt
 from rtamt.language.units import format_duration
-from rtamt.rewrite.check import check_bounds, check_online
+from rtamt.rewrite.check import check_online
 from rtamt.rewrite.desugar import desugar
 from rtamt.rewrite.horizon import horizon
 from rtamt.rewrite.pastify import pastify
+from rtamt.signals.domains import DOMAINS
 
 if TYPE_CHECKING:
     import argparse
     from collections.abc import Iterator
+    from fractions import Fraction
 
     from rtamt.compiler.program import Program
     from rtamt.language.formula import Formula
@@ -123,19 +124,19 @@ def _refuse_reading_options(args: argparse.Namespace) -> None:
 
 def gather(spec: Specification) -> Facts:
     """Find out all there is to tell; what an online monitor cannot have stays None."""
-    dense = spec.time == "dense"
-    step = spec.resolution if dense else spec.period or Fraction(1)
+    domain = spec.domain.online
+    step = domain.step
+    assert step is not None
     facts = Facts(spec, step)
     applied = spec.apply_semantics(spec.formula)
     try:
         check_online(spec.formula, spec.text)
         facts = replace(facts, horizon=horizon(spec.formula, step), pastified=_pastified(spec, step))
-        if not dense:  # whose bounds have been looked at when the text was read
-            check_bounds(spec.formula, step, spec.text)
+        domain.check(spec.formula, spec.text)
     except BoundError as error:
         return replace(facts, offline_only=error.message)
     program = compile_program((desugar(applied),), step, spec.input_names, domain=type(spec.domain))
-    unknown = dense or spec.backend == "python"
+    unknown = domain.continuous or spec.backend == "python"
     memory = None if unknown else int(core().memory(program.code(), calls_of(program, SampleDriver)))
     return replace(facts, program=program, memory=memory)
 
@@ -208,11 +209,10 @@ def _lines(facts: Facts) -> Iterator[str]:
         yield f"{'' if i else 'variables':<11}{' '.join(word for word in words if word)}"
     if not spec.input_names:
         yield "variables  none"
-    if spec.time == "dense":
-        yield f"resolution {format_duration(facts.step)}, the tick in which time is counted"
-    else:
-        default = "" if spec.period else " (the default; --period sets it)"
-        yield f"period     {format_duration(facts.step)}{default}"
+    detail = ", the tick in which time is counted" if spec.domain.continuous else ""
+    if spec.domain.step is None:
+        detail = " (the default; --period sets it)"
+    yield f"{spec.domain.setting:<11}{format_duration(facts.step)}{detail}"
     if facts.horizon is not None:
         ahead = format_duration(facts.horizon)
         yield f"horizon    {ahead}: the value at t is known at t + {ahead}"
@@ -220,7 +220,7 @@ def _lines(facts: Facts) -> Iterator[str]:
     if facts.program is None:
         yield f"online     no: {facts.offline_only}"
         return
-    if spec.time == "dense":
+    if spec.domain.continuous:
         yield "memory     that of the changes inside the windows, whatever the length of the trace"
     elif facts.memory is None:
         yield "memory     only the compiled core can tell (leave out --backend python)"
@@ -245,8 +245,8 @@ def _as_json(facts: Facts) -> str:
             "latex": spec.formula.latex(),
             "semantics": spec.semantics,
             "variables": _variables(spec),
-            "period": None if spec.time == "dense" else float(facts.step),
-            "resolution": float(facts.step) if spec.time == "dense" else None,
+            **{domain.setting: None for domain in DOMAINS.values()},
+            spec.domain.setting: float(facts.step),
             "horizon": None if facts.horizon is None else float(facts.horizon),
             "pastified": None if facts.pastified is None else printed(facts.pastified),
             "program": None if facts.program is None else facts.program.disassemble().splitlines(),

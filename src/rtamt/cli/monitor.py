@@ -28,6 +28,7 @@ from rtamt.cli.live_view import Live
 from rtamt.cli.stdin_reader import STDIN, Samples
 from rtamt.cli.terminal import printed, say
 from rtamt.errors import StlError, TraceError
+from rtamt.signals.dense import Dense
 from rtamt.signals.regular import TOLERANCE
 from rtamt.signals.signal import Signal
 from rtamt.signals.trace import in_seconds
@@ -104,12 +105,12 @@ def run(args: argparse.Namespace) -> int:
     if args.tolerance is not None and not args.tolerance >= 0:
         raise CommandError(f"the tolerance is {args.tolerance:g}; give a fraction of the period, such as 0.1")
     spec = read_specification(args, args.time)
-    dense = spec.time == "dense"
+    dense = spec.domain.continuous
     live = _live(printed(spec.formula)) if args.live else None
     told = Output(verdicts=spec.semantics == "boolean", live=live)
     names = tuple(spec.requirements) if len(spec.requirements) > 1 else ()
-    watched: Watched | DenseWatched = (
-        DenseWatched(spec.monitor(time="dense", watch=names), told, names)
+    watched: SampleFeed | EventFeed = (
+        EventFeed(spec.monitor(time=Dense(spec.resolution), watch=names), told, names)
         if dense
         else _watched(spec, args.tolerance, told, names)
     )
@@ -143,9 +144,9 @@ def run(args: argparse.Namespace) -> int:
     return code
 
 
-def _watched(spec: Specification, tolerance: float | None, told: Output, names: Sequence[str]) -> Watched:
+def _watched(spec: Specification, tolerance: float | None, told: Output, names: Sequence[str]) -> SampleFeed:
     monitor = spec.monitor(tolerance=TOLERANCE if tolerance is None else tolerance, watch=names)
-    return Watched(monitor, told, names, assumed=spec.period is None and tolerance is None)
+    return SampleFeed(monitor, told, names, assumed=spec.period is None and tolerance is None)
 
 
 def _live(title: str) -> Live:
@@ -180,7 +181,7 @@ class Output:
         say(f'{{"time": {stamp}, {json.dumps(rest)[1:]}', flush=True)
 
 
-class Watched:
+class SampleFeed:
     """A monitor with the time stamps of the samples whose robustness is not known yet.
 
     ``assumed``: whether nobody said how long the period is. A file is read with the period that its stamps
@@ -243,7 +244,7 @@ class Watched:
         self._output.point(time, robustness, {name: known.popleft() for name, known in self._parts.items()})
 
 
-class DenseWatched:
+class EventFeed:
     """A monitor in dense time: a sample may hold some of the variables, a result any number of points."""
 
     def __init__(self, monitor: DenseMonitor, output: Output, names: Sequence[str]) -> None:

@@ -171,12 +171,12 @@ def choice_for(specs: Sequence[Specification], trace: str, reading: Reading) -> 
 
 def has_own_clocks(spec: Specification, trace: str, reading: Reading) -> bool:
     """Tell whether each signal has a clock of its own, so that signals may begin at different times."""
-    return spec.time == "dense" or is_bag(trace) or reading.resample is not None
+    return spec.domain.continuous or is_bag(trace) or reading.resample is not None
 
 
 def is_resampled(spec: Specification, trace: str, reading: Reading) -> bool:
     """Tell whether each requirement is sampled anew, from when all variables that it reads have started."""
-    return reading.resample is not None or (spec.time == "discrete" and is_bag(trace))
+    return reading.resample is not None or (not spec.domain.continuous and is_bag(trace))
 
 
 def on_clock(data: Trace, spec: Specification, trace: str, reading: Reading) -> Trace:
@@ -185,7 +185,7 @@ def on_clock(data: Trace, spec: Specification, trace: str, reading: Reading) -> 
     Which other requirements were read with it makes no difference. Discrete time samples a bag as a node
     samples topics, the latest message every period; without a period only where the messages are samples.
     """
-    bag = spec.time == "discrete" and is_bag(trace)
+    bag = not spec.domain.continuous and is_bag(trace)
     period = spec.period if bag and reading.resample is None else reading.resample
     if period is None and not bag:
         return data

@@ -10,7 +10,7 @@ from rtamt.language.units import duration, positive_period
 from rtamt.ros.fields import reader, stamp_of
 from rtamt.ros.output_group import DenseWatch, DiscreteWatch, Robustness, Verdict, group_outputs
 from rtamt.ros.report import Condition, Level, Notice
-from rtamt.signals.domains import time_domain
+from rtamt.signals.domains import DEFAULT, time_domain
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Container, Mapping, Sequence
@@ -76,11 +76,12 @@ class RosMonitor:
         binding: Binding,
         *,
         period: Duration | None = None,
-        time: str = "discrete",
+        time: str = DEFAULT,
         stale: Duration | None = None,
     ) -> None:
         self.binding = binding
-        self.time = time_domain(time).name
+        self._domain = time_domain(time)
+        self.time = self._domain.name
         self.period = self._period(period)
         self._stale = self._stale_after(stale)
         # How far the clock may go from one look at it to the next; 0 for any distance.
@@ -94,7 +95,7 @@ class RosMonitor:
         topic_of = {name: known.topic for known in binding.inputs for name in known.fields}
         self._dense: list[DenseWatch] = []
         self._discrete: list[DiscreteWatch] = []
-        if self.time == "dense":
+        if self._domain.continuous:
             self._dense = [DenseWatch(outputs, topic_of) for outputs in group_outputs(binding.outputs)]
         else:
             assert self.period is not None
@@ -121,7 +122,7 @@ class RosMonitor:
 
     def _period(self, period: Duration | None) -> Fraction | None:
         """Return seconds; None in dense time."""
-        if self.time == "dense":
+        if self._domain.continuous:
             if period is not None:
                 raise UsageError(
                     "dense time has no sampling period: leave out the period, or choose discrete time"

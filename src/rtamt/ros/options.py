@@ -10,14 +10,14 @@ from rtamt.errors import UsageError
 from rtamt.language.units import UNITS
 from rtamt.ros.binding import bind
 from rtamt.ros.monitor import RosMonitor
-from rtamt.signals.domains import time_domain
+from rtamt.signals.domains import DEFAULT, DOMAINS, time_domain
 from rtamt.texts import load
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
 #: Names of parameters, and what holds where nothing is said.
-DEFAULTS: Mapping[str, str] = {"spec": "", "period": "", "unit": "s", "time": "discrete", "stale": ""}
+DEFAULTS: Mapping[str, str] = {"spec": "", "period": "", "unit": "s", "time": DEFAULT, "stale": ""}
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,8 +90,8 @@ def add_options(made: argparse.ArgumentParser) -> None:
     )
     made.add_argument(
         "--time",
-        metavar="{discrete,dense}",
-        help="discrete: a sample every period; dense: every message is one, at its stamp (default: discrete)",
+        metavar=f"{{{','.join(DOMAINS)}}}",
+        help=f"discrete: a sample every period; dense: every message is one, at its stamp (default: {DEFAULT})",
     )
     made.add_argument(
         "--stale",

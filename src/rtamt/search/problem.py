@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
-from fractions import Fraction
 from math import inf
 from typing import TYPE_CHECKING, Any
 
@@ -133,7 +132,7 @@ class Problem:
     ) -> Evaluation:
         total = self._total()
         outlook = self._outlook(total)
-        watched = not whole and outlook.able and (total is not None or self.spec.time == "dense")
+        watched = not whole and outlook.able and (total is not None or self.spec.domain.continuous)
         # In dense time nobody knows how many samples will come: look again after a hundredth more.
         look = max(1, (total or LOOKS) // LOOKS)
         names = self.spec.input_names
@@ -160,28 +159,25 @@ class Problem:
         close = getattr(samples, "close", None)
         if close is not None:
             close()
-        if self.spec.time == "dense":
-            return self._whole({name: (times, column) for name, column in columns.items()}, point, number)
         return self._whole({TIME: times, **columns}, point, number)
 
     def _outlook(self, samples: int | None) -> RobustInterval:
         spec = self.spec
-        step = spec.resolution if spec.time == "dense" else spec.period or Fraction(1)
         return RobustInterval(
             spec.formula,
             spec.signals_of,
             applied=spec.apply_semantics,
-            time=spec.time,
-            step=step,
+            domain=spec.domain.online,
             samples=samples,
         )
 
     def _total(self) -> int | None:
         """Return how many samples a simulation has in discrete time, None if nothing says so."""
-        if self.spec.time == "dense" or self.spec.period is None:
+        period = self.spec.domain.period
+        if period is None:
             return None
         duration = self.spec.horizon if self.duration is None else self.duration
-        return None if duration == inf else round(duration / float(self.spec.period)) + 1
+        return None if duration == inf else round(duration / float(period)) + 1
 
 
 def _sample(given: Any) -> tuple[float, Mapping[str, float]]:

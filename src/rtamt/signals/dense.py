@@ -44,6 +44,7 @@ class Dense(TimeDomain):
     summary: ClassVar[str] = "signals change at any instant"
     continuous: ClassVar[bool] = True
     unit = TICKS
+    setting: ClassVar[str] = "resolution"
 
     resolution: Fraction
 

@@ -42,9 +42,10 @@ class Discrete(TimeDomain):
     """
 
     name: ClassVar[str] = "discrete"
-    summary: ClassVar[str] = "a sample of every variable once a period"
+    summary: ClassVar[str] = "every variable has a sample once a period"
     continuous: ClassVar[bool] = False
     unit = PERIODS
+    setting: ClassVar[str] = "period"
 
     period: Fraction | None
     tolerance: float

@@ -40,6 +40,8 @@ class TimeDomain(ABC):
     continuous: ClassVar[bool]
     #: How bounds are counted, and what messages call their step.
     unit: ClassVar[BoundUnit]
+    #: The setting that is the length of a step.
+    setting: ClassVar[str]
 
     # Settings; those that do not concern a time domain have their defaults.
     #: The sampling period in seconds; None where there is none, or where it depends on the timestamps.

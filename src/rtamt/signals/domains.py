@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rtamt.errors import UsageError, did_you_mean, shown
 from rtamt.signals.dense import Dense
@@ -14,6 +14,7 @@ from rtamt.signals.ticks import NANOSECOND
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
+    from fractions import Fraction
 
     from rtamt.language.units import Duration
 
@@ -22,12 +23,27 @@ DOMAINS: Mapping[str, type[TimeDomain]] = MappingProxyType(
     {domain.name: domain for domain in (Discrete, Dense)}
 )
 
+#: The name of the time domain that holds where none is named.
+DEFAULT = next(iter(DOMAINS))
+
+
+class Defaults(NamedTuple):
+    """What holds for settings of a time domain that are left out."""
+
+    period: Fraction | None = None
+    tolerance: float = TOLERANCE
+    resolution: Fraction = NANOSECOND
+
+
+_DEFAULTS = Defaults()
+
 
 def time_domain(
     time: Any,
     period: Duration | None = None,
     tolerance: float | None = None,
     resolution: Duration | None = None,
+    defaults: Defaults = _DEFAULTS,
 ) -> TimeDomain:
     """Return the time domain that a caller names, with the settings that concern it, or gives as an object.
 
@@ -48,7 +64,7 @@ def time_domain(
             f"unknown time domain {shown(time)}; choose from {', '.join(names)}{did_you_mean(time, names)}"
         )
     return DOMAINS[time].of(
-        period,
-        TOLERANCE if tolerance is None else tolerance,
-        NANOSECOND if resolution is None else resolution,
+        defaults.period if period is None else period,
+        defaults.tolerance if tolerance is None else tolerance,
+        defaults.resolution if resolution is None else resolution,
     )

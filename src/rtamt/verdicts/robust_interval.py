@@ -11,7 +11,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from fractions import Fraction
 from math import inf, isfinite
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -20,14 +20,13 @@ from rtamt.language.records import Tense
 from rtamt.reference import discrete as reference
 from rtamt.rewrite.structure import Structure, literal
 from rtamt.signals import arrays
-from rtamt.signals.dense import record_dense
-from rtamt.signals.discrete import record_discrete
 from rtamt.verdicts.outputs import outputs_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
 
     from rtamt.signals.arrays import FloatArray
+    from rtamt.signals.domain import DomainTrace, TimeDomain
     from rtamt.verdicts.outputs import Evaluate
 
     #: Stamps (seconds) and a column of values for each variable, all of one length.
@@ -58,8 +57,8 @@ class Settled:
 class RobustInterval:
     """Determines whether the first samples of a simulation settle the verdict of a formula.
 
-    ``applied`` returns a predicate under the semantics of the robustness. ``time`` is the time domain and
-    ``step`` the seconds of a period or tick. ``samples`` is how many there are at the end in discrete time
+    ``applied`` returns a predicate under the semantics of the robustness. ``domain`` is a time domain
+    with a known step. ``samples`` is how many there are at the end in discrete time
     (dense time needs none). A formula with arithmetic over temporal operators, or with an operator that cannot
     be taken apart, is never settled before the end: :attr:`able` is false.
     """
@@ -70,14 +69,14 @@ class RobustInterval:
         evaluate: Evaluate,
         *,
         applied: Callable[[Formula], Formula],
-        time: str,
-        step: Fraction,
+        domain: TimeDomain,
         samples: int | None,
     ) -> None:
         self._evaluate = evaluate
         self._applied = applied
-        self._time = time
-        self._step = step
+        assert domain.step is not None
+        self._domain = domain
+        self._step = domain.step
         self._samples = samples
         structure = Structure.of(formula, None)
         self._leaves = structure.leaves
@@ -143,11 +142,8 @@ class RobustInterval:
         (signal,) = self._evaluate((self._over_predicates,), recording)
         return float(signal.values[0])
 
-    def _recording(self, times: FloatArray, columns: Columns, names: tuple[str, ...]) -> Any:
-        if self._time == "dense":
-            data = {name: (times, column) for name, column in columns.items()}
-            return record_dense(data, names, self._step)
-        return record_discrete({arrays.TIME: times, **columns}, names, self._step)
+    def _recording(self, times: FloatArray, columns: Columns, names: tuple[str, ...]) -> DomainTrace:
+        return self._domain.record({arrays.TIME: times, **columns}, names)
 
 
 def _at_one_instant(formula: Formula) -> bool:
