@@ -2,8 +2,9 @@ function install_rtamt(python)
 %INSTALL_RTAMT Build the gateway of online_monitor and add it to the path.
 %
 %   INSTALL_RTAMT uses the interpreter python3 (on Windows, python), in which
-%   rtamt must be installed: 'pip install rtamt'. INSTALL_RTAMT(PYTHON) uses
-%   another interpreter, such as '/home/me/.venv/bin/python'.
+%   rtamt must be installed: 'pip install FOLDER', where FOLDER is the one that
+%   contains this folder. INSTALL_RTAMT(PYTHON) uses another interpreter, such
+%   as '/home/me/.venv/bin/python'.
 %
 %   It copies the C library from that installation, builds the MEX gateway to it
 %   (this needs a C compiler: 'mex -setup' in MATLAB) and stores the interpreter,
@@ -39,9 +40,10 @@ function [python, library, header] = locate(python)
     [status, said] = run_python(python, ['-c "' question '"']);
     lines = strsplit(strtrim(said), sprintf('\n'));
     if status ~= 0
+        root = fileparts(fileparts(mfilename('fullpath')));
         error('rtamt:notInstalled', ['rtamt is not installed in the Python ''%s'': run ' ...
-              '''pip install rtamt'' there, or name another one: install_rtamt(''...''). ' ...
-              'It said: %s'], python, strtrim(lines{end}));
+              '''pip install "%s"'' there, or name another one: install_rtamt(''...''). ' ...
+              'It said: %s'], python, root, strtrim(lines{end}));
     end
     lines = strtrim(lines);
     [python, library, header] = deal(lines{end - 2:end});

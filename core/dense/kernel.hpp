@@ -148,7 +148,7 @@ class Temporal : public Writing<typename D::Value> {
             }
             times[count] = time;
             values[count] = value;
-            count += D::same(value, last) ? 0 : 1;
+            count += value == last ? 0 : 1;
             last = value;
         }
 

@@ -39,7 +39,7 @@ class Results {
     void put(std::int64_t time, const Value& value) noexcept {
         times_[count_] = time;
         values_[count_] = value;
-        count_ += static_cast<std::size_t>(!told_.begun | !D::same(value, told_.last));
+        count_ += static_cast<std::size_t>(!told_.begun | (value != told_.last));
         told_ = {value, true};
         if constexpr (Operation::partial) undefined_ |= D::undefined(value);
     }

@@ -3,7 +3,6 @@
 #pragma once
 
 #include "domain.hpp"
-#include "functions.hpp"
 #include "real.hpp"
 
 namespace rtamt {
@@ -12,7 +11,6 @@ template <ValueDomain D>
 struct MaxOf {
     using Domain = D;
     using Value = typename D::Value;
-    using Function = functions::Max; // of two numbers
     static constexpr Value identity = D::bottom;
     [[nodiscard]] static constexpr Value join(const Value& a, const Value& b) noexcept {
         return D::join(a, b);
@@ -23,7 +21,6 @@ template <ValueDomain D>
 struct MinOf {
     using Domain = D;
     using Value = typename D::Value;
-    using Function = functions::Min;
     static constexpr Value identity = D::top;
     [[nodiscard]] static constexpr Value join(const Value& a, const Value& b) noexcept {
         return D::meet(a, b);

@@ -119,7 +119,7 @@ template <class Function>
         if (a.upper < 0) return nothing;
         a.lower = 0.0;
     }
-    if (a.lower == 0 && b.lower < 0) return anything; // a zero of either sign to a negative power
+    if (a.lower == 0 && b.lower < 0) return anything; // a pole
     // x^y = exp(y ln x) is bilinear in y and ln x, so its extrema are at corners.
     return not_negative(widened(corners(functions::Pow::of, a, b, 1.0)));
 }
@@ -134,14 +134,6 @@ template <class Function>
     const Bounds below = ln(b);
     if (std::isnan(above.lower) || std::isnan(below.lower)) return nothing;
     return extension(functions::Div{}, above, below);
-}
-
-[[nodiscard]] inline Bounds extension(functions::Max f, Bounds a, Bounds b) noexcept {
-    return {f.of(a.lower, b.lower), f.of(a.upper, b.upper)};
-}
-
-[[nodiscard]] inline Bounds extension(functions::Min f, Bounds a, Bounds b) noexcept {
-    return {f.of(a.lower, b.lower), f.of(a.upper, b.upper)};
 }
 
 template <class F>

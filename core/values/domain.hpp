@@ -34,8 +34,6 @@ concept ValueDomain =
         { D::join(a, b) } noexcept -> std::same_as<typename D::Value>;
         { D::meet(a, b) } noexcept -> std::same_as<typename D::Value>;
         { D::neg(a) } noexcept -> std::same_as<typename D::Value>;
-        // Equal to the bit: 1/x distinguishes 0.0 from -0.0.
-        { D::same(a, b) } noexcept -> std::same_as<bool>;
         { D::undefined(a) } noexcept -> std::same_as<bool>;
         // The value of a constant.
         { D::of(x) } noexcept -> std::same_as<typename D::Value>;

@@ -2,15 +2,20 @@
 //
 // `partial` functions make NaN of some operands that are not NaN. A comparison is +inf where it
 // holds and -inf where it does not.
+//
+// Equal operands have equal results: -0.0 is a divisor and a base like 0.0. So which of two zeros a
+// max or min returns changes nothing that is computed from it.
 #pragma once
 
 #include "real.hpp"
 
-#include <bit>
 #include <cmath>
-#include <cstdint>
 
 namespace rtamt::functions {
+
+[[nodiscard]] inline double unsigned_zero(double a) noexcept {
+    return a + 0.0; // -0.0 + 0.0 is 0.0
+}
 
 struct Neg {
     static constexpr bool partial = false;
@@ -46,32 +51,15 @@ struct Mul {
 };
 struct Div {
     static constexpr bool partial = true;
-    static double of(double a, double b) noexcept { return a / b; }
+    static double of(double a, double b) noexcept { return a / unsigned_zero(b); }
 };
 struct Pow {
     static constexpr bool partial = true;
-    static double of(double a, double b) noexcept { return std::pow(a, b); }
+    static double of(double a, double b) noexcept { return std::pow(unsigned_zero(a), b); }
 };
 struct Log { // of a to the base b
     static constexpr bool partial = true;
     static double of(double a, double b) noexcept { return std::log(a) / std::log(b); }
-};
-
-// Of 0.0 and -0.0, which 1/x tells apart, 0.0 is the larger, whatever the order of the operands.
-// One order answers the one and the other order the other; all other results have the same bits.
-struct Max {
-    static constexpr bool partial = false;
-    static double of(double a, double b) noexcept {
-        return std::bit_cast<double>(std::bit_cast<std::uint64_t>(Real::join(a, b)) &
-                                     std::bit_cast<std::uint64_t>(Real::join(b, a)));
-    }
-};
-struct Min {
-    static constexpr bool partial = false;
-    static double of(double a, double b) noexcept {
-        return std::bit_cast<double>(std::bit_cast<std::uint64_t>(Real::meet(a, b)) |
-                                     std::bit_cast<std::uint64_t>(Real::meet(b, a)));
-    }
 };
 
 struct Greater {

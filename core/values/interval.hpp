@@ -33,9 +33,6 @@ struct Interval {
     [[nodiscard]] static constexpr Bounds neg(const Bounds& a) noexcept {
         return {-a.upper, -a.lower};
     }
-    [[nodiscard]] static constexpr bool same(const Bounds& a, const Bounds& b) noexcept {
-        return Real::same(a.lower, b.lower) && Real::same(a.upper, b.upper);
-    }
     [[nodiscard]] static bool undefined(const Bounds& a) noexcept {
         return Real::undefined(a.lower) || Real::undefined(a.upper);
     }
@@ -54,7 +51,7 @@ struct Interval {
 
   private:
     [[nodiscard]] static constexpr bool exact(const Bounds& a) noexcept {
-        return Real::same(a.lower, a.upper);
+        return a.lower == a.upper;
     }
 };
 

@@ -25,7 +25,12 @@ template <std::size_t n>
 struct Lanes {
     struct Value {
         std::array<double, n> lane;
-        [[nodiscard]] friend bool operator==(const Value&, const Value&) = default;
+        [[nodiscard]] friend constexpr bool operator==(const Value& a, const Value& b) noexcept {
+            bool equal = true;
+            for (std::size_t i = 0; i < n; ++i)
+                equal &= a.lane[i] == b.lane[i];
+            return equal;
+        }
     };
     using Number = Lanes;
 
@@ -54,12 +59,6 @@ struct Lanes {
     }
     [[nodiscard]] static constexpr Value neg(const Value& a) noexcept {
         return each([&](std::size_t i) { return Real::neg(a.lane[i]); });
-    }
-    [[nodiscard]] static constexpr bool same(const Value& a, const Value& b) noexcept {
-        bool same = true;
-        for (std::size_t i = 0; i < n; ++i)
-            same &= Real::same(a.lane[i], b.lane[i]);
-        return same;
     }
     [[nodiscard]] static bool undefined(const Value& a) noexcept {
         bool undefined = false;

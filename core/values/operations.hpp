@@ -29,7 +29,7 @@ struct Not {
     }
 };
 
-// `or` of MaxOf, `and` of MinOf. Numbers may be divided by later, so theirs tell 0.0 from -0.0.
+// `or` of MaxOf, `and` of MinOf.
 template <class Algebra>
 struct Connect {
     using In = typename Algebra::Domain;
@@ -37,11 +37,7 @@ struct Connect {
     using Value = typename In::Value;
     static constexpr bool partial = false;
     [[nodiscard]] static Value of(const Value& a, const Value& b) noexcept {
-        if constexpr (UniformDomain<In>) {
-            return In::template apply<typename Algebra::Function>(a, b);
-        } else {
-            return Algebra::join(a, b);
-        }
+        return Algebra::join(a, b);
     }
 };
 

@@ -6,9 +6,7 @@
 
 #include "domain.hpp"
 
-#include <bit>
 #include <cmath>
-#include <cstdint>
 #include <limits>
 
 namespace rtamt {
@@ -30,9 +28,6 @@ struct Real {
         return a < b ? a : b;
     }
     [[nodiscard]] static constexpr double neg(double a) noexcept { return -a; }
-    [[nodiscard]] static constexpr bool same(double a, double b) noexcept {
-        return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
-    }
     [[nodiscard]] static bool undefined(double a) noexcept { return std::isnan(a); }
     [[nodiscard]] static constexpr double of(double x) noexcept { return x; }
 

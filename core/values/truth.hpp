@@ -25,7 +25,6 @@ struct Truth {
     [[nodiscard]] static constexpr Value join(Value a, Value b) noexcept { return a | b; }
     [[nodiscard]] static constexpr Value meet(Value a, Value b) noexcept { return a & b; }
     [[nodiscard]] static constexpr Value neg(Value a) noexcept { return ~a; }
-    [[nodiscard]] static constexpr bool same(Value a, Value b) noexcept { return a == b; }
     [[nodiscard]] static constexpr bool undefined(Value /*a*/) noexcept { return false; }
     // A number used as a formula holds where it is positive.
     [[nodiscard]] static constexpr Value of(double x) noexcept { return x > 0 ? top : bottom; }

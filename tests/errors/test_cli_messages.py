@@ -207,7 +207,7 @@ def test_messages_about_the_first_sample(run, stdin, message, backend):
             "sample 1 at 2 s is 2 s after the one before, expected 1 s (within 10%): "
             "give the right period, or resample the trace",
         ),
-        ('{"time": Infinity, "x": 1}', "time is inf at sample 1: give a finite number of seconds"),
+        ('{"time": Infinity, "x": 1}', "the time column 'time' is inf at sample 1, expected a finite number"),
     ],
 )
 def test_messages_about_a_later_sample(run, line, message):

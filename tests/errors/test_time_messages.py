@@ -58,8 +58,9 @@ TIMES: dict[str, tuple[Any, str, str, str]] = {
         np.array(["0", "1e400"], np.longdouble),
         "give a finite time",
         "expected a number",
-        "give a finite number",
+        "expected a finite number",
     ),
+    "infinity": ([0.0, float("inf")], "give a finite time", "give a finite", "expected a finite number"),
     "masked": (
         np.ma.masked_array([0.0, 1.0], [False, True]),
         "give a finite time",

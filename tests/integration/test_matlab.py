@@ -388,8 +388,8 @@ REFUSED = {
     "a Python without rtamt": (
         "install_rtamt('/bin/false');",
         "rtamt:notInstalled",
-        "rtamt is not installed in the Python '/bin/false': run 'pip install rtamt' there, or name another one: "
-        "install_rtamt('...'). It said: ",
+        "rtamt is not installed in the Python '/bin/false': run 'pip install \"CHECKOUT\"' there, or name another "
+        "one: install_rtamt('...'). It said: ",
     ),
 }
 TRY = """
@@ -411,7 +411,8 @@ def refusals(installed, tmp_path_factory) -> dict[str, str]:
     (home / "dense.rtamt").write_bytes(rtamt.parse("x >= y", time="dense").compile().to_bytes())
     (home / "bad.stl").write_text("x >=", encoding="utf-8")
     script = "".join(TRY.format(tried) for tried, _, _ in REFUSED.values())
-    said = run_octave(script, home, installed, DOUBLES).replace(str(home), "HERE")
+    said = run_octave(script, home, installed, DOUBLES)
+    said = said.replace(str(home), "HERE").replace(str(installed.parent), "CHECKOUT")
     return dict(zip(REFUSED, said.split("\x1e"), strict=False))
 
 

@@ -93,7 +93,7 @@ def test_a_kernel_that_forgets_between_blocks_is_found() -> None:
     with pytest.raises(AssertionError) as info:
         check_operator(wrong, infinite=False, examples=20)
     message = str(info.value)
-    assert "the operator 'total' breaks the law \"fast is the definition\" in" in message
+    assert "the operator 'total' breaks the law" in message
     assert "\n  x = [" in message
     assert "\n  expected [" in message
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import sys
-from decimal import Decimal
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -188,17 +187,16 @@ def _as_json(outcome: Outcome, requirement: Requirement) -> str:
     more = {"description": written.description, "severity": written.severity} if written.explicit else {}
     if outcome.error:
         return json_text({**row, "error": outcome.error})
-    row |= {"satisfied": outcome.verdict == "satisfied", "robustness": json_number(outcome.robustness)}
-    rest = {
+    row |= {
+        "satisfied": outcome.verdict == "satisfied",
+        "robustness": json_number(outcome.robustness),
+        "first_violation": outcome.first_violation,
         "samples": outcome.samples,
         "period": None if outcome.period is None else float(outcome.period),
         **more,
         **({"notes": outcome.notes} if outcome.notes else {}),
     }
-    violated = outcome.first_violation
-    # The time by hand: it may have more digits than a double.
-    time = str(violated) if isinstance(violated, Decimal) else json_text(violated)
-    return f'{json_text(row)[:-1]}, "first_violation": {time}, {json_text(rest)[1:]}'
+    return json_text(row)
 
 
 def _as_table(requirements: Sequence[Requirement], found: Sequence[Outcome], color: bool) -> str:

@@ -9,9 +9,11 @@ import re
 import sys
 import textwrap
 from dataclasses import dataclass
+from decimal import Decimal
 from fractions import Fraction
 from math import isfinite
 from typing import TYPE_CHECKING, Any, NoReturn
+from uuid import uuid4
 
 import numpy as np
 
@@ -230,17 +232,22 @@ def write_output(path: str, content: str | bytes) -> None:
 def json_text(value: Any, **options: Any) -> str:
     r"""Return JSON; bytes of file names that are not UTF-8 are written out, since no JSON text can hold them.
 
-    >>> print(json_text({"trace": "caf\udce9.csv"}))
-    {"trace": "caf\\xe9.csv"}
+    A Decimal is a number with all its digits.
+
+    >>> print(json_text({"trace": "caf\udce9.csv", "time": Decimal("1700000000.100000001")}))
+    {"trace": "caf\\xe9.csv", "time": 1700000000.100000001}
     """
-    return json.dumps(_readable(value), **options)
+    mark = uuid4().hex  # which no text contains
+    return re.sub(f'"{mark}(.*?)"', r"\1", json.dumps(_readable(value, mark), **options))
 
 
-def _readable(value: Any) -> Any:
+def _readable(value: Any, mark: str) -> Any:
     if isinstance(value, dict):
-        return {_readable(key): _readable(inner) for key, inner in value.items()}
+        return {_readable(key, mark): _readable(inner, mark) for key, inner in value.items()}
     if isinstance(value, (list, tuple)):
-        return [_readable(inner) for inner in value]
+        return [_readable(inner, mark) for inner in value]
+    if isinstance(value, Decimal):
+        return f"{mark}{value}"
     return readable(value) if isinstance(value, str) else value
 
 

@@ -67,7 +67,7 @@ def run(args: argparse.Namespace) -> int:
         return ERROR
     if any(warnings) and args.strict:
         return VIOLATED
-    if not args.quiet:
+    if not args.quiet and not any(warnings):
         say(f"{len(files)} {'file is' if len(files) == 1 else 'files are'} right")
     return OK
 

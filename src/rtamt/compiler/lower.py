@@ -9,7 +9,7 @@ put together where a > 0.
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from math import copysign, inf
+from math import inf
 from types import MappingProxyType
 from typing import TYPE_CHECKING, ClassVar
 
@@ -45,7 +45,7 @@ class Lowering(ABC):
         self.parameters = parameters
         self.instructions: list[Instruction] = []
         self.origins: list[Formula | None] = []
-        self.index_of: dict[tuple[Instruction, float], int] = {}
+        self.index_of: dict[Instruction, int] = {}
         self.value_of: dict[Formula, int] = {}
         self.calls: dict[CallSite, int] = {}
 
@@ -96,10 +96,9 @@ class Lowering(ABC):
 
     def emit(self, instruction: Instruction, origin: Formula) -> int:
         """Return the index of an instruction, which is added unless it is there already."""
-        key = (instruction, copysign(1.0, instruction.x))  # 0.0 == -0.0, but they are two constants
-        index = self.index_of.get(key)
+        index = self.index_of.get(instruction)
         if index is None:
-            index = self.index_of[key] = self.append(instruction, origin)
+            index = self.index_of[instruction] = self.append(instruction, origin)
         return index
 
     def append(self, instruction: Instruction, origin: Formula) -> int:

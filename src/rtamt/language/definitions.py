@@ -6,8 +6,10 @@ the interval in whole samples, ``b=None`` where there is no upper one. T is the 
 window is cut to it, and over an empty set the supremum is -inf and the infimum +inf.
 
 Arithmetic is IEEE double and makes inf or NaN where C does, silently: telling the user is the
-evaluator's task. The functions of the mathematical library are called one element at a time, because
-numpy's vectorised ones round differently from the C library that the core calls.
+evaluator's task. Zero has no sign: -0.0 is a divisor and a base like 0.0, so that equal operands have
+equal results, and it does not matter which of two zeros a minimum is. The functions of the
+mathematical library are called one element at a time, because numpy's vectorised ones round
+differently from the C library that the core calls.
 
 Slow on purpose: each is the formula of the definition (the paper's Definition 2) and nothing more.
 
@@ -69,6 +71,7 @@ def _ln(x: float) -> float:
 
 
 def _pow(x: float, y: float) -> float:
+    x += 0.0
     try:
         return math.pow(x, y)
     except (OverflowError, ValueError) as error:
@@ -137,7 +140,7 @@ def mul(x: Array, y: Array) -> Array:
 def div(x: Array, y: Array) -> Array:
     """``x / y``: ±inf for a division by zero, NaN for 0/0."""
     with np.errstate(all="ignore"):
-        return x / y
+        return x / (y + 0.0)
 
 
 # ---- predicates ---------------------------------------------------------------------------------
@@ -196,39 +199,29 @@ def holds_ne(x: Array, y: Array) -> Array:
 # ---- Boolean ------------------------------------------------------------------------------------
 
 
-def _smaller(x: Array, y: Array) -> Array:
-    # Written out, because numpy leaves open which of 0.0 and -0.0 is the smaller, and 1/x tells them apart:
-    # -0.0 is, whatever the order of the operands.
-    return np.where((x < y) | ((x == y) & np.signbit(x)), x, y)
-
-
-def _larger(x: Array, y: Array) -> Array:
-    return np.where((x > y) | ((x == y) & ~np.signbit(x)), x, y)
-
-
 def and_(x: Array, y: Array) -> Array:
     """``φ and ψ``: min(φ, ψ)."""
-    return _smaller(x, y)
+    return np.minimum(x, y)
 
 
 def or_(x: Array, y: Array) -> Array:
     """``φ or ψ``: max(φ, ψ)."""
-    return _larger(x, y)
+    return np.maximum(x, y)
 
 
 def implies(x: Array, y: Array) -> Array:
     """``φ -> ψ``: max(-φ, ψ)."""
-    return _larger(-x, y)
+    return np.maximum(-x, y)
 
 
 def iff(x: Array, y: Array) -> Array:
     """``φ <-> ψ``: min(max(-φ, ψ), max(φ, -ψ))."""
-    return _smaller(_larger(-x, y), _larger(x, -y))
+    return np.minimum(np.maximum(-x, y), np.maximum(x, -y))
 
 
 def xor(x: Array, y: Array) -> Array:
     """``φ xor ψ``: -min(max(-φ, ψ), max(φ, -ψ))."""
-    return -_smaller(_larger(-x, y), _larger(x, -y))
+    return -np.minimum(np.maximum(-x, y), np.maximum(x, -y))
 
 
 # ---- windows ------------------------------------------------------------------------------------
@@ -339,4 +332,4 @@ def precedes(x: Array, y: Array, a: int, b: int) -> Array:
 
 def unless(x: Array, y: Array, a: int, b: int | None) -> Array:
     """``φ unless[a,b] ψ``: max(always[0,b] φ, φ until[a,b] ψ)."""
-    return _larger(always(x, 0, b), until(x, y, a, b))
+    return np.maximum(always(x, 0, b), until(x, y, a, b))

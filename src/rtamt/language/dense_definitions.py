@@ -27,7 +27,7 @@ from __future__ import annotations
 
 from bisect import bisect_left, bisect_right
 from itertools import pairwise
-from math import copysign, inf
+from math import inf
 from typing import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
@@ -49,10 +49,10 @@ class Steps(NamedTuple):
 
 
 def merged(times: Iterable[int], values: Iterable[float]) -> Steps:
-    """Return the function without the times at which nothing changes; 0.0 and -0.0 are different values."""
+    """Return the function without the times at which nothing changes."""
     kept: list[tuple[int, float]] = []
     for time, value in zip(times, values, strict=True):
-        if not kept or value != kept[-1][1] or copysign(1.0, value) != copysign(1.0, kept[-1][1]):
+        if not kept or value != kept[-1][1]:
             kept.append((time, value))
     return Steps(tuple(t for t, _ in kept), tuple(v for _, v in kept))
 

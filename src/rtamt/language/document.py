@@ -89,6 +89,8 @@ class Document:
     used: frozenset[str] = frozenset()
     #: The name of the assertion or requirement that :meth:`select` has chosen.
     selected: str | None = None
+    #: What it was selected from, with every requirement; None if nothing was.
+    origin: Document | None = field(default=None, compare=False, repr=False)
 
     def __hash__(self) -> int:
         return hash(self.text)
@@ -116,7 +118,7 @@ class Document:
                 f"there is no requirement '{name}'{did_you_mean(name, self._named)}; requirements are "
                 f"{', '.join(requirement.name for requirement in self.requirements)}"
             )
-        return replace(self, requirements=(self._named[name],), selected=name)
+        return replace(self, requirements=(self._named[name],), selected=name, origin=self.origin or self)
 
     @cached_property
     def _named(self) -> dict[str, Requirement]:

@@ -46,10 +46,8 @@ class Enclosure(NamedTuple):
 
     @property
     def exact(self) -> NDArray[np.bool_]:
-        """Where the value is known: both bounds are the same double, zeros with the same sign."""
-        same: NDArray[np.bool_] = (self.lower == self.upper) & (
-            np.signbit(self.lower) == np.signbit(self.upper)
-        )
+        """Where the value is known: both bounds are the same number."""
+        same: NDArray[np.bool_] = self.lower == self.upper
         return same
 
 
@@ -220,7 +218,7 @@ def _pow(a: tuple[float, float], b: tuple[float, float]) -> tuple[float, float]:
             return nan, nan
         a = 0.0, a[1]
     if a[0] == 0 and b[0] < 0:
-        return -inf, inf  # a zero of either sign to a negative power
+        return -inf, inf  # a pole
     # x^y = exp(y ln x) is bilinear in y and ln x, so that its extrema are at corners.
     ends = [_one(d.pow_, x, y) for x in a for y in b]
     low, high = _hull([1.0 if math.isnan(end) else end for end in ends])

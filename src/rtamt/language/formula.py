@@ -15,7 +15,6 @@ each use the previous one twice has 10¹⁸ nodes. Whatever walks a formula visi
 from __future__ import annotations
 
 from dataclasses import dataclass, field, fields
-from math import copysign
 from typing import TYPE_CHECKING, Any, TypeVar
 
 if TYPE_CHECKING:
@@ -93,9 +92,9 @@ class Formula:
         return to_latex(self)
 
 
-@dataclass(frozen=True, slots=True, eq=False, repr=False)
+@dataclass(frozen=True, slots=True, repr=False)
 class Const(Formula):
-    """A number (IEEE double; never NaN). 0.0 and -0.0 are different numbers: 1/x tells them apart.
+    """A number (IEEE double; never NaN).
 
     ``name`` only remembers that a named constant was written.
     """
@@ -103,14 +102,6 @@ class Const(Formula):
     value: float
     span: Span | None = field(default=None, compare=False, repr=False)
     name: str | None = field(default=None, compare=False, repr=False)
-
-    def __hash__(self) -> int:
-        return hash((self.value, copysign(1.0, self.value)))
-
-    def __eq__(self, other: object) -> bool:
-        if not isinstance(other, Const):
-            return NotImplemented
-        return self.value == other.value and copysign(1.0, self.value) == copysign(1.0, other.value)
 
 
 @dataclass(frozen=True, slots=True, repr=False)

@@ -44,7 +44,7 @@ class LintWarning:
 
 
 def warnings_of(document: Document) -> tuple[LintWarning, ...]:
-    """Return the warnings about a document, in the order of its text.
+    """Return the warnings about the text of a document, in its order, whatever is selected of it.
 
     >>> from rtamt.language.specfile import parse_document
     >>> print(*warnings_of(parse_document("x and y >= 3")))
@@ -53,6 +53,7 @@ def warnings_of(document: Document) -> tuple[LintWarning, ...]:
         x and y >= 3
         ^
     """
+    document = document.origin or document
     found = {
         LintWarning(rule.code, message, document.text, span)
         for rule in RULES

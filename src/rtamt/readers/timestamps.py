@@ -148,6 +148,9 @@ class Clock:
         if raw.dtype.kind == "f" and raw.dtype.itemsize > 8:
             with np.errstate(over="ignore"):  # what is beyond every double is no finite time
                 raw = raw.astype(np.float64)
+        if raw.dtype.kind == "f" and not np.isfinite(raw).all():
+            row = int(np.argmin(np.isfinite(raw)))
+            raise self._no_time(float(raw[row]), before + row, "expected a finite number")
         return raw.data if isinstance(raw, np.ma.MaskedArray) else raw
 
     def _of_objects(self, values: list[Any], before: int) -> Raw:

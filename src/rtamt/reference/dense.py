@@ -211,10 +211,7 @@ class _Trace(NamedTuple):
 
 
 def _changes(steps: Steps, after: int | None, last: int) -> StepFunction:
-    """Return the events with ``after`` < time ≤ ``last``, the first in ticks and the second in quarters.
-
-    Neighbours that compare equal are one: whoever reads the result cannot tell 0.0 from -0.0.
-    """
+    """Return the events with ``after`` < time ≤ ``last``, the first in ticks and the second in quarters."""
     times: list[int] = []
     values: list[float] = []
     for time, value in zip(*steps, strict=True):

@@ -231,7 +231,7 @@ def _apply_to_predicate(predicate: Formula, semantics: PredicateSemantics, roles
                 f"the semantics {_name(semantics)} returned '{excerpt(applied)}' for the predicate "
                 f"'{excerpt(predicate)}', which does not read '{name}'; use the predicate's own variables"
             )
-    # min(inf, v) is v, to the sign of a zero; the truth, +inf or -inf, is computed for its operands.
+    # min(inf, v) is v; the truth, +inf or -inf, is computed for its operands.
     return STL["and"](STL["or"](holding, STL["true"]()), applied)
 
 

@@ -28,6 +28,9 @@ if TYPE_CHECKING:
 # Every combination of these values of the variables is one sample of the trace on which arithmetic is tried.
 _PROBE = (-2.0, 0.0, 1.0, 3.0)
 
+# Samples: halves, and both zeros.
+_NUMBERS = st.integers(-9, 8).map(lambda k: -0.0 if k == -9 else k / 2)
+
 
 @dataclass(frozen=True)
 class _Drawn:
@@ -172,12 +175,12 @@ def traces(
 ) -> dict[str, Array]:
     """Draw columns of equal length: few distinct small values each, so that ties and repeats occur."""
     n = draw(st.integers(min_size, max_size))
-    values = st.integers(-8, 8).map(lambda k: k / 2)
+    values = _NUMBERS
     if infinite:
         values = st.one_of(values, values, values, st.sampled_from((np.inf, -np.inf)))
     columns = {}
     for name in variables:
-        palette = draw(st.lists(values, min_size=1, max_size=6, unique=True))
+        palette = draw(st.lists(values, min_size=1, max_size=6, unique_by=repr))
         columns[name] = np.array(draw(st.lists(st.sampled_from(palette), min_size=n, max_size=n)), float)
     return columns
 
@@ -202,7 +205,7 @@ def dense_traces(
     Starts and ends differ, jumps coincide often, segments of one tick and repeated values occur, and
     some signals have a single sample or end before another one begins.
     """
-    values = st.integers(-8, 8).map(lambda k: k / 2)
+    values = _NUMBERS
     if infinite:
         values = st.one_of(values, values, values, st.sampled_from((np.inf, -np.inf)))
     trace = {}
@@ -210,7 +213,7 @@ def dense_traces(
         n = draw(st.integers(1, max_size))
         steps = draw(st.lists(st.sampled_from((1, 1, 1, 2, 2, 3, 5)), min_size=n - 1, max_size=n - 1))
         times = np.cumsum([origin + draw(st.sampled_from((0, 0, 0, 1, 2, 5, 12))), *steps], dtype=np.int64)
-        palette = draw(st.lists(values, min_size=1, max_size=5, unique=True))
+        palette = draw(st.lists(values, min_size=1, max_size=5, unique_by=repr))
         column = draw(st.lists(st.sampled_from(palette), min_size=n, max_size=n))
         trace[name] = (times, np.array(column, float))
     return trace

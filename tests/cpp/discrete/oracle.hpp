@@ -49,9 +49,9 @@ inline double pointwise(Opcode opcode, double a, double b) {
     case Opcode::mul:
         return a * b;
     case Opcode::div:
-        return a / b;
+        return a / (b == 0 ? 0.0 : b);
     case Opcode::pow:
-        return std::pow(a, b);
+        return std::pow(a == 0 ? 0.0 : a, b);
     case Opcode::log:
         return std::log(a) / std::log(b);
     case Opcode::min:

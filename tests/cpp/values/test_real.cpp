@@ -16,10 +16,6 @@ TEST(nan_alone_is_undefined) {
     CHECK(!Real::undefined(Real::bottom) && !Real::undefined(Real::top));
 }
 
-TEST(zeros_of_both_signs_are_equal_but_not_the_same) {
-    CHECK(!Real::same(0.0, -0.0) && Real::same(-0.0, -0.0));
-}
-
 TEST(a_function_is_applied_as_it_is) {
     CHECK(Real::apply<rtamt::functions::Sub>(5.0, 3.0) == 2.0);
     CHECK(Real::apply<rtamt::functions::Sqrt>(9.0) == 3.0);

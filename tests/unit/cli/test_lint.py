@@ -65,7 +65,7 @@ def test_warnings_have_codes_that_can_be_silenced(run, write):
     answer = run("lint", "gap.stl")
     assert answer == (
         0,
-        "1 file is right\n",
+        "",
         "rtamt: gap.stl: warning RT101: 'x' is a number where a formula is expected; compare it, such as x > 0\n"
         "  line 1, column 1:\n"
         "    x and y >= 3; 3 >= 2\n"

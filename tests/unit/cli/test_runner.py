@@ -80,6 +80,13 @@ def test_junit(run, files):
     assert root.find("testsuite/testcase[@name='good.csv']").get("classname") == "low"
 
 
+def test_the_first_violation_in_sarif_has_every_nanosecond(run, write):
+    write("log.csv", "t [ns],x\n1700000000000000000,5\n1700000000100000001,1\n")
+    run("check", "always(x >= 3)", "log.csv", "--time", "dense", "--sarif", "report.sarif", "--quiet")
+    with open("report.sarif", encoding="utf-8") as file:
+        assert '"firstViolation": 1700000000.100000001\n' in file.read()
+
+
 def test_sarif(run, files):
     run("check", *files, "nowhere.csv", "--sarif", "report.sarif", "--quiet")
     with open("report.sarif", encoding="utf-8") as file:

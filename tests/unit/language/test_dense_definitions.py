@@ -176,9 +176,9 @@ def test_the_instant_at_which_phi_falls_exactly_a_later_takes_the_value_that_fol
     assert dense.lifted(dense.until, (x, y), 4, 4) == Steps((0, 16), (1.0, -1.0))
 
 
-def test_a_step_function_keeps_apart_the_zeros_until_it_is_told():
-    assert dense.merged((0, 4, 8), (0.0, -0.0, -0.0)) == Steps((0, 4), (0.0, -0.0))
-    assert value("1 / x", x="0@0 -0@1") == "inf@0 -inf@1"
+def test_zeros_of_both_signs_are_one_value():
+    assert dense.merged((0, 4, 8), (0.0, -0.0, -0.0)) == Steps((0,), (0.0,))
+    assert value("1 / x", x="0@0 -0@1") == "inf@0"
     assert value("x", x="0@0 -0@1") == "0@0"
 
 

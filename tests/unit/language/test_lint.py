@@ -1,8 +1,11 @@
 """What is legal and seldom meant: every rule finds its example, and nothing in what is meant."""
 
+import copy
+
 import pytest
 from conformance.cases import FILES, read
 
+import rtamt
 from rtamt.language.lint import CODES, RULES, warnings_of
 from rtamt.language.specfile import parse_document
 
@@ -50,6 +53,13 @@ def test_what_is_found(text, expected):
 def test_ros_outputs_are_used():
     text = "from rtamt_msgs.msg import F  input F x  output F rob  rob.value = x.value + 1; require R: x.value > 1"
     assert found(text) == []
+
+
+def test_one_requirement_that_was_selected_has_the_warnings_of_the_text_and_none_about_the_others():
+    spec = rtamt.parse("require A: x > 1; require B: y > 2; low = x > 3")
+    assert [warning.code for warning in spec.warnings] == ["RT202"]
+    for selected in (spec.select("A"), spec.select("A").select("low"), copy.deepcopy(spec.select("B"))):
+        assert selected.warnings == spec.warnings
 
 
 def test_the_line_is_shown():

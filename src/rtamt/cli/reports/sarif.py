@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-from decimal import Decimal
 from pathlib import PurePath
 from typing import TYPE_CHECKING, Any
 from urllib.parse import quote
@@ -68,7 +67,7 @@ def _result(outcome: Outcome, number: int, requirements: Sequence[Requirement]) 
         "locations": [_location(outcome.trace)],
         "properties": {
             "robustness": json_number(outcome.robustness),
-            "firstViolation": float(when) if isinstance(when, Decimal) else when,
+            "firstViolation": when,
         },
     }
     if os.path.isfile(requirements[number].given):
