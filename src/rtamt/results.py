@@ -8,9 +8,10 @@ from functools import cached_property
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
-from rtamt.errors import UsageError, did_you_mean
+from rtamt.errors import EvaluationError, UsageError, did_you_mean
 from rtamt.language.formula import variables
 from rtamt.language.grammar import is_number
+from rtamt.signals.outcomes import BoundedSignal, Interval
 from rtamt.signals.trace import show_time
 from rtamt.verdicts import offline as verdicts
 from rtamt.verdicts.offline import Judged, judge
@@ -78,7 +79,39 @@ class Result:
         """ρ at the first instant: how far the recording is from violating (or satisfying)."""
         if isinstance(self.known, Mapping):
             return min(part.robustness for part in self.known.values())
+        if isinstance(self.signal, BoundedSignal):
+            return self.signal.value(0) + 0.0
         return float(self.signal.values[0]) + 0.0  # no minus before a zero
+
+    @property
+    def interval(self) -> Interval:
+        """Bounds of the robustness at the first instant: of every trace that agrees with the samples.
+
+        Of samples that are all known exactly both are the robustness.
+
+        >>> import rtamt
+        >>> spec = rtamt.parse("eventually[0:2](x >= 3)")
+        >>> spec.evaluate({"x": [1, None, 2]}, ranges={"x": (0, 10)}).interval
+        Interval(lower=-1.0, upper=7.0)
+        >>> spec.evaluate({"x": [1, 4, 2]}).interval
+        Interval(lower=1.0, upper=1.0)
+        """
+        if isinstance(self.signal, BoundedSignal):
+            return self.signal.at(0)
+        return Interval(self.robustness, self.robustness)
+
+    @property
+    def intervals(self) -> BoundedSignal:
+        """The bounds at every instant of :attr:`signal`: ``.times``, ``.lower`` and ``.upper``.
+
+        >>> import rtamt
+        >>> intervals = rtamt.parse("x >= 3").evaluate({"x": [1, 4]}, uncertainty={"x": 0.5}).intervals
+        >>> intervals.lower, intervals.upper
+        (array([-2.5,  0.5]), array([-1.5,  1.5]))
+        """
+        if isinstance(self.signal, BoundedSignal):
+            return self.signal
+        return BoundedSignal(self.signal.times, self.signal.values, self.signal.values)
 
     @cached_property
     def satisfied(self) -> bool:
@@ -90,7 +123,22 @@ class Result:
         >>> [rtamt.parse(text).evaluate({"x": [3]}).satisfied for text in ("x >= 3", "x > 3")]
         [True, False]
         """
+        if self.trace.bounds:
+            return self._decided
         return self._first_violation is None
+
+    @property
+    def _decided(self) -> bool:
+        """The verdict at the first instant of samples that are known in part, if these decide it."""
+        spec = self.specification
+        truth = spec.signal_of(spec.outputs().truth, self.trace)
+        assert isinstance(truth, BoundedSignal)
+        if truth.lower[0] > 0 or truth.upper[0] < 0:
+            return bool(truth.lower[0] > 0)
+        raise EvaluationError(
+            "the samples do not decide whether the formula holds, because some are missing or uncertain; "
+            "read result.interval"
+        )
 
     @cached_property
     def _first_violation(self) -> Any:
@@ -206,7 +254,12 @@ class Result:
         return self.specification.signal_of(formula, self.trace)
 
     def _require_one_start(self, what: str) -> None:
-        """Raise :class:`UsageError` where requirements have traces that start at different times."""
+        """Raise :class:`UsageError` where requirements have traces that start at different times, or bounds alone."""
+        if self.trace.bounds:
+            raise UsageError(
+                f"cannot {what} a result of missing or uncertain samples; read result.interval, or evaluate samples "
+                f"that are known exactly"
+            )
         if isinstance(self.known, Mapping):
             starts = {name: part.signal.times[0] for name, part in self.known.items()}
             first = min(starts, key=lambda name: starts[name])

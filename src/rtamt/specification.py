@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, Literal, overload
 from rtamt.engine.domains import engine_of
 from rtamt.engine.offline import Evaluators, Query
 from rtamt.engine.online import Watched
+from rtamt.errors import TraceError, UsageError
 from rtamt.language.formula import Formula, variables
 from rtamt.language.grammar import is_number
 from rtamt.language.lint import LintWarning, warnings_of
@@ -26,6 +27,7 @@ from rtamt.rewrite.semantics import apply_semantics, semantics_of
 from rtamt.settings import names_of
 from rtamt.signals.discrete import DISCRETE
 from rtamt.signals.domains import Defaults, time_domain
+from rtamt.signals.inexact import Uncertainty, fill_gaps
 from rtamt.signals.ticks import NANOSECOND
 from rtamt.verdicts.offline import by_start, judge, judge_apart
 from rtamt.verdicts.outputs import Outputs, outputs_of
@@ -169,6 +171,8 @@ class Specification:
         resolution: Duration | None = None,
         semantics: Semantics | None = None,
         time_unit: str | None = None,
+        uncertainty: Mapping[str, float] | None = None,
+        ranges: Mapping[str, tuple[float, float]] | None = None,
     ) -> Result:
         """Compute the robustness of a finished recording at every sample.
 
@@ -187,6 +191,12 @@ class Specification:
 
         ``semantics``: as for :func:`parse`, by default that of the specification.
 
+        A sample may be missing: ``None``, a null of Arrow or polars, ``pandas.NA`` or a masked value (NaN is an
+        error). Then, and with ``uncertainty``, the result has bounds: ``result.interval`` at the first instant,
+        ``result.intervals`` at each. Where both are equal, the robustness is that number. ``uncertainty``: for some
+        variables how far a sample may be off the value, in either direction. ``ranges``: for some
+        variables the lowest and the highest possible value, which bound missing samples.
+
         Raises :class:`TraceError` where the data is wrong, :class:`BoundError` where an interval is
         no multiple of the period, :class:`EvaluationError` where an operation has no value.
 
@@ -194,17 +204,41 @@ class Specification:
         >>> result = rtamt.parse("always(x >= 3)").evaluate({"time": [0, 1, 2], "x": [5, 4, 6]})
         >>> result.robustness, result.satisfied, result.signal.values
         (1.0, True, array([1., 1., 3.]))
+        >>> spec = rtamt.parse("always(x >= 3)")
+        >>> spec.evaluate({"x": [5, None, 4]}, uncertainty={"x": 0.5}, ranges={"x": (0, 120)}).interval
+        Interval(lower=-3.0, upper=1.5)
         """
         query = self.query(time, period, tolerance, resolution, semantics, time_unit)
-        recording = query.record(data, self.input_names, self.declared)
+        recording = self._recorded(query, data, uncertainty, ranges)
         self._check(query, recording)
         if recording.domain.continuous and len(self.requirements) > 1:
             outputs = [one.outputs(query.semantics) for one in self.requirements.values()]
             if len(by_start(outputs, recording)) > 1:
+                if recording.bounds:
+                    raise UsageError(
+                        "the requirements start at different times, and samples are missing or uncertain; "
+                        "evaluate each of spec.requirements alone"
+                    )
                 signal, judged = judge_apart(outputs, recording, self.signals_of)
                 parts = requirements_of(self, judged, query.semantics)
                 return Result(self, recording, signal, query.semantics, parts)
         return Result(self, recording, self.signal_of(query.formula, recording), query.semantics)
+
+    def _recorded(self, query: Query, data: Any, uncertainty: Any, ranges: Any) -> DomainTrace:
+        """Return a recording that may have missing and uncertain samples."""
+        declared = Uncertainty.of(uncertainty, ranges, self.input_names)
+        missing: dict[str, Any] = {}
+        try:
+            recording = query.record(data, self.input_names, self.declared)
+        except TraceError as error:
+            if error.variable not in self.input_names:
+                raise
+            own_clocks = query.domain.continuous
+            filled, missing = fill_gaps(data, self.input_names, self.declared, own_clocks=own_clocks)
+            if not missing:
+                raise
+            recording = query.record(filled, self.input_names, self.declared)
+        return declared.applied(recording, missing)
 
     def judge(self, data: Any) -> Mapping[str, Result]:
         """Evaluate each requirement over a finished recording: robustness and verdicts of all from one program.

@@ -32,7 +32,6 @@ OFFLINE = [
         "'x' is NaN at sample 2, time 2 s: fill the gap or leave the sample out",
     ),
     ({"x": [1, "abc", 3], "y": [1, 2, 3]}, "'x' is 'abc' at sample 1, expected a number"),
-    ({"x": [1, None, 3], "y": [1, 2, 3]}, "'x' is None at sample 1, expected a number"),
     ({"x": ["1", "2"], "y": [1, 2]}, "'x' is '1' at sample 0, expected a number"),
     ({"x": 5, "y": [1]}, "'x' is 5, expected a sequence of numbers"),
     ({"x": [[1, 2], [3, 4]], "y": [1, 2]}, "'x' has 2 dimensions, expected 1: give one number a sample"),

@@ -8,6 +8,7 @@ backend               the interface of a back end
 offline               evaluate queries on a recording; cache compiled plans
 evaluate              offline evaluation in discrete time
 dense_evaluate        offline evaluation in dense time
+bounded               offline bounds of recordings with missing or uncertain samples
 online                watched formulas and copies, shared by the monitors
 monitor               the discrete-time monitor
 dense_monitor         the dense-time monitor

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from types import MappingProxyType
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from rtamt.engine import dense_evaluate, evaluate
+from rtamt.engine import bounded, dense_evaluate, evaluate
 from rtamt.engine.dense_monitor import DenseMonitor
 from rtamt.engine.monitor import Monitor
 from rtamt.signals.dense import Dense
@@ -17,7 +17,9 @@ if TYPE_CHECKING:
 
     from rtamt.engine.backend import Backend
     from rtamt.engine.online import OnlineMonitor
+    from rtamt.language.formula import Formula
     from rtamt.signals.domain import TimeDomain
+    from rtamt.signals.outcomes import BoundedSignal
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,17 +27,19 @@ class Engine:
     """What evaluates and monitors formulas in one time domain.
 
     ``backends``: by name, see :data:`rtamt.engine.backend.BACKENDS`. ``monitor``: takes a formula and the time
-    domain; for its settings see :class:`Monitor`.
+    domain; for its settings see :class:`Monitor`. ``bounds``: takes a formula and a recording that is known in
+    part, and returns bounds of the robustness.
     """
 
     backends: Mapping[str, Backend]
     monitor: Callable[..., OnlineMonitor]
+    bounds: Callable[[Formula, Any], BoundedSignal]
 
 
 _ENGINES: Mapping[type[TimeDomain], Engine] = MappingProxyType(
     {
-        Discrete: Engine(evaluate.BACKENDS, Monitor),
-        Dense: Engine(dense_evaluate.BACKENDS, DenseMonitor),
+        Discrete: Engine(evaluate.BACKENDS, Monitor, bounded.discrete),
+        Dense: Engine(dense_evaluate.BACKENDS, DenseMonitor, bounded.dense),
     }
 )
 

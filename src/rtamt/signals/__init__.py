@@ -8,6 +8,7 @@ domains       the list of time domains
 discrete      discrete time and its traces: one value of every variable per sample
 dense         dense time and its traces: timestamps per signal, counted in ticks
 signal        ``Signal``: the result of evaluations and monitors
+inexact       missing samples, measurement errors, declared ranges
 outcomes      bounds and verdicts that are known before the whole trace is
 trace         ``Trace``: named signals, each with its own time base; resampling
 arrays        data (lists, arrays, frames, objects) to float64 arrays

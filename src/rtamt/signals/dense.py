@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from rtamt.language.formula import Formula
     from rtamt.language.units import Duration
     from rtamt.signals.dense_arrays import Samples
+    from rtamt.signals.domain import Bounds
     from rtamt.signals.ticks import TickArray
 
 
@@ -94,6 +95,8 @@ class DenseTrace(DomainTrace):
     scale: TimeScale
     #: The units of the variables whose source tells them.
     units: Mapping[str, str] = field(default_factory=dict)
+    #: Lower and upper bounds of the samples of each variable; empty where all are known exactly.
+    bounds: Mapping[str, Bounds] = field(default_factory=dict)
 
     @property
     def start(self) -> int:
@@ -132,6 +135,10 @@ class DenseTrace(DomainTrace):
     def select(self, names: Iterable[str]) -> DenseTrace:
         """See :class:`DomainTrace`."""
         return replace(self, columns={name: self.columns[name] for name in names})
+
+    def bounded(self, bounds: Mapping[str, Bounds]) -> DenseTrace:
+        """See :class:`DomainTrace`."""
+        return replace(self, bounds=bounds)
 
     def started(self, names: Collection[str]) -> DenseTrace:
         """See :class:`DomainTrace`."""

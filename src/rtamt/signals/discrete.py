@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from rtamt.language.formula import Formula
     from rtamt.language.units import Duration
     from rtamt.signals.arrays import FloatArray
+    from rtamt.signals.domain import Bounds
 
 
 @dataclass(frozen=True, init=False)
@@ -105,6 +106,8 @@ class DiscreteTrace(DomainTrace):
     unit: str | None = None
     #: The units of the variables whose source tells them.
     units: Mapping[str, str] = dataclasses.field(default_factory=dict)
+    #: Lower and upper bounds of the samples of each variable; empty where all are known exactly.
+    bounds: Mapping[str, Bounds] = dataclasses.field(default_factory=dict)
 
     def __len__(self) -> int:
         return len(self.times)
@@ -155,6 +158,10 @@ class DiscreteTrace(DomainTrace):
     def select(self, names: Iterable[str]) -> DiscreteTrace:
         """See :class:`DomainTrace`."""
         return dataclasses.replace(self, columns={name: self.columns[name] for name in names})
+
+    def bounded(self, bounds: Mapping[str, Bounds]) -> DiscreteTrace:
+        """See :class:`DomainTrace`."""
+        return dataclasses.replace(self, bounds=bounds)
 
     def started(self, names: Collection[str]) -> DiscreteTrace:  # noqa: ARG002
         """See :class:`DomainTrace`: all variables start with the first sample."""

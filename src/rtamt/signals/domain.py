@@ -22,6 +22,8 @@ if TYPE_CHECKING:
     from rtamt.signals.arrays import FloatArray
     from rtamt.signals.signal import Signal
 
+    Bounds = tuple[FloatArray, FloatArray]
+
 
 class TimeDomain(ABC):
     """How time passes: in which steps bounds are counted, and how data becomes a trace.
@@ -100,6 +102,8 @@ class DomainTrace(ABC):
     columns: Mapping[str, Any]
     #: The units of the variables whose source gives them.
     units: Mapping[str, str]
+    #: By variable: lower and upper bounds of its samples; empty where all are known exactly.
+    bounds: Mapping[str, Bounds]
 
     @property
     @abstractmethod
@@ -148,6 +152,10 @@ class DomainTrace(ABC):
     @abstractmethod
     def select(self, names: Iterable[str]) -> Self:
         """Return the recording of these variables alone."""
+
+    @abstractmethod
+    def bounded(self, bounds: Mapping[str, Bounds]) -> Self:
+        """Return the recording with bounds of the samples of each variable."""
 
     @abstractmethod
     def started(self, names: Collection[str]) -> Self:

@@ -3,7 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rtamt.errors import EvaluationError
+from rtamt.signals.signal import Signal
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from rtamt.signals.arrays import FloatArray
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,3 +61,55 @@ class VerdictRun:
     end: Any
     satisfied: bool
     decided_at: Any
+
+
+class BoundedSignal(Signal):
+    """A signal that is known up to bounds: ``times``, ``lower`` and ``upper``, arrays of the same length.
+
+    ``values`` are those of a signal that is known exactly; they raise :class:`EvaluationError` where it is not.
+    """
+
+    __slots__ = ("_upper",)
+
+    def __init__(self, times: NDArray[Any], lower: FloatArray, upper: FloatArray) -> None:
+        super().__init__(times, lower)
+        self._upper = upper
+
+    @property
+    def lower(self) -> FloatArray:
+        """The greatest lower bound that is known, for each time."""
+        return self._values
+
+    @property
+    def upper(self) -> FloatArray:
+        """The least upper bound that is known, for each time."""
+        return self._upper
+
+    def at(self, i: int) -> Interval:
+        """Return the bounds at one of the times."""
+        return Interval(float(self.lower[i]) + 0.0, float(self.upper[i]) + 0.0)  # no minus before a zero
+
+    def value(self, i: int) -> float:
+        """Return the value at one of the times; raise :class:`EvaluationError` where it is not known."""
+        lower, upper = float(self.lower[i]), float(self.upper[i])
+        if lower != upper:
+            raise EvaluationError(
+                f"the robustness at {_shown(self.times[i])} is only known to lie between {lower:g} and {upper:g}, "
+                f"because samples are missing or uncertain; read result.interval or result.intervals"
+            )
+        return lower
+
+    @property
+    def values(self) -> FloatArray:
+        """One value for each time, where all are known; else an error that names the first that is not."""
+        open_ = self.lower != self.upper
+        if open_.any():
+            self.value(int(open_.argmax()))
+        return self.lower
+
+    def __repr__(self) -> str:
+        return f"BoundedSignal(times={self.times!r}, lower={self.lower!r}, upper={self.upper!r})"
+
+
+def _shown(time: Any) -> str:
+    return str(time) if isinstance(time, np.datetime64 | np.timedelta64) else f"time {time:.15g}"

@@ -1,0 +1,165 @@
+"""Recordings that are known in part: missing samples, measurement errors, declared ranges.
+
+``None``, a null of Arrow or polars, ``pandas.NA`` and a masked value are missing samples; NaN is an error. A missing
+sample may have any value in the range of its variable, one with an uncertainty ε any value from v - ε to v + ε.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from math import inf, isnan
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rtamt.errors import TraceError, UsageError, did_you_mean, shown
+from rtamt.signals import dense_arrays
+from rtamt.signals.arrays import TIME, Clocked, is_mapping, number_of
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Sequence
+
+    from numpy.typing import NDArray
+
+    from rtamt.signals.arrays import FloatArray
+    from rtamt.signals.domain import DomainTrace
+
+    Mask = NDArray[np.bool_]
+
+
+@dataclass(frozen=True, slots=True)
+class Uncertainty:
+    """How far samples may be off, and the ranges of variables: what the caller declares of them."""
+
+    errors: Mapping[str, float] = field(default_factory=dict)
+    ranges: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+
+    @classmethod
+    def of(cls, uncertainty: Any, ranges: Any, names: Sequence[str]) -> Uncertainty:
+        """Return what was declared, checked; ``names`` are the variables that the formula reads.
+
+        >>> Uncertainty.of({"x": 0.5}, {"x": (0, 120)}, ["x", "y"])
+        Uncertainty(errors={'x': 0.5}, ranges={'x': (0.0, 120.0)})
+        """
+        errors = {}
+        for name, value in _items(uncertainty, "uncertainty", "{'x': 0.1}", names):
+            number = number_of(value)
+            if number is None or not number >= 0:
+                raise UsageError(
+                    f"the uncertainty of '{name}' is {shown(value)}; give a number that is not negative"
+                )
+            errors[name] = number
+        limits = {}
+        for name, value in _items(ranges, "ranges", "{'x': (0, 120)}", names):
+            limits[name] = range_of(name, value)
+        return cls(errors, limits)
+
+    def applied(self, recording: DomainTrace, missing: Mapping[str, Mask]) -> DomainTrace:
+        """Return the recording with bounds of its samples, itself where all of them are known exactly.
+
+        Raises :class:`TraceError` at a sample that cannot lie in its declared range.
+        """
+        bounds = {}
+        for name in recording.columns:
+            values = _values(recording, name)
+            low, high = self.ranges.get(name, (-inf, inf))
+            error = self.errors.get(name, 0.0)
+            gaps = missing.get(name, np.zeros(len(values), bool))
+            lower, upper = values - error, values + error
+            outside = ~gaps & ((upper < low) | (lower > high))
+            if outside.any():
+                i = int(outside.argmax())
+                raise TraceError(
+                    f"'{name}' is {values[i]:.15g} at sample {i}, outside its declared range [{low:g}, {high:g}]; "
+                    f"mend the range or the sample",
+                    variable=name,
+                    index=i,
+                )
+            lower, upper = (
+                np.where(gaps, low, np.maximum(lower, low)),
+                np.where(gaps, high, np.minimum(upper, high)),
+            )
+            bounds[name] = lower, upper
+        if not missing and not any(self.errors.get(name) for name in recording.columns):
+            return recording
+        return recording.bounded(bounds)
+
+
+def range_of(name: str, value: Any) -> tuple[float, float]:
+    """Return a declared range as two numbers; raise :class:`UsageError` where it is none."""
+    ends = [number_of(end) for end in value] if isinstance(value, tuple | list) else []
+    if len(ends) != 2 or None in ends or any(isnan(end) for end in ends if end is not None):
+        raise UsageError(f"the range of '{name}' is {shown(value)}; give (lowest, highest), such as (0, 120)")
+    low, high = (float(end) for end in ends if end is not None)
+    if low > high:
+        raise UsageError(
+            f"the range of '{name}' is reversed: {low:g} is greater than {high:g}; give (lowest, highest)"
+        )
+    return low, high
+
+
+def fill_gaps(
+    data: Any, names: Sequence[str], declared: Collection[str], *, own_clocks: bool
+) -> tuple[Any, dict[str, Mask]]:
+    """Return the data with zeros in the place of missing samples, and where they are, of those that miss some."""
+    if isinstance(data, Clocked):
+        return data, {}  # readers decide about gaps
+    missing: dict[str, Mask] = {}
+    if own_clocks:
+        filled: dict[str, Any] = {}
+        for name, (times, values) in dense_arrays.columns_of(data, names, declared).items():
+            filled[name] = times, _filled(values, name, missing)
+        return filled, missing
+    keys = list(data) if is_mapping(data) else list(data.columns)
+    kept = [key for key in keys if key == TIME or key in names or is_mapping(data)]
+    return {key: _filled(data[key], key, missing) if key in names else data[key] for key in kept}, missing
+
+
+def _items(given: Any, what: str, example: str, names: Sequence[str]) -> list[tuple[str, Any]]:
+    if given is None:
+        return []
+    if not isinstance(given, Mapping):
+        raise UsageError(f"{what}={shown(given)} is no mapping from variables; give for example {example}")
+    for name in given:
+        if name not in names:
+            reads = ", ".join(names) or "no variable"
+            raise UsageError(
+                f"{what}= has '{name}', and the formula reads {reads}{did_you_mean(str(name), names)}"
+            )
+    return list(given.items())
+
+
+def _values(recording: DomainTrace, name: str) -> FloatArray:
+    column: Any = recording.columns[name]
+    values: FloatArray = column[1] if recording.domain.continuous else column
+    return values
+
+
+def _filled(values: Any, name: str, missing: dict[str, Mask]) -> Any:
+    """Return values with zeros in the gaps, which are put into ``missing``."""
+    mask = _gaps(values)
+    if mask is None or not mask.any():
+        return values
+    missing[name] = mask
+    return [0.0 if gap else value for value, gap in zip(_items_of(values), mask, strict=True)]
+
+
+def _gaps(values: Any) -> Mask | None:
+    """Return where samples are missing; None for containers that cannot have gaps."""
+    if isinstance(values, np.ma.MaskedArray):
+        return np.ma.getmaskarray(values)
+    if hasattr(values, "null_count") and hasattr(values, "is_null"):  # Arrow, polars
+        return np.asarray(values.is_null(), bool)
+    kind = getattr(values, "dtype", None)
+    if kind is not None and not isinstance(kind, np.dtype):  # a type of pandas' own
+        return np.asarray(values.isna(), bool)
+    if isinstance(values, list | tuple) or kind == np.dtype(object):
+        return np.array([value is None or type(value).__name__ == "NAType" for value in values], bool)
+    return None
+
+
+def _items_of(values: Any) -> list[Any]:
+    if isinstance(values, np.ma.MaskedArray):
+        return list(values.filled(0))
+    return list(values.to_pylist() if hasattr(values, "to_pylist") else values)
