@@ -355,6 +355,7 @@ class Specification:
             watch=watched,
             factory=factory,
             unit=time_unit,
+            requirements=[self._watched(name, semantics).formula for name in self.requirements],
         )
 
     def compile(

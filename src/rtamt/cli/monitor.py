@@ -61,7 +61,8 @@ the variables, a cell of CSV may be empty, and a line of output is printed for e
 last known instant.
 
 output: {"time": 0.0, "robustness": 3.0}; of several requirements also the robustness of each, by name:
-{"time": 0.0, "robustness": 3.0, "requirements": {"R1": 3.0, "R2": 4.5}}. The time is seconds, or a
+{"time": 0.0, "robustness": 3.0, "requirements": {"R1": 3.0, "R2": 4.5}}, in dense time of those that have
+started, each when all variables that it reads have. The time is seconds, or a
 date where the input has dates. JSON has no infinities: they are the strings "inf" and "-inf", here
 and in the input. With --semantics boolean a line has the verdict too: {"time": 0.0, "robustness": "inf",
 "satisfied": true}.
@@ -286,7 +287,8 @@ class EventFeed:
             self._latest.update((name, value) for at, name, value in due if at == time)
             if time in overall or self._latest != before:
                 self._robustness = overall.get(time, self._robustness)
-                self._output.point(time, self._robustness, {name: self._latest[name] for name in self._names})
+                started = {name: self._latest[name] for name in self._names if name in self._latest}
+                self._output.point(time, self._robustness, started)
 
 
 COMMAND = Command("monitor", "watch a stream: samples on stdin, robustness on stdout", configure, run)

@@ -12,6 +12,7 @@ bounded               offline bounds of recordings with missing or uncertain sam
 online                watched formulas and copies, shared by the monitors
 monitor               the discrete-time monitor
 dense_monitor         the dense-time monitor
+dense_groups          several requirements in dense time, each with the trace of its own variables
 gate                  reject concurrent and reentrant use of a monitor
 native                load the compiled core
 python_backend        the reference implementation behind the interface of the core, discrete time

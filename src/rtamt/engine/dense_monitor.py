@@ -8,12 +8,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rtamt.compiler.plan import compile_program
-from rtamt.engine.dense_python_backend import PythonDenseMonitor
+from rtamt.engine.dense_groups import DenseGroups, UndefinedInPartError, opened, own_variables, parts_of
 from rtamt.engine.gate import alone, in_use
-from rtamt.engine.native import compiled, core, culprit, not_made
+from rtamt.engine.native import compiled, core, culprit
 from rtamt.engine.online import OnlineMonitor, Watched, depth_of
 from rtamt.engine.python_backend import Refused
-from rtamt.engine.user_operators import EventDriver, calls_of
 from rtamt.errors import TraceError, UsageError
 from rtamt.language.undefined_value import undefined
 from rtamt.language.units import check_unit
@@ -28,6 +27,8 @@ from rtamt.signals.ticks import TimeScale
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Mapping, Sequence
 
+    from rtamt.compiler.program import Program
+    from rtamt.engine.dense_groups import Part
     from rtamt.errors import EvaluationError
     from rtamt.language.formula import Formula
     from rtamt.signals.dense_arrays import Samples
@@ -66,7 +67,9 @@ class DenseMonitor(OnlineMonitor):
         scale: TimeScale | None = None,
         unit: str | None = None,
         parts: bool = False,
+        requirements: Sequence[Formula] = (),
     ) -> None:
+        # ``requirements``: what the formula is the conjunction of, each with a trace of its own.
         for watched in (Watched("", formula, text), *watch):
             domain.check(watched.formula, watched.text)
             check_online(watched.formula, watched.text)
@@ -78,7 +81,14 @@ class DenseMonitor(OnlineMonitor):
         self._unit = None if unit is None else check_unit(unit)
         self._scale: TimeScale | None = None
         self._program = None
-        if backend != "python":
+        self._parts: Sequence[Part] = ()
+        if len({frozenset(own_variables(each, self.input_names)) for each in requirements}) > 1:
+            watched_formulas = self._formulas[1:]
+            self._requirements = len(requirements)
+            self._parts, self._places = parts_of(
+                requirements, watched_formulas, self.input_names, self._tick, backend
+            )
+        elif backend != "python":
             outputs = [desugar(formula) for formula in self._formulas]
             program = compile_program(outputs, self._tick, self.input_names, domain=Dense)
             every = range(len(program.instructions)) if parts else ()
@@ -86,23 +96,19 @@ class DenseMonitor(OnlineMonitor):
         self._connect(self._open())
 
     def _open(self) -> Any:
-        if self._program is None:
-            return PythonDenseMonitor(self._formulas, self.input_names, self._tick)
-        try:
-            return core().DenseMonitor(
-                self._program.code(),
-                list(self.input_names),
-                self._unread,
-                calls=calls_of(self._program, EventDriver),
-            )
-        except RuntimeError as error:
-            raise not_made(self._program, error) from None
+        if self._parts:
+            return DenseGroups(self._parts, self._places, self._requirements, self.input_names, self._tick)
+        return opened(self._formulas, self.input_names, self._program, self._tick, self._unread)
+
+    @property
+    def _programs(self) -> Sequence[Program]:
+        return tuple(part.program for part in self._parts if part.program) or super()._programs
 
     def _connect(self, backend: Any) -> None:
         self._backend = backend
         self._update = backend.update
         self._refused: Any = Refused if self._program is None else core().Refused
-        self._undefined: Any = () if self._program is None else core().Undefined
+        self._undefined: Any = UndefinedInPartError if self._program is None else core().Undefined
         if self._scale is not None:
             self._tell(self._scale)
 
@@ -259,9 +265,13 @@ class DenseMonitor(OnlineMonitor):
             raise self._no_value(error, scale) from None
 
     def _no_value(self, error: Exception, scale: TimeScale | None) -> EvaluationError:
-        assert self._program is not None
         assert scale is not None
-        formula = culprit(error, self._program, self._formulas)
+        if isinstance(error, UndefinedInPartError):
+            program, formulas, error = error.part.program, error.part.formulas, error.error
+        else:
+            program, formulas = self._program, self._formulas
+        assert program is not None
+        formula = culprit(error, program, formulas)
         return undefined(formula, f"time {scale.show(error.args[1])}")
 
     def _signal(self, known: Samples) -> Signal:

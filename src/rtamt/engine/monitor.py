@@ -76,6 +76,7 @@ class Monitor(OnlineMonitor):
         watch: Sequence[Watched] = (),
         factory: Callable[[], OnlineMonitor] | None = None,
         unit: str | None = None,
+        requirements: Sequence[Formula] = (),  # noqa: ARG002 - in discrete time they start together
     ) -> None:
         domain = domain.online
         period = domain.period

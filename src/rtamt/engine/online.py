@@ -125,8 +125,9 @@ class OnlineMonitor(ABC):
 
     @alone
     def _state(self) -> tuple[Any, ...]:
-        if self._program is not None and self._program.calls:
-            name = self._program.calls[0].op.name
+        calls = [site for program in self._programs for site in program.calls]
+        if calls:
+            name = calls[0].op.name
             raise UsageError(
                 f"a monitor of '{name}' can be neither copied nor pickled: only the operator's own code knows what "
                 f"it remembers; use backend='python'"
@@ -147,8 +148,13 @@ class OnlineMonitor(ABC):
         self._connect(backend)
 
     def _fingerprint(self) -> bytes:
-        """The checksum at the end of the program."""
-        return b"" if self._program is None else self._program.code()[-4:]
+        """The checksums at the ends of the programs."""
+        return b"".join(program.code()[-4:] for program in self._programs)
+
+    @property
+    def _programs(self) -> Sequence[Program]:
+        """What the back end runs; nothing for that of Python."""
+        return () if self._program is None else (self._program,)
 
 
 def depth_of(formula: Formula, period: Fraction = Fraction(1)) -> Fraction:

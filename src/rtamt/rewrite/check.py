@@ -7,8 +7,8 @@ from decimal import Decimal
 from fractions import Fraction
 
 from rtamt.errors import BoundError, SpecificationError
-from rtamt.language.formula import Apply, Formula, children, postorder
-from rtamt.language.operators import Bounds, Tense
+from rtamt.language.formula import Apply, Const, Formula, children, postorder
+from rtamt.language.operators import STL, Bounds, Pointwise, Tense
 from rtamt.language.units import format_duration
 from rtamt.rewrite.desugar import spelled_out
 
@@ -148,3 +148,17 @@ def reads_unbounded_future(node: Apply) -> bool:
 def has_future(formula: Formula) -> bool:
     """Tell whether any operator of the formula reads the future."""
     return any(isinstance(n, Apply) and n.op.tense is Tense.FUTURE for n in postorder(spelled_out(formula)))
+
+
+def always_has_a_value(formula: Formula) -> bool:
+    """Tell whether every trace has a value for the formula: no operation in it can make NaN, or fail."""
+    for node in postorder(formula):
+        if not isinstance(node, Apply):
+            continue
+        partial = isinstance(node.op.kernel, Pointwise) and node.op.kernel.partial
+        if partial or STL.get(node.op.name) is not node.op:
+            return False
+        # A predicate is a difference, and inf - inf is no number.
+        if node.op.truth is not None and not any(isinstance(arg, Const) for arg in node.args):
+            return False
+    return True

@@ -10,9 +10,8 @@ from rtamt.engine.dense_monitor import DenseMonitor
 from rtamt.engine.monitor import Monitor
 from rtamt.engine.online import Watched
 from rtamt.errors import SpecificationError
-from rtamt.language.formula import Apply, Const, postorder, variables
-from rtamt.language.operators import STL
-from rtamt.language.records import Pointwise
+from rtamt.language.formula import variables
+from rtamt.rewrite.check import always_has_a_value
 from rtamt.rewrite.horizon import horizon
 from rtamt.signals.dense import Dense
 from rtamt.signals.discrete import Discrete
@@ -21,7 +20,6 @@ from rtamt.signals.ticks import NANOSECOND
 if TYPE_CHECKING:
     from collections.abc import Container, Mapping, Sequence
 
-    from rtamt.language.formula import Formula
     from rtamt.ros.binding import Output
 
 
@@ -118,22 +116,9 @@ def group_outputs(outputs: Sequence[Output]) -> list[list[Output]]:
     groups: dict[object, list[Output]] = {}
     for output in outputs:
         formula = output.specification.formula
-        key = frozenset(variables(formula)) if _always_has_a_value(formula) else output.name
+        key = frozenset(variables(formula)) if always_has_a_value(formula) else output.name
         groups.setdefault(key, []).append(output)
     return list(groups.values())
-
-
-def _always_has_a_value(formula: Formula) -> bool:
-    for node in postorder(formula):
-        if not isinstance(node, Apply):
-            continue
-        partial = isinstance(node.op.kernel, Pointwise) and node.op.kernel.partial
-        if partial or STL.get(node.op.name) is not node.op:
-            return False
-        # A predicate is a difference, and inf - inf is no number.
-        if node.op.truth is not None and not any(isinstance(arg, Const) for arg in node.args):
-            return False
-    return True
 
 
 def _watched(output: Output, period: Fraction | None) -> tuple[Watched, Watched]:

@@ -171,3 +171,32 @@ def not_increasing(name: str, index: int, time: int, before: int, scale: TimeSca
         variable=name,
         index=index,
     )
+
+
+def minimum(signals: Sequence[Samples], before: Sequence[float]) -> Samples:
+    """Return the minimum of step functions at each of their ticks; ``before``: what each is before its first tick.
+
+    >>> minimum([(np.array([0, 4]), np.array([2.0, 5.0])), (np.array([3]), np.array([1.0]))], [np.inf, np.inf])
+    (array([0, 3, 4]), array([2., 1., 1.]))
+    """
+    ticks = np.unique(np.concatenate([own for own, _ in signals]))
+    values = np.full(len(ticks), np.inf)
+    for (own, of), first in zip(signals, before, strict=True):
+        places = own.searchsorted(ticks, "right")
+        np.minimum(values, np.concatenate(((first,), of))[places], out=values)
+    return ticks, values
+
+
+def changes(ticks: TickArray, values: FloatArray, before: float = np.nan) -> Samples:
+    """Return the points of a step function at which its value changes, and the last one.
+
+    ``before``: the value before the first point.
+
+    >>> changes(np.array([0, 3, 4]), np.array([2.0, 2.0, 2.0]))
+    (array([0, 4]), array([2., 2.]))
+    """
+    if not len(ticks):
+        return ticks, values
+    kept = values != np.concatenate(((before,), values[:-1]))
+    kept[-1] = True
+    return ticks[kept], values[kept]

@@ -7,12 +7,13 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from rtamt.engine.dense_evaluate import reach
+from rtamt.engine.dense_groups import own_variables
 from rtamt.errors import EvaluationError
 from rtamt.rewrite.desugar import desugar
 from rtamt.rewrite.semantics import no_verdict
+from rtamt.signals.dense_arrays import changes, minimum
 from rtamt.signals.signal import Signal
 from rtamt.verdicts.decompose import anchor
-from rtamt.verdicts.outputs import own_variables
 from rtamt.verdicts.trackers import Trackers
 
 if TYPE_CHECKING:
@@ -20,7 +21,6 @@ if TYPE_CHECKING:
     from fractions import Fraction
 
     from rtamt.language.formula import Formula
-    from rtamt.signals.dense_arrays import Samples
     from rtamt.signals.domain import DomainTrace
     from rtamt.verdicts.decompose import Leaf
     from rtamt.verdicts.outputs import Evaluate, Outputs
@@ -67,7 +67,8 @@ def judge_apart(
     """
     # In steps, since instants that differ by a tick may be equal as the caller tells time.
     found = judge(outputs, trace.in_steps(), evaluate)
-    ticks, values = minimum([(each.signal.times, each.signal.values) for each in found])
+    every = [(each.signal.times, each.signal.values) for each in found]
+    ticks, values = changes(*minimum(every, [np.inf] * len(every)))
     judged = [
         Judged(
             trace_of([output.truth], trace),
@@ -107,22 +108,6 @@ def by_start(outputs: Sequence[Outputs], trace: DomainTrace) -> list[list[int]]:
     for i, each in enumerate(outputs):
         groups.setdefault(trace_of([each.truth], trace).start, []).append(i)
     return list(groups.values())
-
-
-def minimum(signals: Sequence[Samples]) -> Samples:
-    """Return the minimum, at each instant, of those step functions that have started; all of them end together.
-
-    Ticks and values: a point for every change, and one at the end.
-    """
-    ticks = np.unique(np.concatenate([own for own, _ in signals]))
-    values = np.full(len(ticks), np.inf)
-    for own, of in signals:
-        first = int(ticks.searchsorted(own[0]))
-        places = own.searchsorted(ticks[first:], "right") - 1
-        np.minimum(values[first:], of[places], out=values[first:])
-    kept = np.ones(len(ticks), bool)
-    kept[1:-1] = values[1:-1] != values[:-2]
-    return ticks[kept], values[kept]
 
 
 # ---- outputs ---------------------------------------------------------------------------------------

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
-from rtamt.language.formula import Const, Formula, Var, variables
+from rtamt.language.formula import Const, Formula, Var
 from rtamt.language.operators import STL
 from rtamt.rewrite.semantics import boolean
 from rtamt.signals.domain import DomainTrace
@@ -37,11 +37,6 @@ def outputs_of(formula: Formula, applied: Formula | None = None) -> Outputs:
     x >= 3, x >= 3
     """
     return Outputs(formula if applied is None else applied, boolean(formula))
-
-
-def own_variables(formula: Formula, every: Sequence[str]) -> tuple[str, ...]:
-    """Return the variables whose samples make the trace of a formula; a constant has that of ``every`` variable."""
-    return variables(formula) or tuple(every)
 
 
 def align_inputs(formula: Formula, names: Sequence[str]) -> Formula:

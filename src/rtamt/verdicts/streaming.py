@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from rtamt.engine.dense_groups import own_variables
 from rtamt.engine.dense_monitor import DenseMonitor
 from rtamt.engine.monitor import Monitor
 from rtamt.engine.online import Watched
@@ -29,7 +30,7 @@ from rtamt.signals.signal import Signal
 from rtamt.signals.ticks import TimeScale
 from rtamt.verdicts.decompose import Leaf, anchor, check_in_chunks
 from rtamt.verdicts.offline import end_of
-from rtamt.verdicts.outputs import align_inputs, own_variables
+from rtamt.verdicts.outputs import align_inputs
 from rtamt.verdicts.trackers import Tracker, Trackers
 
 if TYPE_CHECKING:

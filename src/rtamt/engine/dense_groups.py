@@ -1,0 +1,306 @@
+"""Several requirements online in dense time: a back end in which each trace starts with its own variables.
+
+Requirements that read the same variables are a part: one program, with a trace that starts when all of its
+variables have started. The first output of the back end is the minimum of all requirements: it starts with the
+first of them, and at each instant it is the minimum over those that have started. It is known as far as all
+requirements are.
+"""
+
+from __future__ import annotations
+
+from copy import copy
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+import numpy as np
+
+from rtamt.compiler.plan import compile_program
+from rtamt.engine.dense_python_backend import PythonDenseMonitor
+from rtamt.engine.gate import Gate, alone
+from rtamt.engine.native import core, not_made
+from rtamt.engine.online import depth_of
+from rtamt.engine.python_backend import Refused
+from rtamt.engine.user_operators import EventDriver, calls_of
+from rtamt.errors import UsageError
+from rtamt.language.formula import variables
+from rtamt.rewrite.check import always_has_a_value
+from rtamt.rewrite.desugar import desugar
+from rtamt.signals.dense import Dense
+from rtamt.signals.dense_arrays import changes, minimum
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+    from fractions import Fraction
+
+    from rtamt.compiler.program import Program
+    from rtamt.language.formula import Formula
+    from rtamt.signals.dense_arrays import Samples
+    from rtamt.signals.ticks import TimeScale
+
+#: A place among the outputs of the parts: the number of the part, and that of its output.
+Place: TypeAlias = tuple[int, int]
+
+_NOTHING: Samples = (np.empty(0, np.int64), np.empty(0))
+
+
+def own_variables(formula: Formula, every: Sequence[str]) -> tuple[str, ...]:
+    """Return the variables whose samples make the trace of a formula; a constant has that of ``every`` variable."""
+    return variables(formula) or tuple(every)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Part:
+    """Formulas over one trace. ``program``: None for the Python back end."""
+
+    names: tuple[str, ...]
+    formulas: tuple[Formula, ...]
+    program: Program | None
+    can_fail: bool
+
+    @property
+    def calls(self) -> bool:
+        """Whether a custom operator remembers something that cannot be saved."""
+        return self.program is not None and bool(self.program.calls)
+
+    def open(self, tick: Fraction) -> Any:
+        """Return a back end that has taken no sample."""
+        return opened(self.formulas, self.names, self.program, tick)
+
+
+def opened(
+    formulas: Sequence[Formula],
+    names: Sequence[str],
+    program: Program | None,
+    tick: Fraction,
+    unread: frozenset[str] = frozenset(),
+) -> Any:
+    """Return a back end of one program that has taken no sample; without a program that of Python."""
+    if program is None:
+        return PythonDenseMonitor(formulas, tuple(names), tick)
+    try:
+        return core().DenseMonitor(program.code(), list(names), unread, calls=calls_of(program, EventDriver))
+    except RuntimeError as error:
+        raise not_made(program, error) from None
+
+
+def parts_of(
+    requirements: Sequence[Formula],
+    watched: Sequence[Formula],
+    every: Sequence[str],
+    tick: Fraction,
+    backend: str,
+) -> tuple[list[Part], list[Place]]:
+    """Return the parts, and where the requirements and then the watched formulas are.
+
+    A watched formula that is no requirement has the trace of all variables. Parts that can fail come first.
+    """
+    formulas: dict[frozenset[str], list[Formula]] = {}
+    keys = [frozenset(own_variables(formula, every)) for formula in requirements]
+    own = dict(zip(requirements, keys, strict=True))
+    keys += [own.get(formula, frozenset(every)) for formula in watched]
+    asked = [*requirements, *watched]
+    for key, formula in zip(keys, asked, strict=True):
+        known = formulas.setdefault(key, [])
+        if formula not in known:
+            known.append(formula)
+    parts = {}
+    for key, some in formulas.items():
+        names = tuple(name for name in every if name in key)
+        program = None
+        if backend != "python":
+            program = compile_program(list(map(desugar, some)), tick, names, domain=Dense)
+        parts[key] = Part(names, tuple(some), program, not all(map(always_has_a_value, some)))
+    if sum(part.calls for part in parts.values()) > 1:
+        raise UsageError(
+            "custom operators stand in requirements that read different variables, so that a failed update could not "
+            "be undone; monitor each requirement alone, or use backend='python'"
+        )
+    order = sorted(parts, key=lambda key: (not parts[key].can_fail, parts[key].calls))
+    places = [(order.index(key), formulas[key].index(f)) for key, f in zip(keys, asked, strict=True)]
+    return [parts[key] for key in order], places
+
+
+class UndefinedInPartError(Exception):
+    """An operation of a part has no value; the cause is what its program raised."""
+
+    def __init__(self, part: Part, error: Exception) -> None:
+        super().__init__(*error.args)
+        self.part = part
+        self.error = error
+
+
+class DenseGroups:
+    """The back end; see ``_core.DenseMonitor`` for what each method means."""
+
+    _REMEMBERED = ("_counts", "_last", "_values", "_pending", "_until", "_minimum", "_told")
+
+    def __init__(
+        self,
+        parts: Sequence[Part],
+        places: Sequence[Place],
+        requirements: int,
+        names: Sequence[str],
+        tick: Fraction,
+    ) -> None:
+        self._parts = tuple(parts)
+        self._requirements, self._watched = places[:requirements], places[requirements:]
+        self._names = tuple(names)
+        self._tick = tick
+        self._lags = [int(depth_of(parts[part].formulas[i]) / tick) for part, i in self._requirements]
+        self._gate = Gate()
+        self._start_over()
+
+    def _start_over(self) -> None:
+        self._backends = [part.open(self._tick) for part in self._parts]
+        self._counts = dict.fromkeys(self._names, 0)
+        self._last: dict[str, tuple[int, float]] = {}
+        self._values = [float("inf")] * len(self._requirements)  # so far, as far as the minimum is known
+        self._pending = [_NOTHING] * len(self._requirements)  # known beyond that
+        self._until: int | None = None
+        self._minimum = float("nan")  # what was told last
+        self._told: list[Samples] = [_NOTHING] * (1 + len(self._watched))
+
+    # ---- samples ---------------------------------------------------------------------------------
+
+    def update(self, *_: Any) -> Any:
+        """Refuse: there is no quick way here."""
+        raise Refused("time")
+
+    def tell(self, signal: type, scale: TimeScale, rate: float, whole: bool = False) -> None:
+        """Take note of nothing: every update goes the long way."""
+
+    @alone
+    def push(self, columns: Sequence[Samples]) -> Samples:
+        """Take a chunk, checked by the caller; return what became known of the minimum."""
+        given = dict(zip(self._names, columns, strict=True))
+
+        def pushed(part: Part, backend: Any) -> list[Samples]:
+            return _outputs(part, backend, backend.push([given[name] for name in part.names]))
+
+        news = self._run(pushed)
+        for name, (ticks, values) in given.items():
+            if len(ticks):
+                self._last[name] = int(ticks[-1]), float(values[-1])
+                self._counts[name] += len(ticks)
+        if len(self._last) < len(self._names):
+            return self._known(news, None)
+        until = (
+            min(self._last[name][0] for name in self._parts[part].names) - lag
+            for (part, _), lag in zip(self._requirements, self._lags, strict=True)
+        )
+        return self._known(news, min(until))
+
+    @alone
+    def finish(self) -> Samples:
+        """End the trace; every requirement is known up to the last sample of any variable."""
+        end = max(tick for tick, _ in self._last.values())
+
+        def finished(part: Part, backend: Any) -> list[Samples]:
+            last = [self._last[name] for name in part.names]
+            held = [(np.array([end]), np.array([v])) if tick < end else _NOTHING for tick, v in last]
+            before = _outputs(part, backend, backend.push(held))
+            rest = _outputs(part, backend, backend.finish())
+            return [changes(*_joined(*both)) for both in zip(before, rest, strict=True)]
+
+        return self._known(self._run(finished, twice=True), end)
+
+    def _run(self, step: Callable[[Part, Any], list[Samples]], *, twice: bool = False) -> list[list[Samples]]:
+        """Run every part and return its outputs; where one fails, none has moved.
+
+        ``twice``: whether a step moves a part more than once.
+        """
+        saved: dict[int, Any] = {}
+        news = []
+        undefined: Any = core().Undefined if self._parts[0].program is not None else ()
+        for i, (part, backend) in enumerate(zip(self._parts, self._backends, strict=True)):
+            later = i + 1 < len(self._parts) and self._parts[i + 1].can_fail
+            if part.can_fail and not part.calls and (later or twice):
+                saved[i] = backend.state()
+            try:
+                news.append(step(part, backend))
+            except Exception as error:
+                for number, state in saved.items():
+                    self._backends[number] = self._parts[number].open(self._tick)
+                    self._backends[number].restore(state)
+                if isinstance(error, undefined):
+                    raise UndefinedInPartError(part, error) from error
+                raise
+        return news
+
+    def _known(self, news: Sequence[Sequence[Samples]], until: int | None) -> Samples:
+        """Take what became known of every output; return the minimum up to ``until``, as far as that is new."""
+        self._told = [_NOTHING, *(news[part][i] for part, i in self._watched)]
+        for number, (part, i) in enumerate(self._requirements):
+            self._pending[number] = _joined(self._pending[number], news[part][i])
+        if until is None or (self._until is not None and until <= self._until):
+            return self._told[0]
+        due = []
+        for number, (ticks, values) in enumerate(self._pending):
+            split = int(ticks.searchsorted(until, "right"))
+            due.append((ticks[:split], values[:split]))
+            self._pending[number] = ticks[split:], values[split:]
+        ticks, values = minimum(due, self._values)
+        self._values = [
+            float(own[-1]) if len(own) else before for (_, own), before in zip(due, self._values, strict=True)
+        ]
+        if self._until is None and not len(ticks):  # before all requirements
+            return self._told[0]
+        self._until = until
+        if not len(ticks) or ticks[-1] < until:
+            ticks, values = _joined((ticks, values), (np.array([until]), np.array([min(self._values)])))
+        self._told[0] = changes(ticks, values, self._minimum)
+        self._minimum = float(values[-1])
+        return self._told[0]
+
+    # ---- what is known ---------------------------------------------------------------------------
+
+    @property
+    def counts(self) -> list[int]:
+        """How many samples of each input came."""
+        return [self._counts[name] for name in self._names]
+
+    @property
+    def last_times(self) -> list[int | None]:
+        """The tick of the last sample of each input, or None."""
+        return [self._last[name][0] if name in self._last else None for name in self._names]
+
+    @property
+    def state_bytes(self) -> int:
+        """Bytes of state of all parts."""
+        return sum(int(backend.state_bytes) for backend in self._backends)
+
+    def told(self, output: int) -> Samples:
+        """Return what the last update made known of an output."""
+        return self._told[output]
+
+    def points(self) -> list[list[tuple[int, float]]]:
+        """The same of every output: a list for each, of pairs of tick and value."""
+        return [list(zip(ticks.tolist(), values.tolist(), strict=True)) for ticks, values in self._told]
+
+    @alone
+    def reset(self) -> None:
+        """Forget the trace."""
+        self._start_over()
+
+    @alone
+    def state(self) -> tuple[Any, ...]:
+        """Return what the samples so far have left behind."""
+        mine = {name: copy(getattr(self, name)) for name in self._REMEMBERED}
+        return [backend.state() for backend in self._backends], mine
+
+    def restore(self, state: tuple[Any, ...]) -> None:
+        """Go on as the back end of this state would, which was made like this one."""
+        of_parts, mine = state
+        for backend, own in zip(self._backends, of_parts, strict=True):
+            backend.restore(own)
+        for name, value in mine.items():
+            setattr(self, name, copy(value))
+
+
+def _outputs(part: Part, backend: Any, first: Samples) -> list[Samples]:
+    """Return what became known of every output of a part; ``first``: of the first one."""
+    return [first, *(backend.told(i) for i in range(1, len(part.formulas)))]
+
+
+def _joined(before: Samples, after: Samples) -> Samples:
+    return np.concatenate((before[0], after[0])), np.concatenate((before[1], after[1]))
