@@ -1,18 +1,25 @@
-"""What the offline classes of both time domains share: telling why."""
+"""What the offline classes of both time domains share: explanations and plots."""
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import UsageError
+from rtamt.language.document import Requirement
 from rtamt.language.formula import Var, variables
 from rtamt.language.printer import canonical
+from rtamt.results import Result
 from rtamt.rewrite.semantics import apply_semantics, semantics_of
 from rtamt.rtamt_api.backends import is_compiled
+from rtamt.rtamt_api.declarations import UNNAMED
 from rtamt.rtamt_api.failures import raises_rtamt
 from rtamt.rtamt_api.formulas import Formulas
+from rtamt.specification import Specification
 
 if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
     from rtamt.explain.report import Explanation
     from rtamt.language.document import Document
     from rtamt.language.formula import Formula
@@ -83,6 +90,25 @@ class ExplainedSpecification(Formulas):
         )
         self.explainer.explanations = _places(formula, recording, found)
         return found
+
+    @raises_rtamt
+    def plot(self, at: Any = None, *, figure: Figure | None = None) -> Figure:
+        """Draw the signals of the latest ``evaluate``, the robustness over time and the explanation.
+
+        ``at`` as for :meth:`explain`; ``figure``: one of matplotlib to draw into, by default a new one of
+        pyplot, which ``matplotlib.pyplot.show()`` displays. Needs ``pip install 'rtamt[plot]'``. Raises
+        :class:`RTAMTException` before the first ``evaluate``.
+        """
+        if self._evaluated is None:
+            raise UsageError("there is nothing to plot yet; call evaluate() first")
+        formula, recording, semantics = self._evaluated
+        document = replace(self._parsed_document, requirements=(Requirement(UNNAMED, formula),))
+        backend = "cpp" if is_compiled() else "python"
+        spec = Specification(
+            document, recording.domain, backend=backend, semantics=semantics, roles=self.var_io_dict
+        )
+        signal = spec.signal_of(spec.apply_semantics(formula, semantics), recording)
+        return Result(spec, recording, signal, semantics).plot(at, figure=figure)
 
 
 def _places(formula: Formula, recording: DomainTrace, explanation: Explanation) -> dict[str, list[list[Any]]]:

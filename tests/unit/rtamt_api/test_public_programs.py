@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from matplotlib.figure import Figure
 
 import rtamt
 
@@ -87,3 +88,20 @@ def test_explanations_in_dense_time_are_intervals_of_time():
     assert spec.explainer.explanations["always[0,2]((req)>=(3.0))"] == [[0.0, 0.0]]
     ((start, end),) = spec.explainer.explanations["req"]
     assert 1.0 <= start <= end <= 1.5
+
+
+@pytest.mark.parametrize(
+    ("made", "data"),
+    [
+        (rtamt.StlDiscreteTimeOfflineSpecification, ({"time": [0, 1, 2, 3], "req": [-1, -1, -2, 5]},)),
+        (rtamt.StlDenseTimeOfflineSpecification, (["req", [[0, 5.0], [1, 1.0]]],)),
+    ],
+)
+def test_what_was_evaluated_is_plotted(made, data):
+    spec = declared(made, "out = eventually[0,1] (req >= 3)")
+    with pytest.raises(rtamt.RTAMTException, match="nothing to plot yet"):
+        spec.plot()
+    spec.evaluate(*data)
+    figure = spec.plot(figure=Figure())
+    titles = [axis.get_title(loc="left") for axis in figure.axes]
+    assert titles == ["", "out = eventually[0,1] (req >= 3)", "req >= 3"]
