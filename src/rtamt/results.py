@@ -161,11 +161,12 @@ class Result:
         >>> spec = rtamt.parse("always(req >= 3 -> eventually[0:2](gnt >= 3))")
         >>> explanation = spec.evaluate({"req": [0, 6, 0, 0, 0], "gnt": [0, 0, 0, 1, 7]}).explain()
         >>> print(explanation)
-        violated by 2 at 0 s: always(req >= 3 -> eventually[0:2](gnt >= 3))
-        'gnt >= 3' is -2 at 3 s: the robustness follows it from -3 to 3
-        whatever the signals do elsewhere, it is violated because
-          'req >= 3' held at 1 s (3)
-          'gnt >= 3' failed from 1 s to 3 s (-3 to -2)
+        violated, robustness -2: always(req >= 3 -> eventually[0:2](gnt >= 3))
+        first violation at 1 s
+        critical point at 3 s: 'gnt >= 3' is -2; the robustness follows it from -3 to 3
+        sufficient cause, independent of all other samples:
+          'req >= 3' holds at 1 s (3)
+          'gnt >= 3' fails from 1 s to 3 s (-3 to -2)
         >>> explanation.critical.predicate, explanation.critical.time, explanation.critical.value
         ('gnt >= 3', 3.0, -2.0)
         """

@@ -18,6 +18,7 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
+import rtamt
 from rtamt.errors import EvaluationError
 from rtamt.explain.explain import explain
 from rtamt.language.formula import Apply, Const, Formula, Interval, Var, postorder, variables
@@ -368,3 +369,25 @@ def test_stand_ins_are_told_apart_by_sign() -> None:
     assert str(separated(STL["implies"](x, STL["always"](x, interval=window)), found)) == (
         'not "p0-" or always[0:2] "p0+"'
     )
+
+
+@both_domains
+@few
+@given(data=st.data())
+def test_the_first_violation_of_an_explanation_is_that_of_the_result(domain: str, data: Any) -> None:
+    dense = domain == "dense"
+    one = formulas(discrete=not dense, arithmetic=False, unbounded_future=True, max_depth=3)
+    parts = data.draw(
+        st.lists(st.tuples(st.sampled_from(["", "always", "always[1:3]"]), one), min_size=1, max_size=3)
+    )
+    text = " and ".join(f"{window}({part})" for window, part in parts)
+    spec = rtamt.parse(text, time=domain)
+    assume(spec.input_names)
+    signals = data.draw(dense_traces(max_size=7) if dense else traces(max_size=14))
+    signals = {name: signals[name] for name in spec.input_names}
+    try:
+        result = spec.evaluate(signals)
+        explanation = result.explain()
+    except EvaluationError:
+        assume(False)
+    assert explanation.first_violation == rtamt.first_violation(result)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -27,7 +28,7 @@ from rtamt.cli.command import (
     write_output,
 )
 from rtamt.cli.reading_options import add_reading_options, reading_of
-from rtamt.cli.reports import REPORTS, write_report
+from rtamt.cli.reports import REPORTS, HtmlReport, write_report
 from rtamt.cli.runner import Outcome, Requirement, outcomes
 from rtamt.cli.terminal import Progress, printed, say, table, use_color
 from rtamt.errors import escaped
@@ -94,7 +95,7 @@ examples:
 """
 
 
-_REPORT_NAMES = {"junit": "JUnit XML", "sarif": "SARIF 2.1.0", "html": "an HTML page"}
+_REPORT_NAMES = {"junit": "JUnit XML", "sarif": "SARIF 2.1.0", "html": "an interactive HTML page"}
 _KINDS = {"satisfied": "good", "violated": "bad", "error": "error"}
 #: Of a verdict, the exit code.
 CODES = {"satisfied": OK, "violated": VIOLATED, "error": ERROR}
@@ -115,8 +116,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
         help="write the robustness at every sample as CSV, or (.mcap) a bag with topics of it",
     )
     parser.add_argument("--json", action="store_true", help="print JSON, one object a line")
-    for kind in REPORTS:
-        parser.add_argument(f"--{kind}", metavar="FILE", help=f"write a report as {_REPORT_NAMES[kind]}")
+    for kind, name in _REPORT_NAMES.items():
+        parser.add_argument(f"--{kind}", metavar="FILE", help=f"write a report as {name}")
     parser.add_argument("--jobs", type=int, metavar="N", help="processes (default: one a core, if it pays)")
     add_ignore_option(parser)
     parser.add_argument("--quiet", action="store_true", help="print errors only: the exit code has it all")
@@ -137,13 +138,17 @@ def run(args: argparse.Namespace) -> int:
     pairs = len(requirements) * len(traces)
     if args.jobs is not None and args.jobs < 1:
         raise CommandError(f"--jobs is {args.jobs}; give a number of processes, 1 or more")
-    reading = reading_of(args, variables_of(requirements), whole=args.output is not None)
+    page = None if args.html is None else HtmlReport("rtamt check", given, requirements)
+    whole = args.output is not None or page is not None
+    reading = reading_of(args, variables_of(requirements), whole=whole)
     found: list[Outcome] = []
     told = {""}  # several requirements may have one reason
     with Progress() as progress:
         progress.show(f"0/{pairs}")
         for outcome in outcomes(given, traces, reading, args.jobs):
-            found.append(outcome)
+            if page is not None:
+                page.add(outcome)
+            found.append(outcome if args.output is not None else replace(outcome, result=None))
             if outcome.error not in told:
                 told.add(outcome.error)
                 progress.clear()
@@ -163,6 +168,8 @@ def run(args: argparse.Namespace) -> int:
     for kind in REPORTS:
         if getattr(args, kind) is not None:
             write_report(kind, getattr(args, kind), requirements, found)
+    if page is not None:
+        page.write(args.html)
     return max(CODES[outcome.verdict] for outcome in found)
 
 

@@ -17,6 +17,7 @@ from rtamt.cli.command import (
 from rtamt.cli.reading_options import add_instant_option, add_reading_options, instant
 from rtamt.cli.terminal import Progress, say
 from rtamt.errors import StlError
+from rtamt.explain.report import SHORT
 
 if TYPE_CHECKING:
     import argparse
@@ -24,19 +25,19 @@ if TYPE_CHECKING:
     from rtamt.explain.report import Explanation
 
 _DESCRIPTION = """\
-Tell why a recording satisfies or violates a requirement: the critical point (the predicate
-and the instant whose value is, up to sign, the robustness) and the implicant (the intervals of
-predicates that alone force the verdict, whatever the signals do elsewhere).
+Explain why a trace satisfies or violates a requirement: the first violation, the critical point (the predicate
+and the time whose value is, up to sign, the robustness), and a sufficient cause (intervals of predicates
+that force the verdict, independent of all other samples).
 
 Exit code: 0 satisfied, 1 violated, 2 it could not be explained."""
 
 _EPILOG = """\
-SPEC and TRACE are as for 'rtamt check', and so is how a trace is read. A predicate is quoted with what
-it was worth: above 0 it held, below 0 it failed.
+SPEC and TRACE are as for 'rtamt check', and so is how a trace is read. A predicate is quoted with its
+robustness. Of a cause with many intervals those closest to the critical point are printed; --all prints all.
 
---json prints one object: {"trace", "formula", "time", "satisfied", "robustness", "critical", "implicant"}.
-For SPEC with several requirements it prints one a line, with the key "requirement" before the others.
-An interval of the implicant that never ends has the end null; its end belongs to it if "closed".
+--json prints one object: {"trace", "formula", "time", "satisfied", "robustness", "first_violation", "critical",
+"implicant"}. For SPEC with several requirements it prints one a line, with the key "requirement" before the
+others. An interval of the implicant that never ends has the end null; its end belongs to it if "closed".
 JSON has no infinities: they are the strings "inf" and "-inf".
 
 examples:
@@ -54,6 +55,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add_time_option(parser)
     add_instant_option(parser)
     add_reading_options(parser)
+    parser.add_argument("--all", action="store_true", help="print every interval of the cause")
     parser.add_argument("--json", action="store_true", help="print JSON")
 
 
@@ -71,11 +73,10 @@ def run(args: argparse.Namespace) -> int:
         for name, explanation in explanations.items():
             say(_as_json({} if alone else {"requirement": name}, trace, explanation))
     else:
-        texts = (
-            f"{explanation}" if alone else f"{name}: {explanation}"
-            for name, explanation in explanations.items()
-        )
-        say("\n\n".join(texts))
+        texts = {
+            name: explanation.text(None if args.all else SHORT) for name, explanation in explanations.items()
+        }
+        say("\n\n".join(text if alone else f"{name}: {text}" for name, text in texts.items()))
     return OK if all(explanation.satisfied for explanation in explanations.values()) else VIOLATED
 
 

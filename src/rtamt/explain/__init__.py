@@ -17,7 +17,7 @@ necessary  intervals that every implicant contains
 witnesses  choose between several sufficient operands or times
 minimise   remove intervals while the verdict is still forced
 report     the explanation as data and text
-sentences  the sentences of an explanation
+sentences  the sentences of an explanation, the same in every output
 =========  ===================================================================
 
 Exact properties, which the tests verify by experiment:

@@ -6,6 +6,7 @@ from itertools import islice
 from math import inf
 from typing import TYPE_CHECKING, Any
 
+from rtamt.engine.offline import Evaluators
 from rtamt.errors import EvaluationError
 from rtamt.explain.critical import Point, Walk
 from rtamt.explain.instants import Steps, two_valued
@@ -13,16 +14,18 @@ from rtamt.explain.minimise import Forcing, intervals_of, minimal
 from rtamt.explain.necessary import Needs
 from rtamt.explain.propagate import Demands
 from rtamt.explain.report import CriticalPoint, Explanation, Stretch
-from rtamt.explain.sentences import predicate_text, sentences
+from rtamt.explain.sentences import cause, predicate_text, summary
 from rtamt.explain.signals import Signals, truths
 from rtamt.explain.time_axis import timeline
 from rtamt.language.formula import postorder
 from rtamt.language.printer import PAGE, to_text
 from rtamt.rewrite.semantics import boolean, no_verdict
 from rtamt.rewrite.structure import NEVER, Structure, literal, reaches
+from rtamt.verdicts.offline import first_violation
+from rtamt.verdicts.outputs import outputs_of
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable, Iterator, Sequence
 
     from rtamt.explain.minimise import Interval
     from rtamt.language.formula import Formula
@@ -65,6 +68,8 @@ class _Explainer:
     ) -> None:
         self._formula = formula
         self._text = text
+        self._recording = recording
+        self._evaluators = Evaluators(backend)
         self._line = timeline(recording, backend)
         self._dense = recording.domain.continuous
         self._structure = Structure.of(formula, self._line.period if self._dense else None)
@@ -90,23 +95,38 @@ class _Explainer:
         satisfied = cell in self._holds[core]
         robustness = self._signals.at(core, cell)
         implicant = self._implicant(cell, satisfied)
-        critical, moment = self._critical(cell, implicant)
-        stretches = tuple(self._stretch(interval, cell, satisfied) for interval in implicant)
+        critical, point = self._critical(cell, implicant)
+        stretches = [self._stretch(interval, cell, satisfied) for interval in implicant]
         told = to_text(self._formula, limit=PAGE)
+        violation = None
+        if not satisfied and cell == 0:
+            violation = first_violation(outputs_of(self._formula).truth, self._recording, self._evaluators)
+        show = self._line.show
         return Explanation(
             told,
             self._line.time(cell),
             satisfied,
             robustness,
+            violation,
             critical,
             tuple(stretch for stretch, _ in stretches),
-            sentences(told, self._line.show(cell), satisfied, robustness, (critical, moment), stretches),
+            summary(
+                told,
+                "satisfied" if satisfied else "violated",
+                robustness,
+                show(cell) if cell else None,
+                None if violation is None else show(self._line.later(violation)),
+                (critical, show(point)),
+                caused=bool(stretches),
+            ),
+            tuple(cause(stretch, when) for stretch, when in stretches),
+            _ranked(implicant, point),
         )
 
     # ---- the critical point ------------------------------------------------------------------------
 
-    def _critical(self, cell: int, implicant: list[Interval]) -> tuple[CriticalPoint, str]:
-        """Return the critical point, and its instant for a sentence.
+    def _critical(self, cell: int, implicant: list[Interval]) -> tuple[CriticalPoint, int]:
+        """Return the critical point, and its cell.
 
         Where several places have the value of the robustness it is, if there is one, a place that overturns
         the verdict alone; such a place is in every implicant.
@@ -129,8 +149,8 @@ class _Explainer:
                     cells = (start,) if self._dense else range(start, stop)
                     yield from (Point(there, interval.sign, interval.name) for there in cells)
 
-    def _told(self, point: Point, cell: int) -> tuple[CriticalPoint, str]:
-        """Return a place that has the value of the robustness as a critical point, and its instant for a sentence."""
+    def _told(self, point: Point, cell: int) -> tuple[CriticalPoint, int]:
+        """Return a place that has the value of the robustness as a critical point, and its cell."""
         start, end = point.cell, point.cell + 1
         value = point.sign * self._signals.at(self._structure.core, cell)
         lowest = highest = self._signals.at(self._structure.core, cell)
@@ -157,7 +177,7 @@ class _Explainer:
             highest,
             decided_by,
         )
-        return told, self._line.show(point.cell)
+        return told, point.cell
 
     def _follows(self, point: Point, start: int, end: int, cell: int) -> tuple[float, float]:
         """Return the robustness when the critical value goes, up to sign, to -inf and to +inf alone."""
@@ -248,6 +268,19 @@ def overturns(point: CriticalPoint) -> bool:
     """Tell whether the verdict falls where the critical value alone moves far enough."""
     robustness = point.polarity * point.value
     return point.lowest < 0 if robustness > 0 else point.highest > 0 if robustness < 0 else True
+
+
+def _ranked(implicant: Sequence[Interval], point: int) -> tuple[int, ...]:
+    """Return the numbers of the intervals: of each predicate the closest to a cell, then the others, closest first."""
+
+    def distance(number: int) -> int:
+        interval = implicant[number]
+        return max(interval.start - point, point - interval.end + 1, 0)
+
+    order = sorted(range(len(implicant)), key=distance)
+    closest = {(implicant[i].name, implicant[i].sign): i for i in reversed(order)}
+    first = set(closest.values())
+    return tuple(sorted(order, key=lambda number: number not in first))
 
 
 def _infinite(steps: Steps) -> Steps:

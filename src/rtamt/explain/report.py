@@ -14,6 +14,10 @@ if TYPE_CHECKING:
     from rtamt.language.formula import Formula
 
 
+#: Causes of an explanation that is not asked for all.
+SHORT = 5
+
+
 @dataclass(frozen=True, slots=True)
 class CriticalPoint:
     """The predicate and the instant whose value is, up to sign, the robustness.
@@ -69,21 +73,56 @@ class Stretch:
 class Explanation:
     """Why a formula is satisfied or violated at an instant: prints as sentences.
 
-    ``critical`` tells why the robustness is what it is: if every predicate moves by less than
-    its size the verdict stands. ``implicant`` tells why the verdict is what it is: the predicates
-    on these intervals force it, whatever the signals do elsewhere, and none of them can be left out.
+    ``critical`` is why the robustness is what it is: if every predicate changes by less than
+    its absolute value, the verdict stands. ``implicant`` is why the verdict is what it is: the predicates
+    on these intervals are sufficient for it, independent of all other samples, and none of them can be left out.
+    ``first_violation``: for ``always φ`` the earliest time of its window at which φ does not hold, for a
+    conjunction the earliest of its parts, else ``time``; None where the formula is satisfied, and for any other
+    instant than the first.
+    ``summary``: the sentences before the causes; ``causes``: one for each interval of the implicant.
+    ``ranking``: the numbers of the causes, those first that are closest to the critical point.
     """
 
     formula: str
     time: Any
     satisfied: bool
     robustness: float
+    first_violation: Any
     critical: CriticalPoint
     implicant: tuple[Stretch, ...]
-    sentences: tuple[str, ...]
+    summary: tuple[str, ...]
+    causes: tuple[str, ...]
+    ranking: tuple[int, ...]
 
     def __str__(self) -> str:
-        return "\n".join(self.sentences)
+        return self.text()
+
+    @property
+    def headline(self) -> str:
+        """The first sentence without the formula."""
+        return self.summary[0].removesuffix(f": {self.formula}")
+
+    def text(self, causes: int | None = SHORT) -> str:
+        """Return the explanation as sentences with this many causes; None for all.
+
+        >>> import rtamt
+        >>> result = rtamt.parse("always(eventually[0:1](x >= 3))").evaluate({"x": [5, 1, 1, 4] * 9})
+        >>> print(result.explain().text(causes=1))
+        violated, robustness -2: always(eventually[0:1](x >= 3))
+        first violation at 1 s
+        critical point at 1 s: 'x >= 3' is -2; others give the same robustness
+        sufficient cause, independent of all other samples:
+          'x >= 3' fails from 1 s to 2 s (-2)
+        """
+        shown = self.shown(causes)
+        lines = [*self.summary, *(f"  {self.causes[number]}" for number in shown)]
+        if len(shown) < len(self.causes):
+            lines.append(f"  {len(self.causes) - len(shown)} more")
+        return "\n".join(lines)
+
+    def shown(self, causes: int | None = SHORT) -> tuple[int, ...]:
+        """Return the numbers of so many causes, those closest to the critical point, in their order."""
+        return tuple(sorted(self.ranking[:causes]))
 
     def to_dict(self) -> dict[str, Any]:
         """Return the explanation as what JSON can hold.
@@ -96,6 +135,7 @@ class Explanation:
             "time": _plain(self.time),
             "satisfied": self.satisfied,
             "robustness": _plain(self.robustness),
+            "first_violation": _plain(self.first_violation),
             "critical": {
                 "predicate": point.predicate,
                 "time": _plain(point.time),

@@ -8,16 +8,17 @@ from typing import TYPE_CHECKING
 from rtamt.language.printer import PAGE, to_text
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from rtamt.explain.report import CriticalPoint, Stretch
     from rtamt.language.formula import Formula
 
 _NO_PREDICATE = {
-    "start": "no predicate decides it: nothing was recorded before the start, where a window looks",
-    "end": "no predicate decides it: nothing was recorded after the end, where a window looks",
-    "constant": "no predicate decides it: a constant of the formula does",
+    "start": "no predicate decides the robustness: a window before the start of the trace is empty",
+    "end": "no predicate decides the robustness: a window after the end of the trace is empty",
+    "constant": "no predicate decides the robustness: a constant of the formula does",
 }
+#: Before the causes.
+CAUSE = "sufficient cause, independent of all other samples:"
+_NO_CAUSE = "the verdict depends on no predicate"
 
 
 def predicate_text(predicate: Formula, text: str | None) -> str:
@@ -30,40 +31,44 @@ def predicate_text(predicate: Formula, text: str | None) -> str:
     return to_text(predicate, limit=PAGE)
 
 
-def sentences(
+def summary(
     formula: str,
-    when: str,
-    satisfied: bool,
+    verdict: str,
     robustness: float,
+    when: str | None,
+    first_violation: str | None,
     critical: tuple[CriticalPoint, str],
-    stretches: Sequence[tuple[Stretch, str]],
+    *,
+    caused: bool,
 ) -> tuple[str, ...]:
-    """Return the lines of an explanation; with the critical point and each stretch comes its time in words."""
-    verdict = "satisfied" if satisfied else "violated"
-    margin = f"by {_short(abs(robustness))}" if robustness else "with robustness 0"
-    lines = [f"{verdict} {margin} at {when}: {formula}", _decision(*critical)]
-    if not stretches:
-        lines.append("the verdict rests on no predicate: whatever the signals do, it stands")
-        return tuple(lines)
-    lines.append(f"whatever the signals do elsewhere, it is {verdict} because")
-    for stretch, time in stretches:
-        truth = "held" if stretch.holds else "failed"
-        values = _short(stretch.lowest)
-        if stretch.highest != stretch.lowest:
-            values += f" to {_short(stretch.highest)}"
-        lines.append(f"  '{stretch.predicate}' {truth} {time} ({values})")
-    return tuple(lines)
+    """Return the lines of an explanation before the causes; with the critical point comes its time in words.
+
+    ``when``: the explained instant, None where it is the first of the trace. ``caused``: whether causes follow.
+    """
+    at = "" if when is None else f" at {when}"
+    lines = [f"{verdict}{at}, robustness {_short(robustness)}: {formula}"]
+    if first_violation is not None:
+        lines.append(f"first violation at {first_violation}")
+    return (*lines, _decision(*critical), CAUSE if caused else _NO_CAUSE)
+
+
+def cause(stretch: Stretch, when: str) -> str:
+    """Return the line about one interval of the implicant."""
+    values = _short(stretch.lowest)
+    if stretch.highest != stretch.lowest:
+        values += f" to {_short(stretch.highest)}"
+    return f"'{stretch.predicate}' {'holds' if stretch.holds else 'fails'} {when} ({values})"
 
 
 def _decision(point: CriticalPoint, when: str) -> str:
     if point.predicate is None:
-        return f"{_NO_PREDICATE[point.decided_by]} (at {when})"
-    told = f"'{point.predicate}' is {_short(point.value)} at {when}"
+        return _NO_PREDICATE[point.decided_by]
+    told = f"critical point at {when}: '{point.predicate}' is {_short(point.value)}"
     if point.decided_by == "constant":
-        return f"{told}: a constant"
+        return f"{told}, a constant"
     if point.lowest == point.highest:
-        return f"{told}: something else gives the same robustness, and moving this one alone changes nothing"
-    return f"{told}: the robustness follows it{_reach(point)}"
+        return f"{told}; others give the same robustness"
+    return f"{told}; the robustness follows it{_reach(point)}"
 
 
 def _reach(point: CriticalPoint) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
+from fractions import Fraction
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
@@ -13,16 +14,18 @@ from rtamt.engine import dense_evaluate, evaluate
 from rtamt.errors import UsageError
 from rtamt.explain.instants import Steps
 from rtamt.language.formula import Apply, postorder
+from rtamt.language.units import decimal
 from rtamt.reference import dense as dense_reference
 from rtamt.reference import discrete as reference
 from rtamt.rewrite.desugar import desugar
 from rtamt.rewrite.structure import NEVER
+from rtamt.signals.datetimes import nanoseconds_of
 from rtamt.signals.dense import Dense, DenseTrace
 from rtamt.signals.discrete import Discrete, DiscreteTrace
+from rtamt.signals.epoch import is_epoch, moment_text
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
-    from fractions import Fraction
 
     from rtamt.language.formula import Formula
     from rtamt.signals.dense_arrays import Samples
@@ -52,6 +55,10 @@ class Timeline(ABC):
     @abstractmethod
     def cell(self, at: Any) -> int:
         """Return the cell of a time as the caller tells it; raise :class:`UsageError` outside the recording."""
+
+    @abstractmethod
+    def later(self, time: Any) -> int:
+        """Return the cell of a time that came out of this trace; it may be after its end."""
 
     @abstractmethod
     def time(self, cell: int) -> Any:
@@ -118,12 +125,23 @@ class DiscreteTimeline(Timeline):
         """See :class:`Timeline`."""
         return self._recording.position(at)
 
+    def later(self, time: Any) -> int:
+        """See :class:`Timeline`."""
+        return self.cell(time)
+
     def time(self, cell: int) -> Any:
         """See :class:`Timeline`."""
         return self._recording.time(cell)
 
     def show(self, cell: int) -> str:
         """See :class:`Timeline`."""
+        stamps = self._recording.stamps
+        if stamps.dtype.kind in "mM":
+            seconds = [Fraction(nanoseconds_of(stamps[i]) or 0, 10**9) for i in (0, cell)]
+        else:
+            seconds = [Fraction(repr(float(self._recording.times[i]))) for i in (0, cell)]
+        if stamps.dtype.kind == "M" or is_epoch(seconds[0]):
+            return moment_text(seconds[1], seconds[0])
         return self._recording.show(cell)
 
     @property
@@ -189,6 +207,10 @@ class DenseTimeline(Timeline):
         """See :class:`Timeline`."""
         return self._recording.position(at)
 
+    def later(self, time: Any) -> int:
+        """See :class:`Timeline`."""
+        return int(self._recording.scale.widened([[time]]).ticks([time], "at")[0]) - self._start
+
     def time(self, cell: int) -> Any:
         """See :class:`Timeline`."""
         if cell >= NEVER // 2:
@@ -197,6 +219,12 @@ class DenseTimeline(Timeline):
 
     def show(self, cell: int) -> str:
         """See :class:`Timeline`."""
+        scale = self._recording.scale
+        start = self._recording.start * scale.tick
+        if scale.kind == "zoned":
+            return f"{self._recording.show(cell)} (+{decimal(cell * scale.tick)} s)"
+        if scale.kind == "datetimes" or is_epoch(start):
+            return moment_text(start + cell * scale.tick, start)
         return self._recording.show(cell)
 
     @property

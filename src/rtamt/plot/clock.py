@@ -3,9 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+
+from rtamt.signals.datetimes import nanoseconds_of
+from rtamt.signals.epoch import is_epoch, moment_text
 
 if TYPE_CHECKING:
     from rtamt.signals.arrays import FloatArray
@@ -17,7 +21,10 @@ _FAR = 1e5
 
 @dataclass(frozen=True, slots=True)
 class Clock:
-    """Positions are seconds after ``origin``: a date, or a number of seconds (0, unless stamps start far from it)."""
+    """Positions are seconds after ``origin``: a date, or a number of seconds (0, unless stamps start far from it).
+
+    Numbers of seconds that are a time since 1970 are a date.
+    """
 
     origin: float | np.datetime64
     recording: DomainTrace
@@ -26,8 +33,11 @@ class Clock:
     def of(recording: DomainTrace) -> Clock:
         """Return the clock of a recording."""
         origin = recording.origin
-        near = not isinstance(origin, np.datetime64) and abs(origin) <= _FAR
-        return Clock(0.0 if near else origin, recording)
+        if isinstance(origin, np.datetime64):
+            return Clock(origin, recording)
+        if is_epoch(origin):
+            return Clock(np.datetime64(round(Fraction(repr(float(origin))) * 10**9), "ns"), recording)
+        return Clock(0.0 if abs(origin) <= _FAR else origin, recording)
 
     def positions(self, times: Any) -> FloatArray:
         """Return times, as signals and explanations tell them, as positions."""
@@ -47,14 +57,14 @@ class Clock:
         return float(self.positions(np.asarray([time]))[0])
 
     def told(self, position: float) -> str:
-        """Return a position as text: a date, or seconds.
+        """Return a position as text: a date and the seconds since the start, or seconds.
 
         >>> Clock(np.datetime64("2026-03-01T12:00:00.000000000"), None).told(2.5)
-        '2026-03-01 12:00:02.5'
+        '2026-03-01 12:00:02.5 (+2.5 s)'
         """
         if isinstance(self.origin, np.datetime64):
-            moment = str(self.origin + np.timedelta64(round(position * 1e9), "ns"))
-            return moment.replace("T", " ").rstrip("0").rstrip(".") if "." in moment else moment
+            start = Fraction(nanoseconds_of(self.origin) or 0, 10**9)
+            return moment_text(start + Fraction(round(position * 1e9), 10**9), start)
         return f"{self.origin + position:.15g} s"
 
     @property

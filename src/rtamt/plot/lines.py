@@ -49,15 +49,29 @@ class Line:
         n = len(self.positions)
         if n <= 4 * columns:
             return self
-        first, last = self.positions[0], self.positions[-1]
-        column = np.minimum(
-            ((self.positions - first) / (last - first) * columns).astype(np.int64), columns - 1
-        )
-        starts = np.flatnonzero(np.r_[True, column[1:] != column[:-1]])
+        starts = self.columns(columns)
         stops = np.r_[starts[1:], n]
-        order = np.lexsort((self.values, column))  # by column, then by value: lowest first, highest last
-        kept = np.unique(np.concatenate([starts, stops - 1, order[starts], order[stops - 1]]))
+        sizes = np.diff(starts, append=n)
+        lowest = self._first(
+            self.values == np.repeat(np.minimum.reduceat(self.values, starts), sizes), starts
+        )
+        highest = self._first(
+            self.values == np.repeat(np.maximum.reduceat(self.values, starts), sizes), starts
+        )
+        kept = np.unique(np.concatenate([starts, stops - 1, lowest, highest]))
         return Line(self.name, self.positions[kept], self.values[kept], self.unit)
+
+    def columns(self, count: int) -> NDArray[np.int64]:
+        """Return the index of the first point in each of ``count`` equal parts of the time that has points."""
+        edges = np.linspace(self.positions[0], self.positions[-1], count + 1)[:-1]
+        return np.unique(np.searchsorted(self.positions, edges))
+
+    @staticmethod
+    def _first(wanted: NDArray[np.bool_], starts: NDArray[np.int64]) -> NDArray[np.int64]:
+        """Return the first wanted index in each of the columns, every one of which has some."""
+        where = np.flatnonzero(wanted)
+        found: NDArray[np.int64] = where[np.searchsorted(where, starts)]
+        return found
 
 
 def ranges(line: Line, wanted: NDArray[np.bool_], *, dense: bool, end: float) -> tuple[Range, ...]:

@@ -80,11 +80,14 @@ class Scene:
 
     @property
     def verdict(self) -> str:
-        """The verdict, by how much and when."""
+        """The verdict, the robustness, and the first violation."""
         told = self.explanation
-        margin = f"by {abs(told.robustness):.6g}" if told.robustness else "with robustness 0"
-        verdict = "satisfied" if told.satisfied else "violated"
-        return f"{verdict} {margin} at {self.clock.told(self.at)}".replace("inf", "∞")
+        return told.headline if told.first_violation is None else f"{told.headline}, {told.summary[1]}"
+
+    def told_at(self, number: int) -> float:
+        """Return the position at which a node's value is shown: of parts of a violated formula its first violation."""
+        violation = self.explanation.first_violation
+        return self.at if number == 0 or violation is None else self.clock.position(violation)
 
     def chosen(self, count: int) -> tuple[int, ...]:
         """Return the numbers of the ``count`` nodes most worth seeing, in the order of the formula."""

@@ -59,7 +59,7 @@ def draw_tree(scene: Scene, figure: Any) -> None:
         va="center",
         color=style.HOLDS if told.satisfied else style.FAILS,
     )
-    axis.text(-shift + 0.25, 0.58, told.sentences[1], fontsize=8, va="center", color=style.QUIET)
+    axis.text(-shift + 0.25, 0.58, told.summary[-2], fontsize=8, va="center", color=style.QUIET)
     _draw(root, axis, None if scene.critical is None else scene.nodes[scene.critical[0]])
 
 

@@ -1,4 +1,4 @@
-"""A scene as what JSON can hold, small enough for a page."""
+"""A scene as what JSON can hold; its arrays go to the store of the page."""
 
 from __future__ import annotations
 
@@ -8,66 +8,137 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterable, Sequence
 
     from rtamt.plot.lines import Line, Range
-    from rtamt.plot.scene import Scene
+    from rtamt.plot.scene import Panel, Scene
+    from rtamt.report.store import Store
+    from rtamt.signals.arrays import FloatArray
 
-#: Columns of points that a line has room for: more than a screen is wide, so that there is something to zoom.
-COLUMNS = 2000
+#: Points from which on a line has an overview, and parts of the time that an overview has.
+_LARGE, _PARTS = 8192, 1500
+#: Ranges that are written out; more of them are an array.
+_FEW = 64
 
 _EPOCH, _MILLISECOND = np.datetime64(0, "ms"), np.timedelta64(1, "ms")
 
 
-def data_of(scene: Scene) -> dict[str, Any]:
-    """Return what the script of a page draws; positions are seconds after ``origin``."""
+def data_of(scene: Scene, store: Store) -> dict[str, Any]:
+    """Return what the script of a page draws; positions are seconds after ``origin``.
+
+    Of a line with many points the page always holds the range of the values in each part of the time, and all of
+    the points as long as there is room; a violated requirement may use all of the room, a satisfied one half.
+    """
     origin = scene.clock.origin
-    start, end = scene.clock.start, scene.clock.end
-    close = (end - start) / (2 * COLUMNS)
+    share = 0.5 if scene.explanation.satisfied else 0.0
     return {
         # Milliseconds are what browsers count dates in.
         "origin": (origin - _EPOCH) / _MILLISECOND if isinstance(origin, np.datetime64) else origin,
         "dated": isinstance(origin, np.datetime64),
         "dense": scene.dense,
-        "start": start,
-        "end": end,
+        "start": scene.clock.start,
+        "end": scene.clock.end,
         "at": scene.at,
         "critical": None if scene.critical is None else {"node": scene.critical[0], "x": scene.critical[1]},
-        "panels": [
-            {
-                "lines": [_line(line) for line in panel.lines],
-                "thresholds": [limit for limit in panel.thresholds if isfinite(limit)],
-                "because": _joined(panel.because, 0.0),
-            }
-            for panel in scene.panels
-        ],
-        "nodes": [
-            {
-                "line": _line(node.line),
-                "fails": _joined(node.fails, close),
-                "because": _joined(node.because, 0.0),
-            }
-            for node in scene.nodes
-        ],
+        "panels": [_panel(panel, store, share) for panel in scene.panels],
+        "nodes": [_node(number, scene, store, share) for number in range(len(scene.nodes))],
+        "told": scene.clock.told(scene.told_at(-1)),
+        "open": list(scene.chosen(6)),
     }
 
 
-def _line(line: Line) -> dict[str, Any]:
-    small = line.decimated(COLUMNS)
+def _panel(panel: Panel, store: Store, share: float) -> dict[str, Any]:
     return {
-        "name": line.label,
-        "points": len(line.positions),
-        "x": [float(f"{x:.12g}") for x in small.positions.tolist()],
-        "y": [float(f"{y:.7g}") if isfinite(y) else str(y) for y in small.values.tolist()],
+        "lines": [_line(line, store, share) for line in panel.lines],
+        "thresholds": [limit for limit in panel.thresholds if isfinite(limit)],
+        "because": _ranges(panel.because, store),
     }
 
 
-def _joined(stretches: Sequence[Range], close: float) -> list[list[float]]:
-    """Return stretches in order, those as one that are too close to each other to be told apart."""
-    found: list[list[float]] = []
-    for start, end in sorted(stretches):
-        if found and start - found[-1][1] <= close:
-            found[-1][1] = max(found[-1][1], end)
-        else:
-            found.append([start, end])
-    return found
+def _node(number: int, scene: Scene, store: Store, share: float) -> dict[str, Any]:
+    node, at = scene.nodes[number], scene.told_at(number)
+    return {
+        "text": node.text,
+        "name": node.name,
+        "line": _line(node.line, store, share, scene.panels if not node.children else ()),
+        "fails": _ranges(node.fails, store),
+        "because": _ranges(node.because, store),
+        "children": node.children,
+        "hidden": node.hidden,
+        "value": _number(node.line.at(at)),
+        "failing": node.fails_at(at),
+    }
+
+
+def _line(line: Line, store: Store, share: float, panels: Iterable[Panel] = ()) -> dict[str, Any]:
+    finite = line.values[np.isfinite(line.values)]
+    data: dict[str, Any] = {
+        "name": line.label,
+        "points": len(line.values),
+        "low": float(finite.min()) if len(finite) else None,
+        "high": float(finite.max()) if len(finite) else None,
+        "ends": [bool((line.values == end).any()) for end in (-np.inf, np.inf)],
+    }
+    if len(line.values) <= _LARGE:
+        return data | {"x": _times(line.positions, store, None), "y": _values(line, store, None, panels)}
+    data["overview"] = _overview(line, store)
+    x, y = _times(line.positions, store, share), _values(line, store, share, panels)
+    return data if x is None or y is None else data | {"x": x, "y": y}
+
+
+def _times(positions: FloatArray, store: Store, share: float | None) -> Any:
+    """Return positions as a rule where one gives exactly these, else as an array."""
+    count = len(positions)
+    start, end = float(positions[0]), float(positions[-1])
+    if count > 1 and end > start:
+        steps = np.arange(count, dtype=float)
+        step = float(f"{(end - start) / (count - 1):.12g}")
+        rate = float(f"{(count - 1) / (end - start):.12g}")
+        if (start + steps * step == positions).all():
+            return {"start": start, "step": step}
+        if (start + steps / rate == positions).all():
+            return {"start": start, "rate": rate}
+    number = store.put(positions, share)
+    return None if number is None else {"blob": number}
+
+
+def _values(line: Line, store: Store, share: float | None, panels: Iterable[Panel]) -> Any:
+    """Return values: as a signal moved by a threshold, which a comparison mostly is, else as an array."""
+    for panel in panels:
+        for signal in panel.lines:
+            if len(signal.values) == len(line.values):
+                for limit in panel.thresholds:
+                    for sign in (1, -1):
+                        if (sign * signal.values - sign * limit == line.values).all():
+                            number = store.put(signal.values, share)
+                            return None if number is None else {"blob": number, "sign": sign, "limit": limit}
+    number = store.put(line.values, share)
+    return None if number is None else {"blob": number}
+
+
+def _overview(line: Line, store: Store) -> dict[str, Any]:
+    """Return where each part of the time that has points begins, and its lowest and highest value."""
+    starts = line.columns(_PARTS)
+    low, high = (reduce.reduceat(line.values, starts) for reduce in (np.minimum, np.maximum))
+    if np.abs(line.values[np.isfinite(line.values)]).max(initial=0) < np.finfo(np.float32).max:
+        # Rounded outwards: the range holds every value.
+        low, high = _single(low, -np.inf), _single(high, np.inf)
+    return {"at": store.put(line.positions[starts]), "low": store.put(low), "high": store.put(high)}
+
+
+def _single(values: FloatArray, towards: float) -> Any:
+    rounded = values.astype(np.float32)
+    short = rounded > values if towards < 0 else rounded < values
+    return np.where(short, np.nextafter(rounded, np.float32(towards)), rounded)
+
+
+def _ranges(stretches: Sequence[Range], store: Store) -> Any:
+    """Return stretches in order; many as the number of an array of their ends."""
+    ordered = sorted(stretches)
+    if len(ordered) <= _FEW:
+        return ordered
+    return store.put(np.array(ordered).ravel())
+
+
+def _number(value: float) -> float | str:
+    return value if isfinite(value) else str(value)

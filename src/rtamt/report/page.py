@@ -1,32 +1,39 @@
-"""Rows and cards to the text of a page."""
+"""Rows and scenes to the text of a page."""
 
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass
-from html import escape
+import platform
+from dataclasses import dataclass, field
+from datetime import datetime, timezone
 from importlib.resources import files
-from typing import TYPE_CHECKING
+from math import inf
+from typing import TYPE_CHECKING, Any
+from urllib.parse import quote
 
-from rtamt.plot import style
-from rtamt.report.data import COLUMNS, data_of
+import numpy as np
+
+from rtamt.errors import readable
+from rtamt.extras import library
+from rtamt.report.data import data_of
+from rtamt.report.store import Store
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Iterable, Mapping, Sequence
 
     from rtamt.plot.scene import Scene
 
-_HEAD = ("requirement", "recording", "verdict", "robustness", "first violated", "samples")
-_VERDICTS = ("satisfied", "violated", "error")
+_VERDICTS = ("violated", "error", "satisfied")
 _SIGNS = {"satisfied": "✓", "violated": "✗", "error": "!"}
-
-#: Nothing is loaded from anywhere, whatever is in the data.
-_POLICY = "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'"
+#: Sentences about causes that a card holds.
+_CAUSES = 200
+#: In the order in which they are run.
+_SCRIPTS = ("lines.js", "times.js", "chart.js", "card.js", "controls.js", "matrix.js")
 
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """What came of one requirement over one recording, as text; ``error`` instead of numbers where it failed."""
+    """What came of one requirement over one trace, as text; ``error`` instead of numbers where it failed."""
 
     requirement: str
     trace: str
@@ -39,175 +46,191 @@ class Row:
 
 
 @dataclass(frozen=True, slots=True)
-class Card:
-    """A row in pictures: its text, and its data as JSON (a scene may hold the whole recording, a card does not)."""
+class Formula:
+    """A requirement as the page shows it."""
 
-    title: str
     text: str
-    data: str
-
-    @staticmethod
-    def of(row: Row, scene: Scene) -> Card:
-        """Return the card of a row."""
-        data = json.dumps(data_of(scene), allow_nan=False, separators=(",", ":")).replace("<", "\\u003c")
-        return Card(f"{row.requirement} · {row.trace}", _told(scene), data)
+    description: str = ""
 
 
-def page(
-    title: str, formulas: Mapping[str, str], rows: Sequence[Row], cards: Mapping[Row, Card] | None = None
-) -> str:
-    """Return the text of the page: a table of all rows, then a card for each row that has one.
+@dataclass(frozen=True, slots=True)
+class File:
+    """Something that the page is about: ``what`` it is, its name, and its content or facts about it."""
 
-    ``formulas``: of every requirement.
-    """
-    cards = cards or {}
-    numbers = {row: number for number, row in enumerate(cards, 1)}
-    verdicts = [row.verdict for row in rows]
-    counts = ", ".join(f"{verdicts.count(v)} {v}" for v in _VERDICTS if v in verdicts)
-    listed = "\n".join(
-        f"<tr><td>{escape(name)}</td><td><code>{escape(text)}</code></td></tr>"
-        for name, text in formulas.items()
+    what: str
+    name: str
+    text: str = ""
+    facts: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Line:
+    """A sentence, and the node and the two positions that it is about, if it is about an instant."""
+
+    text: str
+    place: tuple[int, float, float] | None = None
+
+
+@dataclass(slots=True)
+class Card:
+    """One row in full; ``number`` counts the cards as they are given."""
+
+    row: Row
+    number: int
+    formula: str
+    description: str
+    anchor: str
+    headline: str
+    title: str = ""
+    first: bool = False
+    summary: list[Line] = field(default_factory=list)
+    causes: list[Line] = field(default_factory=list)
+    more: list[Line] = field(default_factory=list)
+    hidden: int = 0
+    data: str = ""
+
+
+def templates() -> Any:
+    """Return the module jinja2; raises :class:`UsageError` where it is not installed."""
+    return library("jinja2", "an HTML report", "report")
+
+
+class Page:
+    """A page, made row by row, so that no trace has to stay in memory."""
+
+    def __init__(self, command: str, formulas: Mapping[str, Formula]) -> None:
+        self._jinja = templates()
+        self._command = command
+        self._formulas = formulas
+        self._store = Store()
+        self._cards: list[Card] = []
+
+    def add(self, row: Row, scene: Scene | None = None) -> None:
+        """Add what came of one requirement over one trace; ``scene``: None where nothing can be drawn."""
+        formula, description = (
+            self._formulas[row.requirement].text,
+            self._formulas[row.requirement].description,
+        )
+        headline = row.verdict if row.error or scene is None else scene.verdict
+        card = Card(row, len(self._cards), formula, description, _anchor(row), headline)
+        card.title = " · ".join(
+            filter(None, (row.requirement, description, row.trace, row.error or headline))
+        )
+        if scene is not None:
+            told = scene.explanation
+            card.summary, causes = _told(scene)
+            shown = told.shown()
+            card.causes = [causes[i] for i in shown]
+            rest = [i for i in told.ranking if i not in set(shown)]
+            card.more = [causes[i] for i in sorted(rest[:_CAUSES])]
+            card.hidden = len(rest)
+            data = data_of(scene, self._store) | {"trace": row.trace}
+            card.data = json.dumps(data, allow_nan=False, separators=(",", ":")).replace("<", "\\u003c")
+        self._cards.append(card)
+
+    def text(self, sources: Iterable[File] = ()) -> str:
+        """Return the text of the page; ``sources``: what it is about."""
+        ordered = sorted(self._cards, key=lambda card: _VERDICTS.index(card.row.verdict))
+        if ordered:
+            ordered[0].first = ordered[0].row.verdict != "satisfied" or len(ordered) == 1
+        verdicts = [card.row.verdict for card in self._cards]
+        totals = [(verdict, verdicts.count(verdict)) for verdict in _VERDICTS if verdict in verdicts]
+        safe = self._jinja.utils.markupsafe.Markup
+        environment = self._jinja.Environment(
+            autoescape=True, trim_blocks=False, undefined=self._jinja.StrictUndefined
+        )
+        for card in ordered:
+            card.data = safe(card.data)
+        corner, columns, lines = self._matrix()
+        import rtamt
+
+        return readable(
+            environment.from_string(_file("page.html")).render(
+                command=self._command,
+                version=rtamt.__version__,
+                versions=f"rtamt {rtamt.__version__}, Python {platform.python_version()}, numpy {np.__version__}, "
+                f"{platform.system()} {platform.machine()}",
+                date=datetime.now(timezone.utc).strftime("%Y-%m-%d %H:%M UTC"),
+                counts=", ".join(f"{count} {verdict}" for verdict, count in totals),
+                totals=totals,
+                any_violated="violated" in verdicts,
+                signs=_SIGNS,
+                requirements=len(self._formulas),
+                traces=list(dict.fromkeys(card.row.trace for card in self._cards)),
+                corner=corner,
+                columns=columns,
+                lines=lines,
+                cards=ordered,
+                files=list(sources),
+                blobs=[{"kind": b.kind, "length": b.length, "text": safe(b.text)} for b in self._store.blobs],
+                styles=safe(_file("vendor/uPlot.min.css") + _file("report.css")),
+                scripts=safe(_scripts()),
+            )
+        )
+
+    def _matrix(self) -> tuple[str, Sequence[str], list[dict[str, Any]]]:
+        """Return what the first column is, the other columns, and the lines: whichever there are more of are lines."""
+        traces = list(dict.fromkeys(card.row.trace for card in self._cards))
+        requirements = list(dict.fromkeys(card.row.requirement for card in self._cards))
+        places = {(card.row.requirement, card.row.trace): card for card in self._cards}
+        across = len(traces) <= len(requirements)
+        names, columns = (requirements, traces) if across else (traces, requirements)
+        lines: list[tuple[tuple[int, float], dict[str, Any]]] = []
+        for order, name in enumerate(names):
+            cells = [places.get((name, column) if across else (column, name)) for column in columns]
+            worst = min(_badness(cell) for cell in cells if cell)
+            description = self._formulas[name].description if across else ""
+            line = {"name": name, "order": order, "description": description, "cells": cells}
+            lines.append((worst, line))
+        ordered = [line for _, line in sorted(lines, key=lambda each: each[0])]
+        return ("requirement" if across else "trace"), columns, ordered
+
+
+def _badness(card: Card) -> tuple[int, float]:
+    robustness = float(card.row.robustness) if card.row.robustness else inf
+    return _VERDICTS.index(card.row.verdict), robustness
+
+
+def _anchor(row: Row) -> str:
+    """Return the fragment of a card's address, the same in every report about the same names."""
+    return "/".join(
+        quote(part.encode("utf-8", "surrogateescape"), safe="") for part in (row.requirement, row.trace)
     )
-    head = "".join(f'<th scope="col">{name}</th>' for name in _HEAD)
-    body = "\n".join(_row(row, numbers.get(row)) for row in rows)
-    told = "\n".join(_card(number, row, cards[row]) for row, number in numbers.items())
-    script = f"<script>\n{_file('report.js')}</script>\n" if cards else ""
-    return f"""\
-<!DOCTYPE html>
-<html lang="en">
-<head>
-<meta charset="utf-8">
-<meta name="viewport" content="width=device-width">
-<meta name="color-scheme" content="light dark">
-<meta http-equiv="Content-Security-Policy" content="{_POLICY}">
-<title>{escape(title)}: {counts}</title>
-<style>
-{_file("report.css")}</style>
-</head>
-<body>
-<main>
-<h1>{counts}</h1>
-<table>
-<tr><th scope="col">requirement</th><th scope="col">formula</th></tr>
-{listed}
-</table>
-<table>
-<tr>{head}</tr>
-{body}
-</table>
-{told}
-</main>
-{script}</body>
-</html>
-"""
+
+
+def _told(scene: Scene) -> tuple[list[Line], list[Line]]:
+    """Return the sentences before the causes, and those of the causes."""
+    told, point = scene.explanation, scene.critical
+    first = None
+    if told.first_violation is not None:
+        position = scene.clock.position(told.first_violation)
+        first = (0, position, position)
+    places: list[tuple[int, float, float] | None] = [None] * len(told.summary)
+    if first is not None:
+        places[1] = first
+    if point is not None:
+        places[-2] = (point[0], point[1], point[1])
+    # The headline is above, and the formula is below.
+    summary = [Line(text, place) for text, place in zip(told.summary, places, strict=True)][1:]
+    nodes = {node.formula: number for number, node in enumerate(scene.nodes)}
+    causes = []
+    for text, stretch in zip(told.causes, told.implicant, strict=True):
+        number, place = nodes.get(stretch.formula), None
+        if number is not None:
+            start = scene.clock.position(stretch.start)
+            end = scene.clock.end if stretch.end is None else scene.clock.position(stretch.end)
+            place = (number, start, end)
+        causes.append(Line(text, place))
+    return summary, causes
+
+
+def _scripts() -> str:
+    licence = _file("vendor/LICENSE-uPlot")
+    parts = "\n".join(_file(name) for name in _SCRIPTS)
+    return (
+        f'/*!\n{licence}\n*/\n{_file("vendor/uPlot.iife.min.js")}\n(() => {{\n"use strict";\n{parts}\n}})();'
+    )
 
 
 def _file(name: str) -> str:
     return files(__package__).joinpath(name).read_text(encoding="utf-8")
-
-
-def _row(row: Row, number: int | None) -> str:
-    trace = escape(row.trace)
-    if number is not None:
-        trace = f'<a href="#card-{number}">{trace}</a>'
-    first = f"<td>{escape(row.requirement)}</td><td>{trace}</td>"
-    verdict = f'<td class="{row.verdict}">{row.verdict}</td>'
-    if row.error:
-        return f'<tr>{first}{verdict}<td colspan="3">{escape(row.error)}</td></tr>'
-    cells = (row.robustness, row.first_violation, row.samples)
-    notes = "".join(f'<tr><td colspan="6">note: {escape(note)}</td></tr>' for note in row.notes)
-    numbers = "".join(f"<td class=number>{escape(cell)}</td>" for cell in cells)
-    return f"<tr>{first}{verdict}{numbers}</tr>{notes}"
-
-
-def _card(number: int, row: Row, card: Card) -> str:
-    return f"""\
-<section class="card" id="card-{number}" aria-labelledby="card-{number}-title">
-<h2 id="card-{number}-title"><span class="{row.verdict}">{_SIGNS[row.verdict]}</span> {escape(card.title)}</h2>
-{card.text}
-<script type="application/json">{card.data}</script>
-</section>"""
-
-
-def _told(scene: Scene) -> str:
-    """Return what a card says without pictures: the explanation, and the formula as a tree that folds."""
-    told = scene.explanation
-    kind = "satisfied" if told.satisfied else "violated"
-    rows = [
-        f"<p><code>{escape(told.formula)}</code></p>",
-        f'<p class="{kind}"><b>{escape(scene.verdict)}</b></p>',
-    ]
-    rows.append(_explanation(scene))
-    rows.append('<div class="tools" hidden></div>')
-    for number, panel in enumerate(scene.panels):
-        names = ", ".join(line.label for line in panel.lines)
-        rows.append(f'<div class="chart" data-panel="{number}"><h3>{escape(names)}</h3></div>')
-    rows.append(f'<h3 class="above">Robustness, and values at {escape(scene.clock.told(scene.at))}</h3>')
-    rows.append(_tree(scene))
-    most = max(len(node.line.positions) for node in scene.nodes)
-    if most > 4 * COLUMNS:
-        rows.append(
-            f'<p class="note">Of up to {most} points a line, those are drawn that are the first, lowest, highest '
-            f"or last in one of {COLUMNS} parts of the time; where a formula does not hold is joined over gaps "
-            f"that are shorter than such a part.</p>"
-        )
-    return "\n".join(rows)
-
-
-def _explanation(scene: Scene) -> str:
-    """Return the sentences; those about an instant are linked to it."""
-    told, point = scene.explanation, scene.critical
-    places = {node.formula: number for number, node in enumerate(scene.nodes)}
-    critical = escape(told.sentences[1])
-    if point is not None:
-        critical = _link(critical, point[0], point[1], point[1])
-    items = [f"<li>{critical}</li>"]
-    stretches = told.sentences[3:]
-    if not stretches:
-        items += [f"<li>{escape(sentence)}</li>" for sentence in told.sentences[2:]]
-        return f'<ul class="why">{"".join(items)}</ul>'
-    inner = ""
-    for sentence, stretch in zip(stretches, told.implicant, strict=True):
-        text, number = escape(sentence.strip()), places.get(stretch.formula)
-        if number is not None:
-            start = scene.clock.position(stretch.start)
-            end = scene.clock.end if stretch.end is None else scene.clock.position(stretch.end)
-            text = _link(text, number, start, end)
-        inner += f"<li>{text}</li>"
-    items.append(f"<li>{escape(told.sentences[2])}<ul>{inner}</ul></li>")
-    return f'<ul class="why">{"".join(items)}</ul>'
-
-
-def _link(text: str, node: int, start: float, end: float) -> str:
-    return f'<a class="go" data-node="{node}" data-from="{start!r}" data-to="{end!r}">{text}</a>'
-
-
-def _tree(scene: Scene) -> str:
-    """Return the formula as lists that fold; a sub-formula that stands in several places is shown in the first."""
-    shown: set[int] = set()
-    pieces: list[str] = []
-    best = set(scene.chosen(6))
-    stack: list[int | str] = [0]
-    while stack:
-        step = stack.pop()
-        if isinstance(step, str):
-            pieces.append(step)
-            continue
-        if step in shown:
-            continue
-        shown.add(step)
-        node = scene.nodes[step]
-        fails = node.fails_at(scene.at)
-        name = f"<i>{escape(node.name)}</i> = " if node.name else ""
-        number = style.number(node.line.at(scene.at))
-        verdict = "violated" if fails else "satisfied"
-        pieces.append(
-            f'<details{" open" if step in best else ""} data-node="{step}"><summary><code>{name}{escape(node.text)}'
-            f'</code> <b class="{verdict}">{style.SIGNS[not fails]} {number}</b></summary>'
-            f'<div class="chart" data-node="{step}"></div>'
-        )
-        stack.append("</details>")
-        if node.hidden:
-            stack.append('<p class="note">What is below is left out here.</p>')
-        stack.extend(reversed(node.children))
-    return "\n".join(pieces)

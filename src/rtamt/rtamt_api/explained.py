@@ -69,10 +69,11 @@ class ExplainedSpecification(Formulas):
         >>> spec.parse()
         >>> _ = spec.evaluate({"time": [0, 1, 2], "x": [5, 1, 4]})
         >>> print(spec.explain())
-        violated by 2 at 0 s: always(x >= 3)
-        'x >= 3' is -2 at 1 s: the robustness follows it up to 1
-        whatever the signals do elsewhere, it is violated because
-          'x >= 3' failed at 1 s (-2)
+        violated, robustness -2: always(x >= 3)
+        first violation at 1 s
+        critical point at 1 s: 'x >= 3' is -2; the robustness follows it up to 1
+        sufficient cause, independent of all other samples:
+          'x >= 3' fails at 1 s (-2)
         """
         from rtamt.explain.explain import explain
 

@@ -16,6 +16,7 @@ dense_arrays  dense-time data to int64 ticks and float64 values
 regular       infer the sampling period; check order and distance of timestamps
 ticks         times to int64 ticks and back
 counting      exact conversion of numbers to ticks, rounded once
+epoch         times since 1970 as text: a date, and the seconds since the start
 datetimes     dates and durations of Python, numpy and pandas as integers
 stamps        recognise the time column and its unit by name
 ============  =================================================================

@@ -401,8 +401,8 @@ def test_each_requirement_is_explained(run, write):
     answer = run("explain", "braking.stl", "drive.csv")
     told = [text.splitlines()[0] for text in answer.out.split("\n\n")]
     assert told == [
-        "REQ-7: violated by 0.5 at 0 s: always(d <= 30 -> eventually[0:1](brake >= 1))",
-        "REQ-8: violated by 1 at 0 s: always(d >= 2)",
+        "REQ-7: violated, robustness -0.5: always(d <= 30 -> eventually[0:1](brake >= 1))",
+        "REQ-8: violated, robustness -1: always(d >= 2)",
     ]
     rows = [
         json.loads(line) for line in run("explain", "braking.stl", "drive.csv", "--json").out.splitlines()

@@ -9,11 +9,12 @@ SPEC = "always(req >= 3 -> eventually[0:2](gnt >= 3))"
 def test_a_violation_is_told_and_exits_with_1(run, write):
     assert run("explain", SPEC, write("log.csv", TRACE)) == (
         1,
-        "violated by 2 at 0 s: always(req >= 3 -> eventually[0:2](gnt >= 3))\n"
-        "'gnt >= 3' is -2 at 3 s: the robustness follows it from -3 to 3\n"
-        "whatever the signals do elsewhere, it is violated because\n"
-        "  'req >= 3' held at 1 s (3)\n"
-        "  'gnt >= 3' failed from 1 s to 3 s (-3 to -2)\n",
+        "violated, robustness -2: always(req >= 3 -> eventually[0:2](gnt >= 3))\n"
+        "first violation at 1 s\n"
+        "critical point at 3 s: 'gnt >= 3' is -2; the robustness follows it from -3 to 3\n"
+        "sufficient cause, independent of all other samples:\n"
+        "  'req >= 3' holds at 1 s (3)\n"
+        "  'gnt >= 3' fails from 1 s to 3 s (-3 to -2)\n",
         "",
     )
 
@@ -21,15 +22,25 @@ def test_a_violation_is_told_and_exits_with_1(run, write):
 def test_another_instant_that_is_satisfied_exits_with_0(run, write):
     answer = run("explain", SPEC, write("log.csv", TRACE), "--at", "2", "--time", "dense")
     assert (answer.code, answer.err) == (0, "")
-    assert answer.out.splitlines()[0] == f"satisfied by 4 at 2 s: {SPEC}"
-    assert answer.out.splitlines()[-1] == "  'req >= 3' failed from 2 s on (-3)"
+    assert answer.out.splitlines()[0] == f"satisfied at 2 s, robustness 4: {SPEC}"
+    assert answer.out.splitlines()[-1] == "  'req >= 3' fails from 2 s on (-3)"
 
 
 def test_json(run, write):
     answer = run("explain", SPEC, write("log.csv", TRACE), "--json")
     told = json.loads(answer.out)
     assert answer.code == 1
-    assert list(told) == ["trace", "formula", "time", "satisfied", "robustness", "critical", "implicant"]
+    assert list(told) == [
+        "trace",
+        "formula",
+        "time",
+        "satisfied",
+        "robustness",
+        "first_violation",
+        "critical",
+        "implicant",
+    ]
+    assert told["first_violation"] == 1
     assert (told["trace"], told["critical"]["predicate"], told["critical"]["value"]) == (
         "log.csv",
         "gnt >= 3",

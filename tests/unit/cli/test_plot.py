@@ -14,7 +14,7 @@ TRACE = "examples/request_grant/c_violated.csv"
 def test_a_picture_is_written(tmp_path, suffix, first, capsys):
     path = tmp_path / f"picture.{suffix}"
     assert main(["plot", FORMULA, TRACE, "-o", str(path)]) == 0
-    assert capsys.readouterr().out == f"{path}: violated by 2 at 0 s\n"
+    assert capsys.readouterr().out == f"{path}: violated, robustness -2, first violation at 2 s\n"
     assert path.read_bytes().startswith(first)
 
 

@@ -20,74 +20,84 @@ def explained(text, data, at=None, **options):
     return rtamt.parse(text, **options).evaluate(data).explain(at)
 
 
+def lines(explanation):
+    return tuple(explanation.text(None).splitlines())
+
+
 def test_it_prints_as_sentences():
     assert str(explained(TEXT, VIOLATED)) == (
-        "violated by 2 at 0 s: always(req >= 3 -> eventually[0:2](gnt >= 3))\n"
-        "'gnt >= 3' is -2 at 3 s: the robustness follows it from -3 to 3\n"
-        "whatever the signals do elsewhere, it is violated because\n"
-        "  'req >= 3' held at 1 s (3)\n"
-        "  'gnt >= 3' failed from 1 s to 3 s (-3 to -2)"
+        "violated, robustness -2: always(req >= 3 -> eventually[0:2](gnt >= 3))\n"
+        "first violation at 1 s\n"
+        "critical point at 3 s: 'gnt >= 3' is -2; the robustness follows it from -3 to 3\n"
+        "sufficient cause, independent of all other samples:\n"
+        "  'req >= 3' holds at 1 s (3)\n"
+        "  'gnt >= 3' fails from 1 s to 3 s (-3 to -2)"
     )
 
 
 def test_a_satisfied_formula_is_explained_too_and_nothing_idle_is_told():
     granted = {"req": [0, 6, 0, 0, 0], "gnt": [5, 0, 0, 4, 7]}
-    assert explained(TEXT, granted).sentences == (
-        "satisfied by 1 at 0 s: always(req >= 3 -> eventually[0:2](gnt >= 3))",
-        "'gnt >= 3' is 1 at 3 s: the robustness follows it from -3 to 3",
-        "whatever the signals do elsewhere, it is satisfied because",
-        "  'gnt >= 3' held at 0 s (2)",
-        "  'gnt >= 3' held from 3 s to 4 s (1 to 4)",
+    assert lines(explained(TEXT, granted)) == (
+        "satisfied, robustness 1: always(req >= 3 -> eventually[0:2](gnt >= 3))",
+        "critical point at 3 s: 'gnt >= 3' is 1; the robustness follows it from -3 to 3",
+        "sufficient cause, independent of all other samples:",
+        "  'gnt >= 3' holds at 0 s (2)",
+        "  'gnt >= 3' holds from 3 s to 4 s (1 to 4)",
     )
 
 
 def test_in_dense_time_segments_end_where_they_end():
     data = {"req": ([0, 1.5, 2], [0, 6, 0]), "gnt": ([0, 3.75, 5], [0, 7, 0])}
-    assert explained(TEXT.replace("0:2", "0:1"), data, time="dense").sentences == (
-        "violated by 3 at 0 s: always(req >= 3 -> eventually[0:1](gnt >= 3))",
-        "'req >= 3' is 3 at 1.5 s: the robustness follows it down to -3, not up",
-        "whatever the signals do elsewhere, it is violated because",
-        "  'req >= 3' held from 1.5 s until 2 s (3)",
-        "  'gnt >= 3' failed from 1.5 s until 3 s (-3)",
+    assert lines(explained(TEXT.replace("0:2", "0:1"), data, time="dense")) == (
+        "violated, robustness -3: always(req >= 3 -> eventually[0:1](gnt >= 3))",
+        "first violation at 1.5 s",
+        "critical point at 1.5 s: 'req >= 3' is 3; the robustness follows it down to -3, not up",
+        "sufficient cause, independent of all other samples:",
+        "  'req >= 3' holds from 1.5 s until 2 s (3)",
+        "  'gnt >= 3' fails from 1.5 s until 3 s (-3)",
     )
 
 
 @pytest.mark.parametrize(
     ("text", "data", "sentence"),
     [
-        ("x", [1], "'x' is 1 at 0 s: the robustness follows it"),
-        ("x or x > 1", [1], "'x' is 1 at 0 s: the robustness follows it down to 0"),
-        ("always x", [1, 2], "'x' is 1 at 0 s: the robustness follows it up to 2"),
-        ("always(x or x > 1)", [1, 2], "'x' is 1 at 0 s: the robustness follows it from 0 to 2"),
+        ("x", [1], "critical point at 0 s: 'x' is 1; the robustness follows it"),
+        ("x or x > 1", [1], "critical point at 0 s: 'x' is 1; the robustness follows it down to 0"),
+        ("always x", [1, 2], "critical point at 0 s: 'x' is 1; the robustness follows it up to 2"),
+        ("always(x or x > 1)", [1, 2], "critical point at 0 s: 'x' is 1; the robustness follows it from 0 to 2"),
         (
             "eventually(x and x >= 0)",
             [1, 1],
-            "'x' is 1 at 0 s: something else gives the same robustness, and moving this one alone changes nothing",
+            "critical point at 0 s: 'x' is 1; others give the same robustness",
         ),
-        ("always(x < 1 or eventually x >= 1)", [0, 2], "'x >= 1' is 1 at 1 s: the robustness follows it down to -1"),
-        ("x or 3 > 1", [1], "'3 > 1' is 2 at 0 s: a constant"),
-        ("x and false", [1], "no predicate decides it: a constant of the formula does (at 0 s)"),
+        (
+            "always(x < 1 or eventually x >= 1)",
+            [0, 2],
+            "critical point at 1 s: 'x >= 1' is 1; the robustness follows it down to -1",
+        ),
+        ("x or 3 > 1", [1], "critical point at 0 s: '3 > 1' is 2, a constant"),
+        ("x and false", [1], "no predicate decides the robustness: a constant of the formula does"),
         (
             "prev x",
             [1],
-            "no predicate decides it: nothing was recorded before the start, where a window looks (at 0 s)",
+            "no predicate decides the robustness: a window before the start of the trace is empty",
         ),
         (
             "eventually[1:2] x",
             [1],
-            "no predicate decides it: nothing was recorded after the end, where a window looks (at 0 s)",
+            "no predicate decides the robustness: a window after the end of the trace is empty",
         ),
     ],
 )  # fmt: skip
 def test_what_decides_the_robustness(text, data, sentence):
-    assert explained(text, {"x": data}).sentences[1] == sentence
+    assert explained(text, {"x": data}).summary[-2] == sentence
 
 
 def test_a_verdict_that_rests_on_nothing_says_so():
-    assert explained("x or true", {"x": [1]}).sentences == (
-        "satisfied by inf at 0 s: x or true",
-        "no predicate decides it: a constant of the formula does (at 0 s)",
-        "the verdict rests on no predicate: whatever the signals do, it stands",
+    assert lines(explained("x or true", {"x": [1]})) == (
+        "satisfied, robustness inf: x or true",
+        "no predicate decides the robustness: a constant of the formula does",
+        "the verdict depends on no predicate",
     )
 
 
@@ -95,10 +105,7 @@ def test_a_verdict_that_rests_on_nothing_says_so():
 def test_the_verdict_is_the_boolean_one_where_the_robustness_is_0(text, satisfied):
     explanation = explained(text, {"x": [3]})
     assert explanation.satisfied is satisfied
-    assert (
-        explanation.sentences[0]
-        == f"{'satisfied' if satisfied else 'violated'} with robustness 0 at 0 s: {text}"
-    )
+    assert lines(explanation)[0] == f"{'satisfied' if satisfied else 'violated'}, robustness 0: {text}"
     assert [(s.predicate, s.holds) for s in explanation.implicant] == [(text, satisfied)]
 
 
@@ -121,6 +128,7 @@ def test_as_data_it_is_what_json_can_hold():
         "time": 0.0,
         "satisfied": False,
         "robustness": "-inf",
+        "first_violation": 0.0,
         "critical": {
             "predicate": None, "time": 0.0, "start": 0.0, "end": 0.0, "value": "-inf", "polarity": 1,
             "lowest": "-inf", "highest": "-inf", "decided_by": "start",
@@ -132,6 +140,36 @@ def test_as_data_it_is_what_json_can_hold():
         "predicate": "x >= 3", "holds": True, "start": 0.0, "end": None, "closed": False,
         "lowest": 1.0, "highest": 2.0, "reads_from": 0.0, "reads_to": None,
     }  # fmt: skip
+
+
+def test_of_many_causes_one_for_each_predicate_and_those_closest_to_the_critical_point_are_printed():
+    n = 400
+    explanation = explained("always(eventually[0:1](x >= 3))", {"x": [4, 1] * n + [3]})
+    assert explanation.satisfied
+    assert len(explanation.causes) == n + 1
+    first = str(explanation).splitlines()
+    closest = [f"  'x >= 3' holds at {2 * i} s (1)" for i in range(n - 4, n)]
+    assert first[3:] == [*closest, "  'x >= 3' holds at 800 s (0)", f"  {n - 4} more"]
+    assert explanation.text(None).splitlines() == [
+        *first[:3],
+        *(f"  {cause}" for cause in explanation.causes),
+    ]
+
+
+def test_dates_are_dates_with_the_seconds_since_the_start_and_no_nanoseconds():
+    stamps = np.array([1_700_000_000_000_000_000 + i * 500_000_000 for i in range(3)])
+    for times in (stamps.astype("M8[ns]"), stamps.astype("m8[ns]"), stamps / 1e9):
+        for time in ("discrete", "dense"):
+            told = str(
+                explained(
+                    "always(x >= 3)",
+                    {"time": times, "x": [5, 1, 4]},
+                    time=time,
+                    period="500ms" if time == "discrete" else None,
+                )
+            )
+            assert "first violation at 2023-11-14 22:13:20.5 (+0.5 s)" in told
+            assert "170000" not in told
 
 
 def test_it_cannot_be_changed():
@@ -201,8 +239,8 @@ def test_an_operator_with_a_definition_only_is_taken_as_a_whole():
     assert explanation.critical.value == explanation.robustness == 2
     (stretch,) = explanation.implicant
     assert (stretch.start, stretch.end, stretch.reads_from, stretch.reads_to) == (2, 3, 0, 3)
-    assert explanation.sentences[-1] == (
-        "  'median[0:2](x)' held from 2 s to 3 s, read as a whole: from 0 s to 3 s (2)"
+    assert lines(explanation)[-1] == (
+        "  'median[0:2](x)' holds from 2 s to 3 s, read as a whole: from 0 s to 3 s (2)"
     )
 
 
@@ -287,8 +325,8 @@ def test_a_predicate_with_and_without_negation_is_two():
 def test_stamps_that_count_from_1970_are_told_to_the_millisecond():
     times = [1700000000.123, 1700000000.124, 1700000000.125]
     explanation = explained("always(x >= 3)", {"time": times, "x": [5, 1, 4]}, period="1ms")
-    assert explanation.sentences[0] == "violated by 2 at 1700000000.123 s: always(x >= 3)"
-    assert explanation.sentences[3] == "  'x >= 3' failed at 1700000000.124 s (-2)"
+    assert lines(explanation)[0] == "violated, robustness -2: always(x >= 3)"
+    assert lines(explanation)[-1] == "  'x >= 3' fails at 2023-11-14 22:13:20.124 (+0.001 s) (-2)"
 
 
 @pytest.mark.parametrize(
@@ -301,9 +339,9 @@ def test_stamps_that_count_from_1970_are_told_to_the_millisecond():
 )
 def test_a_violation_seen_through_two_windows_was_told_to_rest_on_no_predicate(text):
     result = rtamt.parse(text, time="dense").evaluate({"x": ([0.0, 6.0, 7.0], [1, -1, 1])})
-    assert result.explain().sentences[2:] == (
-        "whatever the signals do elsewhere, it is violated because",
-        "  'x > 0' failed from 6 s until 7 s (-1)",
+    assert lines(result.explain())[3:] == (
+        "sufficient cause, independent of all other samples:",
+        "  'x > 0' fails from 6 s until 7 s (-1)",
     )
 
 
@@ -319,12 +357,12 @@ def test_what_lasts_for_ever_was_told_to_end_a_tick_before_the_end_of_time(text)
 @pytest.mark.parametrize(
     ("text", "at", "when"),
     [
-        ("always[0:1](x >= 3)", 1.5, "failed from 2 s to 2.5 s (-2)"),
-        ("x >= 3", 1.5, "held at 1.5 s (2)"),
-        ("historically(x >= 3)", 2.5, "failed from 2 s to 2.5 s (-2)"),
-        ("always[0:1](x >= 3)", 3.9, "failed from 3.9 s until 4 s (-2)"),
+        ("always[0:1](x >= 3)", 1.5, "fails from 2 s to 2.5 s (-2)"),
+        ("x >= 3", 1.5, "holds at 1.5 s (2)"),
+        ("historically(x >= 3)", 2.5, "fails from 2 s to 2.5 s (-2)"),
+        ("always[0:1](x >= 3)", 3.9, "fails from 3.9 s until 4 s (-2)"),
     ],
 )
 def test_an_instant_between_samples_is_not_told_a_nanosecond_too_late(text, at, when):
     result = rtamt.parse(text, time="dense").evaluate({"x": ([0, 2, 4], [5, 1, 6])})
-    assert result.explain(at=at).sentences[-1] == f"  'x >= 3' {when}"
+    assert lines(result.explain(at=at))[-1] == f"  'x >= 3' {when}"

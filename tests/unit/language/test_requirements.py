@@ -157,7 +157,7 @@ def test_requirements_over_dense_signals_that_begin_at_different_times_share_a_t
     result = spec.evaluate({"x": ([0, 5], [0, 9]), "y": ([3, 6], [4, 0])})
     assert {name: part.signal.times[0] for name, part in result.requirements.items()} == {"A": 3, "B": 3}
     assert (result.robustness, result.requirements["A"].robustness) == (-1, -1)
-    assert "violated by 1 at 3 s" in str(result.requirements["A"].explain())
+    assert "first violation at 3 s" in str(result.requirements["A"].explain())
 
 
 def test_the_classes_of_rtamt_take_the_last_assertion():

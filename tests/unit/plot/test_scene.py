@@ -34,7 +34,7 @@ def test_every_sub_formula_has_its_values(violated):
 
 def test_the_explanation_is_in_its_places(violated):
     seen = scene(violated)
-    assert seen.verdict == "violated by 2 at 0 s"
+    assert seen.verdict == "violated, robustness -2, first violation at 1 s"
     assert seen.critical == (4, 3.0)
     assert {node.text: node.because for node in seen.nodes if node.because} == {
         "req >= 3": ((0.5, 1.5),),
@@ -60,8 +60,12 @@ def test_dense_stretches_are_exact_and_the_last_value_holds():
 @pytest.mark.parametrize(
     ("stamps", "origin", "told"),
     [
-        (np.array([0, 2, 5], "datetime64[s]"), np.datetime64(0, "ns"), "1970-01-01 00:00:02"),
-        (np.array([10**18, 10**18 + 2 * 10**9, 10**18 + 5 * 10**9], "m8[ns]"), 1e9, "1000000002 s"),
+        (np.array([0, 2, 5], "datetime64[s]"), np.datetime64(0, "ns"), "1970-01-01 00:00:02 (+2 s)"),
+        (
+            np.array([10**18, 10**18 + 2 * 10**9, 10**18 + 5 * 10**9], "m8[ns]"),
+            np.datetime64(10**18, "ns"),
+            "2001-09-09 01:46:42 (+2 s)",
+        ),
         ([0.0, 2.0, 5.0], 0.0, "2 s"),
         (np.array([0, 2, 5], "timedelta64[s]"), 0.0, "2 s"),
     ],
@@ -78,8 +82,10 @@ def test_dates_in_discrete_time_are_dates():
     stamps = np.datetime64("2026-03-01T12:00") + np.arange(3) * np.timedelta64(1, "s")
     result = rtamt.parse("always(x >= 3)").evaluate({"time": stamps, "x": [5, 1, 4]})
     seen = scene(result)
-    assert seen.verdict == "violated by 2 at 2026-03-01 12:00:00"
-    assert seen.explanation.sentences[1].startswith("'x >= 3' is -2 at 2026-03-01T12:00:01")
+    assert seen.verdict == ("violated, robustness -2, first violation at 2026-03-01 12:00:01 (+1 s)")
+    assert seen.explanation.summary[2].startswith(
+        "critical point at 2026-03-01 12:00:01 (+1 s): 'x >= 3' is -2"
+    )
 
 
 def test_a_long_chain_is_one_node_and_a_huge_formula_is_cut():

@@ -94,7 +94,7 @@ def test_a_copy_knows_what_was_evaluated(copied: Callable[[Any], Any], cls: type
     spec.spec = "x >= 0"
     spec.parse()
     assert twin.get_value("x >= limit") == values
-    assert twin.explain().sentences[0] == "violated by 2 at 0 s: always(x >= 3)"
+    assert twin.explain().summary[0] == "violated, robustness -2: always(x >= 3)"
 
 
 @Copy

@@ -50,4 +50,4 @@ def test_a_pastified_formula_is_explained_as_such():
     spec.pastify()
     spec.evaluate({"time": [0, 1, 2], "x": [1, 5, 4]})
     assert spec.explain(2).formula == "once[0:1](x >= 3)"
-    assert spec.explain(2).sentences[-1] == "  'x >= 3' held at 1 s (2)"
+    assert spec.explain(2).causes[-1] == "'x >= 3' holds at 1 s (2)"

@@ -1,4 +1,7 @@
-"""Write the results of a check as JUnit, SARIF or HTML, one module per format."""
+"""Write the results of a check as JUnit, SARIF or HTML, one module per format.
+
+An HTML page is made while the check runs, so that it needs no result to stay in memory.
+"""
 
 from __future__ import annotations
 
@@ -6,7 +9,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from rtamt.cli.command import write_output
-from rtamt.cli.reports.html import as_html
+from rtamt.cli.reports.html import HtmlReport
 from rtamt.cli.reports.junit import as_junit
 from rtamt.cli.reports.sarif import as_sarif
 
@@ -18,7 +21,7 @@ if TYPE_CHECKING:
     Report = Callable[[Sequence[Requirement], Sequence[Outcome]], str]
 
 #: Option of ``rtamt check`` to what makes the text of the file.
-REPORTS: Mapping[str, Report] = MappingProxyType({"junit": as_junit, "sarif": as_sarif, "html": as_html})
+REPORTS: Mapping[str, Report] = MappingProxyType({"junit": as_junit, "sarif": as_sarif})
 
 
 def write_report(
@@ -28,4 +31,4 @@ def write_report(
     write_output(path, REPORTS[kind](requirements, outcomes))
 
 
-__all__ = ["REPORTS", "write_report"]
+__all__ = ["REPORTS", "HtmlReport", "write_report"]

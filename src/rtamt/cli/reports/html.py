@@ -1,37 +1,92 @@
-"""One HTML page that needs nothing else: a table of requirements and recordings."""
+"""One self-contained HTML page about requirements and traces: of ``rtamt report`` and ``rtamt check --html``."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+import os
+from dataclasses import replace
+from datetime import datetime, timezone
+from typing import TYPE_CHECKING, Any
 
-from rtamt.cli.command import short
+from rtamt.cli.command import CommandError, short, write_output
+from rtamt.cli.reading_options import instant
 from rtamt.cli.reports.messages import moment
 from rtamt.cli.terminal import printed
-from rtamt.report import Row, page
+from rtamt.errors import StlError
+from rtamt.plot.scene import scene
+from rtamt.readers.sql import shown
+from rtamt.report import File, Formula, Page, Row
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Iterator, Sequence
 
     from rtamt.cli.runner import Outcome, Requirement
 
-
-def as_html(requirements: Sequence[Requirement], outcomes: Sequence[Outcome]) -> str:
-    """Return the page; with pictures it is what ``rtamt report`` writes."""
-    return page("rtamt check", formulas(requirements), [row(outcome) for outcome in outcomes])
+#: Characters of a specification that a page shows.
+_TEXT = 20_000
 
 
-def formulas(requirements: Sequence[Requirement]) -> Mapping[str, str]:
-    """Return the text of every requirement's formula, with its description before it."""
-    return {
-        requirement.label: ": ".join(
-            filter(None, (requirement.written.description, printed(requirement.spec.formula)))
-        )
-        for requirement in requirements
-    }
+class HtmlReport:
+    """A page that is made outcome by outcome.
+
+    ``given``: the specifications, ``requirements`` what has a row of its own; ``at``: the time that is explained, by
+    default the first of each trace. Raises :class:`UsageError` where jinja2 is not installed.
+    """
+
+    def __init__(
+        self, command: str, given: Sequence[Requirement], requirements: Sequence[Requirement], at: Any = None
+    ) -> None:
+        self._given = given
+        self._at = at
+        self._traces: dict[str, None] = {}
+        texts = {
+            requirement.label: Formula(printed(requirement.spec.formula), requirement.written.description)
+            for requirement in requirements
+        }
+        self._page = Page(command, texts)
+
+    def add(self, outcome: Outcome) -> None:
+        """Add what came of one requirement over one trace, with charts where there is a result."""
+        self._traces[outcome.trace] = None
+        row, seen = _row(outcome), None
+        if outcome.result is not None:
+            try:
+                seen = scene(outcome.result, instant(self._at, outcome.result))
+            except StlError as error:
+                if self._at is not None:
+                    raise CommandError(f"{outcome.trace}: {error}") from error
+                row = replace(row, notes=(*row.notes, str(error)))
+        self._page.add(row, seen)
+
+    def write(self, path: str) -> None:
+        """Write the page."""
+        write_output(path, self._page.text(self._files()))
+
+    def _files(self) -> Iterator[File]:
+        for requirement in self._given:
+            text = requirement.spec.text or printed(requirement.spec.formula)
+            if not os.path.isfile(requirement.given):
+                yield File("Formula", "", text=_cut(requirement.given))
+            else:
+                yield File("Specification", requirement.given, text=_cut(text))
+        for trace in self._traces:
+            yield File("Trace", shown(trace), facts=_facts(trace))
 
 
-def row(outcome: Outcome) -> Row:
-    """Return what came of one requirement over one recording, for the table."""
+def _cut(text: str) -> str:
+    return text if len(text) <= _TEXT else f"{text[:_TEXT]}\n… {len(text) - _TEXT} more characters"
+
+
+def _facts(path: str) -> str:
+    """Return size and date of a file; "" of what is none."""
+    if not os.path.isfile(path):
+        return ""
+    status = os.stat(path)
+    changed = datetime.fromtimestamp(status.st_mtime, timezone.utc)
+    return f"{status.st_size} bytes, modified {changed:%Y-%m-%d %H:%M} UTC"
+
+
+def _row(outcome: Outcome) -> Row:
+    """Return what came of one requirement over one trace, as text."""
     if outcome.error:
         return Row(outcome.requirement, outcome.trace, outcome.verdict, error=outcome.error)
     return Row(
