@@ -80,6 +80,7 @@ costs: $(VENV)/.core $(VENV)/.extras ## what a sample costs us, beside the figur
 	$(RUN) benchmarks/stream.py
 
 peers: $(VENV)/.made ## install the tools that we are compared with, each into an environment of its own
+	@tools/apt-packages flex bison libfl-dev || echo "A tool whose build needs them is left out."
 	$(RUN) conformance/peers/peers.py
 
 conformance: $(VENV)/.core peers ## ask every peer the conformance corpus: conformance/RESULTS.md
