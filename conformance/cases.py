@@ -52,7 +52,7 @@ class Case:
 def read(name: str) -> list[Case]:
     """Return the cases of one file of the corpus."""
     with (FOLDER / name).open(encoding="utf-8") as lines:
-        return [Case(**_each(json.loads(line), _number)) for line in lines]
+        return [Case(**each(json.loads(line), number)) for line in lines]
 
 
 def write(name: str, cases: list[Case]) -> None:
@@ -64,19 +64,21 @@ def write(name: str, cases: list[Case]) -> None:
 def line(case: Case) -> str:
     """Return a case as it is written."""
     kept = {k: v for k, v in asdict(case).items() if k == "known" or v not in ("standard", [], None)}
-    return json.dumps(_each(kept, _text), separators=(",", ":"), allow_nan=False, ensure_ascii=False)
+    return json.dumps(each(kept, text), separators=(",", ":"), allow_nan=False, ensure_ascii=False)
 
 
-def _each(value: Any, change: Any) -> Any:
+def each(value: Any, change: Any) -> Any:
     """Change every number of a signal or an answer: JSON has no infinity."""
     if isinstance(value, dict):
-        return {k: _each(v, change) for k, v in value.items()}
-    return [_each(v, change) for v in value] if isinstance(value, list) else change(value)
+        return {k: each(v, change) for k, v in value.items()}
+    return [each(v, change) for v in value] if isinstance(value, list) else change(value)
 
 
-def _text(value: Any) -> Any:
+def text(value: Any) -> Any:
+    """Return an infinity as JSON has it; everything else stays."""
     return str(value) if isinstance(value, float) and math.isinf(value) else value
 
 
-def _number(value: Any) -> Any:
+def number(value: Any) -> Any:
+    """Return an infinity as Python has it; everything else stays."""
     return float(value) if value in ("inf", "-inf") else value

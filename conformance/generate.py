@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 import rtamt
-from conformance import cases, corners
+from conformance import cases, corners, early
 from conformance.cases import SEMANTICS, Case
 from conformance.trees import in_steps, tree
 from rtamt.errors import EvaluationError
@@ -225,6 +225,7 @@ def main() -> None:
                 sys.stderr.write(f"\r{time}: {k} of {len(todo)} cases")
         sys.stderr.write(f"\r{time}: {len(todo)} cases       \n")
         cases.write(f"{time}.jsonl", made)
+    early.write(list(early.cases(Drawing, STEPS, SEED)))
 
 
 if __name__ == "__main__":

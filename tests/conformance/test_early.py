@@ -1,0 +1,51 @@
+"""The cases of bounds and early verdicts: from the definition, and held against an independent evaluator."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from random import Random
+
+import pytest
+from conformance import early
+
+from rtamt.language.parser import parse_formula
+from tests.oracle import meaning
+
+CASES = early.read()
+
+
+@pytest.mark.parametrize("case", [pytest.param(case, id=case.id) for case in CASES])
+def test_the_answers_are_those_of_the_definition(case):
+    fresh = replace(case, tree={}, bounds=[], verdicts=[])
+    assert early.answered(fresh) == case
+
+
+@pytest.mark.parametrize("case", [pytest.param(case, id=case.id) for case in CASES])
+def test_the_answer_of_every_completed_trace_lies_within_the_final_bounds(case):
+    rng = Random(case.id)  # noqa: S311 - no secret
+    formula = parse_formula(case.formula)
+
+    def completed(name, value):
+        low, high = case.pair(name, value)
+        inside = [v for v in (low, high, max(low, -9.0), min(high, 9.0), 0.5) if low <= v <= high]
+        return rng.choice(inside)
+
+    for _ in range(3):
+        try:
+            if case.time == "discrete":
+                columns = {name: [completed(name, v) for v in vs] for name, vs in case.signals.items()}
+                n = len(case.bounds[-1])
+                values = meaning.discrete(formula, columns, n, case.seconds)
+                bounds = case.bounds[-1]
+            else:
+                signals = {
+                    name: [(t, completed(name, v)) for t, v in vs] for name, vs in case.signals.items()
+                }
+                start, values = meaning.dense(formula, signals, case.seconds)
+                end = max(t for samples in case.signals.values() for t, _ in samples)
+                rows = case.bounds[-1]
+                bounds = [[row[1:] for row in rows if row[0] <= t][-1] for t in range(start, end + 1)]
+        except meaning.NoValueError:
+            continue
+        for (lower, upper), value in zip(bounds, values, strict=False):
+            assert lower <= value <= upper
