@@ -165,9 +165,8 @@ _Asked = dict[int, tuple["Specification", "Query"]]
 def _evaluate_alike(asked: _Asked, data: Any) -> Iterator[tuple[int, Result]]:
     """Yield numbers and results of queries that read the recording by the same clock."""
     names = tuple(dict.fromkeys(name for spec, _ in asked.values() for name in spec.input_names))
-    known = {name for spec, _ in asked.values() for name in spec.declared}
     spec, query = next(iter(asked.values()))
-    whole = query.record(data, names, known)
+    whole = query.record(data, names)
     for number, (_, query) in asked.items():
         if query.domain.step is None:  # else checked without the recording
             with _place(number):
@@ -177,7 +176,10 @@ def _evaluate_alike(asked: _Asked, data: Any) -> Iterator[tuple[int, Result]]:
         formulas = tuple(asked[number][1].formula for number in numbers)
         for number, signal in zip(numbers, evaluators(formulas, recording), strict=True):
             spec, query = asked[number]
-            yield number, Result(spec, whole.select(spec.input_names), signal, query.semantics)
+            yield (
+                number,
+                Result(spec, spec.with_units(whole.select(spec.input_names)), signal, query.semantics),
+            )
 
 
 def _with_one_extent(asked: _Asked, whole: DomainTrace) -> Iterator[tuple[DomainTrace, list[int]]]:

@@ -33,6 +33,9 @@ if TYPE_CHECKING:
 #: Characters of a long line that are shown on each side of a place.
 _SHOWN = 60
 
+#: Names that a message lists.
+_LISTED = 16
+
 #: A word that is longer than any path or name should be.
 _PAGES = re.compile(r"\S{600,}")
 
@@ -198,6 +201,22 @@ def did_you_mean(name: object, known: Iterable[str]) -> str:
     """
     close = get_close_matches(name, list(known), n=1) if isinstance(name, str) else []
     return f"; did you mean '{close[0]}'?" if close else ""
+
+
+def choices(name: object, known: Iterable[str], noun: str) -> str:
+    """Return the nearest known name, then all of them, the nearest first, and of a long list the beginning.
+
+    >>> choices("gmt", ["req", "gnt"], "columns")
+    "; did you mean 'gnt'? (columns: gnt, req)"
+    >>> choices("speed", ["req", "gnt"], "columns")
+    '; columns: req, gnt'
+    """
+    names = [str(each) for each in known]
+    close = get_close_matches(name, names, n=_LISTED) if isinstance(name, str) else []
+    names = [*close, *(each for each in names if each not in close)]
+    more = f" and {len(names) - _LISTED} more" if len(names) > _LISTED else ""
+    listing = f"{noun}: {', '.join(names[:_LISTED]) or 'none'}{more}"
+    return f"; did you mean '{close[0]}'? ({listing})" if close else f"; {listing}"
 
 
 def escaped(text: str) -> str:

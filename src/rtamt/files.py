@@ -6,12 +6,24 @@ import os
 import secrets
 import stat
 from contextlib import contextmanager, suppress
+from difflib import get_close_matches
 from typing import TYPE_CHECKING
 
 from rtamt.errors import readable
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
+
+
+def nearest_file(path: str) -> str:
+    """Return ``"; did you mean 'log.csv'?"`` for the file of the nearest name in the same folder, else nothing."""
+    folder, name = os.path.split(path)
+    try:
+        names = os.listdir(folder or ".")
+    except OSError:
+        return ""
+    close = get_close_matches(name, names, n=1, cutoff=0.75)
+    return f"; did you mean '{os.path.join(folder, close[0])}'?" if close else ""
 
 
 @contextmanager

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any
 from rtamt.errors import EvaluationError, UsageError, did_you_mean
 from rtamt.language.formula import variables
 from rtamt.language.grammar import is_number
+from rtamt.signals.listing import show_time
 from rtamt.signals.outcomes import BoundedSignal, Interval
-from rtamt.signals.trace import show_time
 from rtamt.verdicts import offline as verdicts
 from rtamt.verdicts.offline import Judged, judge
 

@@ -9,7 +9,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, TypeAlias, TypedDict
 
 from rtamt.engine.backend import BACKENDS
-from rtamt.errors import UsageError, did_you_mean, shown
+from rtamt.errors import UsageError, choices, did_you_mean, shown
 from rtamt.language.formula import variables
 from rtamt.language.operators import Language
 from rtamt.rewrite.semantics import ROLES, PredicateSemantics
@@ -57,9 +57,7 @@ def check_language(language: Language) -> None:
 def check_backend(backend: str) -> None:
     """Raise :class:`UsageError` unless there is such a back end."""
     if backend not in BACKENDS:
-        raise UsageError(
-            f"unknown backend {shown(backend)}{did_you_mean(backend, BACKENDS)}; choose from {', '.join(BACKENDS)}"
-        )
+        raise UsageError(f"unknown backend {shown(backend)}{choices(backend, BACKENDS, 'back ends')}")
 
 
 def check_constants(constants: Mapping[str, float]) -> None:

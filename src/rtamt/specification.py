@@ -209,7 +209,7 @@ class Specification:
         Interval(lower=-3.0, upper=1.5)
         """
         query = self.query(time, period, tolerance, resolution, semantics, time_unit)
-        recording = self._recorded(query, data, uncertainty, ranges)
+        recording = self.with_units(self._recorded(query, data, uncertainty, ranges))
         self._check(query, recording)
         if recording.domain.continuous and len(self.requirements) > 1:
             outputs = [one.outputs(query.semantics) for one in self.requirements.values()]
@@ -229,15 +229,15 @@ class Specification:
         declared = Uncertainty.of(uncertainty, ranges, self.input_names)
         missing: dict[str, Any] = {}
         try:
-            recording = query.record(data, self.input_names, self.declared)
+            recording = query.record(data, self.input_names)
         except TraceError as error:
             if error.variable not in self.input_names:
                 raise
             own_clocks = query.domain.continuous
-            filled, missing = fill_gaps(data, self.input_names, self.declared, own_clocks=own_clocks)
+            filled, missing = fill_gaps(data, self.input_names, own_clocks=own_clocks)
             if not missing:
                 raise
-            recording = query.record(filled, self.input_names, self.declared)
+            recording = query.record(filled, self.input_names)
         return declared.applied(recording, missing)
 
     def judge(self, data: Any) -> Mapping[str, Result]:
@@ -246,10 +246,15 @@ class Specification:
         ``data`` and errors as for :meth:`evaluate`, which computes verdicts when they are asked for.
         """
         query = self.query()
-        recording = query.record(data, self.input_names, self.declared)
+        recording = self.with_units(query.record(data, self.input_names))
         self._check(query, recording)
         outputs = [one.outputs() for one in self.requirements.values()]
         return requirements_of(self, judge(outputs, recording, self.signals_of), query.semantics)
+
+    def with_units(self, recording: DomainTrace) -> DomainTrace:
+        """Return a recording with the declared units of the variables whose source names none."""
+        units = {d.name: d.unit for d in self.document.declarations if d.unit and d.name in self.input_names}
+        return recording.with_units({**units, **recording.units}) if units else recording
 
     def query(
         self,

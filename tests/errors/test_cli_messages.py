@@ -25,30 +25,30 @@ def run(capsys, monkeypatch, tmp_path):
     [
         (
             ["chek"],
-            f"there is no command 'chek', only {', '.join(COMMANDS)}; did you mean 'check'?",
+            f"there is no command 'chek'; did you mean 'check'? (commands: {', '.join(COMMANDS)}); see 'rtamt --help'",
         ),
-        (["--verion"], "unrecognized arguments: --verion; see 'rtamt --help'"),
+        (["--verion"], "unknown option '--verion'; did you mean '--version'?; see 'rtamt --help'"),
         (["check"], "the following arguments are required: SPEC, TRACE; see 'rtamt check --help'"),
         (["check", "x"], "there is no trace to check: name a file, or --sql URL; see 'rtamt check --help'"),
         (
             ["check", "x", "good.csv", "--jsn"],
-            "unrecognized arguments: --jsn; see 'rtamt check --help'",
+            "unknown option '--jsn'; did you mean '--json'?; see 'rtamt check --help'",
         ),
-        (["info", "x", "good.csv"], "unrecognized arguments: good.csv; see 'rtamt info --help'"),
+        (["info", "x", "good.csv"], "'good.csv' chooses signals of a recording, and 'x' is none"),
         (
             ["check", "x", "good.csv", "--backend", "pyton"],
-            "unknown backend 'pyton'; did you mean 'python'?; choose from cpp, python",
+            "unknown backend 'pyton'; did you mean 'python'? (back ends: python, cpp)",
         ),
         (
             ["check", "x", "good.csv", "--color", "alway"],
-            "unknown colour mode 'alway'; choose from auto, always, never; did you mean 'always'?",
+            "unknown colour mode 'alway'; did you mean 'always'? (modes: always, auto, never)",
         ),
         (
             ["check", "x", "good.csv", "--period", "soon"],
             "'soon' is not a duration; write for example '100ms', '1/3s' or 5",
         ),
         (["info", "x", "--period", "0"], "the sampling period is '0'; it must be positive"),
-        (["info", "x", "--unit", "h"], "'h' is not a unit of time; units are s, ms, us, ns"),
+        (["info", "x", "--unit", "d"], "'d' is not a unit of time; units: h, min, s, ms, us, ns"),
         (
             ["monitor", "x", "--tolerance", "-1"],
             "the tolerance is -1; give a fraction of the period, such as 0.1",
@@ -105,7 +105,7 @@ def run(capsys, monkeypatch, tmp_path):
             ["check", "x", "folder"],
             "'folder' is a folder without metadata.yaml, so that it is no bag of ROS 2; name a file",
         ),
-        (["check", "y", "good.csv"], "good.csv has no column 'y', only time, x"),
+        (["check", "y", "good.csv"], "good.csv has no column 'y'; columns: time, x"),
         (
             ["check", "always[0:300ms](x > 0)", "good.csv"],
             "good.csv: The operator bound must be a multiple of the sampling period: "
@@ -152,11 +152,14 @@ def test_messages(run, args, message):
             "or a row of CSV column names, "
             f"got '{'*' * 60}...'",
         ),
-        ("\n1,2\n", "stdin, line 2: expected a row of column names, such as time,x; got '1,2'"),
-        ("time,y\n", "stdin has no column 'x', only time, y"),
         (
-            "time [min],x\n",
-            "stdin, line 1: the unit of the time column 'time [min]' is 'min', which is none of s, ms, us, ns",
+            "\n1,2\n",
+            "stdin, line 2: expected a row of column names, such as time,x; got '1,2': put the names above it",
+        ),
+        ("time,y\n", "stdin has no column 'x'; columns: time, y"),
+        (
+            "time [day],x\n",
+            "stdin, line 1: the unit of the time column 'time [day]' is 'day', which is none of h, min, s, ms, us, ns",
         ),
         ("time,x\n0\n", "stdin, line 2: 1 value, but 2 columns (time, x)"),
         ("time,x\n0,\n", "stdin, line 2: 'x' is empty, expected a number"),
@@ -166,7 +169,7 @@ def test_messages(run, args, message):
             '{"x": ' + "[" * 100_000,
             "stdin, line 1: not JSON to read: a number is too long, or nesting too deep",
         ),
-        ('{"y": 1}\n', "stdin, line 1: the data has no 'x'; it has y"),
+        ('{"y": 1}\n', "stdin, line 1: the data has no 'x'; signals: y"),
         ('{"x": null}\n', "stdin, line 1: 'x' is null, expected a number"),
         ('{"x": "abc"}\n', "stdin, line 1: 'x' is \"abc\", expected a number"),
         (
@@ -201,7 +204,7 @@ def test_messages_about_the_first_sample(run, stdin, message, backend):
     ("line", "message"),
     [
         ("3", 'expected a JSON object, such as {"time": 0, "x": 1}, got 3'),
-        ('{"x": 1}', "the data has no 'time'; it has x"),
+        ('{"x": 1}', "the data has no 'time'; signals: x"),
         (
             '{"time": 2, "x": 1}',
             "sample 1 at 2 s is 2 s after the one before, expected 1 s (within 10%): "

@@ -20,8 +20,8 @@ def said(error: type[Exception], call: Any, *args: Any, **kwargs: Any) -> str:
 
 
 OFFLINE = [
-    ({"x": [1, 2]}, "the data has no 'y'; it has x"),
-    ({"x": [1], "yy": [2]}, "unknown variable 'yy' in the data; the formula reads x, y; did you mean 'y'?"),
+    ({"x": [1, 2]}, "the data has no 'y'; signals: x"),
+    ({"x": [1], "yy": [2]}, "the data has no 'y'; did you mean 'yy'? (signals: yy, x)"),
     ({"x": [1, 2], "y": [1]}, "'x' has 2 and 'y' has 1 samples: give one value of each at every sample"),
     (
         {"time": [0, 1], "x": [1, 2, 3], "y": [1, 2, 3]},
@@ -71,8 +71,8 @@ def test_a_field_that_is_not_there() -> None:
 
 
 ONLINE = [
-    ((1.0, {"x": 1}), "the data has no 'y'; it has x"),
-    ((1.0, {"x": 1, "y": 1, "zz": 0}), "unknown variable 'zz' in the data; the formula reads x, y"),
+    ((1.0, {"x": 1}), "the data has no 'y'; signals: x"),
+    ((1.0, {"x": 1, "y": 1, "zz": 0}), "the formula has no variable 'zz'; variables: x, y"),
     ((1.0, {"x": 1, "y": "abc"}), "'y' is 'abc' at sample 1, expected a number"),
     ((1.0, {"x": 1, "y": None}), "'y' is None at sample 1, expected a number"),
     ((1.0, {"x": 1, "y": NAN}), "'y' is NaN at sample 1, time 1 s: fill the gap or leave the sample out"),
@@ -196,7 +196,7 @@ def test_the_callers_time_stamps_are_never_changed() -> None:
 
 def test_wrong_settings() -> None:
     assert said(rtamt.UsageError, rtamt.parse, "x", backend="c++") == (
-        "unknown backend 'c++'; choose from cpp, python"
+        "unknown backend 'c++'; back ends: cpp, python"
     )
     assert said(rtamt.UsageError, rtamt.parse, "x", period=0) == (
         "the sampling period is 0; it must be positive"

@@ -14,10 +14,10 @@ NAN, INF = float("nan"), float("inf")
 BACKENDS = ["cpp", "python"]
 
 WRONG: list[tuple[Any, str]] = [
-    ({"x": [[0.0, 1.0]]}, "the data has no 'y'; it has x"),
+    ({"x": [[0.0, 1.0]]}, "the data has no 'y'; signals: x"),
     (
-        {"x": [[0.0, 1.0]], "y": [[0.0, 1.0]], "yy": [[0.0, 1.0]]},
-        "unknown variable 'yy' in the data; the formula reads x, y; did you mean 'y'?",
+        {"x": [[0.0, 1.0]], "yy": [[0.0, 1.0]]},
+        "the data has no 'y'; did you mean 'yy'? (signals: yy, x)",
     ),
     ({"x": [], "y": [[0.0, 1.0]]}, "'x' has no samples: give at least one"),
     (
@@ -80,7 +80,7 @@ def test_wrong_recording(data: Any, message: str, backend: str) -> None:
 UPDATES: list[tuple[Any, dict[str, Any], str]] = [
     (1.0, {"x": 1.0}, "'x' has two samples at 1 s (sample 2 and the one before, with ticks of 1 ns): keep one of them"),
     (0.5, {"x": 1.0}, "the time of 'x' does not increase at sample 2: 0.5 s comes after 1 s; sort the samples"),
-    (2.0, {"z": 1.0}, "unknown variable 'z' in the data; the formula reads x, y"),
+    (2.0, {"z": 1.0}, "the formula has no variable 'z'; variables: x, y"),
     (2.0, {"x": NAN}, "'x' is NaN at sample 2, time 2 s: fill the gap or leave the sample out"),
     (2.0, {"x": "a"}, "'x' is 'a' at sample 2, expected a number"),
     (NAN, {"x": 1.0}, "the time of 'x' is nan at sample 2: give a finite time"),
@@ -166,7 +166,9 @@ def test_operators_that_dense_time_does_not_have() -> None:
 def test_wrong_settings() -> None:
     with pytest.raises(rtamt.UsageError) as info:
         rtamt.parse("x", time="dens")
-    assert str(info.value) == "unknown time domain 'dens'; choose from discrete, dense; did you mean 'dense'?"
+    assert (
+        str(info.value) == "unknown time domain 'dens'; did you mean 'dense'? (time domains: dense, discrete)"
+    )
     with pytest.raises(rtamt.UsageError) as info:
         rtamt.parse("3 >= 2").evaluate({}, time="dense")
     assert str(info.value) == (

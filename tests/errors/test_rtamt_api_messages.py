@@ -115,12 +115,12 @@ SETTINGS = {
         "the module 'some_msgs' has no 'Sensors'; did you mean 'Sensor'?",
     ),
     "unit": (
-        lambda s: setattr(s, "unit", "min"),
-        "'min' is not a unit of time; units are s, ms, us, ns",
+        lambda s: setattr(s, "unit", "day"),
+        "'day' is not a unit of time; units: h, min, s, ms, us, ns",
     ),
     "unit of the period": (
-        lambda s: s.set_sampling_period(1, "h"),
-        "'h' is not a unit of time; units are s, ms, us, ns",
+        lambda s: s.set_sampling_period(1, "d"),
+        "'d' is not a unit of time; units: h, min, s, ms, us, ns",
     ),
     "period": (lambda s: s.set_sampling_period(0, "ms"), "the sampling period is 0 ms; it must be positive"),
     "tolerance": (
@@ -323,8 +323,11 @@ OFFLINE = {
         [[0, 1]],
         "expected a mapping from variable to values, such as {'time': [...], 'x': [...]}, got list",
     ),
-    "no time": ({"x": [1]}, "the data has no 'time'; it has x"),
-    "no variable": ({"time": [0], "xs": [1]}, "the data has no 'x'; it has xs; did you mean 'xs'?"),
+    "no time": ({"x": [1]}, "the data has no 'time'; signals: x"),
+    "no variable": (
+        {"time": [0], "xs": [1]},
+        "the data has no 'x'; did you mean 'xs'? (signals: xs)",
+    ),
     "lengths": (
         {"time": [0, 1], "x": [1]},
         "'time' has 2 and 'x' has 1 samples: give one value of each at every sample",
@@ -364,7 +367,7 @@ ONLINE = {
     "unknown name": (
         1,
         [("xx", 1.0)],
-        "unknown variable 'xx' in the data; the formula reads x; did you mean 'x'?",
+        "the formula has no variable 'xx'; did you mean 'x'? (variables: x)",
     ),
     "NaN": (1, [("x", NAN)], "'x' is NaN at sample 1, time 1 s: fill the gap or leave the sample out"),
     "text": (1, [("x", "a")], "'x' is 'a' at sample 1, expected a number"),

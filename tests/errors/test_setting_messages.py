@@ -7,8 +7,8 @@ import rtamt
 from rtamt.extend import STL, Bounds, Fixity, Operator, Sort, Tense
 
 SAID = {
-    "time": (lambda: rtamt.parse("x", time=None), "unknown time domain None; choose from discrete, dense"),
-    "backend": (lambda: rtamt.parse("x", backend=3), "unknown backend 3; choose from cpp, python"),
+    "time": (lambda: rtamt.parse("x", time=None), "unknown time domain None; time domains: discrete, dense"),
+    "backend": (lambda: rtamt.parse("x", backend=3), "unknown backend 3; back ends: cpp, python"),
     "language": (
         lambda: rtamt.parse("x", language="stl"),
         "language is 'stl', expected a Language: STL or STL.extend(...)",

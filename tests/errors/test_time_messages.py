@@ -167,12 +167,14 @@ def test_integers_of_polars_with_128_bits_are_numbers() -> None:
 def test_a_unit_that_is_none_and_one_too_many(time: str) -> None:
     spec = rtamt.parse("x", time=time)
     for call in (
-        lambda: spec.evaluate({"time": [0], "x": [1]}, time_unit="min"),
-        lambda: spec.monitor(time=time, time_unit="min"),
-        lambda: rtamt.read({"time": [0], "x": [1]}, time_unit="min"),
-        lambda: rtamt.check_stream(spec, [], time=time, time_unit="min"),
+        lambda: spec.evaluate({"time": [0], "x": [1]}, time_unit="day"),
+        lambda: spec.monitor(time=time, time_unit="day"),
+        lambda: rtamt.read({"time": [0], "x": [1]}, time_unit="day"),
+        lambda: rtamt.check_stream(spec, [], time=time, time_unit="day"),
     ):
-        with pytest.raises(rtamt.UsageError, match=r"^'min' is not a unit of time; units are s, ms, us, ns$"):
+        with pytest.raises(
+            rtamt.UsageError, match=r"^'day' is not a unit of time; units: h, min, s, ms, us, ns$"
+        ):
             call()
     read = rtamt.read({"time": [0, 1], "x": [1, 2]})
     for call in (

@@ -184,7 +184,7 @@ def test_evaluating_twice_gives_the_same_answer_twice():
 @pytest.mark.parametrize(
     ("dataset", "message"),
     [
-        ([["x", [[0, 1]]]], "the data has no 'y'; it has x"),
+        ([["x", [[0, 1]]]], "the data has no 'y'; signals: x"),
         ([["x", [[0, 1]]], ["y", []]], "'y' has no samples: give at least one"),
     ],
 )

@@ -257,9 +257,12 @@ def test_the_violation_counter_looks_at_every_gap_not_only_the_last():
 @pytest.mark.parametrize(
     ("data", "message"),
     [
-        ({"time": [0, 1]}, "the data has no 'x'; it has nothing"),
-        ({"x": [0, 1]}, "the data has no 'time'; it has x"),
-        ({"time": [0, 1], "xx": [1, 2]}, "the data has no 'x'; it has xx; did you mean 'xx'?"),
+        ({"time": [0, 1]}, "the data has no 'x'; signals: none"),
+        ({"x": [0, 1]}, "the data has no 'time'; signals: x"),
+        (
+            {"time": [0, 1], "xx": [1, 2]},
+            "the data has no 'x'; did you mean 'xx'? (signals: xx)",
+        ),
         (
             {"time": [0, 1], "x": [1]},
             "'time' has 2 and 'x' has 1 samples: give one value of each at every sample",

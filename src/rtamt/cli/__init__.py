@@ -46,7 +46,7 @@ from rtamt.cli import (
 )
 from rtamt.cli.command import ERROR, INTERRUPTED, OK, Command, Help, Parser, complain
 from rtamt.cli.terminal import say
-from rtamt.errors import StlError, UsageError, did_you_mean
+from rtamt.errors import StlError, UsageError, choices
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -132,11 +132,12 @@ def _dispatch(argv: list[str]) -> int:
         return ERROR
     name, *rest = argv
     if name.startswith("-"):
-        overview().parse_args(argv)  # --help and --version do not return
+        overview().read(argv)  # --help and --version do not return
     command = COMMANDS.get(name)
     if command is None:
-        hint = did_you_mean(name, COMMANDS)
-        raise UsageError(f"there is no command '{name}', only {', '.join(COMMANDS)}{hint}")
+        raise UsageError(
+            f"there is no command '{name}'{choices(name, COMMANDS, 'commands')}; see 'rtamt --help'"
+        )
     return command.run(parser_of(command).read(rest))
 
 

@@ -29,8 +29,12 @@ def requirements_and_traces(args: Namespace, command: str) -> tuple[list[Require
 
     A requirement is called by its ID (what stands after ``require``) where no other one has it.
     """
-    given, traces = _split(args, command)
+    given, traces = _split(args)
     specs = [read_specification(Namespace(**{**vars(args), "spec": text}), args.time) for text in given]
+    if not traces:
+        raise CommandError(
+            f"there is no trace to {command}: name a file, or --sql URL; see 'rtamt {command} --help'"
+        )
     names = Counter(spec.name for spec in specs)
     called = [
         spec.name if spec.name and names[spec.name] == 1 else text
@@ -63,7 +67,7 @@ def each_requirement(given: list[Requirement]) -> list[Requirement]:
     return [row for requirement in given for row in requirement.rows or (requirement,)]
 
 
-def _split(args: Namespace, command: str) -> tuple[list[str], list[str]]:
+def _split(args: Namespace) -> tuple[list[str], list[str]]:
     given, traces = [args.spec], list(args.traces)
     while traces and traces[0].lower().endswith(".stl") and given[-1].lower().endswith(".stl"):
         given.append(traces.pop(0))
@@ -71,10 +75,6 @@ def _split(args: Namespace, command: str) -> tuple[list[str], list[str]]:
         if traces:
             raise CommandError(f"--sql reads a database; leave out the trace '{traces[0]}', or --sql")
         return given, [args.sql]
-    if not traces:
-        raise CommandError(
-            f"there is no trace to {command}: name a file, or --sql URL; see 'rtamt {command} --help'"
-        )
     return given, traces
 
 

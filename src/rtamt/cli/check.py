@@ -13,6 +13,7 @@ from rtamt.cli.bag import write_bag
 from rtamt.cli.command import (
     ERROR,
     OK,
+    OUTPUT,
     VIOLATED,
     Command,
     CommandError,
@@ -22,6 +23,7 @@ from rtamt.cli.command import (
     complain,
     json_number,
     json_text,
+    options,
     short,
     stamp_text,
     warn,
@@ -109,19 +111,20 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("traces", metavar="TRACE", nargs="*", help="a recording; before it more SPECs (.stl)")
     add_time_option(parser)
     add_reading_options(parser)
-    parser.add_argument(
+    group = options(parser, OUTPUT)
+    group.add_argument(
         "-o",
         "--output",
         metavar="FILE",
         help="write the robustness at every sample as CSV, or (.mcap) a bag with topics of it",
     )
-    parser.add_argument("--json", action="store_true", help="print JSON, one object a line")
+    group.add_argument("--json", action="store_true", help="print JSON, one object a line")
     for kind, name in _REPORT_NAMES.items():
-        parser.add_argument(f"--{kind}", metavar="FILE", help=f"write a report as {name}")
+        group.add_argument(f"--{kind}", metavar="FILE", help=f"write a report as {name}")
     parser.add_argument("--jobs", type=int, metavar="N", help="processes (default: one a core, if it pays)")
     add_ignore_option(parser)
-    parser.add_argument("--quiet", action="store_true", help="print errors only: the exit code has it all")
-    parser.add_argument(
+    group.add_argument("--quiet", action="store_true", help="print errors only: the exit code has it all")
+    group.add_argument(
         "--color", default="auto", metavar="{auto,always,never}", help="colour (default: auto, on a terminal)"
     )
 

@@ -20,8 +20,9 @@ import numpy as np
 from rtamt.cli.language import add_language_option, read_language
 from rtamt.cli.terminal import say
 from rtamt.engine.native import core
-from rtamt.errors import SpecificationError, StlError, UsageError, readable
-from rtamt.files import write_bytes, write_text
+from rtamt.errors import SpecificationError, StlError, UsageError, did_you_mean, readable
+from rtamt.files import nearest_file, write_bytes, write_text
+from rtamt.language.lexer import NAME
 from rtamt.language.lint import CODES
 from rtamt.language.units import UNITS, decimal
 from rtamt.readers.formats import METADATA, SUFFIXES
@@ -43,7 +44,9 @@ INTERRUPTED = 130  # what a shell reports for a program that Ctrl-C ended
 
 _SPECIFICATION_SUFFIXES = (".stl",)
 #: Before an argument that is no option whatever it looks like; no argument of a process can have it.
-_NAME = "\0"
+_MARK = "\0"
+#: Titles under which the help lists options.
+SPECIFICATION, READING, OUTPUT = "the specification", "reading recordings", "output"
 _LIKE_A_PATH = re.compile(r"[\w.~:\\/-]*[\\/][\w.~:\\/-]*")
 
 
@@ -70,7 +73,7 @@ class Parser(argparse.ArgumentParser):
 
     def error(self, message: str) -> NoReturn:
         """Raise :class:`UsageError`, with the way to the help."""
-        raise UsageError(f"{message.replace(_NAME, '')}; see '{self.prog} --help'")
+        raise UsageError(f"{message.replace(_MARK, '')}; see '{self.prog} --help'")
 
     def _print_message(self, message: str, file: Any = None) -> None:
         """Print help or version; argparse itself passes over what goes wrong then."""
@@ -80,19 +83,36 @@ class Parser(argparse.ArgumentParser):
         """Parse arguments: options may stand anywhere before "--", and nothing after it is an option."""
         # Intermixed parsing of Python 3.10 and 3.11 does not know "--", so that what follows it is marked.
         end = argv.index("--") if "--" in argv else len(argv)
-        marked = [*argv[:end], *(f"{_NAME}{text}" for text in argv[end + 1 :])]
-        found = self.parse_intermixed_args(marked)
+        self._refuse_unknown(argv[:end])
+        marked = [*argv[:end], *(f"{_MARK}{text}" for text in argv[end + 1 :])]
+        found, rest = self.parse_known_intermixed_args(marked)
+        if rest:
+            self.error(f"unexpected argument '{rest[0]}'")
         return argparse.Namespace(**{name: _unmarked(value) for name, value in vars(found).items()})
+
+    def _refuse_unknown(self, argv: Sequence[str]) -> None:
+        """Raise :class:`UsageError` at an option that does not exist; argparse names all that it does not know."""
+        known = [option for action in self._actions for option in action.option_strings]
+        for text in argv:
+            option = text.partition("=")[0]
+            if option.startswith("--") and option not in known and " " not in text:
+                self.error(f"unknown option '{option}'{did_you_mean(option, known)}")
 
 
 def _unmarked(value: Any) -> Any:
     if isinstance(value, list):
         return [_unmarked(item) for item in value]
-    return value.removeprefix(_NAME) if isinstance(value, str) else value
+    return value.removeprefix(_MARK) if isinstance(value, str) else value
 
 
 class CommandError(StlError):
     """A command cannot go on; the sentence is complete, file name and all."""
+
+
+def options(parser: argparse.ArgumentParser, title: str) -> argparse._ArgumentGroup:
+    """Return the group of options that the help lists under a title."""
+    found = next((group for group in parser._action_groups if group.title == title), None)
+    return found or parser.add_argument_group(title)
 
 
 def add_specification_options(parser: argparse.ArgumentParser, nargs: str | None = None) -> None:
@@ -100,30 +120,31 @@ def add_specification_options(parser: argparse.ArgumentParser, nargs: str | None
     parser.add_argument(
         "spec", metavar="SPEC", nargs=nargs, help="a specification file (.stl), or a formula in quotes"
     )
-    parser.add_argument(
+    group = options(parser, SPECIFICATION)
+    group.add_argument(
         "--period", metavar="DURATION", help="the sampling period: seconds, or with a unit, such as 100ms"
     )
     units = ", ".join(UNITS)
-    parser.add_argument("--unit", default="s", help=f"of bounds without a unit: {units} (default: s)")
-    parser.add_argument(
+    group.add_argument("--unit", default="s", help=f"of bounds without a unit: {units} (default: s)")
+    group.add_argument(
         "--backend",
         default="cpp",
         metavar="{cpp,python}",
         help="cpp: the compiled core (default); python: the definition itself, slow",
     )
-    parser.add_argument(
+    group.add_argument(
         "--semantics",
         default="standard",
         metavar="NAME",
         help=f"what a predicate is worth: {', '.join(SEMANTICS)} (default: standard, its robustness); "
         f"which variables are inputs is declared in the specification",
     )
-    add_language_option(parser)
+    add_language_option(group)
 
 
 def add_time_option(parser: argparse.ArgumentParser) -> None:
     """Add the choice of the time domain."""
-    parser.add_argument(
+    options(parser, SPECIFICATION).add_argument(
         "--time",
         default=DEFAULT,
         metavar=f"{{{','.join(DOMAINS)}}}",
@@ -134,7 +155,7 @@ def add_time_option(parser: argparse.ArgumentParser) -> None:
 
 def add_ignore_option(parser: argparse.ArgumentParser) -> None:
     """Add which warnings are silenced; see :func:`warn`."""
-    parser.add_argument(
+    options(parser, OUTPUT).add_argument(
         "--ignore",
         metavar="CODE",
         action="append",
@@ -155,8 +176,9 @@ def warn(spec: Specification, given: str, ignored: Sequence[str]) -> int:
 
 def add_stamp_options(parser: argparse.ArgumentParser, what: str) -> None:
     """Add where the time stamps are and in what unit; ``what`` they are: a column, a key."""
-    parser.add_argument("--time-column", metavar="NAME", help=f"the {what} of time stamps; '' for none")
-    parser.add_argument(
+    group = options(parser, READING)
+    group.add_argument("--time-column", metavar="NAME", help=f"the {what} of time stamps; '' for none")
+    group.add_argument(
         "--time-unit",
         metavar="UNIT",
         choices=tuple(UNITS),
@@ -197,6 +219,10 @@ def read_specification(args: argparse.Namespace, time: str) -> Specification:
     }
     if is_trace(spec):
         raise CommandError(f"'{spec}' is a trace; the specification comes before the traces")
+    if not os.path.exists(spec) and NAME.fullmatch(spec) and os.path.isfile(f"{spec}.stl"):
+        raise CommandError(
+            f"there is no file '{spec}'; did you mean {spec}.stl? (if a formula is meant, put it in parentheses)"
+        )
     if os.path.isfile(spec):
         try:
             return load(spec, **options)
@@ -206,7 +232,9 @@ def read_specification(args: argparse.Namespace, time: str) -> Specification:
         raise CommandError(f"'{spec}' is a directory, expected a specification file or a formula")
     called = spec.lower().endswith(_SPECIFICATION_SUFFIXES) or _is_called_like_a_trace(spec)
     if called or _LIKE_A_PATH.fullmatch(spec):
-        raise CommandError(f"there is no file '{spec}' (if a formula is meant, put it in parentheses)")
+        raise CommandError(
+            f"there is no file '{spec}'{nearest_file(spec)} (if a formula is meant, put it in parentheses)"
+        )
     if not spec.strip():
         raise CommandError("the specification is empty; give a file or a formula, such as 'always(x >= 3)'")
     return parse(spec, **options)

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from rtamt.cli.command import OK, Command, Parser
 from rtamt.cli.terminal import say
-from rtamt.errors import UsageError, did_you_mean
+from rtamt.errors import UsageError, choices
 from rtamt.extras import library
 
 if TYPE_CHECKING:
@@ -42,10 +42,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     """Print the script."""
     if args.shell not in SHELLS:
-        raise UsageError(
-            f"there is no completion for '{args.shell}', only for {', '.join(SHELLS)}"
-            f"{did_you_mean(args.shell, SHELLS)}"
-        )
+        raise UsageError(f"there is no completion for '{args.shell}'{choices(args.shell, SHELLS, 'shells')}")
     shtab = library("shtab", "rtamt completion", "completion")
     say(shtab.complete(_whole(shtab.FILE), shell=args.shell))
     return OK

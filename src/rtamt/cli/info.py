@@ -21,7 +21,7 @@ from rtamt.cli.terminal import printed, say
 from rtamt.compiler.plan import compile_program
 from rtamt.engine.native import core
 from rtamt.engine.user_operators import SampleDriver, calls_of
-from rtamt.errors import BoundError, SpecificationError, UsageError
+from rtamt.errors import BoundError, SpecificationError, UsageError, choices
 from rtamt.language.printer import excerpt
 from rtamt.language.units import format_duration
 from rtamt.rewrite.check import check_online
@@ -34,11 +34,12 @@ from rtamt.signals.domains import DOMAINS
 
 if TYPE_CHECKING:
     import argparse
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Sequence
     from fractions import Fraction
 
     from rtamt.compiler.program import Program
     from rtamt.language.formula import Formula
+    from rtamt.signals.trace import Trace
     from rtamt.specification import Specification
 
 _DESCRIPTION = """\
@@ -65,6 +66,7 @@ requirements all this is about their conjunction; each has its {"name", "descrip
 examples:
   rtamt info examples/request_grant/spec.stl
   rtamt info examples/request_grant/a_satisfied.csv
+  rtamt info flight.ulg battery gps
   rtamt info "always[0:10]((req >= 3) -> eventually[0:500ms](gnt >= 3))" --period 100ms
   rtamt info "always(alarm -> eventually[0:70ms](stop))" --time dense
   rtamt info "x >= 3 until[0:5] y >= 3" --latex"""
@@ -90,6 +92,12 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add_specification_options(parser, nargs="?")
     add_time_option(parser)
     add_reading_options(parser)
+    parser.add_argument(
+        "signals",
+        metavar="SIGNAL",
+        nargs="*",
+        help="of a recording: only signals whose names contain one of these texts, such as battery",
+    )
     parser.add_argument("--latex", action="store_true", help="print the formula as LaTeX, and nothing else")
     parser.add_argument("--json", action="store_true", help="print JSON: one object")
 
@@ -98,11 +106,13 @@ def run(args: argparse.Namespace) -> int:
     """Print what there is to tell."""
     if args.sql is not None or is_trace(args.spec):
         if args.sql is not None and args.spec is not None:
-            raise CommandError(f"--sql reads a database; leave out '{args.spec}', or --sql")
-        say(str(recording(args, args.sql or args.spec)))
+            args.signals.insert(0, args.spec)
+        say(str(_chosen(recording(args, args.sql or args.spec), args.signals)))
         return OK
     if args.spec is None:
         raise CommandError("name a requirement, a program or a recording; see 'rtamt info --help'")
+    if args.signals:
+        raise CommandError(f"'{args.signals[0]}' chooses signals of a recording, and '{args.spec}' is none")
     _refuse_reading_options(args)
     program = compiled(args.spec)
     if program is not None:
@@ -117,6 +127,19 @@ def run(args: argparse.Namespace) -> int:
     facts = gather(spec)
     say(_as_json(facts) if args.json else "\n".join(_lines(facts)))
     return OK
+
+
+def _chosen(trace: Trace, texts: Sequence[str]) -> Trace:
+    """Return the signals whose names contain one of some texts, in any case; all where there is no text."""
+    if not texts:
+        return trace
+    found = [name for name in trace.names if any(text.lower() in name.lower() for text in texts)]
+    if not found:
+        topics = dict.fromkeys(name.partition(".")[0] for name in trace.names)
+        raise CommandError(
+            f"no signal's name contains '{' or '.join(texts)}'{choices(texts[0], topics, 'topics')}"
+        )
+    return trace.select(found)
 
 
 def _refuse_reading_options(args: argparse.Namespace) -> None:
@@ -167,6 +190,7 @@ def _variables(spec: Specification) -> list[dict[str, Any]]:
                 "name": name,
                 "type": declaration.type if declaration else None,
                 "role": declaration.role if declaration else None,
+                "unit": (declaration.unit or None) if declaration else None,
                 "topic": spec.document.topics.get(name.split(".")[0]),
             }
         )
@@ -223,7 +247,8 @@ def _lines(facts: Facts) -> Iterator[str]:
         yield f"semantics  {spec.semantics}"
     for i, variable in enumerate(_variables(spec)):
         topic = variable["topic"] and f"({variable['topic']})"
-        words = [variable["role"], variable["type"], variable["name"], topic]
+        unit = variable["unit"] and f"[{variable['unit']}]"
+        words = [variable["role"], variable["type"], variable["name"], unit, topic]
         yield f"{'' if i else 'variables':<11}{' '.join(word for word in words if word)}"
     if not spec.input_names:
         yield "variables  none"

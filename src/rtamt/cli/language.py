@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     import argparse
 
 
-def add_language_option(parser: argparse.ArgumentParser) -> None:
+def add_language_option(parser: argparse._ActionsContainer) -> None:
     """Add the choice of a language."""
     parser.add_argument(
         "--language",

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rtamt.cli.command import CommandError, add_stamp_options
+from rtamt.cli.command import READING, CommandError, add_stamp_options, options
 from rtamt.errors import TraceError, UsageError
 from rtamt.language.units import duration
 from rtamt.readers.assemble import trace_of
@@ -52,38 +52,39 @@ class Reading:
 def add_reading_options(parser: argparse.ArgumentParser) -> None:
     """Add how recordings are read; see :func:`rtamt.read`."""
     add_stamp_options(parser, "column")
-    parser.add_argument(
+    group = options(parser, READING)
+    group.add_argument(
         "--name",
         metavar="NAME=COLUMN",
         action="append",
         default=[],
         help="the column of a variable that is called otherwise; may be given again",
     )
-    parser.add_argument("--sheet", metavar="NAME", help="of an Excel workbook with several")
-    parser.add_argument("--sql", metavar="URL", help="read a database, such as sqlite:///log.db")
-    parser.add_argument("--query", metavar="TEXT", help="what to read of it: its rows are samples")
-    parser.add_argument(
+    group.add_argument("--sheet", metavar="NAME", help="of an Excel workbook with several")
+    group.add_argument("--sql", metavar="URL", help="read a database, such as sqlite:///log.db")
+    group.add_argument("--query", metavar="TEXT", help="what to read of it: its rows are samples")
+    group.add_argument(
         "--skip-nan",
         metavar="NAME",
         action="append",
         default=[],
         help="leave out the samples of a variable that are NaN, an error otherwise; may be given again",
     )
-    parser.add_argument(
+    group.add_argument(
         "--hold-for",
         metavar="DURATION",
         help="how long a value takes the place of samples that are left out; longer gaps are errors",
     )
-    parser.add_argument(
+    group.add_argument(
         "--resample", metavar="DURATION", help="put all signals on one clock, a sample every so often"
     )
-    parser.add_argument(
+    group.add_argument(
         "--how",
         default="hold",
         metavar="{hold,linear}",
         help="between two samples the last one holds, or a line (default: hold)",
     )
-    parser.add_argument(
+    group.add_argument(
         "--recover",
         action="store_true",
         help="read an MCAP file that was cut off or is damaged as far as possible, an error otherwise",

@@ -8,7 +8,7 @@ import sys
 import time
 from typing import TYPE_CHECKING, TextIO
 
-from rtamt.errors import UsageError, did_you_mean, escaped
+from rtamt.errors import UsageError, choices, escaped
 from rtamt.language.printer import PAGE, to_text
 
 if TYPE_CHECKING:
@@ -39,8 +39,7 @@ def say(text: str = "", *, file: TextIO | None = None, color: bool = False, flus
 def use_color(mode: str, stream: TextIO) -> bool:
     """Tell whether to colour what goes to ``stream``; ``auto``: on a terminal, unless NO_COLOR is set."""
     if mode not in COLOR_MODES:
-        hint = did_you_mean(mode, COLOR_MODES)
-        raise UsageError(f"unknown colour mode '{mode}'; choose from {', '.join(COLOR_MODES)}{hint}")
+        raise UsageError(f"unknown colour mode '{mode}'{choices(mode, COLOR_MODES, 'modes')}")
     if mode != "auto":
         return mode == "always"
     return stream.isatty() and not os.environ.get("NO_COLOR") and os.environ.get("TERM") != "dumb"

@@ -240,7 +240,7 @@ class Monitor(OnlineMonitor):
         """
         if self._finished:
             raise self._is_finished()
-        return self.push(*arrays.columns_of(data, self.input_names, self._declared, self._unit))
+        return self.push(*arrays.columns_of(data, self.input_names, self._unit))
 
     def push(self, stamps: Stamps | None, given: Mapping[str, arrays.FloatArray], n: int) -> Signal:
         """Take a chunk of ``n`` samples as ``arrays.columns_of`` returns it; not for several threads."""

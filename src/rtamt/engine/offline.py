@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from rtamt.engine.domains import engine_of
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Sequence
+    from collections.abc import Callable, Sequence
 
     from rtamt.language.formula import Formula
     from rtamt.rewrite.semantics import PredicateSemantics
@@ -29,12 +29,9 @@ class Query:
     semantics: str | PredicateSemantics
     unit: str | None = None
 
-    def record(self, data: Any, names: Sequence[str], declared: Collection[str]) -> DomainTrace:
-        """Normalise a finished recording of the variables ``names``; ``declared``: others that may be there.
-
-        Raises :class:`TraceError`.
-        """
-        return self.domain.record(data, names, declared, self.unit)
+    def record(self, data: Any, names: Sequence[str]) -> DomainTrace:
+        """Normalise a finished recording of the variables ``names``. Raises :class:`TraceError`."""
+        return self.domain.record(data, names, self.unit)
 
 
 class Evaluators:

@@ -7,7 +7,7 @@ from functools import cached_property, reduce
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
-from rtamt.errors import UsageError, did_you_mean
+from rtamt.errors import UsageError, choices
 from rtamt.language.operators import STL
 
 if TYPE_CHECKING:
@@ -30,13 +30,14 @@ class Import:
 
 @dataclass(frozen=True, slots=True)
 class Declaration:
-    """A declared variable (with its role, if any) or constant (with its value)."""
+    """A declared variable (with its role, if any) or constant (with its value); ``unit``: as written, such as m/s."""
 
     name: str
     type: str
     kind: Literal["var", "const"] = "var"
     role: Literal["input", "output"] | None = None
     value: float | None = None
+    unit: str = ""
     span: Span | None = field(default=None, compare=False, repr=False)
 
 
@@ -114,10 +115,7 @@ class Document:
         Raises :class:`UsageError` where there is none.
         """
         if name not in self._named:
-            raise UsageError(
-                f"there is no requirement '{name}'{did_you_mean(name, self._named)}; requirements are "
-                f"{', '.join(requirement.name for requirement in self.requirements)}"
-            )
+            raise UsageError(f"there is no requirement '{name}'{choices(name, self._named, 'requirements')}")
         return replace(self, requirements=(self._named[name],), selected=name, origin=self.origin or self)
 
     @cached_property

@@ -6,7 +6,7 @@ from fractions import Fraction
 from math import isinf
 from typing import TYPE_CHECKING
 
-from rtamt.errors import BoundError, NameInFormulaError, did_you_mean
+from rtamt.errors import BoundError, NameInFormulaError, choices, did_you_mean
 from rtamt.language.formula import Interval, Span
 from rtamt.language.grammar import INFINITY
 from rtamt.language.operators import Bounds
@@ -63,7 +63,8 @@ def parse_interval(parser: FormulaParser, op: Operator, token: Token) -> Interva
             raise parser.error(
                 f"the interval {written} is reversed: it ends before it begins", span, BoundError
             )
-    names = tuple(token.text for token in parser.tokens[first : parser.index] if token.kind == "name")
+    read = parser.tokens[first : parser.index]
+    names = tuple(token.name for token in read if token.kind in ("name", "quoted"))
     constants = tuple(name for name in names if name in parser.scope.constants)
     return Interval(begin, end, begin_unit, "" if end is None else end_unit, span, constants)
 
@@ -93,7 +94,7 @@ def _bound(parser: FormulaParser) -> Bound:
                     "a bound may not be divided by zero", Span(token.start, below.end), BoundError
                 )
             value /= divisor
-    elif token.kind == "name":
+    elif token.kind in ("name", "quoted"):
         value = _constant(parser, token)
     else:
         raise parser.error(f"expected a bound (a number or a constant), got {token}", token.span)
@@ -105,8 +106,9 @@ def _bound(parser: FormulaParser) -> Bound:
     if name.text in UNITS and value is not None:
         unit = parser.next().text
     elif name.kind == "name" and after.text in (":", ",", "]"):
-        units = ", ".join(UNITS)
-        raise parser.error(f"'{name.text}' is not a unit of time; units are {units}", name.span)
+        raise parser.error(
+            f"'{name.text}' is not a unit of time{choices(name.text, UNITS, 'units')}", name.span
+        )
     return value, unit, span
 
 
@@ -118,13 +120,13 @@ def _literal(parser: FormulaParser, token: Token) -> Fraction:
 
 
 def _constant(parser: FormulaParser, token: Token) -> Fraction | None:
-    constants = parser.scope.constants
-    value = constants.get(token.text)
+    constants, name = parser.scope.constants, token.name
+    value = constants.get(name)
     if value is None:
         if token.text == INFINITY:
             return None
-        hint = did_you_mean(token.text, constants) or f"; a bound is a number, a constant or {INFINITY}"
-        raise parser.error(f"'{token.text}' is not a declared constant{hint}", token.span, NameInFormulaError)
+        hint = did_you_mean(name, constants) or f"; a bound is a number, a constant or {INFINITY}"
+        raise parser.error(f"'{name}' is not a declared constant{hint}", token.span, NameInFormulaError)
     if isinf(value):
         # Minus infinity is as negative as any other number below zero.
         return None if value > 0 else Fraction(-1)

@@ -56,6 +56,11 @@ class Token(NamedTuple):
         """The characters' place in the text."""
         return Span(self.start, self.end)
 
+    @property
+    def name(self) -> str:
+        """The name that it stands for, without quotes."""
+        return unquoted(self.text) if self.kind == "quoted" else self.text
+
     def __str__(self) -> str:
         return "the end of the text" if self.kind == "end" else f"'{self.text}'"
 

@@ -7,12 +7,15 @@
     separator   = ";" | after a named assertion or a requirement, as in RTAMT's files: the end of the line
     statement   = assertion | requirement
     import      = "from" , module , "import" , word , [ ";" ]
-    declaration = ( [ "input" | "output" ] , type , name | "const" , type , name , "=" , value ) , [ ";" ]
+    declaration = ( [ "input" | "output" ] , type , name | "const" , type , name , "=" , value ) ,
+                  [ "[" , unit , "]" ] , [ ";" ]
     annotation  = "@" , "topic" , "(" , name , "," , topic , ")" , [ ";" ]
     assertion   = [ name , "=" ] , expression
     requirement = "require" , id , [ '"' , characters , '"' ] ,
                   [ "severity" , ( "error" | "warning" | "note" ) ] , ":" , expression
     id          = letters, digits, "_", "-" and ".", such as REQ-12.a | '"' , characters , '"'
+    name        = word , { "." , word } | topic | '"' , characters , '"'
+    unit        = characters, such as m/s
     type        = "float" | "int" | "long" | "complex" | "bool" | imported class
     value       = [ "-" ] , number | "-inf" | "inf"
 
@@ -34,7 +37,7 @@ from rtamt.language import diagnostics
 from rtamt.language.document import Assertion, Declaration, Document, Import
 from rtamt.language.formula import Formula, Span
 from rtamt.language.grammar import INFINITY
-from rtamt.language.lexer import Token, unquoted
+from rtamt.language.lexer import Token, quoted
 from rtamt.language.operators import STL, Fixity, Language
 from rtamt.language.requirements import RequirementParser
 from rtamt.language.scope import Scope
@@ -74,10 +77,6 @@ def parse_document(
     """
     scope = Scope(constants or {}, definitions or {}, variables or None)
     return _DocumentParser(text, language, unit, scope).document()
-
-
-def _name_of(token: Token) -> str:
-    return unquoted(token.text) if token.kind == "quoted" else token.text
 
 
 class _DocumentParser(RequirementParser):
@@ -141,7 +140,7 @@ class _DocumentParser(RequirementParser):
         return True
 
     def _declaration(self) -> bool:
-        """``declaration = ( [ role ] , type , name | "const" , type , name , "=" , value ) , [ ";" ]``."""
+        """``declaration = ( [ role ] , type , name | "const" , type , name , "=" , value ) , [ unit ] , [ ";" ]``."""
         if not self._declares():
             return False
         constant = self._word("const")
@@ -166,11 +165,11 @@ class _DocumentParser(RequirementParser):
     def _declare(
         self, token: Token, type_name: str, role: Literal["input", "output"] | None, *, constant: bool
     ) -> None:
-        name = _name_of(token)
+        name = token.name
         self._check_nameable(token)
-        if "." in name:
-            head = name.split(".", 1)[0]
-            raise self.error(f"'{name}' is a field; declare '{head}', with a class as its type", token.span)
+        head = name.split(".", 1)[0]
+        if head != name and head in self._declarations:
+            raise self.error(f"'{name}' is a field of '{head}', which is declared", token.span)
         if name in self._declarations or name in self._constants or (constant and name in self._given):
             raise self.error(f"'{name}' is declared twice", token.span)
         value = None
@@ -187,8 +186,27 @@ class _DocumentParser(RequirementParser):
                 f"the constant '{name}' has no value; write const {type_name} {name} = ...", token.span
             )
         self._declarations[name] = Declaration(
-            name, type_name, "const" if constant else "var", role, value, token.span
+            name, type_name, "const" if constant else "var", role, value, self._unit(token), token.span
         )
+
+    def _unit(self, name: Token) -> str:
+        """``[ "[" , unit , "]" ]``: the unit of what is called ``name``, "" where none is written."""
+        opening = self.token
+        if opening.text != "[":
+            return ""
+        start = self.next().end
+        while self.token.text not in ("]", "", '"', "/*"):
+            self.next()
+        unit = self.text[start : self.token.start].strip()
+        if unit.isdigit() and opening.start == name.end:
+            whole = f"{name.name}[{unit}]"
+            raise self.error(
+                f"'{unit}' is not a unit; a name with brackets is written in quotes: {quoted(whole)}",
+                Span(name.start, self.token.end),
+            )
+        if not unit or not self.accept("]"):
+            raise self.error(f"expected a unit and ']' after '{name.name} [', such as [m/s]", opening.span)
+        return unit
 
     def _value(self) -> float:
         """``value = [ "-" ] , number | "-inf" | "inf"``."""
@@ -210,17 +228,18 @@ class _DocumentParser(RequirementParser):
             raise self.error(f"expected 'topic' after '@', got {kind}", kind.span)
         if not self.accept("("):
             raise self._expected("'(' after '@ topic'")
-        name = self._taken("the name of a variable")
-        declared = self._declarations.get(name.text)
-        if name.text not in self._given and (declared is None or declared.kind != "var"):
+        token = self._taken("the name of a variable", quotes=True)
+        name = token.name
+        declared = self._declarations.get(name)
+        if name not in self._given and (declared is None or declared.kind != "var"):
             known = [*self._given, *(d.name for d in self._declarations.values() if d.kind == "var")]
-            hint = did_you_mean(name.text, known) or "; declare it before its topic"
-            raise self.error(f"'{name.text}' is not a declared variable{hint}", name.span, NameInFormulaError)
-        if name.text in self._topics:
-            raise self.error(f"'{name.text}' has two topics", name.span)
+            hint = did_you_mean(name, known) or "; declare it before its topic"
+            raise self.error(f"'{name}' is not a declared variable{hint}", token.span, NameInFormulaError)
+        if name in self._topics:
+            raise self.error(f"'{name}' has two topics", token.span)
         if not self.accept(","):
-            raise self._expected(f"',' after '{name.text}'")
-        self._topics[name.text] = self._topic()
+            raise self._expected(f"',' after '{name}'")
+        self._topics[name] = self._topic()
         if not self.accept(")"):
             raise self._expected("')' after the topic")
         self.accept(";")
@@ -294,13 +313,13 @@ class _DocumentParser(RequirementParser):
             return None
         self._check_nameable(token)
         self.index = last + 2
-        return _name_of(token) if token.kind == "quoted" else self.text[token.start : self.tokens[last].end]
+        return token.name if token.kind == "quoted" else self.text[token.start : self.tokens[last].end]
 
     def _names_to_come(self) -> dict[str, str]:
         """Return the names that later assertions define, each with what to say to an earlier use."""
         # Elsewhere than where an assertion may begin, '=' is a comparison gone wrong: always(x = 3).
         names = [
-            _name_of(token)
+            token.name
             for at, (token, after) in enumerate(pairwise(self.tokens))
             if at >= self.index
             and token.kind in ("name", "quoted")

@@ -3,6 +3,8 @@
 ====  ==================
 unit  seconds
 ====  ==================
+h     3600
+min   60
 s     1
 ms    1/1 000
 us    1/1 000 000
@@ -21,17 +23,28 @@ from numbers import Rational, Real
 from types import MappingProxyType
 from typing import TYPE_CHECKING, SupportsFloat, TypeAlias
 
-from rtamt.errors import UsageError, shown
+from rtamt.errors import UsageError, choices, shown
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+    import numpy as np
+    from numpy.typing import NDArray
+
 #: Seconds, or text with a unit, such as ``"100ms"``.
 Duration: TypeAlias = str | float | Fraction
 
+
 #: Seconds in each unit, the largest first.
 UNITS: Mapping[str, Fraction] = MappingProxyType(
-    {"s": Fraction(1), "ms": Fraction(1, 10**3), "us": Fraction(1, 10**6), "ns": Fraction(1, 10**9)}
+    {
+        "h": Fraction(3600),
+        "min": Fraction(60),
+        "s": Fraction(1),
+        "ms": Fraction(1, 10**3),
+        "us": Fraction(1, 10**6),
+        "ns": Fraction(1, 10**9),
+    }
 )
 
 #: Digits that people read in a duration.
@@ -73,7 +86,7 @@ def check_unit(unit: str) -> str:
     'ms'
     """
     if unit not in UNITS:
-        raise UsageError(f"'{unit}' is not a unit of time; units are {', '.join(UNITS)}")
+        raise UsageError(f"'{unit}' is not a unit of time{choices(unit, UNITS, 'units')}")
     return unit
 
 
@@ -129,6 +142,11 @@ def positive_period(period: Duration, what: str = "sampling period") -> Fraction
     return exact_period
 
 
+def in_seconds(numbers: NDArray[np.float64], unit: Fraction) -> NDArray[np.float64]:
+    """Return doubles in seconds, each rounded once: by a whole number, where a product with 0.001 would round twice."""
+    return numbers * float(unit) if unit >= 1 else numbers / float(1 / unit)
+
+
 def decimal(number: Fraction) -> str | None:
     """Return the exact decimal text of a number, or None if it has none.
 
@@ -150,7 +168,7 @@ def decimal(number: Fraction) -> str | None:
 
 
 def format_duration(seconds: Fraction) -> str:
-    """Return a duration for people to read, in the largest unit of which it is at least one, if there is one.
+    """Return a duration for people to read: in seconds, or in the largest smaller unit of which it is at least one.
 
     >>> format_duration(Fraction(1, 10)), format_duration(Fraction(5)), format_duration(Fraction(1, 3))
     ('100 ms', '5 s', '1/3 s')
@@ -159,7 +177,8 @@ def format_duration(seconds: Fraction) -> str:
     """
     if seconds != 0 and decimal(seconds) is not None:
         unit, size = next(
-            ((u, size) for u, size in UNITS.items() if abs(seconds) >= size), ("ns", UNITS["ns"])
+            ((u, size) for u, size in UNITS.items() if size <= min(UNITS["s"], abs(seconds))),
+            ("ns", UNITS["ns"]),
         )
         return f"{_short(seconds / size)} {unit}"
     return f"{decimal(seconds) or seconds} s"

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rtamt.errors import TraceError, did_you_mean, shown
+from rtamt.errors import TraceError, choices, did_you_mean, shown
 from rtamt.readers.gaps import Gaps
 from rtamt.readers.timestamps import Clock, guess_field
 from rtamt.signals.arrays import TIME, is_number
@@ -192,10 +192,8 @@ class _Columns:
                 variable=column,
             )
         names = [field.name for same in self._by_column.values() for _, field in same]
-        more = f" and {len(names) - 12} more" if len(names) > 12 else ""
-        hint = did_you_mean(column, names)
         raise TraceError(
-            f"{self._source.name} has no column '{column}', only {', '.join(names[:12]) or 'nothing'}{more}{hint}",
+            f"{self._source.name} has no column '{column}'{choices(column, names, 'columns')}",
             variable=column,
         )
 

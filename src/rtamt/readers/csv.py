@@ -7,11 +7,13 @@ from contextlib import suppress
 from dataclasses import dataclass
 from itertools import chain, islice
 from math import isinf, isnan
+from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from rtamt.errors import TraceError, shown
+from rtamt.readers.dates import is_date
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator, Sequence
@@ -70,12 +72,15 @@ def read_header(lines: Iterator[str], file: str, before: int = 0) -> tuple[Heade
     except csv.Error as error:
         raise TraceError(f"{file}, line {count - 1 + reader.line_num}: {error}") from None
     header = Header(file, tuple(cell.strip() for cell in cells), delimiter, count - 1 + reader.line_num)
-    if not all(is_number(cell) for cell in header.names if cell):
+    if not all(is_value(cell) for cell in header.names if cell):
         return header, lines
     names = tuple(cell.strip() for cell in comment.split(delimiter))
     if len(names) == len(cells) and all(names):
         return Header(file, names, delimiter, count - 1), chain([first], lines)
-    raise header.error(header.line, f"expected a row of column names, such as time,x; got '{first.strip()}'")
+    raise header.error(
+        header.line,
+        f"expected a row of column names, such as time,x; got '{first.strip()}': put the names above it",
+    )
 
 
 def _listing(header: Header) -> str:
@@ -159,6 +164,20 @@ def number(text: str, name: str, header: Header, line: int, *, nan: bool = False
     if isnan(value) and not nan:
         raise header.error(line, f"'{name}' is NaN: fill the gap or leave the sample out", name)
     return value
+
+
+#: How CSV files write truth.
+BOOLEANS = MappingProxyType({"true": True, "false": False})
+
+
+def is_boolean(text: str) -> bool:
+    """Tell whether the text of a cell is true or false, in any case."""
+    return text.lower() in BOOLEANS
+
+
+def is_value(text: str) -> bool:
+    """Tell whether the text of a cell is a number, a Boolean or a date, and no name."""
+    return is_number(text) or is_boolean(text) or is_date(text)
 
 
 def is_number(text: str) -> bool:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rtamt.readers.csv import Header, number
+from rtamt.readers.csv import BOOLEANS, Header, is_boolean, number
 from rtamt.readers.dates import DateError, Dates, is_date
 
 if TYPE_CHECKING:
@@ -21,7 +21,7 @@ LARGEST = 2.0**53
 class Cells:
     """One column of a file, which grows by blocks of rows.
 
-    What its first cell is, a number or a date, all others must be.
+    What its first cell is, a number, true or false, or a date, all others must be.
     """
 
     def __init__(
@@ -31,6 +31,7 @@ class Cells:
         self._header = header
         self._name = name
         self._dated = dated  # None: not known before the first cell that is not empty
+        self._boolean = False
         self._dates = Dates()
         self._whole = True  # whether all numbers are integers that an int64 holds
         self._parts: list[Raw] = []
@@ -42,8 +43,8 @@ class Cells:
         missing = np.array([not text for text in texts], dtype=bool)
         given = [(text, line) for text, line in zip(texts, lines, strict=True) if text]
         if self._dated is None and given:
-            self._dated = is_date(given[0][0])
-        values = self._moments(given) if self._dated else self._numbers(given)
+            self._dated, self._boolean = is_date(given[0][0]), is_boolean(given[0][0])
+        values = self._of(given)
         if missing.any():
             part = np.zeros(len(texts), values.dtype)
             part[~missing] = values
@@ -65,6 +66,18 @@ class Cells:
         values = self.values()
         self._parts, self._missing = [], []
         return values
+
+    def _of(self, given: Sequence[tuple[str, int]]) -> Raw:
+        if self._dated:
+            return self._moments(given)
+        return self._truths(given) if self._boolean else self._numbers(given)
+
+    def _truths(self, given: Sequence[tuple[str, int]]) -> Raw:
+        truths = [BOOLEANS.get(text.lower()) for text, _ in given]
+        if None in truths:
+            text, line = given[truths.index(None)]
+            raise self._header.error(line, f"'{self._name}' is '{text}', expected true or false", self._name)
+        return np.array(truths, dtype=np.float64)
 
     def _numbers(self, given: Sequence[tuple[str, int]]) -> Raw:
         texts = [text for text, _ in given]

@@ -9,7 +9,17 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rtamt.errors import TraceError
-from rtamt.readers.csv import Column, Header, block_of, blocks, is_number, plain, read_header, rows
+from rtamt.readers.csv import (
+    Column,
+    Header,
+    block_of,
+    blocks,
+    is_boolean,
+    is_number,
+    plain,
+    read_header,
+    rows,
+)
 from rtamt.readers.csv_cells import LARGEST, Cells
 from rtamt.readers.dates import is_date
 from rtamt.readers.frames import field_of
@@ -88,4 +98,5 @@ def _joined(parts: Sequence[Raw]) -> Raw:
 def _kind(cells: Sequence[str]) -> str:
     if cells and is_date(cells[0]):
         return "time"
-    return "text" if cells and not any(is_number(cell.replace(",", ".")) for cell in cells) else "number"
+    numeric = any(is_boolean(cell) or is_number(cell.replace(",", ".")) for cell in cells)
+    return "text" if cells and not numeric else "number"

@@ -7,7 +7,7 @@ from itertools import chain
 from typing import TYPE_CHECKING, Any
 from zipfile import ZipFile
 
-from rtamt.errors import TraceError, did_you_mean
+from rtamt.errors import TraceError, choices
 from rtamt.readers.rows import table_of_rows
 from rtamt.readers.source import Source, library
 
@@ -62,9 +62,7 @@ def _check_size(path: str, file: Any) -> None:
 def _choose(path: str, found: dict[str, Any], sheet: str | None) -> str:
     if sheet is not None:
         if sheet not in found:
-            raise TraceError(
-                f"{path} has no sheet '{sheet}', only {', '.join(found)}{did_you_mean(sheet, found)}"
-            )
+            raise TraceError(f"{path} has no sheet '{sheet}'{choices(sheet, found, 'sheets')}")
         return sheet
     full = [name for name, page in found.items() if next(_filled(page, path), None) is not None]
     if len(full) > 1:

@@ -8,7 +8,7 @@ import numpy as np
 
 from rtamt.errors import TraceError
 from rtamt.language.units import format_duration
-from rtamt.signals.trace import show_time
+from rtamt.signals.listing import show_time
 
 if TYPE_CHECKING:
     from fractions import Fraction

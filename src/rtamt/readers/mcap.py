@@ -15,13 +15,14 @@ import numpy as np
 
 from rtamt.errors import TraceError
 from rtamt.extras import library
+from rtamt.readers.source import printable
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
     from typing import BinaryIO
 
 _MAGIC = b"\x89MCAP0\r\n"
-_FOOTER, _MESSAGE, _CHUNK, _DATA_END = 0x02, 0x05, 0x06, 0x0F
+_FOOTER, _CHANNEL, _MESSAGE, _CHUNK, _DATA_END = 0x02, 0x04, 0x05, 0x06, 0x0F
 _KINDS = range(0x01, 0x10)
 
 _LAST = 2**63 - 1  # ns since 1970
@@ -62,6 +63,43 @@ def salvage(path: str, copy: str) -> str:
         )
     until = np.datetime64(min(last, _LAST), "ns")
     return f"the file is damaged at byte {reached:,} of {size:,}: read up to {until} UTC"
+
+
+#: Messages of ROS, and those that rosbags reads.
+_ENCODINGS = ("cdr", "ros1")
+
+
+def refuse_encodings(path: str) -> None:
+    """Raise :class:`TraceError` at a topic whose messages are not those of ROS, such as JSON, or Protocol Buffers.
+
+    Channels come before their messages, in records of their own or in chunks, and again after the last one.
+    """
+    size = os.path.getsize(path)
+    with open(path, "rb") as file:
+        if file.read(len(_MAGIC)) != _MAGIC:
+            return  # what is no such file is for the reader to refuse
+        for kind, data, complete in _records(file, size):
+            records = [(kind, data)] if kind != _CHUNK else _whole_records(data) if complete else []
+            for part, content in records:
+                if part == _CHANNEL:
+                    topic, encoding = _channel(content)
+                    if encoding not in _ENCODINGS:
+                        raise TraceError(
+                            f"'{path}' cannot be read: the messages on {topic} are {encoding or 'of no encoding'}, "
+                            f"and only those of ROS (cdr, ros1) are read; convert the file, to CSV for example"
+                        )
+            if kind in (_CHUNK, _MESSAGE, _DATA_END, _FOOTER):
+                return  # the first messages: what follows would have to be read whole
+
+
+def _channel(data: bytes) -> tuple[str, str]:
+    """Return topic and encoding of a channel."""
+    texts, at = [], 4  # after its number and that of its schema
+    for _ in range(2):
+        (length,) = struct.unpack_from("<I", data, at)
+        texts.append(printable(data[at + 4 : at + 4 + length].decode("utf-8", "replace")))
+        at += 4 + length
+    return texts[0], texts[1]
 
 
 def _records(file: BinaryIO, size: int) -> Iterator[tuple[int, bytes, bool]]:

@@ -14,7 +14,7 @@ import numpy as np
 from rtamt.errors import TraceError
 from rtamt.extras import library
 from rtamt.readers.formats import BAG, MCAP, METADATA
-from rtamt.readers.mcap import salvage
+from rtamt.readers.mcap import refuse_encodings, salvage
 from rtamt.readers.source import Field, Source, Table, printable, reason
 from rtamt.signals.arrays import is_number
 
@@ -75,6 +75,8 @@ def _reader(path: str) -> Any:
     # ROS 2's sqlite3 files came without definitions of their messages until 2023.
     known = typesys.get_typestore(typesys.Stores.ROS2_HUMBLE)
     with BAG.guard(path):
+        if path.lower().endswith(MCAP):
+            refuse_encodings(path)
         reader = highlevel.AnyReader([_existing(path)], default_typestore=known)
         reader.open()
     return reader

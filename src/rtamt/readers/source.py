@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any
 
 from rtamt import extras
 from rtamt.errors import StlError, TraceError
+from rtamt.files import nearest_file
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -105,7 +106,7 @@ def opening(path: str, what: str, remedy: str = "copy or export it again") -> It
     except StlError:
         raise
     except FileNotFoundError as error:
-        raise TraceError(f"there is no file '{error.filename or path}'") from None
+        raise missing_file(str(error.filename or path)) from None
     except IsADirectoryError:
         raise TraceError(f"'{path}' is a directory, expected a file") from None
     except Exception as error:
@@ -117,6 +118,11 @@ def opening(path: str, what: str, remedy: str = "copy or export it again") -> It
             f"'{path}' cannot be read as {what}: {reason(error)}; "
             f"the file is damaged, incomplete or of another kind: {remedy}"
         ) from error
+
+
+def missing_file(path: str) -> TraceError:
+    """Return the error for a file that does not exist, with the nearest name in its folder."""
+    return TraceError(f"there is no file '{path}'{nearest_file(path)}")
 
 
 def guarded(source: Source, guard: Callable[[], AbstractContextManager[None]]) -> Source:

@@ -5,11 +5,13 @@ from __future__ import annotations
 import re
 from contextlib import ExitStack, contextmanager
 from functools import partial
-from typing import TYPE_CHECKING
+from os.path import abspath, isfile
+from typing import TYPE_CHECKING, Any
+from urllib.parse import quote
 
 from rtamt.errors import TraceError, UsageError
 from rtamt.readers.rows import table_of_rows
-from rtamt.readers.source import CHUNK, Source, guarded, library, opening, printable
+from rtamt.readers.source import CHUNK, Source, guarded, library, missing_file, opening, printable
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -43,7 +45,8 @@ def open_sql(url: str, query: str | None) -> Source:
 def _open(url: str, query: str) -> Source:
     sqlalchemy = library("sqlalchemy", "databases")
     with ExitStack() as stack:
-        engine = sqlalchemy.create_engine(_POSTGRESQL.sub("postgresql+psycopg://", url, count=1))
+        address = sqlalchemy.make_url(_POSTGRESQL.sub("postgresql+psycopg://", url, count=1))
+        engine = sqlalchemy.create_engine(_read_only(address))
         stack.callback(engine.dispose)
         connection = stack.enter_context(engine.connect())
         streaming = connection.execution_options(stream_results=True, yield_per=CHUNK)
@@ -53,6 +56,18 @@ def _open(url: str, query: str) -> Source:
             raise TraceError(f"the query on '{shown(url)}' returns no rows; give a SELECT")
         columns = list(result.keys())
         return Source(shown(url), (table_of_rows(columns, result),), close=stack.pop_all().close)
+
+
+def _read_only(address: Any) -> Any:
+    """Return the address under which SQLite only reads: it makes a file where there is none."""
+    path = address.database
+    if address.get_backend_name() != "sqlite" or not path or path == ":memory:":
+        return address
+    if not path.startswith("file:"):
+        if not isfile(path):
+            raise missing_file(path)
+        address = address.set(database=f"file:{quote(abspath(path))}")
+    return address.update_query_dict({"mode": "ro", "uri": "true"})
 
 
 @contextmanager

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rtamt.errors import TraceError, shown
-from rtamt.language.units import UNITS
+from rtamt.language.units import UNITS, in_seconds
 from rtamt.readers.dates import EXAMPLE, DateError, Dates, is_date
 from rtamt.signals.arrays import is_number
 from rtamt.signals.counting import refuse_implausible
@@ -116,8 +116,7 @@ class Clock:
             farthest = max(abs(int(raw.min())), abs(int(raw.max()))) if integers else 0
             self._exact = unit != "s" and farthest * size * 10**9 >= _EXACT
         if not self._exact:
-            # A division by a whole number rounds once; a product with 0.001 would round twice.
-            return raw.astype(np.float64) / float(1 / size)
+            return in_seconds(raw.astype(np.float64), size)
         named = f"'{self.field.column}'"
         try:
             ticks = TimeScale(NANOSECOND, "units", size).ticks(raw, self.field.column)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING, Any
 
-from rtamt.errors import TraceError, UsageError, did_you_mean, with_article
+from rtamt.errors import TraceError, UsageError, choices, with_article
 from rtamt.signals.arrays import is_number
 
 if TYPE_CHECKING:
@@ -89,7 +89,7 @@ def check_path(name: str, sample: Any, kind: str) -> None:
             names = fields_of(at)
             if not hasattr(at, step):
                 raise UsageError(
-                    f"'{done}' has no field '{step}'{did_you_mean(step, names)} (it has {', '.join(names)})"
+                    f"'{done}' has no field '{step}'{choices(step, names, 'fields')}"
                     if names
                     else f"'{done}' is a number and has no field '{step}'"
                 )

@@ -168,7 +168,7 @@ class Declarations(ABC):
 
     @property
     def unit(self) -> str:
-        """The unit of time stamps and of bounds without one: s, ms, us or ns."""
+        """The unit of time stamps and of bounds without one: h, min, s, ms, us or ns."""
         return self._unit
 
     @unit.setter

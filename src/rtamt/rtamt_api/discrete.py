@@ -48,7 +48,7 @@ class DiscreteTimeSpecification(Formulas):
     ) -> None:
         """Set the time between samples.
 
-        ``sampling_period`` in ``unit`` (s, ms, us, ns); ``tolerance``, from 0 to 1, is the fraction of
+        ``sampling_period`` in ``unit`` (h, min, s, ms, us, ns); ``tolerance``, from 0 to 1, is the fraction of
         the period by which a gap may miss it before :attr:`sampling_violation_counter` counts it.
         """
         before = self._period, self._tolerance
@@ -132,7 +132,7 @@ class StlDiscreteTimeOfflineSpecification(ExplainedSpecification, DiscreteTimeSp
         if stamps is not None:
             columns[TIME] = stamps * float(UNITS[self._unit])
         unit = "s" if columns else None  # said by the specification: also where the numbers are large
-        trace = record_discrete(columns or dataset, self._inputs, self._period, tuple(columns), inf, unit)
+        trace = record_discrete(columns or dataset, self._inputs, self._period, inf, unit)
         if stamps is None:
             raise arrays.missing_variable(TIME, tuple(columns))
         return stamps, trace

@@ -29,7 +29,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
-from rtamt.errors import StlError, UsageError, did_you_mean, shown
+from rtamt.errors import StlError, UsageError, choices, did_you_mean, shown
 from rtamt.extras import library
 from rtamt.search.inputs import PiecewiseConstant, PiecewiseLinear, Pulse, Range, Sine, Step
 from rtamt.search.problem import Problem
@@ -150,9 +150,7 @@ def _module(name: str, folder: Path) -> ModuleType:
 def _known(data: dict[str, Any], keys: Collection[str], where: str) -> None:
     for key in data:
         if key not in keys:
-            raise UsageError(
-                f"'{where}{key}' is no setting; there are {', '.join(keys)}{did_you_mean(key, keys)}"
-            )
+            raise UsageError(f"'{where}{key}' is not a setting{choices(key, keys, 'settings')}")
 
 
 def _toml() -> Any:

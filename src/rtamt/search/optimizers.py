@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
-from rtamt.errors import UsageError, did_you_mean
+from rtamt.errors import UsageError, choices
 from rtamt.extras import library
 
 if TYPE_CHECKING:
@@ -119,6 +119,5 @@ def optimizer(name: str) -> Optimizer:
     """Return the optimizer of that name; raise :class:`UsageError` for any other."""
     found = OPTIMIZERS.get(name)
     if found is None:
-        hint = did_you_mean(name, OPTIMIZERS)
-        raise UsageError(f"there is no optimizer '{name}', only {', '.join(OPTIMIZERS)}{hint}")
+        raise UsageError(f"there is no optimizer '{name}'{choices(name, OPTIMIZERS, 'optimizers')}")
     return found

@@ -8,12 +8,13 @@ from datetime import datetime, timedelta
 from functools import reduce
 from math import isinf, isnan
 from numbers import Real
+from os import PathLike, fspath
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from rtamt.errors import TraceError, UsageError, did_you_mean, shown, with_article
-from rtamt.language.units import UNITS, check_unit
+from rtamt.errors import TraceError, UsageError, choices, shown, with_article
+from rtamt.language.units import UNITS, check_unit, in_seconds
 from rtamt.signals.counting import all_integers, integers, quotients, refuse_implausible
 from rtamt.signals.datetimes import has_length, in_nanoseconds, nanoseconds_of, no_length, out_of_reach
 from rtamt.signals.stamps import check_frame
@@ -74,16 +75,14 @@ def units_of(data: Any) -> Mapping[str, str]:
 
 
 def columns_of(
-    data: Any, names: Sequence[str], declared: Collection[str] = (), unit: str | None = None
+    data: Any, names: Sequence[str], unit: str | None = None
 ) -> tuple[Stamps | None, dict[str, FloatArray], int]:
     """Return the time stamps (None if there are none), a column for each name, and their common length."""
     require_no_unit(data, unit)
     if data.__class__ is not dict and isinstance(data, Clocked):
         data = data.on_one_clock(names)
     keys = _keys(data)
-    if is_mapping(data):
-        refuse_unknown(keys, names, declared)
-    else:
+    if not is_mapping(data):
         check_frame(data, TIME, names)
     columns = {name: _column(data, keys, name) for name in names}
     times = stamps(data[TIME], unit) if TIME in keys else None
@@ -209,7 +208,7 @@ def stamps(values: Any, unit: str | None = None) -> Stamps:
         except OverflowError:
             raise TraceError(f"'{TIME}' has an integer that 64 bits cannot hold", variable=TIME) from None
         return Stamps(quotients(whole, *size.as_integer_ratio()), whole)
-    return Stamps(numbers / float(1 / size), numbers)
+    return Stamps(in_seconds(numbers, size), numbers)
 
 
 def _moments(raw: NDArray[Any]) -> NDArray[Any]:
@@ -265,17 +264,14 @@ def nan_error(name: str, index: int, time: float) -> TraceError:
 
 def unknown_variable(name: str, names: Collection[str]) -> TraceError:
     """Return the error for a variable that the formula does not read."""
-    reads = ", ".join(names) or "no variable"
     return TraceError(
-        f"unknown variable '{name}' in the data; the formula reads {reads}{did_you_mean(name, names)}",
-        variable=name,
+        f"the formula has no variable '{name}'{choices(name, names, 'variables')}", variable=name
     )
 
 
 def missing_variable(name: str, keys: Collection[str]) -> TraceError:
     """Return the error for a variable that the formula reads and the data lacks."""
-    has = ", ".join(str(key) for key in keys) or "nothing"
-    return TraceError(f"the data has no '{name}'; it has {has}{did_you_mean(name, keys)}", variable=name)
+    return TraceError(f"the data has no '{name}'{choices(name, keys, 'signals')}", variable=name)
 
 
 def field(value: Any, path: Sequence[str]) -> Any:
@@ -288,15 +284,26 @@ def _keys(data: Any) -> list[str]:
         return list(data)
     columns = getattr(data, "columns", None)
     if columns is None:
-        raise TraceError(
-            f"expected a mapping from variable to values, such as {{'time': [...], 'x': [...]}}, "
-            f"got {type(data).__name__}"
-        )
+        raise not_a_mapping(data, "values, such as {'time': [...], 'x': [...]}")
     return list(columns)
 
 
+def not_a_mapping(data: Any, to: str) -> TraceError:
+    """Return the error for data that is no mapping from variables ``to`` what is said; a file has to be read first."""
+    if isinstance(data, str | PathLike):
+        path = shown(fspath(data))
+        return TraceError(f"expected data, got {path}; to read a file write rtamt.read({path})")
+    return TraceError(f"expected a mapping from variable to {to}, got {type(data).__name__}")
+
+
 def refuse_unknown(keys: Sequence[str], names: Sequence[str], declared: Collection[str]) -> None:
-    """Raise :class:`TraceError` at a key that is neither read, nor declared, nor the time."""
+    """Raise :class:`TraceError` at a key that is neither read, nor declared, nor the time.
+
+    For data that need not hold every variable, where such a key may be a misspelt one; where all variables are
+    there, others do no harm.
+    """
+    if all(name in keys or name.split(".")[0] in keys for name in names):
+        return
     for key in keys:
         if key in names or key == TIME or key in declared:
             continue

@@ -76,11 +76,9 @@ class Dense(TimeDomain):
         """See :class:`TimeDomain`: the instants are those of the variables."""
         _require_variables(names)
 
-    def record(
-        self, data: Any, names: Sequence[str], declared: Collection[str] = (), unit: str | None = None
-    ) -> DenseTrace:
+    def record(self, data: Any, names: Sequence[str], unit: str | None = None) -> DenseTrace:
         """See :class:`TimeDomain`."""
-        return record_dense(data, names, self.resolution, declared, unit=unit)
+        return record_dense(data, names, self.resolution, unit=unit)
 
 
 #: Dense time with its default settings.
@@ -139,6 +137,10 @@ class DenseTrace(DomainTrace):
     def bounded(self, bounds: Mapping[str, Bounds]) -> DenseTrace:
         """See :class:`DomainTrace`."""
         return replace(self, bounds=bounds)
+
+    def with_units(self, units: Mapping[str, str]) -> DenseTrace:
+        """See :class:`DomainTrace`."""
+        return replace(self, units=units)
 
     def started(self, names: Collection[str]) -> DenseTrace:
         """See :class:`DomainTrace`."""
@@ -234,7 +236,6 @@ def record_dense(
     data: Any,
     names: Sequence[str],
     tick: Fraction,
-    declared: Collection[str] = (),
     scale: TimeScale | None = None,
     unit: str | None = None,
 ) -> DenseTrace:
@@ -247,7 +248,7 @@ def record_dense(
     """
     _require_variables(names)
     arrays.require_no_unit(data, unit)
-    columns = dense_arrays.columns_of(data, names, declared)
+    columns = dense_arrays.columns_of(data, names)
     for name in names:
         if name not in columns:
             raise arrays.missing_variable(name, [str(key) for key in getattr(data, "columns", data)])

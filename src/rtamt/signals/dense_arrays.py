@@ -11,6 +11,7 @@ import numpy as np
 from rtamt.errors import TraceError
 from rtamt.language.units import format_duration
 from rtamt.signals import arrays
+from rtamt.signals.regular import never_set
 from rtamt.signals.signal import Signal
 from rtamt.signals.stamps import check_frame
 from rtamt.signals.ticks import sequence_of
@@ -91,24 +92,25 @@ def split(samples: Any, name: str) -> tuple[Any, Any]:
     return [time for time, _ in pairs], [value for _, value in pairs]
 
 
-def columns_of(data: Any, names: Sequence[str], declared: Collection[str] = ()) -> dict[str, tuple[Any, Any]]:
+def columns_of(
+    data: Any, names: Sequence[str], declared: Collection[str] | None = None
+) -> dict[str, tuple[Any, Any]]:
     """Return times (an array or a list) and values (as given) of each variable that is in the data.
 
     With a key ``"time"`` all variables share its stamps, unless the formula reads a variable of that
     name. A variable with fields (``req.value``) may be
-    given as ``req``, whose values are objects that have them.
+    given as ``req``, whose values are objects that have them. ``declared``: for a chunk, which need not
+    hold every variable, names that it may hold besides.
     """
     if data.__class__ is not dict and isinstance(data, arrays.Clocked):
         data = data.on_own_clocks(names)
     if not arrays.is_mapping(data):
         if not hasattr(data, "columns"):
-            raise TraceError(
-                "expected a mapping from variable to (times, values), such as {'x': ([0.0, 1.5], [3, 4])}, "
-                f"got {type(data).__name__}"
-            )
+            raise arrays.not_a_mapping(data, "(times, values), such as {'x': ([0.0, 1.5], [3, 4])}")
         check_frame(data, arrays.TIME, names)
         data = {name: data[name] for name in (*names, arrays.TIME) if name in data.columns}
-    arrays.refuse_unknown(list(data), names, declared)
+    if declared is not None:
+        arrays.refuse_unknown(list(data), names, declared)
     stamped = arrays.TIME in data and arrays.TIME not in names
     shared = sequence_of(data[arrays.TIME], arrays.TIME) if stamped else None
     columns = {}
@@ -144,6 +146,8 @@ def samples_of(
     rising = after > before
     if not np.logical_and.reduce(rising):
         i = int(rising.argmin())
+        if last is None and len(ticks) > 2 and ticks[0] == ticks[-1] and not np.diff(ticks).any():
+            raise never_set(float(ticks[0] * scale.tick), len(ticks), name)
         raise not_increasing(name, first + i + (last is None), int(after[i]), int(before[i]), scale)
     if len(values) and isnan(np.minimum.reduce(values)):  # the least of numbers and a NaN is NaN
         i = int(np.isnan(values).argmax())

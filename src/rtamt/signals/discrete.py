@@ -79,11 +79,9 @@ class Discrete(TimeDomain):
     def check_inputs(self, names: Collection[str]) -> None:
         """See :class:`TimeDomain`: samples are instants also where a formula reads no variable."""
 
-    def record(
-        self, data: Any, names: Sequence[str], declared: Collection[str] = (), unit: str | None = None
-    ) -> DiscreteTrace:
+    def record(self, data: Any, names: Sequence[str], unit: str | None = None) -> DiscreteTrace:
         """See :class:`TimeDomain`."""
-        return record_discrete(data, names, self.period, declared, self.tolerance, unit)
+        return record_discrete(data, names, self.period, self.tolerance, unit)
 
 
 #: Discrete time with its default settings.
@@ -162,6 +160,10 @@ class DiscreteTrace(DomainTrace):
     def bounded(self, bounds: Mapping[str, Bounds]) -> DiscreteTrace:
         """See :class:`DomainTrace`."""
         return dataclasses.replace(self, bounds=bounds)
+
+    def with_units(self, units: Mapping[str, str]) -> DiscreteTrace:
+        """See :class:`DomainTrace`."""
+        return dataclasses.replace(self, units=units)
 
     def started(self, names: Collection[str]) -> DiscreteTrace:  # noqa: ARG002
         """See :class:`DomainTrace`: all variables start with the first sample."""
@@ -249,7 +251,6 @@ def record_discrete(
     data: Any,
     names: Sequence[str],
     period: Fraction | None,
-    declared: Collection[str] = (),
     tolerance: float = TOLERANCE,
     unit: str | None = None,
 ) -> DiscreteTrace:
@@ -257,10 +258,10 @@ def record_discrete(
 
     ``data``: a mapping, or anything with columns (a pandas or polars frame), from variable to n
     numbers; ``"time"`` (n stamps, seconds or datetimes) is optional. ``names`` are the variables the
-    formula reads, ``declared`` others that may be there. Without a ``period`` (seconds) it is taken
+    formula reads; others do no harm. Without a ``period`` (seconds) it is taken
     from the stamps. ``unit``: of stamps that are numbers, by default seconds. Raises :class:`TraceError`.
     """
-    stamped, columns, n = columns_of(data, names, declared, unit)
+    stamped, columns, n = columns_of(data, names, unit)
     if n == 0:
         raise TraceError("the trace is empty: give at least one sample")
     inferred, told = False, None

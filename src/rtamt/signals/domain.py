@@ -80,12 +80,10 @@ class TimeDomain(ABC):
         """Raise :class:`UsageError` where these variables do not suffice to evaluate a formula."""
 
     @abstractmethod
-    def record(
-        self, data: Any, names: Sequence[str], declared: Collection[str] = (), unit: str | None = None
-    ) -> DomainTrace:
+    def record(self, data: Any, names: Sequence[str], unit: str | None = None) -> DomainTrace:
         """Normalise a finished recording of the variables ``names``; the caller's data is never changed.
 
-        ``declared``: others that may be there. ``unit``: of times that are numbers, by default seconds.
+        ``unit``: of times that are numbers, by default seconds.
         Raises :class:`TraceError`.
         """
 
@@ -156,6 +154,10 @@ class DomainTrace(ABC):
     @abstractmethod
     def bounded(self, bounds: Mapping[str, Bounds]) -> Self:
         """Return the recording with bounds of the samples of each variable."""
+
+    @abstractmethod
+    def with_units(self, units: Mapping[str, str]) -> Self:
+        """Return the recording with these units of its variables."""
 
     @abstractmethod
     def started(self, names: Collection[str]) -> Self:

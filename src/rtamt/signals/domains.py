@@ -5,7 +5,7 @@ from __future__ import annotations
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from rtamt.errors import UsageError, did_you_mean, shown
+from rtamt.errors import UsageError, choices, shown
 from rtamt.signals.dense import Dense
 from rtamt.signals.discrete import Discrete
 from rtamt.signals.domain import TimeDomain
@@ -60,9 +60,7 @@ def time_domain(
         return time
     if not isinstance(time, str) or time not in DOMAINS:
         names = tuple(DOMAINS)
-        raise UsageError(
-            f"unknown time domain {shown(time)}; choose from {', '.join(names)}{did_you_mean(time, names)}"
-        )
+        raise UsageError(f"unknown time domain {shown(time)}{choices(time, names, 'time domains')}")
     return DOMAINS[time].of(
         defaults.period if period is None else period,
         defaults.tolerance if tolerance is None else tolerance,

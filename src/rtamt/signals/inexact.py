@@ -18,7 +18,7 @@ from rtamt.signals import dense_arrays
 from rtamt.signals.arrays import TIME, Clocked, is_mapping, number_of
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Sequence
+    from collections.abc import Sequence
 
     from numpy.typing import NDArray
 
@@ -99,16 +99,14 @@ def range_of(name: str, value: Any) -> tuple[float, float]:
     return low, high
 
 
-def fill_gaps(
-    data: Any, names: Sequence[str], declared: Collection[str], *, own_clocks: bool
-) -> tuple[Any, dict[str, Mask]]:
+def fill_gaps(data: Any, names: Sequence[str], *, own_clocks: bool) -> tuple[Any, dict[str, Mask]]:
     """Return the data with zeros in the place of missing samples, and where they are, of those that miss some."""
     if isinstance(data, Clocked):
         return data, {}  # readers decide about gaps
     missing: dict[str, Mask] = {}
     if own_clocks:
         filled: dict[str, Any] = {}
-        for name, (times, values) in dense_arrays.columns_of(data, names, declared).items():
+        for name, (times, values) in dense_arrays.columns_of(data, names).items():
             filled[name] = times, _filled(values, name, missing)
         return filled, missing
     keys = list(data) if is_mapping(data) else list(data.columns)

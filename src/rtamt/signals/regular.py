@@ -58,7 +58,18 @@ def check_increasing(times: FloatArray, before: float | None = None, first: int 
     steps = np.diff(times)
     if (steps <= 0).any():
         i = int((steps <= 0).argmax()) + 1
+        if before is None and len(steps) > 1 and not steps.any():
+            raise never_set(float(times[0]), len(times))
         raise not_increasing(first + i, float(times[i]), float(times[i - 1]))
+
+
+def never_set(time: float, count: int, name: str = TIME) -> TraceError:
+    """Return the error for timestamps that are all alike."""
+    return TraceError(
+        f"all {count} timestamps of '{name}' are {time:.15g} s, so they were never set: choose another column of "
+        f"timestamps (time=, --time-column), or none ('')",
+        variable=name,
+    )
 
 
 def not_increasing(index: int, time: float, before: float) -> TraceError:

@@ -18,6 +18,8 @@ NAMES = ("time", "t", "timestamp", "stamp", "datetime")
 #: How people write units of time.
 SPELLINGS: Mapping[str, str] = MappingProxyType(
     {
+        "h": "h hr hrs hour hours",
+        "min": "min mins minute minutes",
         "s": "s sec secs second seconds",
         "ms": "ms msec millis millisecond milliseconds",
         "us": "us µs μs usec micros microsecond microseconds",
@@ -25,31 +27,35 @@ SPELLINGS: Mapping[str, str] = MappingProxyType(
     }
 )
 _UNIT_OF = {spelling: unit for unit, spellings in SPELLINGS.items() for spelling in spellings.split()}
-_STAMPS = re.compile(rf"(?P<name>{'|'.join(NAMES)})(?:[ _](?P<unit>{'|'.join(_UNIT_OF)}))?")
+#: Units at the end of a name: t_min may be a minimum, and t_h anything.
+_SUFFIXES = [spelling for spelling, unit in _UNIT_OF.items() if unit not in ("h", "min")]
+_STAMPS = re.compile(rf"(?P<name>{'|'.join(NAMES)})(?:[ _](?P<unit>{'|'.join(_SUFFIXES)}))?")
 _BRACKETS = re.compile(r"(?P<name>.*\S)\s*[\[(]\s*(?P<unit>[^\[\]()]+?)\s*[\])]", re.DOTALL)
 
 #: Words in the names of columns that may hold time stamps, but need not.
 _HINTS = frozenset({*NAMES, "ts", "date", "clock", "epoch", "elapsed"} - {"t"})
 #: Names that are units: 's' and 'ms' are short for too many other things.
-_UNITS = frozenset(spelling for spelling in _UNIT_OF if len(spelling) > 2)
+_UNITS = frozenset(spelling for spelling in _SUFFIXES if len(spelling) > 2)
 _WORDS = re.compile(r"[A-Z]?[a-z]+|[A-Z]+(?![a-z])")
 
 
 def split_unit(column: str) -> tuple[str, str]:
     """Return the name and the unit of a column: ``Time [ms]`` is ``("Time", "ms")``.
 
-    >>> split_unit("Time [ms]"), split_unit("req")
-    (('Time', 'ms'), ('req', ''))
+    >>> split_unit("Time [ms]"), split_unit("req"), split_unit("q[0]")
+    (('Time', 'ms'), ('req', ''), ('q[0]', ''))
     """
     match = _BRACKETS.fullmatch(column)
+    if match and match["unit"].isdigit() and column.endswith(f"{match['name']}[{match['unit']}]"):
+        return column, ""  # an element of an array: q[0]
     return (match["name"], match["unit"]) if match else (column, "")
 
 
 def unit_called(text: str) -> str | None:
     """Return the unit of time that a text writes; None where it writes none.
 
-    >>> unit_called("msec"), unit_called("s"), unit_called("min")
-    ('ms', 's', None)
+    >>> unit_called("msec"), unit_called("minutes"), unit_called("kg")
+    ('ms', 'min', None)
     """
     return _UNIT_OF.get(text.strip().lower()) or (text if text in UNITS else None)
 

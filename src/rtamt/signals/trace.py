@@ -16,9 +16,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rtamt.errors import TraceError, UsageError, did_you_mean
+from rtamt.errors import TraceError, UsageError, choices
 from rtamt.language.units import duration
 from rtamt.signals.arrays import TIME, Clocked, stamps
+from rtamt.signals.listing import extent, listing
 from rtamt.signals.signal import Signal
 
 if TYPE_CHECKING:
@@ -135,12 +136,8 @@ class Trace(Clocked):
     def channel(self, name: str) -> Channel:
         """Return one signal with its unit; raise :class:`TraceError` where there is none of that name."""
         if name not in self._channels:
-            shown = list(self._channels)[:12]
-            more = len(self._channels) - len(shown)
-            listing = ", ".join(shown) + (f" and {more} more" if more else "")
-            hint = did_you_mean(name, self._channels)
             raise TraceError(
-                f"{self._source} has no '{name}', only {listing or 'nothing'}{hint}", variable=name
+                f"{self._source} has no '{name}'{choices(name, self._channels, 'signals')}", variable=name
             )
         return self._channels[name]
 
@@ -226,9 +223,7 @@ class Trace(Clocked):
         (array([ 0.,  0., 10.]), array([ 0.,  5., 10.]))
         """
         if how not in HOW:
-            raise UsageError(
-                f"cannot resample by '{how}'{did_you_mean(how, HOW)}; choose from {', '.join(HOW)}"
-            )
+            raise UsageError(f"cannot resample by '{how}'{choices(how, HOW, 'methods')}")
         step = duration(period)
         if step <= 0:
             raise UsageError(f"the sampling period is {period!r}; it must be positive")
@@ -300,27 +295,13 @@ class Trace(Clocked):
                 continue
             raise TraceError(
                 f"'{first[0]}' and '{other[0]}' are on different clocks "
-                f"({_extent(first[1])}; {_extent(other[1])}): evaluate in dense time, or put them on one clock "
+                f"({extent(first[1])}; {extent(other[1])}): evaluate in dense time, or put them on one clock "
                 f"with trace.resample(period=...) or trace.hold(), on the command line with --resample PERIOD",
                 variable=other[0],
             )
 
     def __repr__(self) -> str:
-        count = len(self._channels)
-        extent = "" if self.start is None else f", {show_time(self.start)} to {show_time(self.end)}"
-        lines = [f"Trace of {self._source}: {count} signal{'s' * (count != 1)}{extent}"]
-        if self._origin is not None:
-            lines.append(f"  time 0 is {self._origin} UTC")
-        lines += [f"  {note}" for note in self.notes]
-        rows = [
-            (
-                name + (f" [{c.unit}]" if c.unit else ""),
-                _extent(c) + (f"  ({c.column})" if c.column not in ("", name, f"{name} [{c.unit}]") else ""),
-            )
-            for name, c in self._channels.items()
-        ]
-        width = max((len(label) for label, _ in rows), default=0)
-        return "\n".join(lines + [f"  {label:<{width}}  {rest}" for label, rest in rows])
+        return listing(self)
 
 
 def _passed_over(name: str, places: NDArray[np.intp], count: int) -> list[str]:
@@ -337,25 +318,6 @@ def _passed_over(name: str, places: NDArray[np.intp], count: int) -> list[str]:
 def in_seconds(times: Times) -> FloatArray:
     """Return times as float64 seconds; datetimes count from 1970."""
     return stamps(times).seconds
-
-
-def show_time(time: Any) -> str:
-    """Return one time for people: seconds, nanoseconds or a date.
-
-    >>> show_time(np.float64(2.5)), show_time(np.timedelta64(7, "ns"))
-    ('2.5 s', '7 ns')
-    """
-    if isinstance(time, np.datetime64):
-        return str(time).rstrip("0").rstrip(".") if "." in str(time) else str(time)
-    return f"{time.astype(np.int64)} ns" if isinstance(time, np.timedelta64) else f"{time:.12g} s"
-
-
-def _extent(channel: Channel) -> str:
-    count = len(channel.values)
-    text = f"{count:,} sample{'s' * (count != 1)}"
-    if channel.times is None or not count:
-        return text
-    return f"{text}, {show_time(channel.times[0])} to {show_time(channel.times[-1])}"
 
 
 def _exact(time: Any) -> Fraction:
@@ -386,4 +348,4 @@ def _plain(gaps: Times) -> FloatArray:
     return (gaps.astype(np.int64) if gaps.dtype.kind == "m" else gaps).astype(np.float64)
 
 
-__all__ = ["HOW", "Channel", "Trace", "in_seconds", "show_time"]
+__all__ = ["HOW", "Channel", "Trace", "in_seconds"]

@@ -266,7 +266,7 @@ class _DiscreteStream(_Stream):
         self._kept: dict[int, Any] = {}
 
     def take(self, chunk: Any) -> None:
-        stamps, columns, n = arrays.columns_of(chunk, self.spec.input_names, self.declared, self.unit)
+        stamps, columns, n = arrays.columns_of(chunk, self.spec.input_names, self.unit)
         if not n:
             return
         if self._monitor is None:

@@ -259,7 +259,7 @@ def test_dates_are_time_stamps_in_both_domains(run, write):
     [
         (
             ("x", "--time", "dens"),
-            "unknown time domain 'dens'; choose from discrete, dense; did you mean 'dense'?",
+            "unknown time domain 'dens'; did you mean 'dense'? (time domains: dense, discrete)",
         ),
         (
             ("x", "--time", "dense", "--period", "1"),

@@ -76,5 +76,5 @@ def test_another_shell_is_refused(run):
     assert run("completion", "tcsh") == (
         2,
         "",
-        "rtamt: there is no completion for 'tcsh', only for bash, zsh, fish\n",
+        "rtamt: there is no completion for 'tcsh'; shells: bash, zsh, fish\n",
     )

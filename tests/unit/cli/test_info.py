@@ -98,7 +98,7 @@ def test_json(run):
         "formula": "next(req.value >= 3)",
         "latex": run("info", "next(req.value >= 3)", "--latex").out.strip(),
         "semantics": "standard",
-        "variables": [{"name": "req.value", "type": None, "role": None, "topic": None}],
+        "variables": [{"name": "req.value", "type": None, "role": None, "unit": None, "topic": None}],
         "period": 1.0,
         "resolution": None,
         "horizon": 1.0,

@@ -83,7 +83,7 @@ def test_a_bad_line_ends_the_monitor_and_nothing_is_printed_after_it(run):
     assert run("monitor", "always[0:1](x >= 3)", stdin=stdin) == (
         2,
         '{"time": 0.0, "robustness": 1.0}\n',
-        "rtamt: stdin, line 3: the data has no 'x'; it has y\n",
+        "rtamt: stdin, line 3: the data has no 'x'; signals: y\n",
     )
 
 

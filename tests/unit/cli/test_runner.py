@@ -201,7 +201,7 @@ def test_large_files_are_read_in_chunks_with_the_same_outcome(run, write, monkey
     assert run("check", *formulas, "log.parquet", "--json") == whole
     assert [str(spec) for spec in streamed] == ["always(x >= -0.5)"]
     refused = run("check", "always(y >= 0)", "log.parquet")
-    assert refused == (2, "", "rtamt: log.parquet has no column 'y', only time, x\n")
+    assert refused == (2, "", "rtamt: log.parquet has no column 'y'; columns: time, x\n")
 
 
 def test_info_of_a_recording_tells_what_was_found_and_guessed(run, write):
@@ -233,7 +233,7 @@ def test_a_bar_where_somebody_watches():
         (["--jobs", "0"], "--jobs is 0; give a number of processes, 1 or more"),
         (["--sql", "sqlite://", "--query", "x"], "--sql reads a database; leave out the trace 'good.csv', or --sql"),
         (["--how", "line", "--resample", "1"],
-         "good.csv: cannot resample by 'line'; did you mean 'linear'?; choose from hold, linear"),
+         "good.csv: cannot resample by 'line'; did you mean 'linear'? (methods: linear, hold)"),
         (["--junit", "no/such/folder.xml", "--quiet"], "cannot write 'no/such/folder.xml': No such file or directory"),
         (["--sheet", "a"], "'good.csv' is CSV, which has no sheets; leave the sheet out"),
     ],

@@ -175,7 +175,7 @@ def test_a_variable_called_time(backend: str) -> None:
         repr(monitor.update_many({"time": ([2.0], [4.0])})) == "Signal(times=array([2.]), values=array([3.]))"
     )
     assert spec.evaluate({"time": ([0.0, 1.0], [3.0, 0.5])}).signal.values.tolist() == [2.0, -0.5]
-    with pytest.raises(TraceError, match=r"^unknown variable 'time' in the data; the formula reads x$"):
+    with pytest.raises(TraceError, match=r"^the formula has no variable 'time'; variables: x$"):
         rtamt.parse("x >= 1", backend=backend).monitor(time="dense").update(0.0, x=1.0, time=2.0)
 
 

@@ -103,7 +103,7 @@ MESSAGES = [
         "             ^^",
         "'=>' is no operator; write '->' for an implication, '>=' for at least",
     ),
-    ("require R: x = 3", "             ^", "'=' gives a name to a formula; to compare write '=='"),
+    ("require R: x = 3", "             ^", "'=' gives a name to a formula; use == for equality"),
     (
         'require "": x > 1',
         "        ^^",
@@ -140,7 +140,7 @@ def test_one_of_several_is_a_specification_of_its_own_also_after_pickling():
         assert list(again.requirements) == ["A"]
     assert (spec.name, spec.input_names) == ("s", ("x", "y"))
     assert str(spec.select("low")) == "x <= 3"
-    with pytest.raises(UsageError, match="there is no requirement 'C'; requirements are A, B"):
+    with pytest.raises(UsageError, match="there is no requirement 'C'; requirements: low, A, B"):
         spec.select("C")
 
 

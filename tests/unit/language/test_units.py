@@ -61,8 +61,8 @@ def test_no_duration(value, shown):
 @pytest.mark.parametrize(
     ("call", "sentence"),
     [
-        (lambda: duration("5 min"), "'min' is not a unit of time; units are s, ms, us, ns"),
-        (lambda: duration(5, "h"), "'h' is not a unit of time; units are s, ms, us, ns"),
+        (lambda: duration("5 day"), "'day' is not a unit of time; units: h, min, s, ms, us, ns"),
+        (lambda: duration(5, "d"), "'d' is not a unit of time; units: h, min, s, ms, us, ns"),
         (lambda: duration("-1 s"), "a duration may not be negative, got '-1 s'"),
         (lambda: duration(-0.5), "a duration may not be negative, got -0.5"),
     ],

@@ -178,12 +178,13 @@ LONG = "time,x\n" + "0,1\n" * 10 + "1,{}\n" + "0,1\n" * 10
         (
             "time,req,gmt\n0,1,2\n",
             ["req", "gnt"],
-            "log.csv has no column 'gnt', only time, req, gmt; did you mean 'gmt'?",
+            "log.csv has no column 'gnt'; did you mean 'gmt'? (columns: gmt, time, req)",
         ),
         (
             ",".join(f"c{i}" for i in range(20)) + "\n",
             ["volts"],
-            "log.csv has no column 'volts', only c0, c1, c2, c3, c4, c5, c6, c7, c8, c9, c10, c11 and 8 more",
+            "log.csv has no column 'volts'; columns: c0, c1, "
+            "c2, c3, c4, c5, c6, c7, c8, c9, c10, c11, c12, c13, c14, c15 and 4 more",
         ),
         (
             "time,req,req\n0,1,2\n",
@@ -197,14 +198,14 @@ LONG = "time,x\n" + "0,1\n" * 10 + "1,{}\n" + "0,1\n" * 10
             "choose one with time=, or on the command line --time-column ('' for none)",
         ),
         (
-            "t [min],req\n0,1\n",
+            "t [day],req\n0,1\n",
             ["req"],
-            "the unit of the time column 't [min]' of log.csv is 'min', which is none of s, ms, us, ns",
+            "the unit of the time column 't [day]' of log.csv is 'day', which is none of h, min, s, ms, us, ns",
         ),
         (
             "0,1\n1,2\n",
             ["req"],
-            "log.csv, line 1: expected a row of column names, such as time,x; got '0,1'",
+            "log.csv, line 1: expected a row of column names, such as time,x; got '0,1': put the names above it",
         ),
         ("", ["req"], "'log.csv' is empty: it needs a row of column names, then a row for each sample"),
         (
@@ -242,7 +243,7 @@ def test_message_names_the_variable(write):
 def test_message_for_a_time_column_that_is_not_there(write):
     with pytest.raises(TraceError) as error:
         read(write("time,req\n0,1\n"), ["req"], time_column="tine")
-    assert str(error.value) == "log.csv has no column 'tine', only time, req; did you mean 'time'?"
+    assert str(error.value) == "log.csv has no column 'tine'; did you mean 'time'? (columns: time, req)"
 
 
 def test_message_for_a_missing_file():

@@ -204,7 +204,7 @@ def test_a_measurement_whose_conversion_is_python_code_is_refused_before_asammdf
 @pytest.mark.parametrize(
     ("name", "make", "options", "message"),
     [
-        ("a.xlsx", lambda p: workbook(p, a=[["x"], [1]]), {"sheet": "b"}, "{path} has no sheet 'b', only a"),
+        ("a.xlsx", lambda p: workbook(p, a=[["x"], [1]]), {"sheet": "b"}, "{path} has no sheet 'b'; sheets: a"),
         ("a.xlsx", lambda p: workbook(p, one=[["x"]], two=[["y"]]), {},
          "{path} has several sheets: one, two; choose one with sheet=, or on the command line --sheet"),
         ("a.xlsx", lambda p: workbook(p, a=[]), {},
@@ -218,7 +218,7 @@ def test_a_measurement_whose_conversion_is_python_code_is_refused_before_asammdf
         ("a.ulg", lambda p: p.write_bytes(b"no"), {},
          "'{path}' cannot be read as PX4 ULog: Invalid file format (Header too short)" + AGAIN),
         ("a.ulg", lambda _: None, {}, "there is no file '{path}'"),
-        ("a.ulg", lambda p: ulog(p, []), {"columns": ["x"]}, "{path} has no column 'x', only nothing"),
+        ("a.ulg", lambda p: ulog(p, []), {"columns": ["x"]}, "{path} has no column 'x'; columns: none"),
         ("a.csv", lambda p: p.write_text("x\n1\n"), {"sheet": "b"},
          "'{path}' is CSV, which has no sheets; leave the sheet out"),
         ("a.csv", lambda p: p.write_text("x\n1\n"), {"query": "select"},

@@ -178,12 +178,13 @@ def test_the_data_of_the_caller_is_not_shared():
         (lambda: rtamt.read({"x": [1, None]}),
          "'x' is missing at sample 1 of a dict: fill the gap, or name the column of time stamps, "
          "so that each signal has a clock of its own"),
-        (lambda: rtamt.read({"req": [1]}, columns=["rq"]), "a dict has no column 'rq', only req; did you mean 'req'?"),
-        (lambda: rtamt.read({"req": [1]}, time="clock"), "a dict has no column 'clock', only req"),
+        (lambda: rtamt.read({"req": [1]}, columns=["rq"]),
+         "a dict has no column 'rq'; did you mean 'req'? (columns: req)"),
+        (lambda: rtamt.read({"req": [1]}, time="clock"), "a dict has no column 'clock'; columns: req"),
         (lambda: rtamt.read({"x": [1]}, columns="x"),
          "columns is the text 'x'; give a list of names, such as ['x']"),
-        (lambda: rtamt.read({"time": [1], "x": [1]}, units={"time": "min"}),
-         "the unit of the time column 'time' of a dict is 'min', which is none of s, ms, us, ns"),
+        (lambda: rtamt.read({"time": [1], "x": [1]}, units={"time": "day"}),
+         "the unit of the time column 'time' of a dict is 'day', which is none of h, min, s, ms, us, ns"),
         (lambda: rtamt.read({"t": [0, 1], "x": [1, 2]}, columns=["time", "x"]),
          "the formula reads 'time', but the time stamps of a dict are its column 't'; "
          "name that column 'time', or the variable something else"),

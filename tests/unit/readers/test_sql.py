@@ -41,7 +41,7 @@ def test_sqlite(database):
     [
         (None, "'{url}' is a database: say what to read with query=, or on the command line --query"),
         ("selec", "cannot read from '{url}': near \"selec\": syntax error"),
-        ("create table other (x)", "the query on '{url}' returns no rows; give a SELECT"),
+        ("create table other (x)", "cannot read from '{url}': attempt to write a readonly database"),
         ("select x, x from log", "{url} has 2 columns called 'x'; rename all but one"),
         ("select x as a, 'text' as b from log", None),
     ],

@@ -237,8 +237,8 @@ def test_the_definition_serves_where_the_core_cannot_be_loaded(monkeypatch):
 @pytest.mark.parametrize(
     ("dataset", "message"),
     [
-        ([], "the data has no 'x'; it has nothing"),
-        ([["xx", []]], "the data has no 'x'; it has xx; did you mean 'xx'?"),
+        ([], "the data has no 'x'; signals: none"),
+        ([["xx", []]], "the data has no 'x'; did you mean 'xx'? (signals: xx)"),
         ([["x", []]], "'x' has no samples: give at least one"),
         (
             [{"x": 1}],
@@ -271,7 +271,7 @@ def test_a_failed_update_leaves_the_monitor_as_it_was():
     assert said(spec.update, ["x", [[1, 9], [1, 9]]]) == (
         "'x' has two samples at 1 s (sample 2 and the one before, with ticks of 1 ns): keep one of them"
     )
-    assert said(spec.update, ["q", []]) == "unknown variable 'q' in the data; the formula reads x"
+    assert said(spec.update, ["q", []]) == "the formula has no variable 'q'; variables: x"
     assert spec.get_value("x") == [[0.0, 5.0]]
     assert spec.update(["x", [[1, 4]]]) == [[1.0, 5.0]]
 

@@ -307,7 +307,7 @@ def test_online_violations_are_counted_from_reset_to_reset():
             "'x' is NaN at sample 2, time 2 s: fill the gap or leave the sample out",
         ),
         (2, [("x", "text")], "'x' is 'text' at sample 2, expected a number"),
-        (2, [("z", 1.0)], "unknown variable 'z' in the data; the formula reads x, y"),
+        (2, [("z", 1.0)], "the formula has no variable 'z'; variables: x, y"),
         (
             0,
             [("x", 50.0)],

@@ -62,7 +62,7 @@ def test_settings_of_a_time_domain_are_checked() -> None:
     with pytest.raises(rtamt.UsageError) as error:
         rtamt.parse("x >= 3", time="desne")
     assert str(error.value) == (
-        "unknown time domain 'desne'; choose from discrete, dense; did you mean 'dense'?"
+        "unknown time domain 'desne'; did you mean 'dense'? (time domains: dense, discrete)"
     )
 
 

@@ -6,7 +6,7 @@ import os
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
-from rtamt.errors import UsageError, did_you_mean
+from rtamt.errors import UsageError, choices, shown
 from rtamt.extras import library
 
 if TYPE_CHECKING:
@@ -38,10 +38,7 @@ class Quality:
         for name, known in (("reliability", RELIABILITY), ("durability", DURABILITY)):
             value = getattr(self, name)
             if value not in known:
-                raise UsageError(
-                    f"the {name} of topics cannot be '{value}'; choose from {', '.join(known)}"
-                    f"{did_you_mean(value, known)}"
-                )
+                raise UsageError(f"the {name} of topics cannot be '{value}'{choices(value, known, 'values')}")
         if self.depth < 1:
             raise UsageError(f"the depth of topics is {self.depth}; keep at least one message")
 
@@ -59,7 +56,7 @@ class Participant:
             part: library(f"cyclonedds.{part}", "speaking to ROS 2", "ros")
             for part in ("core", "domain", "topic", "pub", "sub", "util")
         }
-        self._participant = self._cyclone["domain"].DomainParticipant(_domain())
+        self._participant = self._join()
         self._quality = self._qos(quality)
         # Who asks for less hears a reliable publisher, too; not the other way round.
         self._offered = self._qos(replace(quality, reliability="reliable"))
@@ -70,6 +67,20 @@ class Participant:
         latest = Quality(durability="transient_local", depth=1)
         self._info = types.named("rmw_dds_common/msg/ParticipantEntitiesInfo")
         self._graph = self._writer("ros_discovery_info", self._info, self._qos(latest))
+
+    def _join(self) -> Any:
+        """Return the participant of the domain; what is wrong is mostly a setting of the environment."""
+        domain = _domain()
+        try:
+            return self._cyclone["domain"].DomainParticipant(domain)
+        except self._cyclone["core"].DDSException as error:
+            given = os.environ.get("CYCLONEDDS_URI")
+            cause = (
+                f"check the environment variable CYCLONEDDS_URI, which configures the network and is {shown(given)}"
+                if given
+                else "is there a network interface? CYCLONEDDS_URI chooses one"
+            )
+            raise UsageError(f"cannot join DDS domain {domain} ({error}): {cause}") from None
 
     def _qos(self, quality: Quality) -> Any:
         core = self._cyclone["core"]

@@ -6,7 +6,7 @@ import os
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from rtamt.errors import UsageError, did_you_mean
+from rtamt.errors import UsageError, choices
 from rtamt.extras import library, message_package
 from rtamt.ros.messages import DEFINITIONS
 
@@ -35,8 +35,9 @@ class Types:
         name = distro or os.environ.get("ROS_DISTRO") or DISTRO
         known = [s.name.removeprefix("ROS2_").lower() for s in self._typesys.Stores if "ROS2" in s.name]
         if name not in known:
+            source = "" if distro else " (from the environment variable ROS_DISTRO)"
             raise UsageError(
-                f"unknown distribution '{name}' of ROS 2, only {', '.join(known)}{did_you_mean(name, known)}"
+                f"unknown distribution '{name}' of ROS 2{source}{choices(name, known, 'distributions')}"
             )
         self._store = self._typesys.get_typestore(self._typesys.Stores[f"ROS2_{name.upper()}"])
         self._folders = [Path(folder) for folder in folders] + _folders()
@@ -116,7 +117,8 @@ class Types:
         )
         if known is None:
             raise UsageError(
-                f"a message with a field of type {base} cannot be sent over DDS alone; use rclpy"
+                f"a message with a field of type {base} cannot be read or sent over DDS: Cyclone DDS for Python has no "
+                f"such type; change the field to string, or use the node for rclpy (ros/rtamt_ros2)"
             )
         return known, float if base.startswith("float") else int
 

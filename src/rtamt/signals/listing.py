@@ -1,0 +1,73 @@
+"""A trace as text: its signals topic by topic, their units and extents, and what was noted about them."""
+
+from __future__ import annotations
+
+from itertools import groupby
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    from rtamt.signals.trace import Channel, Trace
+
+
+def listing(trace: Trace) -> str:
+    """Return what ``print(trace)`` shows."""
+    lines = [heading(trace), *(f"  {note}" for note in notes(trace))]
+    rows = [row for topic, channels in topics(trace) for row in _rows(topic, channels)]
+    width = max((len(label) for label, _ in rows), default=0)
+    return "\n".join(lines + [f"  {label:<{width}}  {rest}".rstrip() for label, rest in rows])
+
+
+def heading(trace: Trace) -> str:
+    """Return where a trace is from, how many signals it has, and from when to when."""
+    count = len(trace.names)
+    span = "" if trace.start is None else f", {show_time(trace.start)} to {show_time(trace.end)}"
+    return f"Trace of {trace.source}: {count} signal{'s' * (count != 1)}{span}"
+
+
+def notes(trace: Trace) -> list[str]:
+    """Return what was guessed or left out, and the date of time 0 where it is known."""
+    return [*([] if trace.origin is None else [f"time 0 is {trace.origin} UTC"]), *trace.notes]
+
+
+def topics(trace: Trace) -> Iterator[tuple[str, dict[str, Channel]]]:
+    """Yield the topics of a log with their signals; the topic of ``gps.lat`` is gps, and "" that of a single signal."""
+    for topic, names in groupby(trace.names, lambda name: name.partition(".")[0]):
+        channels = {name: trace.channel(name) for name in names}
+        yield (topic if len(channels) > 1 else ""), channels
+
+
+def _rows(topic: str, channels: Mapping[str, Channel]) -> Iterator[tuple[str, str]]:
+    """Yield the label of each signal and its extent; an extent that all signals share stands with the topic."""
+    extents = {extent(channel) for channel in channels.values()}
+    shared = bool(topic) and len(extents) == 1
+    if topic:
+        yield topic, f"{len(channels)} signals" + (f", each {extents.pop()}" if shared else "")
+    for name, channel in channels.items():
+        unit = f" [{channel.unit}]" if channel.unit else ""
+        source = f"({channel.column})" if channel.column not in ("", name, f"{name}{unit}") else ""
+        label = f"  {name}{unit}" if topic else f"{name}{unit}"
+        yield label, "  ".join(filter(None, ("" if shared else extent(channel), source)))
+
+
+def extent(channel: Channel) -> str:
+    """Return how many samples a signal has, and from when to when."""
+    count = len(channel.values)
+    text = f"{count:,} sample{'s' * (count != 1)}"
+    if channel.times is None or not count:
+        return text
+    return f"{text}, {show_time(channel.times[0])} to {show_time(channel.times[-1])}"
+
+
+def show_time(time: Any) -> str:
+    """Return one time as text: seconds, nanoseconds or a date.
+
+    >>> show_time(np.float64(2.5)), show_time(np.timedelta64(7, "ns"))
+    ('2.5 s', '7 ns')
+    """
+    if isinstance(time, np.datetime64):
+        return str(time).rstrip("0").rstrip(".") if "." in str(time) else str(time)
+    return f"{time.astype(np.int64)} ns" if isinstance(time, np.timedelta64) else f"{time:.12g} s"
