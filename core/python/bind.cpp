@@ -15,6 +15,7 @@
 #include "arrays.hpp"
 #include "calls.hpp"
 #include "dense_monitor.hpp"
+#include "early_monitor.hpp"
 #include "failures.hpp"
 #include "method.hpp"
 #include "monitor.hpp"
@@ -361,6 +362,7 @@ NB_MODULE(_core, m) {
                      "The latest tick that a sample may have.")
         .def_prop_ro("state_bytes", &DenseMonitor::state_bytes, "Bytes of state by now.");
 
+    rtamt::python::add_early_monitor(m, exceptions);
     rtamt::python::add_method_type(m);
 
     m.def("opcode_names", &opcode_names, "The names of the opcodes, in the order of their codes.");

@@ -1,6 +1,7 @@
 #include "method.hpp"
 
 #include "dense_monitor.hpp"
+#include "early_monitor.hpp"
 #include "monitor.hpp"
 
 #include <structmember.h>
@@ -44,6 +45,7 @@ constexpr Kind kinds[] = {
     {"update", "Monitor", update<Monitor>},
     {"step", "Monitor", step},
     {"dense_update", "DenseMonitor", update<DenseMonitor>},
+    {"early_update", "EarlyMonitor", update<EarlyMonitor>},
 };
 
 struct Method {

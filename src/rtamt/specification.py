@@ -29,6 +29,7 @@ from rtamt.signals.discrete import DISCRETE
 from rtamt.signals.domains import Defaults, time_domain
 from rtamt.signals.inexact import Uncertainty, fill_gaps
 from rtamt.signals.ticks import NANOSECOND
+from rtamt.verdicts.modes import DELAYED, clock_of, mode_of, semantics_in
 from rtamt.verdicts.offline import by_start, judge, judge_apart
 from rtamt.verdicts.outputs import Outputs, outputs_of
 from rtamt.verdicts.standalone import carried_program
@@ -48,6 +49,8 @@ if TYPE_CHECKING:
     from rtamt.signals.discrete import Discrete
     from rtamt.signals.domain import DomainTrace, TimeDomain
     from rtamt.signals.signal import Signal
+    from rtamt.verdicts.bounds import IntervalMonitor
+    from rtamt.verdicts.early import EagerMonitor
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -291,6 +294,7 @@ class Specification:
         semantics: Semantics | None = None,
         watch: str | Iterable[str] = (),
         time_unit: str | None = None,
+        verdict: Literal["delayed"] = "delayed",
     ) -> Monitor: ...
 
     @overload
@@ -302,7 +306,38 @@ class Specification:
         semantics: Semantics | None = None,
         watch: str | Iterable[str] = (),
         time_unit: str | None = None,
+        verdict: Literal["delayed"] = "delayed",
     ) -> DenseMonitor: ...
+
+    @overload
+    def monitor(
+        self,
+        *,
+        time: Literal["discrete"] | Discrete | None = None,
+        period: Duration | None = None,
+        tolerance: float | None = None,
+        semantics: Semantics | None = None,
+        watch: str | Iterable[str] = (),
+        time_unit: str | None = None,
+        verdict: Literal["eager"],
+    ) -> EagerMonitor: ...
+
+    @overload
+    def monitor(
+        self,
+        *,
+        time: Literal["discrete"] | Discrete | None = None,
+        period: Duration | None = None,
+        tolerance: float | None = None,
+        semantics: Semantics | None = None,
+        watch: str | Iterable[str] = (),
+        time_unit: str | None = None,
+        verdict: Literal["interval"],
+        at: str | None = None,
+        ranges: Mapping[str, Any] | None = None,
+        lateness: Duration | None = None,
+        on_correction: str | None = None,
+    ) -> IntervalMonitor: ...
 
     def monitor(
         self,
@@ -314,6 +349,11 @@ class Specification:
         semantics: Semantics | None = None,
         watch: str | Iterable[str] = (),
         time_unit: str | None = None,
+        verdict: str = DELAYED,
+        at: str | None = None,
+        ranges: Mapping[str, Any] | None = None,
+        lateness: Duration | None = None,
+        on_correction: str | None = None,
     ) -> OnlineMonitor:
         """Return an online monitor; of dense time where that is asked for here or in :func:`parse`.
 
@@ -324,6 +364,13 @@ class Specification:
         the same variables, whose values ``monitor[name]`` is to tell beside the result; each is known
         at its own horizon. ``time_unit``: of times that are numbers, as in :meth:`evaluate`; what is
         told comes in it too. Raises :class:`BoundError` for unbounded future.
+
+        ``verdict``: what the monitor reports of each sample: ``"delayed"``, the robustness one horizon later;
+        ``"eager"``, whether the formula holds, as soon as no later sample can change it; ``"interval"``, bounds
+        of the robustness from what is known by now. Of intervals: ``at``, the ``"start"`` of the trace, as by
+        default for unbounded future, or ``"every"`` sample; ``ranges``, from a variable to its least and
+        greatest value; ``lateness``, by how much a sample may come late; ``on_correction``, whether to
+        ``"reject"`` or ``"replay"`` a sample that contradicts an earlier one.
 
         >>> import rtamt
         >>> monitor = rtamt.parse("always[0:200ms](x >= 3)").monitor(period="100ms")
@@ -337,7 +384,11 @@ class Specification:
         >>> print(monitor.update(0.0, req=5, gnt=2), monitor["asked"], monitor["gnt - req"])
         None 2.0 -3.0
         """
-        formula = self.apply_semantics(self.formula, self._semantics(semantics))
+        given = {"at": at, "ranges": ranges, "lateness": lateness, "on_correction": on_correction}
+        settings: dict[str, Any] = {name: setting for name, setting in given.items() if setting is not None}
+        mode = mode_of(verdict, settings)
+        asked, semantics = semantics, semantics_in(mode, self._semantics(semantics))
+        formula = self.apply_semantics(self.formula, semantics)
         names = names_of(watch)
         watched = [self._watched(name, semantics) for name in names]
         factory = partial(
@@ -346,11 +397,23 @@ class Specification:
             period=period,
             tolerance=tolerance,
             resolution=resolution,
-            semantics=semantics,
+            semantics=asked,
             watch=names,
             time_unit=time_unit,
+            verdict=verdict,
+            **settings,
         )
         domain = self.domain_for(time, period, tolerance, resolution).online
+        if mode.monitor is not None:
+            return mode.monitor(
+                formula,
+                clock_of(mode, domain, self.backend, time_unit),
+                text=self.text,
+                declared=self.declared,
+                watch=watched,
+                factory=factory,
+                **settings,
+            )
         return engine_of(domain).monitor(
             formula,
             domain,

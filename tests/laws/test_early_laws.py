@@ -10,13 +10,12 @@ from hypothesis import strategies as st
 
 from tests.laws.early import soak
 from tests.laws.early.laws import NothingToCheck
-from tests.laws.early.monitors import DEFINITION, IMPLEMENTATIONS
+from tests.laws.early.monitors import IMPLEMENTATIONS
 
 PAIRS = [
     pytest.param(law, made, id=f"{law.__name__} of {made.name}")
     for made in IMPLEMENTATIONS
-    for law in soak.LAWS
-    if made is not DEFINITION or law not in soak.COMPARISONS
+    for law in soak.laws_of(made)
 ]
 
 

@@ -5,6 +5,7 @@ module    purpose
 ========  =====================================================================
 lower     formula to instructions: value numbering, lags, alignment of operands
 plan      formulas to one program (online) or a sequence of programs (offline)
+early     formulas to the graph that gives verdicts and bounds before the horizon
 program   the program: instructions, serialisation, disassembly
 metadata  names, period and labels stored with a program
 ========  =====================================================================

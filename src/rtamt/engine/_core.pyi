@@ -162,6 +162,81 @@ class DenseMonitor:
     def state_bytes(self) -> int:
         """Bytes of state by now."""
 
+class EarlyMonitor:
+    """Verdicts or bounds before the horizon, in discrete time (``core/early/``).
+
+    ``nodes``, ``outputs`` and ``origin`` are those of ``compiler.early.Graph``. ``lateness``: by how many samples
+    one may come late; None where all come in order. ``verdict``: the class of what update() returns, None for bounds.
+    ``replays``: whether update() takes nothing by itself.
+    """
+
+    def __init__(
+        self,
+        nodes: Sequence[tuple[Any, ...]],
+        outputs: Sequence[int],
+        origin: Sequence[tuple[Any, ...]],
+        ranges: Sequence[tuple[float, float]],
+        names: Sequence[str],
+        ignored: Collection[str] | None,
+        period: float,
+        tolerance: float,
+        lateness: int | None,
+        verdict: type | None,
+        replays: bool = False,
+    ) -> None: ...
+    def take(self, time: float, lower: Sequence[float], upper: Sequence[float], after: int) -> Any:
+        """Take bounds of every input at one time, in order."""
+
+    def learn(self, time: float, values: Sequence[tuple[int, float, float]], after: int) -> Any:
+        """Take bounds (input, lower, upper) of some inputs at one time."""
+
+    def watermark(self, time: float) -> None:
+        """Nothing at or before a time will come."""
+
+    def finish(self) -> Any:
+        """End the trace; return what that makes known."""
+
+    def verdicts(self, output: int) -> list[Any]:
+        """The verdicts of an output that the last call decided."""
+
+    def origin(self) -> tuple[float, float] | None:
+        """The bounds at the start of the trace."""
+
+    def bounds(self, output: int, sample: int) -> tuple[float, float] | None:
+        """The bounds of an output at a sample, None where they are forgotten."""
+
+    def changes(self, output: int) -> list[tuple[int, int, float, float]]:
+        """Runs (first, last, lower, upper) that the last call changed."""
+
+    def place(self, time: float) -> int | None:
+        """The index of a time, or None."""
+
+    def known(self, variable: int, sample: int) -> tuple[float, float]:
+        """What is known of an input at a sample."""
+
+    def time(self, sample: int) -> float:
+        """The time of a sample."""
+
+    def held(self, output: int) -> int:
+        """The first sample that is held."""
+
+    def state(self) -> bytes:
+        """What the samples so far have left behind."""
+
+    def restore(self, state: bytes) -> None:
+        """Go on as the monitor of this state would, which was made like this one."""
+
+    @property
+    def samples(self) -> int: ...
+    @property
+    def newest(self) -> int: ...
+    @property
+    def closed(self) -> int: ...
+    @property
+    def finished(self) -> bool: ...
+    @property
+    def state_bytes(self) -> int: ...
+
 def opcode_names() -> list[str]:
     """The names of the opcodes, in the order of their codes."""
 
@@ -187,7 +262,8 @@ def dense_scan(kind: str, a: _Events, b: _Events | None = None) -> _Events:
 class Method:
     """A function of a class that is called only where the compiled monitor in ``_backend`` refuses.
 
-    ``kind`` is one of ``update`` and ``step`` of a Monitor, and ``dense_update`` of a DenseMonitor.
+    ``kind`` is one of ``update`` and ``step`` of a Monitor, ``dense_update`` of a DenseMonitor, and ``early_update`` of
+    an EarlyMonitor.
     """
 
     def __init__(self, function: Callable[..., Any], kind: str, /) -> None: ...

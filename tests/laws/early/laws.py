@@ -132,10 +132,10 @@ def any_order(case: Case, made: Implementation, order: list[int]) -> None:
     finals = []
     for arrival in (range(case.n), order):
         monitor = made.interval(case.formula, case.names, case.ranges, case.n)
-        for i in arrival:
-            monitor.update(i, **{name: _given(known) for name, known in case.samples[i].items()})
-        monitor.finish()
         try:
+            for i in arrival:
+                monitor.update(i, **{name: _given(known) for name, known in case.samples[i].items()})
+            monitor.finish()
             finals.append([monitor.interval(t) for t in range(case.n)])
         except EvaluationError:
             raise NothingToCheck from None

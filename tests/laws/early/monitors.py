@@ -16,11 +16,16 @@ from rtamt import Interval, Verdict, VerdictRun
 from rtamt.language.enclosures import Enclosure
 from rtamt.reference import dense_bounds, discrete_bounds, earliest
 from rtamt.reference.discrete_bounds import ANYTHING, Knowledge
+from rtamt.rewrite.semantics import boolean
+from rtamt.signals.discrete import DISCRETE
+from rtamt.verdicts.bounds import IntervalMonitor
+from rtamt.verdicts.early import EagerMonitor
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
     from rtamt.language.formula import Formula
+    from rtamt.verdicts.bounds import Change
     from tests.laws.early.cases import Range
 
 PERIOD = TICK = Fraction(1)
@@ -38,8 +43,9 @@ class Implementation:
     name: str
     interval: Callable[[Formula, tuple[str, ...], Mapping[str, Range], int], Any]
     eager: Callable[[Formula, tuple[str, ...], Mapping[str, Range]], Any]
-    dense_interval: Callable[[Formula, tuple[str, ...], Mapping[str, Range]], Any]
-    dense_eager: Callable[[Formula, tuple[str, ...], Mapping[str, Range]], Any]
+    #: None where there are no monitors of dense time.
+    dense_interval: Callable[[Formula, tuple[str, ...], Mapping[str, Range]], Any] | None = None
+    dense_eager: Callable[[Formula, tuple[str, ...], Mapping[str, Range]], Any] | None = None
 
 
 def _bounds(value: Any, limits: Range) -> Range:
@@ -143,4 +149,55 @@ class _DenseEager(_Dense):
 
 DEFINITION = Implementation("definition", _Intervals, _Eager, _DenseIntervals, _DenseEager)
 
-IMPLEMENTATIONS = [DEFINITION]
+
+class _Kept:
+    """The monitor of the engine, with the bounds of samples that are long final and of the end, as it gave them."""
+
+    def __init__(
+        self, formula: Formula, names: tuple[str, ...], ranges: Mapping[str, Range], lateness: int = 0
+    ) -> None:
+        declared = {name: limits for name, limits in ranges.items() if name in names}
+        self._monitor = IntervalMonitor(
+            formula, DISCRETE.online, at="every", ranges=declared, lateness=lateness
+        )
+        self._kept: dict[int, Interval] = {}
+
+    def _keep(self, changes: list[Change]) -> None:
+        for change in changes:
+            for t in range(int(change.begin), int(change.end) + 1):
+                self._kept[t] = change.interval
+
+    def update(self, t: int, **values: Any) -> None:
+        self._monitor.update(t, **values)
+        self._keep(self._monitor.changes())
+        if t in self._kept:
+            assert self._monitor.interval(t) == self._kept[t]
+
+    def interval(self, t: int) -> Interval:
+        return self._kept[t] if t in self._kept else self._monitor.interval(t)
+
+    def finish(self) -> None:
+        self._keep(self._monitor.finish())
+
+
+class _Settled:
+    """The monitor of verdicts of the engine, whose times are seconds, here samples."""
+
+    def __init__(self, formula: Formula, names: tuple[str, ...], ranges: Mapping[str, Range]) -> None:
+        declared = {name: limits for name, limits in ranges.items() if name in names}
+        self._monitor = EagerMonitor(boolean(formula), DISCRETE.online, ranges=declared)
+
+    @staticmethod
+    def _samples(verdicts: list[Verdict]) -> list[Verdict]:
+        return [Verdict(int(each.time), each.satisfied, int(each.decided_at)) for each in verdicts]
+
+    def update(self, t: int, **values: Any) -> list[Verdict]:
+        return self._samples(self._monitor.update(t, **values))
+
+    def finish(self) -> list[Verdict]:
+        return self._samples(self._monitor.finish())
+
+
+ENGINE = Implementation("engine", _Kept, _Settled)
+
+IMPLEMENTATIONS = [DEFINITION, ENGINE]

@@ -1,0 +1,281 @@
+#include "engine.hpp"
+
+#include "../program/snapshot.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace rtamt::early {
+
+Engine::Engine(Graph graph, std::vector<Bounds> ranges, bool late)
+    : graph_(std::move(graph)), ranges_(std::move(ranges)), late_(late),
+      nodes_(graph_.nodes.size()), results_(graph_.nodes.size()), row_(graph_.inputs) {
+    graph_.check();
+    ranges_.resize(graph_.inputs, bounds::anything);
+    std::size_t steps = 0;
+    for (const Node& node : graph_.nodes) {
+        steps = std::max(steps, node.steps.size());
+        for (const Step& step : node.steps)
+            partial_ = partial_ || info(step.opcode).partial;
+    }
+    exact_.resize(steps);
+    bounds_.resize(steps);
+    if (late_) {
+        for (const Bounds& range : ranges_)
+            inputs_.push_back({Runs(0, range.lower), Runs(0, -range.upper)});
+    }
+    (void)propagate(true); // what has no value before it is seen is not known
+    clear();
+}
+
+Bounds Engine::known(std::uint32_t input, Tick t) const noexcept {
+    if (!late_) return ranges_[input];
+    return {inputs_[input][0].at(t).value, -inputs_[input][1].at(t).value};
+}
+
+Bounds Engine::at(std::uint32_t ref, Tick t) const noexcept {
+    return {runs(ref, 0).at(t).value, -runs(ref, 1).at(t).value};
+}
+
+void Engine::clear() noexcept {
+    for (State& state : nodes_) {
+        state.out[0].clear();
+        state.out[1].clear();
+    }
+    journal_.clear();
+}
+
+// Takes everything back if something failed.
+std::optional<Engine::Failure> Engine::attempt(std::optional<Failure> failure) {
+    if (failure) {
+        for (auto undo = journal_.rbegin(); undo != journal_.rend(); ++undo)
+            undo->runs->set(undo->l, undo->r, undo->old);
+        clear();
+    }
+    return failure;
+}
+
+// ---- knowledge ----------------------------------------------------------------------------------
+
+// Every atom is computed before anything changes.
+template <class Value>
+std::optional<Engine::Failure> Engine::take(Tick t, std::span<const Value> values) {
+    clear();
+    const auto scratch = [&] {
+        if constexpr (std::is_same_v<Value, double>) {
+            return std::span(exact_);
+        } else {
+            return std::span(bounds_);
+        }
+    }();
+    for (std::uint32_t i = 0; i < nodes_.size(); ++i) {
+        if (node(i).kind != Kind::atom) continue;
+        const auto& steps = node(i).steps;
+        const std::uint32_t wrong = run<Value>(steps, values, scratch);
+        if (wrong != none) return Failure{i, wrong, t};
+        if constexpr (std::is_same_v<Value, double>) {
+            results_[i] = Interval::of(scratch[steps.size() - 1]);
+        } else {
+            results_[i] = scratch[steps.size() - 1];
+        }
+    }
+    journaling_ = partial_;
+    for (std::uint32_t i = 0; i < nodes_.size(); ++i) {
+        if (node(i).kind != Kind::atom) continue;
+        lift(nodes_[i], 0, t, t, results_[i].lower);
+        lift(nodes_[i], 1, t, t, -results_[i].upper);
+    }
+    return attempt(propagate(false));
+}
+
+std::optional<Engine::Failure> Engine::row(Tick t, std::span<const double> values) {
+    return take(t, values);
+}
+
+std::optional<Engine::Failure> Engine::row(Tick t, std::span<const Bounds> values) {
+    return take(t, values);
+}
+
+std::optional<Engine::Failure> Engine::learn(std::span<const Lesson> lessons) {
+    clear();
+    journaling_ = partial_;
+    for (const Lesson& lesson : lessons) {
+        for (int reg = 0; reg < 2; ++reg) {
+            Runs& own = inputs_[lesson.input][static_cast<std::size_t>(reg)];
+            const double now = reg == 0 ? lesson.bounds.lower : -lesson.bounds.upper;
+            while (const auto run = own.first<Below>(lesson.l, lesson.r, now)) {
+                if (journaling_) journal_.push_back({&own, run->begin, run->end, run->value});
+                own.set(run->begin, run->end, now);
+            }
+        }
+    }
+    for (const Lesson& lesson : lessons) {
+        for (std::uint32_t i = 0; i < nodes_.size(); ++i) {
+            if (node(i).kind != Kind::atom) continue;
+            const bool reads = std::ranges::any_of(node(i).steps, [&](const Step& step) {
+                return step.opcode == Opcode::input && step.a == lesson.input;
+            });
+            if (!reads) continue;
+            const auto failure = relearn(i, lesson.l, lesson.r);
+            if (failure) return attempt(failure);
+        }
+    }
+    return attempt(propagate(false));
+}
+
+// Computes an atom again wherever its inputs may have changed. It fails where its operands are
+// known exactly; what has no value for operands within bounds may still get one.
+std::optional<Engine::Failure> Engine::relearn(std::uint32_t index, Tick l, Tick r) {
+    State& state = nodes_[index];
+    const auto& steps = node(index).steps;
+    for (Tick t = std::max(l, state.from); t <= r;) {
+        Tick end = r;
+        bool exact = true;
+        for (const Step& step : steps) {
+            if (step.opcode != Opcode::input) continue;
+            Bounds& value = row_[step.a];
+            value = ranges_[step.a];
+            if (late_) {
+                const Run lower = inputs_[step.a][0].at(t);
+                const Run upper = inputs_[step.a][1].at(t);
+                value = {lower.value, -upper.value};
+                end = std::min({end, lower.end, upper.end});
+            }
+            exact = exact && value.lower == value.upper;
+        }
+        const std::uint32_t wrong = run<Bounds>(steps, row_, bounds_);
+        if (wrong != none && exact) return Failure{index, wrong, t};
+        if (wrong == none) {
+            const Bounds result = bounds_[steps.size() - 1];
+            lift(state, 0, t, end, result.lower);
+            lift(state, 1, t, end, -result.upper);
+        }
+        if (end >= forever) break;
+        t = end + 1;
+    }
+    return std::nullopt;
+}
+
+std::optional<Engine::Failure> Engine::remap(std::uint32_t index, Tick l, Tick r) {
+    State& state = nodes_[index];
+    const Node& map = node(index);
+    const std::uint32_t b = map.b == none ? map.a : map.b;
+    for (Tick t = std::max(l, state.from); t <= r;) {
+        const Run ends[] = {runs(map.a, 0).at(t), runs(map.a, 1).at(t), runs(b, 0).at(t),
+                            runs(b, 1).at(t)};
+        const Tick end = std::min({r, ends[0].end, ends[1].end, ends[2].end, ends[3].end});
+        const Bounds first{ends[0].value, -ends[1].value};
+        const Bounds second{ends[2].value, -ends[3].value};
+        const Bounds result = compute(map.steps.front().opcode, first, second);
+        if (!Interval::undefined(result)) {
+            lift(state, 0, t, end, result.lower);
+            lift(state, 1, t, end, -result.upper);
+        } else if (first.lower == first.upper && second.lower == second.upper) {
+            return Failure{index, 0, t};
+        }
+        if (end >= forever) break;
+        t = end + 1;
+    }
+    return std::nullopt;
+}
+
+// Lets every node look at what its operands have changed. `first`: at what they are.
+std::optional<Engine::Failure> Engine::propagate(bool first) {
+    for (std::uint32_t i = 0; i < nodes_.size(); ++i) {
+        const Node& own = node(i);
+        if (own.kind == Kind::atom) {
+            if (first) (void)relearn(i, 0, forever);
+        } else if (own.kind == Kind::map) {
+            std::optional<Failure> failure;
+            if (first) failure = remap(i, 0, forever);
+            for (int reg = 0; reg < 2 && !first; ++reg) {
+                for (const std::uint32_t ref : {own.a, own.b}) {
+                    if (ref == none) continue;
+                    for (const Piece& piece : news(ref, reg)) {
+                        if (!failure) failure = remap(i, piece.l, piece.r);
+                    }
+                }
+            }
+            if (failure && !first) return failure;
+        } else {
+            if (first && own.high < 0 && own.kind != Kind::held) { // nothing is in the window yet
+                const double empty = own.kind == Kind::least ? infinity : -infinity;
+                lift(nodes_[i], 0, 0, -own.high - 1, empty);
+                lift(nodes_[i], 1, 0, -own.high - 1, -empty);
+            }
+            pass(i, 0);
+            pass(i, 1);
+        }
+    }
+    return std::nullopt;
+}
+
+// ---- what is not needed any more ----------------------------------------------------------------
+
+void Engine::settle(Tick closed, std::span<const Tick> wanted) {
+    std::vector<Tick> need(wanted.begin(), wanted.end());
+    std::vector<Tick> input(graph_.inputs, forever);
+    for (std::size_t i = nodes_.size(); i-- > 0;) {
+        const Node& own = node(i);
+        State& state = nodes_[i];
+        const bool recursive =
+            own.kind == Kind::since || own.kind == Kind::since_dense || own.low <= -forever;
+        const Tick open = std::max<Tick>(0, plus(plus(closed, 1), -own.horizon));
+        Tick from = recursive ? open : std::max(need[i], open);
+        if (need[i] >= forever) from = forever;
+        state.from = std::max(state.from, from);
+        state.keep = std::max(state.keep, std::min(need[i], from) - (recursive ? 1 : 0));
+        const auto want = [&](std::uint32_t ref, Tick t) {
+            if (ref != none) need[ref / 2] = std::min(need[ref / 2], std::max<Tick>(0, t));
+        };
+        switch (own.kind) {
+        case Kind::atom:
+            for (const Step& step : own.steps) {
+                if (step.opcode == Opcode::input) input[step.a] = std::min(input[step.a], from);
+            }
+            break;
+        case Kind::least:
+        case Kind::greatest:
+        case Kind::held:
+            want(own.a, plus(from, own.low <= -forever ? own.high : own.low));
+            break;
+        default:
+            want(own.a, from);
+            want(own.b, from);
+        }
+        for (Runs& runs : state.own)
+            runs.drop_before(state.keep);
+    }
+    if (!late_) return;
+    for (std::size_t i = 0; i < inputs_.size(); ++i) {
+        for (Runs& runs : inputs_[i])
+            runs.drop_before(std::min(input[i], plus(closed, 1)));
+    }
+}
+
+std::size_t Engine::bytes() const noexcept {
+    std::size_t sum = 0;
+    for (const State& state : nodes_)
+        sum += state.own[0].bytes() + state.own[1].bytes();
+    for (const Registers& registers : inputs_)
+        sum += registers[0].bytes() + registers[1].bytes();
+    return sum;
+}
+
+void Engine::transfer(Snapshot& snapshot) {
+    for (State& state : nodes_) {
+        state.own[0].transfer(snapshot);
+        state.own[1].transfer(snapshot);
+        snapshot.item(state.from);
+        snapshot.item(state.keep);
+        snapshot.require(state.own[0].front() <= std::max<Tick>(0, state.keep) &&
+                         state.own[1].front() <= std::max<Tick>(0, state.keep));
+    }
+    for (Registers& registers : inputs_) {
+        registers[0].transfer(snapshot);
+        registers[1].transfer(snapshot);
+    }
+    if (snapshot.loading()) clear();
+}
+
+} // namespace rtamt::early

@@ -1,0 +1,144 @@
+// Bounds of every node of a graph at every tick, from whatever is known of the inputs by now.
+//
+// Register 0 of a node holds its lower bounds L, register 1 its negated upper bounds -U. As
+// knowledge grows both only rise, so one set of kernels serves both: what takes the greatest in the
+// one takes the least in the other. A node tells its readers what changed in pieces, runs with one
+// old and one new value, and only these are looked at: knowledge may come in any order.
+//
+// Cost: proportional to the pieces, whatever the bounds. Memory: the runs of what is still wanted.
+#pragma once
+
+#include "graph.hpp"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace rtamt::early {
+
+struct Piece {
+    Tick l;
+    Tick r;
+    double old;
+    double now;
+};
+
+using Registers = std::array<Runs, 2>;
+
+class Engine {
+  public:
+    // An operation without a value: the step of a node, at a tick.
+    struct Failure {
+        std::uint32_t node;
+        std::uint32_t step;
+        Tick tick;
+    };
+
+    // `ranges`: what is known of each input before it is seen. `late`: knowledge may come in any
+    // order; otherwise by row() alone.
+    Engine(Graph graph, std::vector<Bounds> ranges, bool late);
+
+    // The values of all inputs at a tick later than all before, of which nothing more will come.
+    // What fails changes nothing.
+    [[nodiscard]] std::optional<Failure> row(Tick t, std::span<const double> values);
+    [[nodiscard]] std::optional<Failure> row(Tick t, std::span<const Bounds> values);
+
+    // Knowledge of inputs at [l, r], within what was known before; applied by apply().
+    struct Lesson {
+        std::uint32_t input;
+        Tick l;
+        Tick r;
+        Bounds bounds;
+    };
+    [[nodiscard]] std::optional<Failure> learn(std::span<const Lesson> lessons);
+
+    // What is known of an input; the run of equal knowledge ends at `end`.
+    [[nodiscard]] Bounds known(std::uint32_t input, Tick t) const noexcept;
+
+    // Bounds of what a reference points to, at a tick that is wanted.
+    [[nodiscard]] Bounds at(std::uint32_t ref, Tick t) const noexcept;
+
+    // What the last change raised.
+    [[nodiscard]] const std::vector<Piece>& news(std::uint32_t ref, int reg) const noexcept {
+        return nodes_[ref / 2].out[static_cast<std::size_t>(reg) ^ (ref & 1U)];
+    }
+    [[nodiscard]] const Runs& runs(std::uint32_t ref, int reg) const noexcept {
+        return nodes_[ref / 2].own[static_cast<std::size_t>(reg) ^ (ref & 1U)];
+    }
+    [[nodiscard]] Tick horizon(std::uint32_t ref) const noexcept {
+        return graph_.nodes[ref / 2].horizon;
+    }
+    [[nodiscard]] std::size_t size() const noexcept { return nodes_.size(); }
+
+    // Nothing more will come at or before `closed`. `wanted`: by node, the first tick that is still
+    // asked for by others than nodes. Drops what nobody needs.
+    void settle(Tick closed, std::span<const Tick> wanted);
+
+    // The bounds of a reference at every tick from the first that is held, when the trace ends just
+    // before `end`, which cuts windows.
+    struct Rest {
+        Tick first;
+        std::vector<Bounds> bounds;
+    };
+    [[nodiscard]] std::vector<Rest> ended(std::span<const std::uint32_t> refs, Tick end) const;
+
+    [[nodiscard]] std::size_t bytes() const noexcept;
+
+    void transfer(Snapshot& snapshot);
+
+  private:
+    struct State {
+        Registers own;
+        std::array<std::vector<Piece>, 2> out;
+        Tick from = 0; // the first tick that may still change and is wanted
+        Tick keep = 0; // the first tick that anybody reads
+    };
+    struct Undo {
+        Runs* runs;
+        Tick l;
+        Tick r;
+        double old;
+    };
+
+    Graph graph_;
+    std::vector<Bounds> ranges_;
+    bool late_;
+    bool partial_ = false; // an operation may have no value
+    std::vector<State> nodes_;
+    std::vector<Registers> inputs_; // where knowledge may be late
+    std::vector<Undo> journal_;     // of a change that may fail
+    bool journaling_ = false;
+    std::vector<double> exact_;   // results of steps
+    std::vector<Bounds> bounds_;  // results of steps
+    std::vector<Bounds> results_; // of atoms in a row
+    std::vector<Bounds> row_;     // knowledge of the inputs at a tick
+
+    [[nodiscard]] const Node& node(std::size_t i) const noexcept { return graph_.nodes[i]; }
+    [[nodiscard]] std::optional<Failure> attempt(std::optional<Failure> failure);
+    void clear() noexcept;
+
+    // engine.cpp: atoms and maps
+    template <class Value>
+    [[nodiscard]] std::optional<Failure> take(Tick t, std::span<const Value> values);
+    [[nodiscard]] std::optional<Failure> relearn(std::uint32_t index, Tick l, Tick r);
+    [[nodiscard]] std::optional<Failure> remap(std::uint32_t index, Tick l, Tick r);
+    [[nodiscard]] std::optional<Failure> propagate(bool first);
+
+    // kernels.cpp: all other nodes, a register at a time
+    void change(State& state, int reg, Run run, double now);
+    void lift(State& state, int reg, Tick l, Tick r, double now);
+    void pass(std::uint32_t index, int reg);
+    void combine(std::uint32_t index, int reg, bool up);
+    void slide(std::uint32_t index, int reg, bool up);
+    void slide_least(State& state, int reg, const Node& node, const Runs& operand, Piece piece);
+    void run_least(State& state, int reg, const Node& node, const Runs& operand, Piece piece);
+    template <bool up>
+    void until(State& state, int reg, const Runs& hold, const Runs& goal, Tick l, Tick r);
+    template <bool up, bool dense>
+    void since(State& state, int reg, const Runs& hold, const Runs& goal, Tick l, Tick r);
+};
+
+} // namespace rtamt::early

@@ -1,0 +1,150 @@
+#include "graph.hpp"
+
+#include <cmath>
+#include <stdexcept>
+#include <type_traits>
+
+namespace rtamt::early {
+
+namespace {
+
+namespace f = functions;
+
+template <class Function>
+[[nodiscard]] double of(double a, double b) noexcept {
+    if constexpr (requires { Function::of(a, b); }) {
+        return Function::of(a, b);
+    } else {
+        return Function::of(a);
+    }
+}
+
+template <class Function>
+[[nodiscard]] Bounds of(const Bounds& a, const Bounds& b) noexcept {
+    if constexpr (requires(double x) { Function::of(x, x); }) {
+        return Interval::apply<Function>(a, b);
+    } else {
+        return Interval::apply<Function>(a);
+    }
+}
+
+template <class Value>
+using DomainOf = std::conditional_t<std::is_same_v<Value, double>, Real, Interval>;
+
+template <class Value>
+[[nodiscard]] Value apply(Opcode opcode, const Value& a, const Value& b) noexcept {
+    switch (opcode) {
+    case Opcode::neg:
+        return of<f::Neg>(a, b);
+    case Opcode::abs:
+        return of<f::Abs>(a, b);
+    case Opcode::sqrt:
+        return of<f::Sqrt>(a, b);
+    case Opcode::exp:
+        return of<f::Exp>(a, b);
+    case Opcode::ln:
+        return of<f::Ln>(a, b);
+    case Opcode::add:
+        return of<f::Add>(a, b);
+    case Opcode::sub:
+        return of<f::Sub>(a, b);
+    case Opcode::mul:
+        return of<f::Mul>(a, b);
+    case Opcode::div:
+        return of<f::Div>(a, b);
+    case Opcode::pow:
+        return of<f::Pow>(a, b);
+    case Opcode::log:
+        return of<f::Log>(a, b);
+    case Opcode::min:
+        return DomainOf<Value>::meet(a, b);
+    case Opcode::max:
+        return DomainOf<Value>::join(a, b);
+    case Opcode::holds_gt:
+        return of<f::HoldsGreater>(a, b);
+    case Opcode::holds_ge:
+        return of<f::HoldsGreaterEqual>(a, b);
+    default:
+        return of<f::HoldsEqual>(a, b);
+    }
+}
+
+[[nodiscard]] bool undefined(double value) noexcept {
+    return std::isnan(value);
+}
+
+[[nodiscard]] bool undefined(const Bounds& value) noexcept {
+    return Interval::undefined(value);
+}
+
+[[nodiscard]] double constant(double x, double /*like*/) noexcept {
+    return x;
+}
+
+[[nodiscard]] Bounds constant(double x, const Bounds& /*like*/) noexcept {
+    return Interval::of(x);
+}
+
+} // namespace
+
+double compute(Opcode opcode, double a, double b) noexcept {
+    return apply(opcode, a, b);
+}
+
+Bounds compute(Opcode opcode, const Bounds& a, const Bounds& b) noexcept {
+    return apply(opcode, a, b);
+}
+
+template <class Value>
+std::uint32_t run(std::span<const Step> steps, std::span<const Value> inputs,
+                  std::span<Value> results) noexcept {
+    for (std::size_t i = 0; i < steps.size(); ++i) {
+        const Step& step = steps[i];
+        Value& result = results[i];
+        if (step.opcode == Opcode::input) {
+            result = inputs[step.a];
+        } else if (step.opcode == Opcode::constant) {
+            result = constant(step.x, result);
+        } else {
+            const Value& a = results[step.a];
+            result = apply(step.opcode, a, step.b == none ? a : results[step.b]);
+            if (undefined(result)) return static_cast<std::uint32_t>(i);
+        }
+    }
+    return none;
+}
+
+template std::uint32_t run(std::span<const Step>, std::span<const double>,
+                           std::span<double>) noexcept;
+template std::uint32_t run(std::span<const Step>, std::span<const Bounds>,
+                           std::span<Bounds>) noexcept;
+
+void Graph::check() const {
+    const auto require = [](bool holds) {
+        if (!holds) throw std::invalid_argument("This is not a graph that an engine can run.");
+    };
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+        const Node& node = nodes[i];
+        const auto earlier = [&](std::uint32_t ref) { return ref / 2 < i; };
+        const bool pair = node.kind == Kind::both || node.kind == Kind::either ||
+                          node.kind == Kind::until || node.kind == Kind::since ||
+                          node.kind == Kind::since_dense;
+        require(node.kind <= Kind::held && (node.kind != Kind::held || node.low < 0));
+        if (node.kind == Kind::atom || node.kind == Kind::map) require(!node.steps.empty());
+        if (node.kind != Kind::atom) require(earlier(node.a));
+        if (pair || (node.kind == Kind::map && node.b != none)) require(earlier(node.b));
+        require(node.low <= node.high && node.high > -forever && node.low < forever);
+        for (std::size_t s = 0; s < node.steps.size(); ++s) {
+            const Step& step = node.steps[s];
+            require(step.opcode <= Opcode::holds_eq);
+            if (node.kind == Kind::map) continue;
+            if (step.opcode == Opcode::input) {
+                require(step.a < inputs);
+            } else if (step.opcode != Opcode::constant) {
+                require(step.a < s && (info(step.opcode).operands < 2 || step.b < s));
+            }
+        }
+    }
+}
+
+} // namespace rtamt::early

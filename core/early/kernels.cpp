@@ -1,0 +1,239 @@
+// How nodes follow what their operands change. Every kernel raises one register; where a value
+// rises, the maps of all operands are those after the whole change.
+#include "engine.hpp"
+
+#include <algorithm>
+
+namespace rtamt::early {
+
+void Engine::change(State& state, int reg, Run run, double now) {
+    Runs& own = state.own[static_cast<std::size_t>(reg)];
+    if (journaling_) journal_.push_back({&own, run.begin, run.end, run.value});
+    own.set(run.begin, run.end, now);
+    state.out[static_cast<std::size_t>(reg)].push_back({run.begin, run.end, run.value, now});
+}
+
+// Raises what is below.
+void Engine::lift(State& state, int reg, Tick l, Tick r, double now) {
+    l = std::max(l, state.from);
+    if (l >= forever) return; // nobody wants it
+    const Runs& own = state.own[static_cast<std::size_t>(reg)];
+    while (const auto run = own.first<Below>(l, r, now)) {
+        change(state, reg, *run, now);
+        if (run->end >= forever) return;
+        l = run->end + 1;
+    }
+}
+
+void Engine::pass(std::uint32_t index, int reg) {
+    const Node& own = node(index);
+    State& state = nodes_[index];
+    if (state.from >= forever) return; // nobody wants it
+    const bool greatest = own.kind != Kind::both && own.kind != Kind::least;
+    const bool up = greatest == (reg == 0); // whether the register takes the greatest
+    switch (own.kind) {
+    case Kind::both:
+    case Kind::either:
+        return combine(index, reg, up);
+    case Kind::least:
+    case Kind::greatest:
+        return slide(index, reg, up);
+    case Kind::held:
+        for (const Piece& piece : news(own.a, reg)) {
+            const Tick l = piece.l == 0 ? 0 : plus(piece.l, -own.low);
+            lift(state, reg, l, plus(piece.r, -own.low), piece.now);
+        }
+        return;
+    default:
+        break;
+    }
+    const Runs& hold = runs(own.a, reg);
+    const Runs& goal = runs(own.b, reg);
+    for (const std::uint32_t ref : {own.a, own.b}) {
+        for (const Piece& piece : news(ref, reg)) {
+            if (own.kind == Kind::until) {
+                up ? until<true>(state, reg, hold, goal, piece.l, piece.r)
+                   : until<false>(state, reg, hold, goal, piece.l, piece.r);
+            } else if (own.kind == Kind::since) {
+                up ? since<true, false>(state, reg, hold, goal, piece.l, piece.r)
+                   : since<false, false>(state, reg, hold, goal, piece.l, piece.r);
+            } else {
+                up ? since<true, true>(state, reg, hold, goal, piece.l, piece.r)
+                   : since<false, true>(state, reg, hold, goal, piece.l, piece.r);
+            }
+        }
+    }
+}
+
+// ---- two operands at one instant ----------------------------------------------------------------
+
+void Engine::combine(std::uint32_t index, int reg, bool up) {
+    const Node& own = node(index);
+    State& state = nodes_[index];
+    const Runs& a = runs(own.a, reg);
+    const Runs& b = runs(own.b, reg);
+    for (const std::uint32_t ref : {own.a, own.b}) {
+        for (const Piece& piece : news(ref, reg)) {
+            if (up) {
+                lift(state, reg, piece.l, piece.r, piece.now);
+                continue;
+            }
+            // The smaller can rise only where it was this operand.
+            Tick t = std::max(piece.l, state.from);
+            const Runs& mine = state.own[static_cast<std::size_t>(reg)];
+            while (const auto run = mine.first<AtLeast>(t, piece.r, piece.old)) {
+                const Run first = a.at(run->begin);
+                const Run second = b.at(run->begin);
+                const double now = Real::meet(first.value, second.value);
+                const Tick end = std::min({run->end, first.end, second.end});
+                if (now > run->value) change(state, reg, {run->begin, end, run->value}, now);
+                if (end >= forever) break;
+                t = end + 1;
+            }
+        }
+    }
+}
+
+// ---- windows ------------------------------------------------------------------------------------
+
+void Engine::slide(std::uint32_t index, int reg, bool up) {
+    const Node& own = node(index);
+    State& state = nodes_[index];
+    const Runs& operand = runs(own.a, reg);
+    for (const Piece& piece : news(own.a, reg)) {
+        if (up) {
+            lift(state, reg, plus(piece.l, -own.high), plus(piece.r, -own.low), piece.now);
+        } else if (own.low <= -forever) {
+            run_least(state, reg, own, operand, piece);
+        } else {
+            slide_least(state, reg, own, operand, piece);
+        }
+    }
+}
+
+// The least value of a window can rise only where it was that of the piece; the new one holds for
+// as long as it stays in the window and nothing smaller comes in.
+void Engine::slide_least(State& state, int reg, const Node& node, const Runs& operand,
+                         Piece piece) {
+    const Runs& own = state.own[static_cast<std::size_t>(reg)];
+    const Tick last = plus(piece.r, -node.low);
+    Tick t = std::max(state.from, plus(piece.l, -node.high));
+    while (const auto run = own.first<AtLeast>(t, last, piece.old)) {
+        t = run->begin;
+        const Tick begin = std::max<Tick>(0, plus(t, node.low));
+        const Tick end = plus(t, node.high);
+        const double now = operand.least(begin, end);
+        // The last run in the window that is as small, and until when it stays there.
+        const auto holder = operand.last<AtMost>(begin, end, now);
+        const Tick stays = holder ? plus(operand.at(holder->end).end, -node.low) : t;
+        Tick until = std::min(run->end, stays);
+        if (now > run->value) {
+            if (end < forever) {
+                const auto next = operand.first<Below>(end + 1, plus(until, node.high), now);
+                if (next) until = std::min(until, next->begin - 1 - node.high);
+            }
+            change(state, reg, {t, until, run->value}, now);
+        }
+        if (until >= forever) return;
+        t = until + 1;
+    }
+}
+
+// The least value since the start: min(own value before, the operand now).
+void Engine::run_least(State& state, int reg, const Node& node, const Runs& operand, Piece piece) {
+    const Runs& own = state.own[static_cast<std::size_t>(reg)];
+    Tick t = std::max(state.from, plus(piece.l, -node.high));
+    while (const auto run = own.first<AtLeast>(t, forever, piece.old)) {
+        t = run->begin;
+        const bool first = t + node.high <= 0; // the first operand in the window
+        const Run entering = operand.at(t + node.high);
+        const double before = first ? infinity : own.at(t - 1).value;
+        const double now = Real::meet(before, entering.value);
+        if (!(now > run->value)) return; // nor do later ones rise
+        const Tick until = std::min(run->end, plus(entering.end, -node.high));
+        change(state, reg, {t, until, run->value}, now);
+        if (until >= forever) return;
+        t = until + 1;
+    }
+}
+
+// ---- recursions ---------------------------------------------------------------------------------
+
+// From the right: max(goal, min(hold, next)), or the dual. A stretch on which hold and goal let the
+// next value through is passed at once.
+template <bool up>
+void Engine::until(State& state, int reg, const Runs& hold, const Runs& goal, Tick l, Tick r) {
+    using Less = std::conditional_t<up, Below, Above>;
+    using More = std::conditional_t<up, Above, Below>;
+    const Runs& own = state.own[static_cast<std::size_t>(reg)];
+    double next = up ? -infinity : infinity;
+    if (r < forever) next = own.at(r + 1).value;
+    for (Tick t = r; t >= state.from;) {
+        const Run held = hold.at(t);
+        const Run wanted = goal.at(t);
+        const Run mine = own.at(t);
+        Tick begin = std::max(mine.begin, state.from);
+        double now = next;
+        if (!Less::holds(held.value, next) && !More::holds(wanted.value, next)) {
+            if (const auto stop = hold.last<Less>(begin, t, next)) {
+                begin = std::max(begin, stop->end + 1);
+            }
+            if (const auto stop = goal.last<More>(begin, t, next)) {
+                begin = std::max(begin, stop->end + 1);
+            }
+        } else {
+            begin = std::max({begin, held.begin, wanted.begin});
+            now = up ? Real::join(wanted.value, Real::meet(held.value, next))
+                     : Real::meet(wanted.value, Real::join(held.value, next));
+        }
+        if (now > mine.value) {
+            change(state, reg, {begin, t, mine.value}, now);
+        } else if (begin <= l) {
+            return;
+        }
+        next = now;
+        t = begin - 1;
+    }
+}
+
+// From the left: max(goal, min(hold, before)), of dense time min(hold, max(goal, before)).
+template <bool up, bool dense>
+void Engine::since(State& state, int reg, const Runs& hold, const Runs& goal, Tick l, Tick r) {
+    using Less = std::conditional_t<up, Below, Above>;
+    using More = std::conditional_t<up, Above, Below>;
+    const auto join = [](double a, double b) { return up ? Real::join(a, b) : Real::meet(a, b); };
+    const auto meet = [](double a, double b) { return up ? Real::meet(a, b) : Real::join(a, b); };
+    const Runs& own = state.own[static_cast<std::size_t>(reg)];
+    if (r < state.from) return;
+    Tick t = std::max(l, state.from);
+    double before = t == 0 ? (up ? -infinity : infinity) : own.at(t - 1).value;
+    for (;;) {
+        const Run held = hold.at(t);
+        const Run wanted = goal.at(t);
+        const Run mine = own.at(t);
+        Tick end = mine.end;
+        double now = before;
+        if (!Less::holds(held.value, before) && !More::holds(wanted.value, before)) {
+            if (const auto stop = hold.first<Less>(t, end, before)) {
+                end = std::min(end, stop->begin - 1);
+            }
+            if (const auto stop = goal.first<More>(t, end, before)) {
+                end = std::min(end, stop->begin - 1);
+            }
+        } else {
+            end = std::min({end, held.end, wanted.end});
+            now = dense ? meet(held.value, join(wanted.value, before))
+                        : join(wanted.value, meet(held.value, before));
+        }
+        if (now > mine.value) {
+            change(state, reg, {t, end, mine.value}, now);
+        } else if (end >= r) {
+            return;
+        }
+        if (end >= forever) return;
+        before = now;
+        t = end + 1;
+    }
+}
+
+} // namespace rtamt::early

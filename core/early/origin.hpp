@@ -1,0 +1,66 @@
+// The bounds of a formula at the start of the trace, which may have operators of unbounded future
+// above all bounded ones: of these, what is final is folded into one number.
+//
+//     kind    value
+//     value   of a at a tick
+//     all     the least of a from the tick on
+//     some    the greatest of a from the tick on
+//     until   of a, the recursion of until over operands b and c, at the tick
+//     both    the smaller of items a and b
+//     either  the larger of items a and b
+#pragma once
+
+#include "engine.hpp"
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace rtamt::early {
+
+struct Item {
+    enum class Kind : std::uint8_t { value, all, some, until, both, either };
+    Kind kind{};
+    bool negated = false;
+    std::uint32_t a = none; // references; of both and either, items
+    std::uint32_t b = none;
+    std::uint32_t c = none;
+    Tick tick = 0;
+};
+
+class Origin {
+  public:
+    // The last item is that of the formula.
+    Origin(std::vector<Item> items, const Engine& engine);
+
+    // Looks at what the engine knows now.
+    void look(const Engine& engine);
+
+    [[nodiscard]] Bounds value() const noexcept { return bounds_of(items_.size() - 1); }
+
+    // Folds what is final; `wanted`: by node, the first tick that is still needed.
+    void settle(const Engine& engine, Tick closed, std::span<Tick> wanted);
+
+    // The bounds when the trace ends just before `end`.
+    [[nodiscard]] Bounds ended(const Engine& engine, Tick end) const;
+
+    void transfer(Snapshot& snapshot);
+
+  private:
+    // Of each register: the value; of what is folded the best, and for until how far hold goes.
+    struct State {
+        std::array<double, 2> value{-infinity, -infinity};
+        std::array<double, 2> best{};
+        std::array<double, 2> held{};
+        Tick next = 0; // the first tick that is not folded
+    };
+    std::vector<Item> items_;
+    std::vector<State> states_;
+
+    [[nodiscard]] Bounds bounds_of(std::size_t item) const noexcept;
+    void look_at(const Engine& engine, std::size_t item) noexcept;
+    void fold(const Engine& engine, std::size_t item, Tick end) noexcept;
+};
+
+} // namespace rtamt::early

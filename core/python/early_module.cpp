@@ -1,0 +1,93 @@
+// The class EarlyMonitor of the extension module.
+#include "early_monitor.hpp"
+
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
+#include <nanobind/stl/tuple.h>
+#include <nanobind/stl/vector.h>
+
+#include <new>
+
+namespace rtamt::python {
+
+using early::Tick;
+
+namespace {
+
+early::Graph graph_of(const std::vector<EarlyNode>& nodes, std::uint32_t inputs) {
+    early::Graph graph;
+    graph.inputs = inputs;
+    for (const auto& [kind, a, b, low, high, horizon, steps] : nodes) {
+        early::Node node{static_cast<early::Kind>(kind), a, b, low, high, horizon, {}};
+        for (const auto& [opcode, first, second, x] : steps)
+            node.steps.push_back({static_cast<Opcode>(opcode), first, second, x});
+        graph.nodes.push_back(std::move(node));
+    }
+    graph.check();
+    return graph;
+}
+
+std::vector<early::Item> items_of(const std::vector<EarlyItem>& items) {
+    std::vector<early::Item> result;
+    for (const auto& [kind, negated, a, b, c, tick] : items)
+        result.push_back({static_cast<early::Item::Kind>(kind), negated, a, b, c, tick});
+    return result;
+}
+
+} // namespace
+
+void add_early_monitor(nb::module_& module, const Exceptions& exceptions) {
+    nb::class_<EarlyMonitor>(module, "EarlyMonitor",
+                             "Verdicts or bounds before the horizon, in discrete time.")
+        .def(
+            "__init__",
+            [exceptions](EarlyMonitor* self, const std::vector<EarlyNode>& nodes,
+                         std::vector<std::uint32_t> outputs, const std::vector<EarlyItem>& origin,
+                         const std::vector<std::pair<double, double>>& ranges,
+                         const std::vector<nb::str>& names, const nb::object& ignored,
+                         double period, double tolerance, std::optional<Tick> lateness,
+                         const nb::object& verdict, bool replays) {
+                std::vector<Bounds> known;
+                for (const auto& [lower, upper] : ranges)
+                    known.push_back({lower, upper});
+                EarlySettings settings{
+                    period,  tolerance,   lateness.has_value(), lateness.value_or(0),
+                    replays, std::nullopt};
+                if (!verdict.is_none()) settings.verdict.emplace(verdict);
+                new (self) EarlyMonitor(graph_of(nodes, static_cast<std::uint32_t>(names.size())),
+                                        std::move(outputs), items_of(origin), std::move(known),
+                                        names, ignored, std::move(settings), exceptions);
+            },
+            nb::arg("nodes"), nb::arg("outputs"), nb::arg("origin"), nb::arg("ranges"),
+            nb::arg("names"), nb::arg("ignored"), nb::arg("period"), nb::arg("tolerance"),
+            nb::arg("lateness").none(), nb::arg("verdict").none(), nb::arg("replays") = false)
+        .def("take", &EarlyMonitor::take, nb::arg("time"), nb::arg("lower"), nb::arg("upper"),
+             nb::arg("after"), "Take bounds of every input at one time, in order.")
+        .def("learn", &EarlyMonitor::learn, nb::arg("time"), nb::arg("values"), nb::arg("after"),
+             "Take bounds (input, lower, upper) of some inputs at one time.")
+        .def("watermark", &EarlyMonitor::watermark, nb::arg("time"),
+             "Nothing at or before a time will come.")
+        .def("finish", &EarlyMonitor::finish, "End the trace; return what that makes known.")
+        .def("verdicts", &EarlyMonitor::verdicts, nb::arg("output"),
+             "The verdicts of an output that the last call decided.")
+        .def("origin", &EarlyMonitor::origin, "The bounds at the start of the trace.")
+        .def("bounds", &EarlyMonitor::bounds, nb::arg("output"), nb::arg("sample"),
+             "The bounds of an output at a sample, None where they are forgotten.")
+        .def("changes", &EarlyMonitor::changes, nb::arg("output"),
+             "Runs (first, last, lower, upper) that the last call changed.")
+        .def("place", &EarlyMonitor::place, nb::arg("time"), "The index of a time, or None.")
+        .def("known", &EarlyMonitor::known, nb::arg("variable"), nb::arg("sample"),
+             "What is known of an input at a sample.")
+        .def("time", &EarlyMonitor::time, nb::arg("sample"), "The time of a sample.")
+        .def("held", &EarlyMonitor::held, nb::arg("output"), "The first sample that is held.")
+        .def("state", &EarlyMonitor::state, "What the samples so far have left behind.")
+        .def("restore", &EarlyMonitor::restore, nb::arg("state"),
+             "Go on as the monitor of this state would, which was made like this one.")
+        .def_prop_ro("samples", &EarlyMonitor::samples, "How many samples came.")
+        .def_prop_ro("newest", &EarlyMonitor::newest, "The newest sample, or -1.")
+        .def_prop_ro("closed", &EarlyMonitor::closed, "The last sample that is final, or -1.")
+        .def_prop_ro("finished", &EarlyMonitor::finished, "Whether the trace has ended.")
+        .def_prop_ro("state_bytes", &EarlyMonitor::state_bytes, "Bytes of state by now.");
+}
+
+} // namespace rtamt::python

@@ -1,0 +1,402 @@
+#include "early_monitor.hpp"
+
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
+#include <nanobind/stl/tuple.h>
+#include <nanobind/stl/vector.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace rtamt::python {
+
+using early::Decision;
+using early::forever;
+using early::Tick;
+
+namespace {
+
+// How many samples come between two looks at what is not needed any more.
+constexpr std::int64_t pause = 16;
+
+[[nodiscard]] std::optional<early::Origin> origin_of(std::vector<early::Item> items,
+                                                     const early::Engine& engine) {
+    if (items.empty()) return std::nullopt;
+    return early::Origin(std::move(items), engine);
+}
+
+} // namespace
+
+EarlyMonitor::EarlyMonitor(early::Graph graph, std::vector<std::uint32_t> outputs,
+                           std::vector<early::Item> origin, std::vector<Bounds> ranges,
+                           const std::vector<nb::str>& names, const nb::object& ignored,
+                           EarlySettings settings, Exceptions exceptions)
+    : engine_(graph, ranges, settings.late), outputs_(std::move(outputs)),
+      decisions_(outputs_.size()), origin_(origin_of(std::move(origin), engine_)),
+      times_(settings.period, settings.tolerance), ranges_(std::move(ranges)),
+      settings_(std::move(settings)), exceptions_(std::move(exceptions)),
+      guard_(exceptions_.refused, exceptions_.in_use), names_(names, graph.inputs, ignored),
+      row_(graph.inputs), given_(graph.inputs), news_(outputs_.size()), changed_(outputs_.size()),
+      open_(outputs_.size(), 0), wanted_(engine_.size()) {
+    ranges_.resize(graph.inputs, bounds::anything);
+    std::uint32_t before = 0;
+    for (const early::Node& node : graph.nodes) {
+        steps_before_.push_back(before);
+        before += static_cast<std::uint32_t>(node.steps.size());
+    }
+    for (const std::uint32_t output : outputs_) {
+        if (output / 2 >= engine_.size()) throw std::invalid_argument("There is no such output.");
+    }
+    // What is known before any sample came, such as the truth of constants, waits for the first.
+    for (std::size_t i = 0; i < outputs_.size(); ++i)
+        decisions_[i].begin(engine_, outputs_[i]);
+}
+
+// ---- samples ------------------------------------------------------------------------------------
+
+bool EarlyMonitor::in_order(Tick index) const noexcept {
+    const Tick newest = times_.newest();
+    return newest < 0 || index == newest + 1 || (index > newest && index - 1 <= closed_);
+}
+
+PyObject* EarlyMonitor::update(PyObject* time, const Named& values) noexcept {
+    if (!guard_.open(finished_)) return nullptr;
+    if (settings_.replays) return guard_.refuse("replays");
+    double t = 0.0;
+    if (!numbers_.read(time, t) || std::fabs(t) >= implausible) return guard_.refuse("time");
+    const auto index = times_.place(t);
+    if (!index) return guard_.refuse("time");
+    if (settings_.late && times_.newest() < 0) return guard_.refuse("first");
+    if (!settings_.late && (!in_order(*index) || values.count() != names_.count())) {
+        return guard_.refuse("order");
+    }
+    std::size_t guess = 0;
+    lessons_.clear();
+    const char* wrong = values.each([&](PyObject* name, PyObject* value) -> const char* {
+        const auto input = names_.place(name, guess++, true);
+        if (!input) return "names";
+        if (!numbers_.read(value, row_[*input])) return "value";
+        const double x = row_[*input];
+        if (settings_.late) {
+            const Bounds known = *index < 0
+                                     ? ranges_[*input]
+                                     : engine_.known(static_cast<std::uint32_t>(*input), *index);
+            if (!(known.lower <= x && x <= known.upper)) return "contradiction";
+            lessons_.push_back({static_cast<std::uint32_t>(*input), *index, *index, {x, x}});
+        } else if (!(ranges_[*input].lower <= x && x <= ranges_[*input].upper)) {
+            return "range";
+        }
+        return nullptr;
+    });
+    if (wrong != nullptr) return guard_.refuse(wrong);
+    if (settings_.late && *index <= closed_) return guard_.refuse("late");
+    try {
+        const auto failure = settings_.late ? engine_.learn(lessons_)
+                                            : engine_.row(*index, std::span<const double>(row_));
+        if (failure) return fail(*failure, t);
+        return advance(*index, t);
+    } catch (const std::bad_alloc&) {
+        return PyErr_NoMemory();
+    }
+}
+
+void EarlyMonitor::require(std::int64_t after) {
+    guard_.require_idle();
+    guard_.require(after == samples_ && !finished_);
+}
+
+nb::object EarlyMonitor::checked(PyObject* result) {
+    if (result == nullptr) throw nb::python_error();
+    return nb::steal(result);
+}
+
+nb::object EarlyMonitor::take(double time, const std::vector<double>& lower,
+                              const std::vector<double>& upper, std::int64_t after) {
+    require(after);
+    const auto index = times_.place(time);
+    if (!index || !in_order(*index) || lower.size() != row_.size() || upper.size() != row_.size()) {
+        return checked(guard_.refuse("order"));
+    }
+    std::vector<Bounds> row;
+    for (std::size_t i = 0; i < lower.size(); ++i)
+        row.push_back({lower[i], upper[i]});
+    const auto failure = engine_.row(*index, std::span<const Bounds>(row));
+    return checked(failure ? fail(*failure, time) : advance(*index, time));
+}
+
+nb::object EarlyMonitor::learn(double time,
+                               const std::vector<std::tuple<std::uint32_t, double, double>>& values,
+                               std::int64_t after) {
+    require(after);
+    const auto index = times_.place(time);
+    if (!index || !settings_.late || *index <= closed_) return checked(guard_.refuse("late"));
+    lessons_.clear();
+    for (const auto& [input, lower, upper] : values) {
+        if (input >= row_.size()) throw std::out_of_range("There is no such input.");
+        lessons_.push_back({input, *index, *index, {lower, upper}});
+    }
+    const auto failure = engine_.learn(lessons_);
+    return checked(failure ? fail(*failure, time) : advance(*index, time));
+}
+
+nb::object EarlyMonitor::watermark(double time) {
+    guard_.require_idle();
+    if (times_.newest() >= 0) {
+        const Tick floor = times_.floor(time);
+        if (floor > closed_) {
+            closed_ = floor;
+            settle();
+        }
+    }
+    return nb::none();
+}
+
+// The operation of a step by its number in the whole graph, the sample and its time.
+PyObject* EarlyMonitor::fail(const Failure& failure, double time) noexcept {
+    const auto when = static_cast<long long>(failure.tick);
+    const auto raised = nb::steal(PyObject_CallFunction(
+        exceptions_.undefined.ptr(), "IL", steps_before_[failure.node] + failure.step, when));
+    const auto seconds = nb::steal(PyFloat_FromDouble(time));
+    if (raised.is_valid() && seconds.is_valid() &&
+        PyObject_SetAttrString(raised.ptr(), "time", seconds.ptr()) == 0) {
+        PyErr_SetObject(exceptions_.undefined.ptr(), raised.ptr());
+    }
+    return nullptr;
+}
+
+// The engine has taken a sample.
+PyObject* EarlyMonitor::advance(Tick index, double time) {
+    const Tick before = times_.newest();
+    if (index > before) times_.add(index, time);
+    ++samples_;
+    const Tick newest = times_.newest();
+    closed_ = std::max(closed_, settings_.late ? newest - settings_.lateness - 1 : newest);
+    note(before);
+    if (samples_ % pause == 0) settle();
+    return answer();
+}
+
+// Reads what the last change of the engine has changed up to the newest sample.
+void EarlyMonitor::note(Tick before) {
+    const Tick newest = times_.newest();
+    for (std::size_t i = 0; i < outputs_.size(); ++i) {
+        if (settings_.verdict) {
+            news_[i].clear();
+            decisions_[i].collect(engine_, outputs_[i], newest, news_[i]);
+            continue;
+        }
+        auto& changed = changed_[i];
+        changed.clear();
+        for (int reg = 0; reg < 2; ++reg) {
+            for (const early::Piece& piece : engine_.news(outputs_[i], reg)) {
+                if (piece.l <= newest) changed.emplace_back(piece.l, std::min(piece.r, newest));
+            }
+        }
+        if (newest > before) changed.emplace_back(before + 1, newest);
+    }
+    if (origin_) origin_->look(engine_);
+}
+
+Tick EarlyMonitor::lag(std::size_t output) const {
+    return std::max<Tick>(0, engine_.horizon(outputs_.at(output)));
+}
+
+void EarlyMonitor::settle() {
+    std::ranges::fill(wanted_, forever);
+    Tick oldest = closed_;
+    for (std::size_t i = 0; i < outputs_.size(); ++i) {
+        Tick& wanted = wanted_[outputs_[i] / 2];
+        Tick from = std::max<Tick>(0, early::plus(closed_ + 1, -lag(i)));
+        if (settings_.verdict) {
+            open_[i] = early::Decisions::open(engine_, outputs_[i], open_[i]);
+            from = std::max(from, open_[i]);
+        }
+        wanted = std::min(wanted, from);
+        oldest = std::min(oldest, wanted);
+    }
+    if (origin_) origin_->settle(engine_, closed_, wanted_);
+    engine_.settle(closed_, wanted_);
+    times_.drop_before(oldest);
+}
+
+nb::object EarlyMonitor::finish() {
+    guard_.require_idle();
+    const Tick end = times_.newest() + 1;
+    const auto rests = engine_.ended(outputs_, end);
+    if (settings_.verdict) {
+        for (std::size_t i = 0; i < outputs_.size(); ++i) {
+            news_[i].clear();
+            const auto& rest = rests[i];
+            for (Tick t = std::max(rest.first, open_[i]); t < end; ++t) {
+                const Bounds was = engine_.at(outputs_[i], t);
+                const Bounds now = rest.bounds[static_cast<std::size_t>(t - rest.first)];
+                if (was.lower > 0 || was.upper < 0) continue;
+                if (now.lower > 0) news_[i].push_back({t, t, end - 1, true});
+                if (now.upper < 0) news_[i].push_back({t, t, end - 1, false});
+            }
+        }
+        finished_ = true;
+        return checked(answer());
+    }
+    nb::list all;
+    for (const auto& rest : rests) {
+        nb::list values;
+        for (const Bounds& bounds : rest.bounds)
+            values.append(nb::make_tuple(bounds.lower, bounds.upper));
+        all.append(nb::make_tuple(rest.first, values));
+    }
+    nb::object start = nb::none();
+    if (origin_ && end > 0) {
+        const Bounds value = origin_->ended(engine_, end);
+        start = nb::make_tuple(value.lower, value.upper);
+    }
+    finished_ = true;
+    return nb::make_tuple(all, start);
+}
+
+PyObject* VerdictClass::make(double time, bool satisfied, double decided_at) const noexcept {
+    auto* type = reinterpret_cast<PyTypeObject*>(type_.ptr());
+    auto made = nb::steal(type->tp_alloc(type, 0));
+    if (!made.is_valid()) return nullptr;
+    const auto fill = [&](const nb::object& slot, const nb::object& value) {
+        return value.is_valid() &&
+               Py_TYPE(slot.ptr())->tp_descr_set(slot.ptr(), made.ptr(), value.ptr()) == 0;
+    };
+    const bool filled = fill(time_, nb::steal(PyFloat_FromDouble(time))) &&
+                        fill(satisfied_, nb::borrow(satisfied ? Py_True : Py_False)) &&
+                        fill(decided_at_, nb::steal(PyFloat_FromDouble(decided_at)));
+    return filled ? made.release().ptr() : nullptr;
+}
+
+// ---- answers ------------------------------------------------------------------------------------
+
+PyObject* EarlyMonitor::answer() noexcept {
+    if (settings_.verdict) return news(0);
+    Py_RETURN_NONE;
+}
+
+PyObject* EarlyMonitor::news(std::size_t output) noexcept {
+    Py_ssize_t count = 0;
+    auto& decisions = news_[output];
+    for (const Decision& decision : decisions)
+        count += decision.r - decision.l + 1;
+    if (decisions.size() > 1) std::ranges::sort(decisions, {}, &Decision::l);
+    auto list = nb::steal(PyList_New(count));
+    if (!list.is_valid()) return nullptr;
+    Py_ssize_t place = 0;
+    for (const Decision& decision : decisions) {
+        for (Tick t = decision.l; t <= decision.r; ++t) {
+            PyObject* one =
+                settings_.verdict->make(times_.at(t), decision.satisfied, times_.at(decision.at));
+            if (one == nullptr) return nullptr;
+            PyList_SET_ITEM(list.ptr(), place++, one);
+        }
+    }
+    return list.release().ptr();
+}
+
+nb::object EarlyMonitor::verdicts(std::size_t output) {
+    guard_.require_idle();
+    if (output >= outputs_.size()) throw std::out_of_range("There is no such output.");
+    return checked(news(output));
+}
+
+std::optional<std::pair<double, double>> EarlyMonitor::origin() const {
+    if (!origin_) return std::nullopt;
+    const Bounds value = origin_->value();
+    return std::pair{value.lower, value.upper};
+}
+
+std::optional<std::pair<double, double>> EarlyMonitor::bounds(std::size_t output,
+                                                              Tick sample) const {
+    if (output >= outputs_.size()) throw std::out_of_range("There is no such output.");
+    if (sample < held(output)) return std::nullopt;
+    const Bounds value = engine_.at(outputs_[output], sample);
+    return std::pair{value.lower, value.upper};
+}
+
+Tick EarlyMonitor::held(std::size_t output) const {
+    return std::max<Tick>(0, early::plus(closed_ + 1, -lag(output)) - 1);
+}
+
+std::vector<std::tuple<Tick, Tick, double, double>>
+EarlyMonitor::changes(std::size_t output) const {
+    auto ranges = changed_.at(output);
+    std::ranges::sort(ranges);
+    std::vector<std::tuple<Tick, Tick, double, double>> result;
+    Tick next = 0;
+    for (const auto& [first, last] : ranges) {
+        for (Tick t = std::max(first, next); t <= last;) {
+            const early::Run lower = engine_.runs(outputs_[output], 0).at(t);
+            const early::Run upper = engine_.runs(outputs_[output], 1).at(t);
+            const Tick end = std::min({last, lower.end, upper.end});
+            if (!result.empty() && std::get<1>(result.back()) == t - 1 &&
+                std::get<2>(result.back()) == lower.value &&
+                std::get<3>(result.back()) == -upper.value) {
+                std::get<1>(result.back()) = end;
+            } else {
+                result.emplace_back(t, end, lower.value, -upper.value);
+            }
+            t = end + 1;
+        }
+        next = std::max(next, last + 1);
+    }
+    return result;
+}
+
+std::optional<Tick> EarlyMonitor::place(double time) const {
+    return times_.place(time);
+}
+
+std::pair<double, double> EarlyMonitor::known(std::uint32_t input, Tick sample) const {
+    if (input >= row_.size()) throw std::out_of_range("There is no such input.");
+    const Bounds known = sample < 0 ? ranges_[input] : engine_.known(input, sample);
+    return {known.lower, known.upper};
+}
+
+double EarlyMonitor::time(Tick sample) const {
+    if (times_.newest() < 0) throw std::out_of_range("There is no sample.");
+    return times_.at(sample);
+}
+
+// ---- state --------------------------------------------------------------------------------------
+
+nb::bytes EarlyMonitor::state() {
+    guard_.require_idle();
+    settle();
+    Snapshot snapshot;
+    transfer(snapshot);
+    return bytes_of(snapshot);
+}
+
+void EarlyMonitor::restore(const nb::bytes& state) {
+    guard_.require_idle();
+    Snapshot snapshot = snapshot_of(state);
+    transfer(snapshot);
+    snapshot.end();
+}
+
+void EarlyMonitor::transfer(Snapshot& snapshot) {
+    engine_.transfer(snapshot);
+    if (origin_) origin_->transfer(snapshot);
+    for (auto& decisions : decisions_)
+        decisions.transfer(snapshot);
+    times_.transfer(snapshot);
+    snapshot.values(open_.data(), open_.size());
+    snapshot.item(closed_);
+    snapshot.item(samples_);
+    snapshot.item(finished_);
+    snapshot.require(closed_ >= -1 && closed_ < forever);
+    for (const Tick open : open_)
+        snapshot.require(open >= 0);
+}
+
+std::size_t EarlyMonitor::state_bytes() const {
+    std::size_t sum = engine_.bytes() + times_.bytes();
+    for (const auto& decisions : decisions_)
+        sum += decisions.bytes();
+    return sum;
+}
+
+} // namespace rtamt::python

@@ -1,0 +1,147 @@
+// Monitors of verdicts and bounds before the horizon, as Python sees them, in discrete time.
+//
+// update takes plain numbers that come in order; whatever else there is, it refuses, and the Python
+// caller brings it in the form of take() or learn().
+#pragma once
+
+#include "../early/decisions.hpp"
+#include "../early/engine.hpp"
+#include "../early/origin.hpp"
+#include "../early/times.hpp"
+#include "failures.hpp"
+#include "names.hpp"
+#include "numbers.hpp"
+#include "usage_guard.hpp"
+
+#include <nanobind/nanobind.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+namespace rtamt::python {
+
+// (opcode, a, b, x); operands that are not there are `early::none`.
+using EarlyStep = std::tuple<int, std::uint32_t, std::uint32_t, double>;
+// (kind, a, b, low, high, horizon, steps)
+using EarlyNode = std::tuple<int, std::uint32_t, std::uint32_t, early::Tick, early::Tick,
+                             early::Tick, std::vector<EarlyStep>>;
+// (kind, negated, a, b, c, tick)
+using EarlyItem = std::tuple<int, bool, std::uint32_t, std::uint32_t, std::uint32_t, early::Tick>;
+
+// A class of objects with the slots time, satisfied and decided_at, which are filled without a call
+// of Python code.
+class VerdictClass {
+  public:
+    explicit VerdictClass(const nb::object& type)
+        : type_(type), time_(type.attr("time")), satisfied_(type.attr("satisfied")),
+          decided_at_(type.attr("decided_at")) {}
+
+    // Null, with a Python exception set, where that fails.
+    [[nodiscard]] PyObject* make(double time, bool satisfied, double decided_at) const noexcept;
+
+  private:
+    nb::object type_;
+    nb::object time_; // descriptors
+    nb::object satisfied_;
+    nb::object decided_at_;
+};
+
+struct EarlySettings {
+    double period;
+    double tolerance;
+    bool late;                           // samples may come in any order
+    early::Tick lateness;                // by how many samples at most
+    bool replays;                        // update() takes nothing by itself
+    std::optional<VerdictClass> verdict; // of what update() returns; none: bounds
+};
+
+class EarlyMonitor {
+  public:
+    EarlyMonitor(early::Graph graph, std::vector<std::uint32_t> outputs,
+                 std::vector<early::Item> origin, std::vector<Bounds> ranges,
+                 const std::vector<nb::str>& names, const nb::object& ignored,
+                 EarlySettings settings, Exceptions exceptions);
+
+    // A list of verdicts, or None; null, with a Python exception set, is a refusal.
+    [[nodiscard]] PyObject* update(PyObject* time, const Named& values) noexcept;
+
+    // All inputs at one time, in order; `after`: how many samples the caller knows of.
+    [[nodiscard]] nb::object take(double time, const std::vector<double>& lower,
+                                  const std::vector<double>& upper, std::int64_t after);
+    // Some inputs at one time.
+    [[nodiscard]] nb::object
+    learn(double time, const std::vector<std::tuple<std::uint32_t, double, double>>& values,
+          std::int64_t after);
+    // Nothing at or before a time will come.
+    [[nodiscard]] nb::object watermark(double time);
+    [[nodiscard]] nb::object finish();
+
+    // The verdicts of an output that the last call decided.
+    [[nodiscard]] nb::object verdicts(std::size_t output);
+    [[nodiscard]] std::optional<std::pair<double, double>> origin() const;
+    [[nodiscard]] std::optional<std::pair<double, double>> bounds(std::size_t output,
+                                                                  early::Tick sample) const;
+    // Runs (first, last, lower, upper) of an output that the last call changed.
+    [[nodiscard]] std::vector<std::tuple<early::Tick, early::Tick, double, double>>
+    changes(std::size_t output) const;
+    [[nodiscard]] std::optional<early::Tick> place(double time) const;
+    [[nodiscard]] std::pair<double, double> known(std::uint32_t input, early::Tick sample) const;
+    [[nodiscard]] double time(early::Tick sample) const;
+    [[nodiscard]] early::Tick held(std::size_t output) const;
+
+    [[nodiscard]] nb::bytes state();
+    void restore(const nb::bytes& state);
+
+    [[nodiscard]] std::int64_t samples() const { return samples_; }
+    [[nodiscard]] early::Tick newest() const { return times_.newest(); }
+    [[nodiscard]] early::Tick closed() const { return closed_; }
+    [[nodiscard]] bool finished() const { return finished_; }
+    [[nodiscard]] std::size_t state_bytes() const;
+
+  private:
+    using Failure = early::Engine::Failure;
+
+    early::Engine engine_;
+    std::vector<std::uint32_t> outputs_;
+    std::vector<early::Decisions> decisions_; // by output
+    std::optional<early::Origin> origin_;
+    early::Times times_;
+    std::vector<Bounds> ranges_;
+    EarlySettings settings_;
+    Exceptions exceptions_;
+    UsageGuard guard_;
+    PlainNumbers numbers_;
+    Names names_;
+    std::vector<std::uint32_t> steps_before_; // by node
+    std::vector<double> row_;
+    std::vector<bool> given_;
+    std::vector<std::vector<early::Decision>> news_; // by output
+    std::vector<std::vector<std::pair<early::Tick, early::Tick>>> changed_;
+    std::vector<early::Tick> open_; // by output, the first tick without a verdict
+    std::vector<early::Tick> wanted_;
+    std::vector<early::Engine::Lesson> lessons_;
+    early::Tick closed_ = -1; // nothing up to here will come
+    std::int64_t samples_ = 0;
+    bool finished_ = false;
+
+    void transfer(Snapshot& snapshot);
+    [[nodiscard]] bool in_order(early::Tick index) const noexcept;
+    [[nodiscard]] PyObject* fail(const Failure& failure, double time) noexcept;
+    void note(early::Tick before);
+    [[nodiscard]] PyObject* advance(early::Tick index, double time);
+    [[nodiscard]] early::Tick lag(std::size_t output) const;
+    void settle();
+    [[nodiscard]] PyObject* news(std::size_t output) noexcept;
+    [[nodiscard]] PyObject* answer() noexcept;
+    nb::object checked(PyObject* result);
+    void require(std::int64_t after);
+};
+
+// Adds the class to the module.
+void add_early_monitor(nb::module_& module, const Exceptions& exceptions);
+
+} // namespace rtamt::python

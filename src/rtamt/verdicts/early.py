@@ -1,0 +1,278 @@
+"""Online in discrete time: the verdict of every sample as soon as no later one can change it.
+
+The monitors of verdicts and of bounds (``bounds.py``) run the same graph (``compiler/early.py``) in the core.
+"""
+
+from __future__ import annotations
+
+from math import inf, isfinite, isnan
+from typing import TYPE_CHECKING, Any, ClassVar
+
+from rtamt.compiler.early import compile_graph
+from rtamt.compiler.program import NO_OPERAND
+from rtamt.engine.gate import alone, in_use
+from rtamt.engine.native import compiled, core
+from rtamt.engine.online import OnlineMonitor, Watched
+from rtamt.errors import TraceError, UsageError, did_you_mean, shown
+from rtamt.language.undefined_value import at_sample, undefined
+from rtamt.rewrite.desugar import desugar, written
+from rtamt.signals import arrays
+from rtamt.signals.outcomes import Interval, Verdict
+from rtamt.signals.regular import irregular, not_increasing
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Collection, Mapping, Sequence
+    from fractions import Fraction
+
+    from rtamt.language.formula import Formula
+    from rtamt.signals.discrete import Discrete
+
+
+class EarlyMonitor(OnlineMonitor):
+    """What both monitors of discrete time share. Not made by users."""
+
+    _remembered: ClassVar[tuple[str, ...]] = ("_finished",)
+    #: The class of what update() returns, None for bounds.
+    _verdict: type | None
+
+    def __init__(
+        self,
+        formula: Formula,
+        domain: Discrete,
+        *,
+        text: str | None = None,
+        declared: Collection[str] = (),
+        watch: Sequence[Watched] = (),
+        factory: Callable[[], OnlineMonitor] | None = None,
+        ranges: Mapping[str, Any] | None = None,
+        start: bool = False,
+    ) -> None:
+        for watched in (Watched("", formula, text), *watch):
+            domain.check(watched.formula, watched.text)
+        period = domain.period
+        assert period is not None
+        super().__init__(formula, watch, declared, factory)
+        self._program = None
+        self._period = period
+        self._tolerance = domain.tolerance
+        self._ranges = self._read_ranges(ranges or {})
+        cores = [desugar(each) for each in self._formulas]
+        self._graph = compile_graph(cores, period, self.input_names, start=start)
+        # A formula of unbounded future that is asked for at the start alone is no output.
+        self._outputs = [ref for ref in self._graph.outputs if ref != NO_OPERAND]
+        self._hidden = len(self._graph.outputs) - len(self._outputs)
+
+    def _open(self) -> Any:
+        graph = self._graph
+        return core().EarlyMonitor(
+            graph.nodes,
+            self._outputs,
+            graph.items,
+            self._known_ranges(),
+            list(self.input_names),
+            self._unread,
+            float(self._period),
+            self._tolerance,
+            self._late,
+            self._verdict,
+            self._replays,
+        )
+
+    def _connect(self, backend: Any) -> None:
+        self._backend = backend
+        self._refused: Any = core().Refused
+        self._undefined: Any = core().Undefined
+
+    def _fingerprint(self) -> bytes:
+        return self._graph.fingerprint()
+
+    #: By how many samples at most a sample may be late; None where all come in order.
+    _late: int | None = None
+    #: Whether samples may correct earlier ones.
+    _replays = False
+
+    def _read_ranges(self, ranges: Mapping[str, Any]) -> dict[str, tuple[float, float]]:
+        read = {}
+        for name, given in ranges.items():
+            if name not in self.input_names and name not in self._declared:
+                raise UsageError(
+                    f"ranges has '{name}', which the formula does not read{did_you_mean(name, self.input_names)}"
+                )
+            bounds = bounds_of(given)
+            if bounds is None or isnan(bounds[0]) or isnan(bounds[1]):
+                raise UsageError(f"the range of '{name}' is {shown(given)}; give (lower, upper), two numbers")
+            if bounds[0] > bounds[1]:
+                raise UsageError(f"the range of '{name}' is {shown(given)}, reversed; give (lower, upper)")
+            read[name] = bounds
+        return read
+
+    def _known_ranges(self) -> list[tuple[float, float]]:
+        return [self._ranges.get(name, (-inf, inf)) for name in self.input_names]
+
+    @property
+    def period(self) -> Fraction:
+        """Seconds from one sample to the next."""
+        return self._period
+
+    @property
+    def samples(self) -> int:
+        """How many samples the monitor has taken since the start or the last reset."""
+        return int(self._backend.samples)
+
+    @alone
+    def reset(self) -> None:
+        """Forget the trace; the next sample is the first."""
+        self._finished = False
+        self._connect(self._open())
+
+    # ---- samples ---------------------------------------------------------------------------------
+
+    def _seconds(self, time: Any) -> float:
+        """Return a time stamp in seconds; raise :class:`TraceError` for what is none."""
+        number = arrays.number_of(time)
+        if number is None:
+            raise TraceError(
+                f"time is {shown(time)} at sample {self.samples}, expected a number of seconds",
+                variable=arrays.TIME,
+            )
+        if not isfinite(number):
+            raise TraceError(f"time is {number} at sample {self.samples}: give a finite number of seconds")
+        return number
+
+    def _bounds_of(
+        self, values: Mapping[str, Any], index: int, time: float
+    ) -> dict[str, tuple[float, float] | None]:
+        """Return what a sample makes known, None where it is missing; raise :class:`TraceError` for wrong data."""
+        read: dict[str, tuple[float, float] | None] = {}
+        for name in values:
+            if name not in self.input_names:
+                raise arrays.unknown_variable(name, self.input_names)
+        for name in self.input_names:
+            if name not in values:
+                if self._late is None:
+                    raise arrays.missing_variable(name, tuple(values))
+                continue
+            given = values[name]
+            where = f"sample {index}, time {time:.15g} s"
+            if given is None:
+                read[name] = None
+                continue
+            bounds = bounds_of(given)
+            if bounds is None:
+                raise TraceError(
+                    f"'{name}' is {shown(given)} at {where}; expected a number, bounds (lower, upper), or None "
+                    f"if it is missing",
+                    variable=name,
+                    index=index,
+                )
+            if isnan(bounds[0]) or isnan(bounds[1]):
+                raise arrays.nan_error(name, index, time)
+            if bounds[0] > bounds[1]:
+                raise TraceError(
+                    f"'{name}' is {shown(given)} at {where}, reversed: give the lower bound first",
+                    variable=name,
+                    index=index,
+                )
+            low, high = self._ranges.get(name, (-inf, inf))
+            if not (low <= bounds[0] and bounds[1] <= high):
+                raise TraceError(
+                    f"'{name}' is {shown(given)} at {where}, outside its declared range [{low:g}, {high:g}]: "
+                    f"correct the value, or declare a wider range",
+                    variable=name,
+                    index=index,
+                )
+            read[name] = bounds
+        return read
+
+    def _row(self, known: Mapping[str, tuple[float, float] | None]) -> tuple[list[float], list[float]]:
+        """Return the lower and the upper bounds of every variable at a sample."""
+        ranges = zip(self.input_names, self._known_ranges(), strict=True)
+        row = [known.get(name) or bounds for name, bounds in ranges]
+        return [low for low, _ in row], [high for _, high in row]
+
+    def _check_order(self, time: float) -> None:
+        """Raise the error for a time at which no sample of an ordered trace can come."""
+        backend = self._backend
+        if backend.newest < 0:
+            return
+        last = backend.time(backend.newest)
+        if time <= last:
+            raise not_increasing(self.samples, time, last)
+        place = backend.place(time)
+        if place is None or (place != backend.newest + 1 and place - 1 > backend.closed):
+            raise irregular(self.samples, time, last, self._period, self._tolerance)
+
+    def _is_finished(self) -> UsageError:
+        return UsageError("the monitor has finished its trace; call reset() before the next sample")
+
+    def _no_value(self, error: Any) -> Exception:
+        """Name the sub-formula and the instant of a value that does not exist."""
+        formula = written(self._graph.origins[error.args[0]], self._formulas)
+        return undefined(formula, at_sample(error.args[1], error.time))
+
+
+class EagerMonitor(EarlyMonitor):
+    """Reports whether a formula holds at each sample, each once, as soon as no later sample can change it.
+
+    Built by ``Specification.monitor(verdict="eager")``.
+
+    >>> import rtamt
+    >>> monitor = rtamt.parse("always[0:9](x >= 3)").monitor(verdict="eager")
+    >>> monitor.update(0, x=4), monitor.update(1, x=2)
+    ([], [Verdict(time=0.0, satisfied=False, decided_at=1.0), Verdict(time=1.0, satisfied=False, decided_at=1.0)])
+    """
+
+    _verdict = Verdict
+
+    def __init__(self, formula: Formula, domain: Discrete, **settings: Any) -> None:
+        super().__init__(formula, domain, **settings)
+        self._connect(self._open())
+
+    @compiled("early_update")
+    def update(self, time: Any, /, **values: Any) -> list[Verdict]:
+        """Take one sample, ``time`` in seconds and a number for every variable; return what became settled.
+
+        A value may also be bounds ``(lower, upper)``, or None if it is missing.
+
+        Raises :class:`TraceError` for wrong data and :class:`EvaluationError` where an operation has no
+        value; the monitor is then as it was.
+        """
+        with self._gate:
+            flat = self._read_by_formula(values)
+            if self._finished:
+                raise self._is_finished()
+            after = self.samples
+            stamp = self._seconds(time)
+            known = self._bounds_of(flat, after, stamp)
+            self._check_order(stamp)
+            try:
+                return self._backend.take(stamp, *self._row(known), after)  # type: ignore[no-any-return]
+            except self._refused:
+                raise in_use() from None
+            except self._undefined as error:
+                raise self._no_value(error) from None
+
+    @alone
+    def finish(self) -> list[Verdict]:
+        """Say that no more samples will come; return the verdicts that were still open."""
+        if self._finished:
+            return []
+        self._finished = True
+        return self._backend.finish()  # type: ignore[no-any-return]
+
+    def __getitem__(self, name: str) -> list[Verdict]:
+        """Return the verdicts of a formula that is watched which the last call settled."""
+        return self._backend.verdicts(self._output(name))  # type: ignore[no-any-return]
+
+
+def bounds_of(value: Any) -> tuple[float, float] | None:
+    """Return what a number, an :class:`Interval` or a pair of numbers says; None for anything else."""
+    if isinstance(value, Interval):
+        value = (value.lower, value.upper)
+    if isinstance(value, tuple | list):
+        if len(value) != 2:
+            return None
+        low, high = (arrays.number_of(end) for end in value)
+        return None if low is None or high is None else (low, high)
+    number = arrays.number_of(value)
+    return None if number is None else (number, number)

@@ -1,0 +1,104 @@
+"""The verdict modes: what a monitor reports of a formula, and which monitor does. THE LIST of them.
+
+``Specification.monitor(verdict=...)``, ``rtamt monitor --verdict``, their errors and the reference read it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any
+
+from rtamt.errors import UsageError, did_you_mean, shown
+from rtamt.signals.discrete import Discrete
+from rtamt.verdicts.bounds import IntervalMonitor
+from rtamt.verdicts.early import EagerMonitor
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from rtamt.rewrite.semantics import PredicateSemantics
+    from rtamt.signals.domain import TimeDomain
+
+
+@dataclass(frozen=True, slots=True)
+class Mode:
+    """What a monitor reports; ``monitor`` is the class of discrete time, None for the robustness itself."""
+
+    name: str
+    doc: str
+    monitor: type[EagerMonitor] | type[IntervalMonitor] | None = None
+    #: The settings of the mode alone, by name, as ``Specification.monitor`` takes them.
+    settings: tuple[str, ...] = ()
+    #: Whether predicates are true or false, and not a distance.
+    boolean: bool = False
+
+
+MODES: Mapping[str, Mode] = MappingProxyType(
+    {
+        mode.name: mode
+        for mode in (
+            Mode("delayed", "the robustness at each sample, one horizon later"),
+            Mode(
+                "eager",
+                "whether the formula holds at each sample, as soon as no later sample can change it",
+                EagerMonitor,
+                settings=("ranges",),
+                boolean=True,
+            ),
+            Mode(
+                "interval",
+                "bounds of the robustness, from what is known by now",
+                IntervalMonitor,
+                settings=("at", "ranges", "lateness", "on_correction"),
+            ),
+        )
+    }
+)
+
+DELAYED = "delayed"
+
+
+def mode_of(verdict: Any, settings: Mapping[str, Any]) -> Mode:
+    """Return a mode; raise :class:`UsageError` for any other name, or a setting that it does not have.
+
+    ``settings``: those of modes that were given, by name.
+
+    >>> mode_of("eager", {}).doc
+    'whether the formula holds at each sample, as soon as no later sample can change it'
+    """
+    if not isinstance(verdict, str) or verdict not in MODES:
+        raise UsageError(
+            f"verdict is {shown(verdict)}{did_you_mean(str(verdict), MODES)}; choose from {', '.join(MODES)}"
+        )
+    mode = MODES[verdict]
+    for name in settings:
+        if name not in mode.settings:
+            modes = " or ".join(f"'{each.name}'" for each in MODES.values() if name in each.settings)
+            raise UsageError(f"{name}= belongs to verdict={modes}, and this is verdict='{verdict}'")
+    return mode
+
+
+def clock_of(mode: Mode, domain: TimeDomain, backend: str, unit: str | None) -> Discrete:
+    """Return the time domain of a mode's monitor; raise :class:`UsageError` where there is none.
+
+    ``unit``: of times that are numbers.
+    """
+    if not isinstance(domain, Discrete):
+        raise UsageError(f"verdict='{mode.name}' needs discrete time; use it, or verdict='{DELAYED}'")
+    if backend != "cpp":
+        raise UsageError(
+            f"verdict='{mode.name}' needs the compiled core; use backend='cpp', or verdict='{DELAYED}'"
+        )
+    if unit not in {None, "s"}:
+        raise UsageError(f"verdict='{mode.name}' takes times in seconds, and time_unit is {shown(unit)}")
+    return domain
+
+
+def semantics_in(mode: Mode, semantics: str | PredicateSemantics) -> str | PredicateSemantics:
+    """Return the semantics whose sign settles: where a predicate is true or false, ``>=`` and ``>`` differ at equality.
+
+    >>> semantics_in(MODES["eager"], "standard"), semantics_in(MODES["eager"], "output_robustness")
+    ('boolean', 'output_robustness')
+    """
+    return "boolean" if mode.boolean and semantics == "standard" else semantics

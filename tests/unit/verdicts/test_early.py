@@ -1,0 +1,216 @@
+"""Monitors of verdicts and bounds before the horizon: what the laws do not say."""
+
+from __future__ import annotations
+
+import copy
+import pickle
+
+import pytest
+
+import rtamt
+from rtamt import Interval, Verdict
+
+SETTINGS = {"verdict": "interval", "ranges": {"x": (0, 10)}}
+
+
+def interval(text="eventually[0:3](x >= 3)", **settings):
+    return rtamt.parse(text).monitor(**{**SETTINGS, **settings})
+
+
+def ends(monitor, *time):
+    found = monitor.interval(*time)
+    return found.lower, found.upper
+
+
+def test_each_sample_is_reported_once_and_at_the_first_that_settles_it():
+    monitor = rtamt.parse("always[0:9](x >= 3)").monitor(verdict="eager")
+    assert monitor.update(0, x=4) == []
+    assert monitor.update(1, x=2) == [Verdict(0.0, False, 1.0), Verdict(1.0, False, 1.0)]
+    assert monitor.update(2, x=4) == []
+    assert monitor.finish() == [Verdict(2.0, True, 2.0)]
+    assert monitor.finish() == []
+
+
+def test_what_is_settled_before_it_is_reached_waits():
+    monitor = rtamt.parse("once(x >= 3)").monitor(verdict="eager")
+    assert monitor.update(0, x=4) == [Verdict(0.0, True, 0.0)]
+    assert monitor.update(1, x=0) == [Verdict(1.0, True, 0.0)]
+
+
+def test_equality_satisfies_at_least_and_not_more_than():
+    assert rtamt.parse("x >= 3").monitor(verdict="eager").update(0, x=3) == [Verdict(0.0, True, 0.0)]
+    assert rtamt.parse("x > 3").monitor(verdict="eager").update(0, x=3) == [Verdict(0.0, False, 0.0)]
+
+
+def test_unbounded_always_is_violated_up_to_its_violation():
+    monitor = rtamt.parse("always(x >= 3)").monitor(verdict="eager")
+    assert monitor.update(0, x=4) == []
+    assert monitor.update(1, x=0) == [Verdict(0.0, False, 1.0), Verdict(1.0, False, 1.0)]
+
+
+def test_watched_formula_has_verdicts_of_its_own():
+    monitor = rtamt.parse("always[0:5](x >= 3)").monitor(verdict="eager", watch=["x >= 3"])
+    assert monitor.update(0, x=4) == []
+    assert monitor["x >= 3"] == [Verdict(0.0, True, 0.0)]
+
+
+@pytest.mark.parametrize("twin", [copy.copy, lambda monitor: pickle.loads(pickle.dumps(monitor))])  # noqa: S301
+def test_copy_goes_its_own_way(twin):
+    monitor = interval()
+    monitor.update(0, x=4)
+    other = twin(monitor)
+    other.update(1, x=9)
+    assert (ends(monitor), ends(other)) == ((1.0, 7.0), (6.0, 7.0))
+
+
+def test_failed_update_leaves_the_monitor_as_it_was():
+    monitor = interval("always[0:2](once(sqrt(x - 4)) + x >= 0)")
+    monitor.update(0, x=5)
+    before = monitor.interval(), monitor.samples
+    with pytest.raises(rtamt.EvaluationError):
+        monitor.update(1, x=3)
+    assert (monitor.interval(), monitor.samples) == before
+    monitor.update(1, x=5)
+
+
+@pytest.mark.parametrize(
+    ("text", "before", "after"),
+    [
+        ("always(x >= 3)", (-3, 2), (-3, -2)),
+        ("eventually(x >= 3)", (2, 7), (2, 7)),
+        ("not eventually(x < 3)", (-3, 2), (-3, -2)),
+        ("always(x >= 3) or eventually[0:1](x >= 9)", (-3, 2), (-3, -2)),
+        ("(x >= 3) until (x >= 9)", (-4, 1), (-4, -2)),
+        ("(x >= 3) until[2:inf] (x >= 9)", (-9, 1), (-9, -2)),
+        ("always(eventually(x >= 3))", (-3, 7), (-3, 7)),
+    ],
+)
+def test_unbounded_future_has_bounds_at_the_start(text, before, after):
+    monitor = interval(text)
+    monitor.update(0, x=5)
+    assert ends(monitor) == before
+    monitor.update(1, x=1)
+    assert ends(monitor) == after
+
+
+def test_correction_is_replayed_and_reported_as_a_retraction():
+    monitor = interval("once[0:1](x >= 3)", lateness=2, on_correction="replay")
+    for t in range(5):
+        monitor.update(t, x=5)
+    monitor.update(3, x=1)
+    assert [change[:3] for change in monitor.changes()] == []
+    monitor.update(4, x=2)
+    (change,) = monitor.changes()
+    assert (change.begin, change.interval, change.retracted) == (4.0, Interval(-1.0, -1.0), True)
+
+
+def test_late_sample_fills_its_gap():
+    monitor = interval(lateness="2s")
+    for t in (0, 1, 3):
+        monitor.update(t, x=3)
+    assert ends(monitor) == (0.0, 7.0)
+    monitor.update(2, x=9)
+    assert ends(monitor) == (6.0, 6.0)
+
+
+def test_watermark_closes_what_is_missing():
+    monitor = interval("x >= 3", lateness=5)
+    monitor.update(0, x=5)
+    monitor.update(1, x=None)
+    monitor.advance(7)
+    with pytest.raises(rtamt.TraceError, match="later than the lateness"):
+        monitor.update(1, x=4)
+
+
+@pytest.mark.parametrize(
+    ("values", "message"),
+    [
+        (
+            {"x": 11},
+            "'x' is 11 at sample 1, time 1 s, outside its declared range [0, 10]: "
+            "correct the value, or declare a wider range",
+        ),
+        ({"x": (5, 4)}, "'x' is (5, 4) at sample 1, time 1 s, reversed: give the lower bound first"),
+        (
+            {"x": "4"},
+            "'x' is '4' at sample 1, time 1 s; expected a number, bounds (lower, upper), or None if it is missing",
+        ),
+        ({"y": 4}, "the formula has no variable 'y'; variables: x"),
+        ({}, "the data has no 'x'; it has nothing"),
+    ],
+)
+def test_wrong_sample_is_rejected_with_one_sentence(values, message):
+    monitor = interval()
+    monitor.update(0, x=4)
+    before = monitor.interval()
+    with pytest.raises(rtamt.TraceError) as error:
+        monitor.update(1, **values)
+    assert str(error.value) == message
+    assert (monitor.interval(), monitor.samples) == (before, 1)
+
+
+def test_sample_later_than_the_lateness_is_rejected_with_one_sentence():
+    monitor = interval(lateness=2)
+    for t in range(4):
+        monitor.update(t, x=4)
+    with pytest.raises(rtamt.TraceError) as error:
+        monitor.update(0, x=4)
+    assert str(error.value) == (
+        "sample 4 is of time 0 s, later than the lateness of 2 s allows: what was up to 0 s is final; "
+        "leave it out, or allow for more lateness"
+    )
+
+
+def test_contradiction_is_rejected_with_one_sentence():
+    monitor = interval(lateness=2)
+    for t in range(4):
+        monitor.update(t, x=(4, 5))
+    monitor.update(2, x=4.5)
+    with pytest.raises(rtamt.TraceError) as error:
+        monitor.update(3, x=6)
+    assert str(error.value) == (
+        "'x' is 6 at time 3 s, which contradicts what was known of it, [4, 5]: correct it, "
+        "or make the monitor with on_correction='replay'"
+    )
+
+
+@pytest.mark.parametrize(
+    ("text", "settings", "message"),
+    [
+        (
+            "x",
+            {"verdict": "eagre"},
+            "verdict is 'eagre'; did you mean 'eager'?; choose from delayed, eager, interval",
+        ),
+        (
+            "x",
+            {"lateness": 2},
+            "lateness= belongs to verdict='interval', and this is verdict='delayed'",
+        ),
+        (
+            "x",
+            {"verdict": "eager", "time": "dense"},
+            "verdict='eager' needs discrete time; use it, or verdict='delayed'",
+        ),
+        ("x", {"verdict": "interval", "at": "end"}, "at is 'end'; choose from start, every"),
+        (
+            "x",
+            {"verdict": "interval", "ranges": {"x": (3, 1)}},
+            "the range of 'x' is (3, 1), reversed; give (lower, upper)",
+        ),
+        (
+            "x",
+            {"verdict": "eager", "time_unit": "ms"},
+            "verdict='eager' takes times in seconds, and time_unit is 'ms'",
+        ),
+    ],
+)
+def test_wrong_setting_is_rejected_with_one_sentence(text, settings, message):
+    with pytest.raises(rtamt.UsageError) as error:
+        rtamt.parse(text).monitor(**settings)
+    assert str(error.value) == message
+
+
+def test_unbounded_future_at_every_sample_is_an_error_that_points_at_it():
+    with pytest.raises(rtamt.BoundError, match="ask for the start of the trace with at='start'"):
+        interval("always x", at="every")
