@@ -148,7 +148,8 @@ def run(args: argparse.Namespace) -> int:
     told = {""}  # several requirements may have one reason
     with Progress() as progress:
         progress.show(f"0/{pairs}")
-        for outcome in outcomes(given, traces, reading, args.jobs):
+        explain = args.junit is not None or args.sarif is not None
+        for outcome in outcomes(given, traces, reading, args.jobs, explain=explain):
             if page is not None:
                 page.add(outcome)
             found.append(outcome if args.output is not None else replace(outcome, result=None))

@@ -64,6 +64,7 @@ class Outcome:
     ``first_violation``: seconds (a decimal where a double cannot hold them), or a date; None where there is
     none. ``period``: None in dense time.
     ``notes``: what the verdict has to do without (:attr:`Trace.losses`).
+    ``explanation``: why it is violated, where that was asked for and the whole recording was read.
     ``seconds``: how long it took. ``result`` stays in the process that made it.
     """
 
@@ -76,26 +77,33 @@ class Outcome:
     period: Fraction | None = None
     error: str = ""
     notes: tuple[str, ...] = ()
+    explanation: str = ""
     seconds: float = 0.0
     result: Result | None = None
 
 
 def outcomes(
-    requirements: Sequence[Requirement], traces: Sequence[str], reading: Reading, jobs: int | None = None
+    requirements: Sequence[Requirement],
+    traces: Sequence[str],
+    reading: Reading,
+    jobs: int | None = None,
+    *,
+    explain: bool = False,
 ) -> Iterator[Outcome]:
     """Yield what comes of every requirement over every recording, recording by recording, in order.
 
-    ``jobs``: processes; by default one for each core, where there is enough to do.
+    ``jobs``: processes; by default one for each core, where there is enough to do. ``explain``: violations.
     """
     count = min(jobs or _processes(traces), len(traces))
     if count <= 1 or reading.whole:
         for trace in traces:
-            yield from evaluate(requirements, trace, reading)
+            for outcome in evaluate(requirements, trace, reading):
+                yield _explained(outcome) if explain else outcome
         return
     # Reading a text file is Python's work, which threads could not share. Processes start afresh, so
     # that nothing of this one (locks, threads of libraries) is copied into them.
     with ProcessPoolExecutor(count, mp_context=get_context("spawn")) as pool:
-        work = [pool.submit(_apart, requirements, trace, reading) for trace in traces]
+        work = [pool.submit(_apart, requirements, trace, reading, explain) for trace in traces]
         try:
             for future in work:
                 yield from future.result()
@@ -103,9 +111,20 @@ def outcomes(
             pool.shutdown(wait=True, cancel_futures=True)
 
 
-def _apart(requirements: Sequence[Requirement], trace: str, reading: Reading) -> list[Outcome]:
+def _apart(requirements: Sequence[Requirement], trace: str, reading: Reading, explain: bool) -> list[Outcome]:
     """Return outcomes without what cannot leave a process."""
-    return [replace(outcome, result=None) for outcome in evaluate(requirements, trace, reading)]
+    found = evaluate(requirements, trace, reading)
+    return [replace(_explained(outcome) if explain else outcome, result=None) for outcome in found]
+
+
+def _explained(outcome: Outcome) -> Outcome:
+    """Return an outcome with the reason of a violation, if it can be explained."""
+    if outcome.result is None or outcome.verdict != "violated":
+        return outcome
+    try:
+        return replace(outcome, explanation=str(outcome.result.explain()))
+    except StlError as error:
+        return replace(outcome, notes=(*outcome.notes, str(error)))
 
 
 def _processes(traces: Sequence[str]) -> int:

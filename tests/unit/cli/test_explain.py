@@ -1,6 +1,11 @@
 """``rtamt explain``: output, JSON, exit codes."""
 
+import html
 import json
+from pathlib import Path
+from xml.etree import ElementTree as ET
+
+import rtamt
 
 TRACE = "time,req,gnt\n0,0,0\n1,6,0\n2,0,0\n3,0,1\n4,0,7\n"
 SPEC = "always(req >= 3 -> eventually[0:2](gnt >= 3))"
@@ -76,3 +81,48 @@ def test_dates_and_nanoseconds_are_explained_in_dense_time(run, write):
     write("log.csv", "t [ns],x\n1700000000000000000,5\n1700000001000000000,1\n")
     answer = run("explain", "x >= 3", "log.csv", "--time", "dense", "--at", "1700000000.5")
     assert (answer.code, answer.err) == (0, "")
+
+
+def test_the_explanation_has_the_same_words_in_every_output(run, write):
+    trace = "time,req,gnt\n" + "".join(f"{i},{6 * (i % 7 == 1)},{i % 50 // 9}\n" for i in range(400))
+    write("log.csv", trace)
+    told = str(rtamt.parse(SPEC).evaluate(rtamt.read("log.csv")).explain())
+    assert run("explain", SPEC, "log.csv").out == f"{told}\n"
+    reports = ("--junit", "r.xml", "--sarif", "r.sarif", "--html", "r.html", "--quiet")
+    assert run("check", SPEC, "log.csv", *reports).code == 1
+    (failure,) = ET.parse("r.xml").getroot().iter("failure")  # noqa: S314 - our own text
+    assert failure.text == told
+    (sarif,) = json.loads(Path("r.sarif").read_text(encoding="utf-8"))["runs"]
+    assert sarif["results"][0]["message"]["text"].endswith(told)
+    page = html.unescape(Path("r.html").read_text(encoding="utf-8"))
+    assert all(line.strip() in page for line in told.splitlines()[1:])
+
+
+def test_all_causes_are_printed_where_all_are_asked_for(run, write):
+    write("log.csv", "time,x\n" + "".join(f"{i},{i % 2 * 5}\n" for i in range(100)))
+    short, everything = (
+        run("explain", "always(eventually[0:1](x >= 3))", "log.csv", *more).out.splitlines()
+        for more in ([], ["--all"])
+    )
+    assert (len(short), short[-1], len(everything)) == (9, "  45 more", 53)
+    assert short[0] == "satisfied, robustness 2: always(eventually[0:1](x >= 3))"
+
+
+def test_epoch_seconds_are_dates_in_every_report(run, write):
+    write("log.csv", "t [ns],x\n1700000000000000000,5\n1700000000500000000,1\n")
+    run(
+        "check",
+        "always(x >= 3)",
+        "log.csv",
+        "--time",
+        "dense",
+        "--junit",
+        "r.xml",
+        "--html",
+        "r.html",
+        "--quiet",
+    )
+    for name in ("r.xml", "r.html"):
+        text = Path(name).read_text(encoding="utf-8")
+        assert "2023-11-14 22:13:20.5" in text
+        assert "1700000000" not in text.partition("<script")[0] + text.partition("</footer>")[0]

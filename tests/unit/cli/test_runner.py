@@ -72,7 +72,7 @@ def test_junit(run, files):
     assert failure.get("message") == (
         "low is violated by bad & <ugly>.csv: robustness -1.5, first violated at 1 s"
     )
-    assert failure.text == "always(x >= 3)"
+    assert failure.text.startswith("violated, robustness -1.5: always(x >= 3)\nfirst violation at 1 s\n")
     assert (
         root.find("testsuite/testcase[@name='nowhere.csv']/error").get("message")
         == "there is no file 'nowhere.csv'"

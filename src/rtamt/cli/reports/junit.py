@@ -37,7 +37,7 @@ def as_junit(requirements: Sequence[Requirement], outcomes: Sequence[Outcome]) -
                 problem = ET.SubElement(
                     case, kind, type=outcome.verdict, message=_text(sentence(outcome, requirement))
                 )
-                problem.text = _text(printed(requirement.spec.formula))
+                problem.text = _text(outcome.explanation or printed(requirement.spec.formula))
             if outcome.notes:
                 ET.SubElement(case, "system-out").text = _text("\n".join(outcome.notes))
     ET.indent(root)

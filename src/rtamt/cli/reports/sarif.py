@@ -63,7 +63,9 @@ def _result(outcome: Outcome, number: int, requirements: Sequence[Requirement]) 
         "ruleIndex": number,
         "kind": "fail" if violated else "pass",
         "level": requirements[number].written.severity if violated else "none",
-        "message": {"text": sentence(outcome, requirements[number])},
+        "message": {
+            "text": "\n".join(filter(None, (sentence(outcome, requirements[number]), outcome.explanation)))
+        },
         "locations": [_location(outcome.trace)],
         "properties": {
             "robustness": json_number(outcome.robustness),
