@@ -183,14 +183,24 @@ class Result:
             semantics=lambda predicate: spec.apply_semantics(predicate, self.semantics),
         )
 
-    def plot(self, at: Any = None, *, rows: int = 6, figure: Figure | None = None) -> Figure:
+    def plot(
+        self,
+        at: Any = None,
+        *,
+        rows: int = 6,
+        start: Any = None,
+        end: Any = None,
+        zoom: str | None = None,
+        figure: Figure | None = None,
+    ) -> Figure:
         """Draw signals, robustness over time and the explanation; needs ``pip install 'rtamt[plot]'``.
 
         Signals that a predicate compares share a panel. Below them the robustness of the formula and of at
         most ``rows - 1`` of its sub-formulas: named ones, those that the explanation speaks of, and those
         next to the top. Shaded is where each does not hold (Boolean semantics), yellow the implicant, a
         diamond the critical point; infinities are drawn at the edge. ``at``: what is explained, as in
-        :meth:`explain`. ``figure``: one of matplotlib to draw into, by default a new one of pyplot.
+        :meth:`explain`. ``start`` and ``end``: the times that are seen; ``zoom="violation"``: those around the
+        first violation. ``figure``: one of matplotlib to draw into, by default a new one of pyplot.
 
         >>> import rtamt
         >>> from matplotlib.figure import Figure
@@ -203,8 +213,10 @@ class Result:
         from rtamt.plot.scene import scene
 
         self._require_one_start("plot")
+        seen = scene(self, at)
+        window = seen.window(start, end, zoom)
         canvas = matplotlib("pyplot").figure() if figure is None else figure
-        draw(scene(self, at), rows, canvas)
+        draw(seen, rows, canvas, window)
         return canvas
 
     def plot_tree(self, at: Any = None, *, figure: Figure | None = None) -> Figure:

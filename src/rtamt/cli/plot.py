@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 _DESCRIPTION = """\
 Draw the signals of a recording, the robustness of a requirement and of its sub-formulas over time, and
-what decides the verdict: the critical point and the implicant, as 'rtamt explain' tells them. Needs
+what decides the verdict: the critical point and the implicant, as 'rtamt explain' prints them. Needs
 matplotlib: pip install 'rtamt[plot]'."""
 
 _EPILOG = """\
@@ -37,6 +37,8 @@ force the verdict. Diamond: the critical point. Without -o the picture is shown 
 examples:
   rtamt plot examples/request_grant/spec.stl examples/request_grant/c_violated.csv -o build/c.png
   rtamt plot "always((req >= 3) -> eventually[0:5](gnt >= 3))" log.csv --time dense -o picture.svg
+  rtamt plot requirement.stl log.csv --zoom violation -o violation.png
+  rtamt plot requirement.stl log.csv --from 10 --to 12.5 -o part.png
   rtamt plot requirement.stl log.csv --tree -o formula.pdf"""
 
 
@@ -51,6 +53,11 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add_reading_options(parser)
     parser.add_argument("-o", "--output", metavar="FILE", help="write the picture: .png, .svg, .pdf, ...")
     parser.add_argument("--rows", type=int, default=6, metavar="N", help="formulas at most (default: 6)")
+    parser.add_argument("--from", dest="start", metavar="TIME", help="where the picture begins, as for --at")
+    parser.add_argument("--to", dest="end", metavar="TIME", help="where the picture ends, as for --at")
+    parser.add_argument(
+        "--zoom", metavar="{violation}", help="show the first violation and what is around it"
+    )
     parser.add_argument("--tree", action="store_true", help="draw the formula as a tree with its values")
 
 
@@ -64,12 +71,14 @@ def run(args: argparse.Namespace) -> int:
         trace, result = result_of_one(args, "plot")
         try:
             seen = scene(result, instant(args.at, result))
+            ends = (instant(args.start, result, "--from"), instant(args.end, result, "--to"))
+            window = seen.window(*ends, args.zoom)
         except StlError as error:
             raise CommandError(f"{trace}: {error}") from error
     if args.tree:
         draw_tree(seen, figure)
     else:
-        draw(seen, args.rows, figure)
+        draw(seen, args.rows, figure, window)
     if args.output is None:
         matplotlib("pyplot").show()
         return OK

@@ -221,8 +221,8 @@ def how_to_mend(error: Exception, data: Trace | None, before: int = 0) -> str:
 # ---- an instant ----------------------------------------------------------------------------------
 
 
-def instant(at: str | None, result: Result) -> Any:
-    """Return what ``--at`` says, as the recording tells time; None for its first instant."""
+def instant(at: str | None, result: Result, option: str = "--at") -> Any:
+    """Return what ``--at`` or another option says, as the recording tells time; None where it is left out."""
     if at is None:
         return None
     times = result.signal.times.dtype.kind
@@ -230,7 +230,7 @@ def instant(at: str | None, result: Result) -> Any:
     date = date_in(at)
     if (date is not None) != dated:
         has = f"dates: give one such as {EXAMPLE}" if dated else "seconds: give a number of them"
-        raise UsageError(f"--at is '{at}', but the recording tells time in {has}")
+        raise UsageError(f"{option} is '{at}', but the recording tells time in {has}")
     if date is not None:
         return date
     sign, text = (-1, at.strip()[1:]) if at.strip().startswith("-") else (1, at)
@@ -238,6 +238,6 @@ def instant(at: str | None, result: Result) -> Any:
         seconds = sign * duration(text)
     except UsageError:
         raise UsageError(
-            f"--at is '{at}'; give seconds, a time with a unit such as 500ms, or a date such as {EXAMPLE}"
+            f"{option} is '{at}'; give seconds, a time with a unit such as 500ms, or a date such as {EXAMPLE}"
         ) from None
     return np.timedelta64(round(seconds * 10**9), "ns") if times == "m" else float(seconds)

@@ -24,7 +24,7 @@ _WIDTH, _PANEL, _ROW, _HEAD, _FOOT = 10.0, 1.2, 0.9, 0.55, 0.8
 _LEFT, _RIGHT, _GAP = 0.75, 1.55, 0.34
 
 #: Points across that are drawn, and up to which each sample has a dot.
-_COLUMNS, _DOTS = 3000, 50
+_COLUMNS, _DOTS = 1200, 50
 
 #: Characters of a line of the formula, and panels that are drawn larger than rows.
 _TEXT, _FEW = 100, 4
@@ -38,28 +38,32 @@ def matplotlib(module: str = "figure") -> Any:
     return library(f"matplotlib.{module}", "a picture", "plot")
 
 
-def draw(scene: Scene, rows: int, figure: Any) -> None:
-    """Draw a scene into a figure, which is made as large as it needs to be; ``rows``: sub-formulas at most."""
-    _Drawing(scene, rows, figure).draw()
+def draw(scene: Scene, rows: int, figure: Any, window: tuple[float, float] | None = None) -> None:
+    """Draw a scene into a figure, which is made as large as it needs to be.
+
+    ``rows``: sub-formulas at most. ``window``: the positions that are seen, by default all.
+    """
+    _Drawing(scene, rows, figure, window or (scene.clock.start, scene.clock.end)).draw()
 
 
 class _Drawing:
     """One scene in one figure."""
 
-    def __init__(self, scene: Scene, rows: int, figure: Any) -> None:
+    def __init__(self, scene: Scene, rows: int, figure: Any, window: tuple[float, float]) -> None:
         self._scene = scene
         self._figure = figure
         self._chosen = scene.chosen(rows)
         self._title = _wrapped(scene.explanation.formula)
         self._marks: dict[str, Any] = {}
-        clock = scene.clock
-        self._dots = len(scene.nodes[0].line.positions) <= _DOTS
-        margin = 0.015 * (clock.end - clock.start) or 1.0
-        self._limits = (clock.start - margin, clock.end + margin)
+        margin = 0.015 * (window[1] - window[0]) or 1.0
+        self._window = window
+        self._limits = (window[0] - margin, window[1] + margin)
 
     def draw(self) -> None:
-        many = len(self._scene.panels) > _FEW
-        heights = [_ROW if many else _PANEL] * len(self._scene.panels) + [_ROW] * len(self._chosen)
+        least = _ROW if len(self._scene.panels) > _FEW else _PANEL
+        heights = [max(least, _names_height(panel)) for panel in self._scene.panels] + [_ROW] * len(
+            self._chosen
+        )
         head = _HEAD + 0.19 * len(self._title) + 0.2
         total = head + sum(heights) + _GAP * (len(heights) - 1) + _FOOT
         self._figure.set_size_inches(_WIDTH, total)
@@ -138,17 +142,18 @@ class _Drawing:
     # ---- signals -----------------------------------------------------------------------------------
 
     def _panel(self, panel: Panel, axis: Any) -> None:
-        finite = [line.values[np.isfinite(line.values)] for line in panel.lines]
-        edges = _Edges(axis, np.concatenate([*finite, panel.thresholds]), panel.lines)
+        lines = [self._seen(line) for line in panel.lines]
+        finite = [line.values[np.isfinite(line.values)] for line in lines]
+        edges = _Edges(axis, np.concatenate([*finite, panel.thresholds]), lines)
         self._because(axis, panel.because)
         for limit in panel.thresholds:
             if isfinite(limit):
                 axis.axhline(limit, color=style.QUIET, linewidth=0.9, linestyle=(0, (5, 3)))
         labels = []
-        for i, line in enumerate(panel.lines):
+        for i, line in enumerate(lines):
             color = style.SIGNALS[i % len(style.SIGNALS)]
             values = self._trace(axis, line, edges, color)
-            labels.append((float(values[-1]), line.label, color))
+            labels.append((float(values[-1]) if len(values) else edges.middle, line.label, color))
         self._names(axis, labels)
         self._instants(axis)
         self._on_signal(panel, axis, edges)
@@ -157,7 +162,8 @@ class _Drawing:
         """Write each signal's name at its end, the names apart from each other."""
         low, high = axis.get_ylim()
         told = [_in_lines(name) for _, name, _ in labels]
-        room = (0.28 if any("\n" in name for name in told) else 0.16) * (high - low)
+        tall = axis.figure.get_size_inches()[1] * axis.get_position().height
+        room = _room(told) / tall * (high - low)
         y = low - room
         places = []
         for (value, _, color), name in sorted(zip(labels, told, strict=True)):
@@ -177,7 +183,7 @@ class _Drawing:
             )
 
     def _on_signal(self, panel: Panel, axis: Any, edges: _Edges) -> None:
-        if self._scene.critical is None:
+        if self._scene.critical is None or not self._sees(self._scene.critical[1]):
             return
         number, position = self._scene.critical
         critical = self._scene.nodes[number].formula
@@ -189,12 +195,13 @@ class _Drawing:
 
     def _row(self, number: int, axis: Any) -> None:
         node = self._scene.nodes[number]
-        finite = node.line.values[np.isfinite(node.line.values)]
-        edges = _Edges(axis, np.append(finite, 0.0), [node.line])
+        seen = self._seen(node.line)
+        finite = seen.values[np.isfinite(seen.values)]
+        edges = _Edges(axis, np.append(finite, 0.0), [seen])
         self._fails(axis, node)
         self._because(axis, node.because)
         axis.axhline(0.0, color=style.QUIET, linewidth=0.9)
-        line = node.line.decimated(_COLUMNS)
+        line = seen.decimated(_COLUMNS)
         values = edges.shown(line.values)
         step = "post" if self._scene.dense else None
         for end, color in ((1, style.HOLDS), (0, style.FAILS)):
@@ -205,7 +212,7 @@ class _Drawing:
                 (0, 0), 1, axis.get_ylim()[end], transform=axis.get_yaxis_transform()
             )
             area.set_clip_path(half)
-        self._trace(axis, node.line, edges, style.INK)
+        self._trace(axis, seen, edges, style.INK)
         title = f"{node.name} = {node.text}" if node.name else node.text
         axis.set_title(
             _shortened(title, 92),
@@ -219,8 +226,8 @@ class _Drawing:
         axis.set_ylabel("ρ", rotation=0, fontsize=9, color=style.QUIET, va="center")
         axis.yaxis.set_label_coords(-0.068, 0.5)
         self._instants(axis)
-        value = node.line.at(self._scene.at)
-        fails = node.fails_at(self._scene.at)
+        at = self._scene.told_at(number)
+        value, fails = node.line.at(at), node.fails_at(at)
         axis.annotate(
             f"{style.SIGNS[not fails]} {style.number(value)}",
             (1.012, 0.5),
@@ -231,14 +238,18 @@ class _Drawing:
             color=style.FAILS if fails else style.HOLDS,
         )
         axis.annotate(
-            f"at {self._scene.clock.told(self._scene.at)}",
+            f"at {self._scene.clock.told(at)}".replace(" (+", "\n(+"),
             (1.012, 0.44),
             xycoords="axes fraction",
             fontsize=7.5,
             va="top",
             color=style.QUIET,
         )
-        if self._scene.critical is not None and self._scene.critical[0] == number:
+        if (
+            self._scene.critical is not None
+            and self._scene.critical[0] == number
+            and self._sees(self._scene.critical[1])
+        ):
             position = self._scene.critical[1]
             self._diamond(axis, position, float(edges.shown(np.array([node.line.at(position)]))[0]))
 
@@ -261,10 +272,10 @@ class _Drawing:
                 edgecolor="#b8a800",
                 linewidth=0.8,
             )
-            self._marks.setdefault("the implicant: this alone forces the verdict", patch)
+            self._marks.setdefault("sufficient cause (implicant)", patch)
 
     def _instants(self, axis: Any) -> None:
-        if self._scene.critical is not None:
+        if self._scene.critical is not None and self._sees(self._scene.critical[1]):
             axis.axvline(self._place(self._scene.critical[1]), color=style.INK, linewidth=0.8, linestyle=":")
 
     def _diamond(self, axis: Any, position: float, value: float) -> None:
@@ -280,13 +291,16 @@ class _Drawing:
             zorder=5,
             clip_on=False,
         )
-        self._marks.setdefault("the critical point: its value decides the robustness", mark)
+        self._marks.setdefault("critical point", mark)
 
     def _visible(self, stretches: Sequence[tuple[float, float]]) -> list[tuple[float, float]]:
         """Return stretches joined where nobody could see what is between them, and wide enough to be seen."""
         pixel = (self._limits[1] - self._limits[0]) / 1000
+        low, high = self._limits
         found: list[tuple[float, float]] = []
-        for start, end in sorted(stretches):
+        for start, end in sorted(
+            (max(start, low), min(end, high)) for start, end in stretches if start <= high and end >= low
+        ):
             if found and start - found[-1][1] < pixel:
                 found[-1] = (found[-1][0], max(end, found[-1][1]))
             else:
@@ -301,12 +315,16 @@ class _Drawing:
         width = 0.7 if small is not line else 1.4
         values = edges.shown(small.values)
         style_of = {"drawstyle": "steps-post"} if self._scene.dense else {}
-        if self._dots or len(small.positions) == 1:
+        if len(small.positions) <= _DOTS:
             style_of |= {"marker": "o", "markersize": "3.2"}
-        axis.plot(
-            self._places(small.positions), values, color=color, linewidth=width, clip_on=False, **style_of
-        )
+        axis.plot(self._places(small.positions), values, color=color, linewidth=width, **style_of)
         return values
+
+    def _seen(self, line: Line) -> Line:
+        return line.between(*self._window, dense=self._scene.dense)
+
+    def _sees(self, position: float) -> bool:
+        return self._limits[0] <= position <= self._limits[1]
 
     def _places(self, positions: FloatArray) -> Any:
         """Return positions as matplotlib takes them: dates where the recording has dates."""
@@ -328,6 +346,7 @@ class _Edges:
             low, high = low - 1.0, high + 1.0
         pad = 0.09 * (high - low)
         self._ends = (low - 3 * pad, high + 3 * pad)
+        self.middle = (low + high) / 2
         infinite = [any((line.values == sign * np.inf).any() for line in lines) for sign in (-1, 1)]
         limits = [low - (4 if infinite[0] else 1) * pad, high + (4 if infinite[1] else 1) * pad]
         ticks = [t for t in matplotlib("ticker").MaxNLocator(3).tick_values(low, high) if low <= t <= high]
@@ -358,6 +377,17 @@ def _in_lines(name: str) -> str:
     dots = [i for i in breaks if name[i - 1] == "."]
     at = min(dots or breaks, key=lambda i: abs(i - middle))
     return f"{_shortened(name[:at], _SMALL)}\n{_shortened(name[at:], _SMALL)}"
+
+
+def _room(names: Sequence[str]) -> float:
+    """Return the inches from one name beside a panel to the next."""
+    return 0.26 if any("\n" in name for name in names) else 0.17
+
+
+def _names_height(panel: Panel) -> float:
+    """Return the inches that the names of a panel's signals need."""
+    names = [_in_lines(line.label) for line in panel.lines]
+    return _room(names) * (len(names) + 0.5)
 
 
 def _wrapped(text: str) -> list[str]:

@@ -35,6 +35,20 @@ class Line:
         i = int(np.searchsorted(self.positions, position, side="right")) - 1
         return float(self.values[max(i, 0)])
 
+    def between(self, start: float, end: float, *, dense: bool) -> Line:
+        """Return the part of the line from ``start`` to ``end``; in dense time the value before then holds there.
+
+        >>> line = Line("x", np.array([0.0, 2.0, 4.0]), np.array([1.0, 5.0, 3.0]))
+        >>> line.between(1, 3, dense=True).positions.tolist(), line.between(1, 3, dense=False).positions.tolist()
+        ([1.0, 2.0], [2.0])
+        """
+        first, last = (int(i) for i in np.searchsorted(self.positions, (start, end), side="left"))
+        last += int(last < len(self.positions) and self.positions[last] == end)
+        positions, values = self.positions[first:last], self.values[first:last]
+        if dense and first > 0 and (first == last or positions[0] > start):
+            positions, values = np.append(start, positions), np.append(self.values[first - 1], values)
+        return Line(self.name, positions, values, self.unit)
+
     def decimated(self, columns: int) -> Line:
         """Return what can be seen of the line where there is room for some columns of points.
 

@@ -6,6 +6,7 @@ from collections import deque
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from rtamt.errors import UsageError
 from rtamt.explain.sentences import predicate_text
 from rtamt.language.formula import Apply, Var, variables
 from rtamt.language.records import Bounds, Fixity
@@ -83,6 +84,39 @@ class Scene:
         """The verdict, the robustness, and the first violation."""
         told = self.explanation
         return told.headline if told.first_violation is None else f"{told.headline}, {told.summary[1]}"
+
+    def window(self, start: Any = None, end: Any = None, zoom: str | None = None) -> tuple[float, float]:
+        """Return the positions from one time to another; by default all, with ``zoom="violation"`` those around it.
+
+        Raises :class:`UsageError` where there is nothing in between, or no violation.
+        """
+        low, high = self.clock.start, self.clock.end
+        if zoom is not None:
+            if zoom != "violation":
+                raise UsageError(f"cannot zoom to '{zoom}'; the only choice is 'violation'")
+            violation = self.explanation.first_violation
+            if violation is None:
+                raise UsageError(f"cannot zoom to the violation: the formula is {self.verdict}")
+            low, high = self._around(self.clock.position(violation))
+        low = low if start is None else self.clock.position(start)
+        high = high if end is None else self.clock.position(end)
+        if low > high or high < self.clock.start or low > self.clock.end:
+            ends = f"{self.clock.told(self.clock.start)} to {self.clock.told(self.clock.end)}"
+            raise UsageError(
+                f"there is nothing to plot from {self.clock.told(low)} to {self.clock.told(high)}; "
+                f"the trace lasts from {ends}"
+            )
+        return max(low, self.clock.start), min(high, self.clock.end)
+
+    def _around(self, violation: float) -> tuple[float, float]:
+        """Return the positions around a violation: the causes that it touches, and something on either side."""
+        causes = [each for node in self.nodes for each in node.because if each[0] <= violation <= each[1]]
+        low = min([violation, *(start for start, _ in causes)])
+        high = max([violation, *(end for _, end in causes)])
+        whole = self.clock.end - self.clock.start
+        samples = 20 * whole / max(len(self.nodes[0].line.positions) - 1, 1)
+        margin = max(0.5 * (high - low), 0.02 * whole if self.dense else samples)
+        return max(low - margin, self.clock.start), min(high + margin, self.clock.end)
 
     def told_at(self, number: int) -> float:
         """Return the position at which a node's value is shown: of parts of a violated formula its first violation."""

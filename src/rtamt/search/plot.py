@@ -8,6 +8,7 @@ import numpy as np
 
 from rtamt.errors import UsageError
 from rtamt.extras import library
+from rtamt.plot import style
 
 if TYPE_CHECKING:
     from rtamt.search.falsify import Falsification
@@ -19,16 +20,16 @@ def descent(found: Falsification, axes: Any = None) -> Any:
     axes = _axes(axes)
     values = np.array([evaluation.robustness for evaluation in found.evaluations])
     number = np.arange(1, len(values) + 1)
-    axes.axhline(0, color="0.6", linewidth=1)
-    axes.plot(number, values, "o", markersize=4, color="tab:blue", label="simulation")
-    axes.step(number, np.minimum.accumulate(values), where="post", color="tab:orange", label="least so far")
+    axes.axhline(0, color=style.QUIET, linewidth=0.9)
+    axes.plot(number, values, "o", markersize=4, color=style.HOLDS, label="simulation")
+    axes.step(number, np.minimum.accumulate(values), where="post", color=style.INK, label="least so far")
     wrong = np.array([not evaluation.satisfied for evaluation in found.evaluations])
     if wrong.any():
-        axes.plot(number[wrong], values[wrong], "X", markersize=6, color="tab:red", label="violation")
+        axes.plot(number[wrong], values[wrong], "X", markersize=6, color=style.FAILS, label="violation")
     axes.set_xlabel("simulation")
     axes.set_ylabel("robustness")
-    axes.legend()
-    return axes
+    axes.legend(frameon=False, fontsize=8, labelcolor=style.QUIET)
+    return _styled(axes)
 
 
 def landscape(found: Sensitivity, axes: Any = None) -> Any:
@@ -43,19 +44,19 @@ def landscape(found: Sensitivity, axes: Any = None) -> Any:
     points = {name: np.array([e.point[name] for e in found.evaluations]) for name in names}
     if len(names) == 1:
         order = np.argsort(points[names[0]])
-        axes.plot(points[names[0]][order], values.ravel()[order], "o-")
-        axes.axhline(0, color="0.6", linewidth=1)
+        axes.plot(points[names[0]][order], values.ravel()[order], "o-", markersize=4, color=style.HOLDS)
+        axes.axhline(0, color=style.QUIET, linewidth=0.9)
         axes.set_ylabel("robustness")
     else:
         reach = float(np.max(np.abs(values[np.isfinite(values)]), initial=0.0)) or 1.0
-        colors = {"cmap": "RdYlGn", "vmin": -reach, "vmax": reach}
+        colors = {"cmap": _colors(), "vmin": -reach, "vmax": reach}
         if found.axes:
             first, second = found.axes.values()
             made = axes.pcolormesh(first, second, values.T, shading="nearest", **colors)
             axes.set_xticks(first, [f"{value:.3g}" for value in first])
             axes.set_yticks(second, [f"{value:.3g}" for value in second])
             for (i, j), value in np.ndenumerate(values):
-                ink = "white" if abs(value) > 0.75 * reach else "black"
+                ink = "white" if abs(value) > 0.75 * reach else style.INK
                 axes.text(
                     first[i], second[j], f"{value:.3g}", ha="center", va="center", fontsize=8, color=ink
                 )
@@ -64,6 +65,24 @@ def landscape(found: Sensitivity, axes: Any = None) -> Any:
         axes.figure.colorbar(made, ax=axes, label="robustness")
         axes.set_ylabel(names[1])
     axes.set_xlabel(names[0])
+    return _styled(axes)
+
+
+def _colors() -> Any:
+    """Return the colours of robustness: that of violations below 0, that of satisfaction above."""
+    colors = library("matplotlib.colors", "a picture", "plot")
+    return colors.LinearSegmentedColormap.from_list("robustness", (style.FAILS, "#f6f6f6", style.HOLDS))
+
+
+def _styled(axes: Any) -> Any:
+    """Give axes the frame that all pictures have."""
+    for side in ("top", "right"):
+        axes.spines[side].set_visible(False)
+    for side in ("left", "bottom"):
+        axes.spines[side].set_color(style.FAINT)
+    axes.tick_params(labelsize=8, color=style.FAINT, labelcolor=style.QUIET, length=3)
+    for label in (axes.xaxis.label, axes.yaxis.label):
+        label.set(fontsize=9, color=style.QUIET)
     return axes
 
 

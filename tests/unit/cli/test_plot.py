@@ -44,3 +44,14 @@ def test_what_is_wrong_is_one_sentence(arguments, message, capsys, monkeypatch):
     told = capsys.readouterr().err
     assert told.startswith(message)
     assert told.count("\n") == 1
+
+
+def test_a_part_of_the_time(tmp_path, capsys):
+    path = tmp_path / "part.svg"
+    for part in (["--from", "2", "--to", "5500ms"], ["--zoom", "violation"]):
+        assert main(["plot", FORMULA, TRACE, "-o", str(path), *part]) == 0
+    capsys.readouterr()
+    assert main(["plot", FORMULA, TRACE, "-o", str(path), "--from", "noon"]) == 2
+    assert capsys.readouterr().err.startswith("rtamt: ")
+    assert main(["plot", FORMULA, TRACE, "-o", str(path), "--from", "500"]) == 2
+    assert "there is nothing to plot from 500 s to " in capsys.readouterr().err

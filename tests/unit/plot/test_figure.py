@@ -1,5 +1,7 @@
 """Pictures: what is drawn, read from the figure."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
@@ -67,3 +69,78 @@ def test_a_figure_of_pyplot_is_made_where_none_is_given():
     figure = rtamt.parse("x >= 0").evaluate({"x": [1]}).plot()
     assert pyplot.fignum_exists(figure.number)
     pyplot.close(figure)
+
+
+def drawn(axis):
+    return max(axis.lines, key=lambda line: len(line.get_xdata()))
+
+
+def test_a_part_of_the_time_is_drawn_with_its_own_values():
+    x = np.where(np.arange(2000) == 900, 50.0, np.sin(np.arange(2000) / 50))
+    result = rtamt.parse("always(x <= 0.99)").evaluate({"x": x})
+    panel = result.plot(start=100, end=140, figure=Figure()).axes[0]
+    assert drawn(panel).get_xdata().tolist() == list(range(100, 141))
+    assert panel.get_ylim()[1] < 2
+    panel = result.plot(zoom="violation", figure=Figure()).axes[0]
+    low, high = panel.get_xlim()
+    assert low < 72 < high < 120  # sin(i / 50) exceeds 0.99 from 72 s on
+    assert drawn(panel).get_marker() == "o"
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"start": 5, "end": 2}, "there is nothing to plot from 5 s to 2 s; the trace lasts from 0 s to 9 s"),
+        ({"start": 20}, "there is nothing to plot from 20 s to 9 s; the trace lasts from 0 s to 9 s"),
+        ({"zoom": "violation"}, "cannot zoom to the violation: the formula is satisfied, robustness 0"),
+        ({"zoom": "all"}, "cannot zoom to 'all'; the only choice is 'violation'"),
+    ],
+)
+def test_what_cannot_be_seen_is_one_sentence(options, message):
+    result = rtamt.parse("always(x >= 0)").evaluate({"x": range(10)})
+    with pytest.raises(rtamt.UsageError, match=f"^{message}$"):
+        result.plot(figure=Figure(), **options)
+
+
+def test_a_signal_that_starts_early_left_marks_beside_the_axis():
+    spec = rtamt.parse("always(x <= y)", time="dense")
+    panel = (
+        spec.evaluate({"x": (np.arange(0, 10, 0.5), np.zeros(20)), "y": ([5.25, 9], [1, 2])})
+        .plot(figure=Figure())
+        .axes[0]
+    )
+    for line in panel.lines:
+        if len(line.get_xdata()) > 2:
+            assert min(line.get_xdata()) == 5.25
+        assert line.get_clip_on() or line.get_marker() == "D"
+
+
+def test_names_of_many_signals_do_not_overlap():
+    names = [f"vehicle_attitude_setpoint.roll_{i}" for i in range(8)]
+    formula = " and ".join(f'"{a}" <= "{b}" + 5' for a, b in pairwise(names))
+    figure = rtamt.parse(formula).evaluate({name: [0, 1] for name in names}).plot(figure=Figure())
+    figure.canvas.draw()
+    boxes = sorted(
+        (t.get_window_extent().extents[[1, 3]] for t in figure.axes[0].texts), key=lambda box: box[0]
+    )
+    assert len(boxes) == 8
+    assert all(below[1] <= above[0] + 1 for below, above in pairwise(boxes))
+    assert boxes[0][0] > figure.axes[1].get_window_extent().y1
+
+
+def test_a_dense_line_with_few_other_lines_had_a_band_of_markers():
+    times = np.arange(5000) / 100
+    spec = rtamt.parse("always(x <= 2)", time="dense")
+    figure = spec.evaluate({"x": (times, np.sin(times))}).plot(figure=Figure())
+    markers = {axis.get_title(loc="left"): drawn(axis).get_marker() for axis in figure.axes}
+    assert markers["x <= 2"] == "None"
+    assert drawn(figure.axes[0]).get_marker() == "None"
+
+
+def test_values_of_parts_are_those_at_the_first_violation():
+    figure = (
+        rtamt.parse("always(x >= 3 -> y >= 3)").evaluate({"x": [0, 5], "y": [9, 1]}).plot(figure=Figure())
+    )
+    told = {axis.get_title(loc="left"): [text.get_text() for text in axis.texts] for axis in figure.axes[2:]}
+    assert told["always(x >= 3 -> y >= 3)"] == ["✗ −2", "at 0 s"]
+    assert told["y >= 3"] == ["✗ −2", "at 1 s"]
