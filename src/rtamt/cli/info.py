@@ -26,8 +26,10 @@ from rtamt.language.printer import excerpt
 from rtamt.language.units import format_duration
 from rtamt.rewrite.check import check_online
 from rtamt.rewrite.desugar import desugar
+from rtamt.rewrite.early import ends_differently, loose
 from rtamt.rewrite.horizon import horizon
 from rtamt.rewrite.pastify import pastify
+from rtamt.rewrite.semantics import boolean
 from rtamt.signals.domains import DOMAINS
 
 if TYPE_CHECKING:
@@ -47,15 +49,19 @@ recording (CSV, Parquet, Excel, ..., or --sql): which signals are in it, and wha
 'rtamt compile' wrote: what it holds."""
 
 _EPILOG = """\
+Intervals (bounds of the robustness while samples are unknown) are tight if some trace attains them. Early verdicts
+hold at the end unless a window there loses instants that were decided before they had samples.
+
 In the listing of the program every line is an instruction: %0, %1, ... are results, n is a width in
 samples, and a lag is the number of samples after which a result is known. With --time dense both
 are counted in ticks of the resolution.
 
 --json prints one object: {"name", "formula", "requirements", "latex", "semantics", "variables", "period",
-"resolution", "horizon", "pastified", "program", "memory", "offline_only"}; what does not exist is null: dense
-time has no period, and its memory depends on the data. Durations are in seconds, memory in bytes. The
-program is that of the semantics, the pastified form serves each. Of several requirements all this is about
-their conjunction; each has its {"name", "description", "severity", "formula", "horizon"}.
+"resolution", "horizon", "pastified", "program", "memory", "offline_only", "tight", "early_verdicts_hold"};
+what does not exist is null: dense time has no period, and its memory depends on the data. Durations are in
+seconds, memory in bytes. The program is that of the semantics, the pastified form serves each. Of several
+requirements all this is about their conjunction; each has its {"name", "description", "severity", "formula",
+"horizon"}.
 
 examples:
   rtamt info examples/request_grant/spec.stl
@@ -210,6 +216,18 @@ def _requirements(facts: Facts) -> list[dict[str, Any]]:
     return rows
 
 
+def _loose(facts: Facts) -> str | None:
+    """Return a variable that may make intervals wider than necessary."""
+    period = None if facts.spec.domain.continuous else facts.step
+    return loose(facts.spec.apply_semantics(facts.spec.formula), period)
+
+
+def _ending(facts: Facts) -> str | None:
+    """Return an operator whose windows may lose at the end of a discrete trace what was decided before."""
+    found = ends_differently(boolean(facts.spec.formula), {})
+    return None if found is None else found.op.name
+
+
 def _lines(facts: Facts) -> Iterator[str]:
     spec = facts.spec
     if spec.name:
@@ -242,6 +260,13 @@ def _lines(facts: Facts) -> Iterator[str]:
         ahead = format_duration(facts.horizon)
         yield f"horizon    {ahead}: the value at t is known at t + {ahead}"
         yield f"pastified  {'no: too large' if facts.pastified is None else printed(facts.pastified)}"
+    name = _loose(facts)
+    wide = f"sound, but may be wider than necessary: '{name}' raises and lowers the robustness"
+    yield f"intervals  {'tight' if name is None else wide}"
+    if not spec.domain.continuous:
+        late = _ending(facts)
+        changed = f"may change at the end of the trace, which cuts the windows of '{late}'"
+        yield f"early      verdicts {'hold at the end of the trace' if late is None else changed}"
     if facts.program is None:
         yield f"online     no: {facts.offline_only}"
         return
@@ -277,6 +302,8 @@ def _as_json(facts: Facts) -> str:
             "program": None if facts.program is None else facts.program.disassemble().splitlines(),
             "memory": facts.memory,
             "offline_only": facts.offline_only,
+            "tight": _loose(facts) is None,
+            "early_verdicts_hold": spec.domain.continuous or _ending(facts) is None,
         }
     )
 

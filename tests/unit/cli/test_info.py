@@ -28,6 +28,8 @@ def test_a_bounded_requirement(run, write):
         "period     1 s (the default; --period sets it)",
         "horizon    15 s: the value at t is known at t + 15 s",
         "pastified  historically[0:10](once[5:5](req >= 3) -> once[0:5](gnt >= 3))",
+        "intervals  tight",
+        "early      verdicts hold at the end of the trace",
     ]
     assert memory.startswith("memory     ")
     assert memory.endswith(" doubles), whatever the length of the trace")
@@ -53,6 +55,8 @@ def test_unbounded_future_is_offline_only_and_the_reason_is_given(run):
         "formula    always(x >= 3)\n"
         "variables  x\n"
         "period     1 s (the default; --period sets it)\n"
+        "intervals  tight\n"
+        "early      verdicts hold at the end of the trace\n"
         "online     no: 'always' without an upper bound needs the whole future and cannot be monitored "
         "online; give it a bound, such as always[0:10], or evaluate the finished trace offline\n",
         "",
@@ -107,6 +111,8 @@ def test_json(run):
         ],
         "memory": None,
         "offline_only": None,
+        "tight": True,
+        "early_verdicts_hold": True,
     }
 
 
@@ -162,6 +168,7 @@ DENSE = (
     "resolution 1 ns, the tick in which time is counted\n"
     "horizon    10.07 s: the value at t is known at t + 10.07 s\n"
     "pastified  historically[0:10](once[70ms:70ms](req >= 3) -> once[0:70ms](gnt >= 3))\n"
+    "intervals  tight\n"
     "memory     that of the changes inside the windows, whatever the length of the trace\n"
     "program\n"
     "  %0   lag 0    input req\n"
@@ -219,3 +226,11 @@ def test_a_bound_of_more_ticks_than_can_be_counted_says_what_to_do(run):
         "    once[0:1e8](x)\n"
         "        ^^^^^^^\n",
     )
+
+
+def test_what_bounds_and_early_verdicts_are_worth_is_reported(run):
+    answer = run("info", "x >= 3 or x <= 1 or eventually[0:2] once[0:1] y >= 1")
+    wide = "intervals  sound, but may be wider than necessary: 'x' raises and lowers the robustness\n"
+    assert wide in answer.out
+    cut = "early      verdicts may change at the end of the trace, which cuts the windows of 'eventually'\n"
+    assert cut in answer.out

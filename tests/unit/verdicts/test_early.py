@@ -136,7 +136,7 @@ def test_watermark_closes_what_is_missing():
             "'x' is '4' at sample 1, time 1 s; expected a number, bounds (lower, upper), or None if it is missing",
         ),
         ({"y": 4}, "the formula has no variable 'y'; variables: x"),
-        ({}, "the data has no 'x'; it has nothing"),
+        ({}, "the data has no 'x'; signals: none"),
     ],
 )
 def test_wrong_sample_is_rejected_with_one_sentence(values, message):
