@@ -171,6 +171,13 @@ def _evaluate_alike(asked: _Asked, data: Any) -> Iterator[tuple[int, Result]]:
         if query.domain.step is None:  # else checked without the recording
             with _place(number):
                 whole.check(query.formula, query.text)
+    for number, (spec, query) in list(asked.items()):
+        if len(spec.requirements) > 1 and query.domain.continuous:  # each may start at a time of its own
+            yield number, spec.result(query, whole.select(spec.input_names))
+            del asked[number]
+    if not asked:
+        return
+    spec, _ = next(iter(asked.values()))
     evaluators = Evaluators(spec.backend)
     for recording, numbers in _with_one_extent(asked, whole):
         formulas = tuple(asked[number][1].formula for number in numbers)

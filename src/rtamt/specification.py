@@ -214,6 +214,10 @@ class Specification:
         query = self.query(time, period, tolerance, resolution, semantics, time_unit)
         recording = self.with_units(self._recorded(query, data, uncertainty, ranges))
         self._check(query, recording)
+        return self.result(query, recording)
+
+    def result(self, query: Query, recording: DomainTrace) -> Result:
+        """Return the result over a normalised recording, for which the formula was checked."""
         if recording.domain.continuous and len(self.requirements) > 1:
             outputs = [one.outputs(query.semantics) for one in self.requirements.values()]
             if len(by_start(outputs, recording)) > 1:

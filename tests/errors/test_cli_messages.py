@@ -162,7 +162,11 @@ def test_messages(run, args, message):
             "stdin, line 1: the unit of the time column 'time [day]' is 'day', which is none of h, min, s, ms, us, ns",
         ),
         ("time,x\n0\n", "stdin, line 2: 1 value, but 2 columns (time, x)"),
-        ("time,x\n0,\n", "stdin, line 2: 'x' is empty, expected a number"),
+        (
+            "time,x\n0,\n",
+            "stdin, line 2: 'x' is missing at sample 0, but discrete time needs a value at "
+            "every sample: fill the gap, or use dense time (--time dense)",
+        ),
         ('time,x\n0,"' + "1" * 200_000, "stdin, line 2: field larger than field limit (131072)"),
         ('{"x": 1\n', "stdin, line 1: not JSON: Expecting ',' delimiter at column 8"),
         (
@@ -170,7 +174,11 @@ def test_messages(run, args, message):
             "stdin, line 1: not JSON to read: a number is too long, or nesting too deep",
         ),
         ('{"y": 1}\n', "stdin, line 1: the data has no 'x'; signals: y"),
-        ('{"x": null}\n', "stdin, line 1: 'x' is null, expected a number"),
+        (
+            '{"x": null}\n',
+            "stdin, line 1: 'x' is missing at sample 0, but discrete time needs a value at "
+            "every sample: fill the gap, or use dense time (--time dense)",
+        ),
         ('{"x": "abc"}\n', "stdin, line 1: 'x' is \"abc\", expected a number"),
         (
             '{"x": [1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14]}\n',

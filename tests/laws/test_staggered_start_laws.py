@@ -208,3 +208,16 @@ def test_what_has_no_single_start_is_explained_requirement_by_requirement() -> N
     )
     assert result.requirements["slow"].explain().critical.time == 0.0
     assert result["slow"].values.tolist() == result.requirements["slow"].signal.values.tolist()
+
+
+def test_many_specifications_over_one_recording_start_as_each_alone() -> None:
+    specs = [
+        rtamt.parse(text, time="dense", resolution=1)
+        for text in ("require A: always(x <= 3); require B: once(y >= 1)", "always(x <= 3)", "x + y >= 9")
+    ]
+    data = {"x": ([0.0, 1.0, 5.0], [5, 2, 1]), "y": ([2.0, 3.0], [4, 3])}
+    alone = [spec.evaluate({name: data[name] for name in spec.input_names}) for spec in specs]
+    found = rtamt.evaluate_all(specs, data)
+    assert [told(result) for result in found] == [told(result) for result in alone]
+    assert found[0].robustness == -2.0
+    assert [str(result.signal) for result in found] == [str(result.signal) for result in alone]

@@ -15,7 +15,7 @@ from rtamt.readers.dates import EXAMPLE, is_date
 from rtamt.readers.frames import field_of
 from rtamt.readers.source import Source, Table
 from rtamt.readers.timestamps import CHOICES
-from rtamt.signals.arrays import TIME, missing_variable
+from rtamt.signals.arrays import TIME, missing_sample, missing_variable
 from rtamt.signals.stamps import is_stamps, may_be_stamps, split_unit
 from rtamt.signals.trace import in_seconds
 
@@ -99,6 +99,11 @@ class _Stamps:
         self._cells: Cells | None = None
         self.clock: Clock | None = None
 
+    def require(self, name: str, value: object, number: int) -> None:
+        """Raise :class:`TraceError` where a sample of discrete time, in line ``number``, has no value."""
+        if value is None or value == "":
+            raise _error(number, str(missing_sample(name, self._samples, None)), name)
+
     def look(self, columns: Iterable[tuple[str, Any]], *, all_named: bool = True) -> Selection | None:
         """Look for the clock among columns and what they hold, None where that is not known yet.
 
@@ -170,6 +175,8 @@ class JsonSamples:
         clock = self._stamps.clock
         names = [name for name in self._names if clock is None or name != TIME]
         names = [name for name in names if not self._dense or _has(data, name)]
+        for name in names:
+            self._stamps.require(name, _given(data, name, number), number)
         values = {name: _number(data, name, number) for name in names}
         stamp = None if clock is None else _stamp(data, clock.field.column, number)
         return self._stamps.sample(stamp, values, number)
@@ -204,7 +211,11 @@ class CsvSamples:
         check_width(row, header, number)
         if self._stamps.clock is None:
             self._stamps.look(zip(header.names, (cell.strip() or None for cell in row), strict=True))
-        given = [c for c in self._columns if not self._dense or row[c.position].strip()]
+        given = self._columns
+        if self._dense:
+            given = [c for c in given if row[c.position].strip()]
+        for column in given:
+            self._stamps.require(column.name, row[column.position].strip(), number)
         values = dict(zip((c.name for c in given), numbers(row, header, number, given), strict=True))
         clock = self._stamps.clock
         stamp = None if clock is None else row[header.names.index(clock.field.column)]

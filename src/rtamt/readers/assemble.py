@@ -13,7 +13,7 @@ import numpy as np
 from rtamt.errors import TraceError, choices, did_you_mean, shown
 from rtamt.readers.gaps import Gaps
 from rtamt.readers.timestamps import Clock, guess_field
-from rtamt.signals.arrays import TIME, is_number
+from rtamt.signals.arrays import TIME, is_number, missing_sample
 from rtamt.signals.ticks import NANOSECOND, TimeScale
 from rtamt.signals.trace import Channel, Trace, in_seconds
 
@@ -268,7 +268,7 @@ def _channels(
                 raise
             left_out.append(field.column)
             continue
-        mine = times
+        mine, first_gap = times, None
         if field.skip_nan and np.isnan(numbers).any():
             nan = np.isnan(numbers)
             gaps[name].skip(nan, times, before)
@@ -279,13 +279,7 @@ def _channels(
         if missing is not None and missing.any():
             row = before + int(missing.argmax())
             if not choice.gaps:
-                raise TraceError(
-                    f"'{name}' is missing at sample {row} of {source.name}, but discrete time needs a value at "
-                    f"every sample: fill the gap, use dense time (--time dense), or put all on one clock "
-                    f"(--resample PERIOD)",
-                    variable=name,
-                    index=row,
-                )
+                raise missing_sample(name, row, source.name)
             if times is None:
                 raise TraceError(
                     f"'{name}' is missing at sample {row} of {source.name}: fill the gap, or name the "
@@ -294,8 +288,9 @@ def _channels(
                     index=row,
                 )
             numbers, mine = numbers[~missing], times[~missing]
+            first_gap = row
         unit = choice.units.get(name, choice.units.get(field.column, field.unit))
-        made[name] = Channel(mine, numbers, unit, field.column)
+        made[name] = Channel(mine, numbers, unit, field.column, first_gap)
     if times is not None and TIME in (choice.columns or ()) and TIME not in choice.names:
         # The formula reads the time; in discrete time the engine gives it.
         made[TIME] = Channel(times, in_seconds(times), "s", TIME)

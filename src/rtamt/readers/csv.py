@@ -151,8 +151,6 @@ def numbers(row: list[str], header: Header, line: int, columns: Collection[Colum
 def number(text: str, name: str, header: Header, line: int, *, nan: bool = False) -> float:
     """Return the number in one cell; ``nan``: whether NaN is one."""
     text = text.strip()
-    if not text:
-        raise header.error(line, f"'{name}' is empty, expected a number", name)
     if not is_number(text):
         hint = " with a decimal point" if is_number(text.replace(",", ".")) else ""
         raise header.error(line, f"'{name}' is '{text}', expected a number{hint}", name)

@@ -269,6 +269,24 @@ def unknown_variable(name: str, names: Collection[str]) -> TraceError:
     )
 
 
+def missing_sample(name: str, index: int, source: str | None) -> TraceError:
+    """Return the error for a variable without a value at a sample of discrete time: every reader raises this one.
+
+    ``source``: where the samples are from; None for a stream, whose samples can be resampled by nobody.
+    """
+    where = f"sample {index}" if source is None else f"sample {index} of {source}"
+    mend = (
+        "fill the gap, or use dense time (--time dense)"
+        if source is None
+        else "fill the gap, use dense time (--time dense), or put all on one clock (--resample PERIOD)"
+    )
+    return TraceError(
+        f"'{name}' is missing at {where}, but discrete time needs a value at every sample: {mend}",
+        variable=name,
+        index=index,
+    )
+
+
 def missing_variable(name: str, keys: Collection[str]) -> TraceError:
     """Return the error for a variable that the formula reads and the data lacks."""
     return TraceError(f"the data has no '{name}'{choices(name, keys, 'signals')}", variable=name)

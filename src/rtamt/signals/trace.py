@@ -18,7 +18,7 @@ import numpy as np
 
 from rtamt.errors import TraceError, UsageError, choices
 from rtamt.language.units import duration
-from rtamt.signals.arrays import TIME, Clocked, stamps
+from rtamt.signals.arrays import TIME, Clocked, missing_sample, stamps
 from rtamt.signals.listing import extent, listing
 from rtamt.signals.signal import Signal
 
@@ -42,12 +42,15 @@ class Channel:
     ``times``: n strictly increasing stamps, float64 seconds, or, where a double cannot hold them,
     timedelta64[ns], or datetime64[ns]; None where the source has none. ``values``: n numbers, float64.
     ``unit``: of the values, as the source writes it. ``column``: what the source calls the signal.
+    ``first_gap``: the first sample of the source at which the signal has no value, so that its times are fewer
+    than those of its table; None where it has all.
     """
 
     times: Times | None
     values: FloatArray
     unit: str = ""
     column: str = ""
+    first_gap: int | None = None
 
 
 class Trace(Clocked):
@@ -185,6 +188,9 @@ class Trace(Clocked):
         Raises :class:`TraceError` where the signals do not share a clock.
         """
         channels = {name: self.channel(name) for name in names if name != TIME}
+        for name, channel in channels.items():
+            if channel.first_gap is not None:
+                raise missing_sample(name, channel.first_gap, self._source)
         clocks = channels or self._channels
         self._check_one_clock(clocks)
         result: dict[str, Any] = {name: channel.values for name, channel in channels.items()}
@@ -263,7 +269,7 @@ class Trace(Clocked):
                 between = channel.times[places] != grid
                 both = np.concatenate((places, places[between] + 1))
                 losses += _passed_over(name, both, len(channel.times))
-            channels[name] = replace(channel, times=grid, values=values)
+            channels[name] = replace(channel, times=grid, values=values, first_gap=None)
         return self._with(channels, losses)
 
     # ---- inside ----------------------------------------------------------------------------------

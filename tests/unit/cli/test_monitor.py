@@ -170,7 +170,11 @@ def test_dense_cells_may_be_empty(run):
     told, errors = watch(run, "x >= 3 and y >= 0", "time,x,y\n0,5,\n0.5,,1\n1,2,2\n")
     assert (told, errors) == (['{"time": 0.5, "robustness": 1.0}', '{"time": 1.0, "robustness": -1.0}'], "")
     answer = run("monitor", "x >= 3 and y >= 0", stdin="time,x,y\n0,5,\n")
-    assert (answer.code, answer.err) == (2, "rtamt: stdin, line 2: 'y' is empty, expected a number\n")
+    assert (answer.code, answer.err) == (
+        2,
+        "rtamt: stdin, line 2: 'y' is missing at sample 0, but discrete time needs a value at every sample: "
+        "fill the gap, or use dense time (--time dense)\n",
+    )
 
 
 def test_dense_nanoseconds_are_exact(run):

@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 import rtamt
 from rtamt.errors import TraceError
 from rtamt.readers import csv as csv_module
+from tests.unit.cli import invoke
 
 
 def read(path, names=None, *, time_column=None):
@@ -286,3 +287,44 @@ def test_a_file_of_20_000_columns_takes_time_in_proportion_to_its_size(tmp_path)
     assert time.process_time() - began < 12
     assert trace.names == tuple(names)
     assert len(trace["x19997"]) == 2
+
+
+MISSING = "'x' is missing at sample 1{}, but discrete time needs a value at every sample: fill the gap, {}"
+
+
+def test_an_empty_cell_in_discrete_time_is_rejected_by_one_sentence_at_every_entry_point(
+    tmp_path, capsys, monkeypatch
+):
+    text = "time,x,y\n0,1,2\n1,,3\n2,4,5\n"
+    (tmp_path / "log.csv").write_text(text)
+    (tmp_path / "x.stl").write_text("historically(x >= 0)")
+    monkeypatch.chdir(tmp_path)
+    expected = MISSING.format(
+        " of log.csv", "use dense time (--time dense), or put all on one clock (--resample PERIOD)"
+    )
+    for command in (("check",), ("explain",), ("report", "-o", "r.html"), ("plot", "-o", "p.png")):
+        answer = invoke(capsys, monkeypatch, [command[0], "x.stl", "log.csv", *command[1:]])
+        assert answer.code == 2
+        assert expected in answer.err
+    spec = rtamt.parse("historically(x >= 0)")
+    entries = (
+        lambda: spec.evaluate(rtamt.read("log.csv")),
+        lambda: spec.monitor().update_many(rtamt.read("log.csv")),
+        lambda: rtamt.check_stream(spec, rtamt.scan("log.csv")),
+        lambda: rtamt.evaluate_batch(spec, [rtamt.read("log.csv")]),
+        lambda: rtamt.evaluate_all([spec], rtamt.read("log.csv")),
+    )
+    for entry in entries:
+        with pytest.raises(rtamt.TraceError) as error:
+            entry()
+        assert str(error.value).removeprefix("trace 0: ") == expected
+    lines = ['{"time": 0, "x": 1}', '{"time": 1, "x": null}']
+    for stdin, line in ((text, 3), ("\n".join(lines), 2)):
+        answer = invoke(capsys, monkeypatch, ["monitor", "x.stl"], stdin)
+        told = MISSING.format("", "or use dense time (--time dense)")
+        assert (answer.code, answer.err) == (2, f"rtamt: stdin, line {line}: {told}\n")
+    # Nothing is missing of what is read, nor in dense time, nor on a clock that was chosen.
+    assert rtamt.parse("y >= 0").evaluate(rtamt.read("log.csv")).robustness == 2
+    assert spec.evaluate(rtamt.read("log.csv"), time="dense").satisfied
+    assert spec.evaluate(rtamt.read("log.csv").resample(1)).satisfied
+    assert spec.evaluate(rtamt.read("log.csv").hold()).satisfied

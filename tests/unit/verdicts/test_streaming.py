@@ -1,8 +1,13 @@
 """Checks in chunks, and first violations: the same numbers as of the whole recording."""
 
+import contextlib
+import io
+import json
 import sqlite3
+import tempfile
 from contextlib import closing
 from datetime import datetime, timedelta, timezone
+from pathlib import Path
 
 import numpy as np
 import pyarrow as pa
@@ -12,6 +17,7 @@ from hypothesis import strategies as st
 from pyarrow import feather, parquet
 
 import rtamt
+from rtamt.cli import main
 from rtamt.engine.native import core
 from rtamt.language.operators import STL
 from rtamt.readers import arrow, csv, rows
@@ -196,31 +202,44 @@ def test_datetimes_with_a_time_zone_in_chunks():
     assert str(streamed.first_violation).startswith("2024-05-01T10:00:02")
 
 
-#: Parts that read no variable: what they mean depends on where windows end.
-FREE = (
-    "once[500ms:500ms] false",
-    "eventually[300ms:1s] true",
-    "always[5:9] false",
-    "(true since[100ms:300ms] false)",
-    "historically[200ms:inf] false",
-    "always[0:inf] true",
-    "true",
-    "eventually false",
-    "(2 > 1)",
-)
+@st.composite
+def parts_without_variables(draw, depth=3):
+    """Draw the text of a formula that reads no variable: what it means depends on where windows end."""
+    kind = draw(st.sampled_from(("constant", "window", "binary", "not", "and"))) if depth else "constant"
+    if kind == "constant":
+        return draw(st.sampled_from(("true", "false", "(2 > 1)", "(0 >= 1)")))
+    below = draw(parts_without_variables(depth=depth - 1))
+    if kind == "not":
+        return f"not({below})"
+    if kind == "window":
+        name = draw(st.sampled_from(("once", "historically", "eventually", "always")))
+        return f"{name}{draw(bounds())}({below})"
+    if kind == "binary":
+        name = draw(st.sampled_from(("since", "until")))
+        return f"(({below}) {name}{draw(bounds())} ({draw(parts_without_variables(depth=depth - 1))}))"
+    name = draw(st.sampled_from(("and", "or", "->")))
+    return f"(({below}) {name} ({draw(parts_without_variables(depth=depth - 1))}))"
+
+
+@st.composite
+def bounds(draw):
+    """Draw an interval in steps of 100 ms, or none; longer than the trace, too."""
+    begin, length = draw(st.sampled_from((0, 1, 3, 5, 50))), draw(st.sampled_from((0, 2, 4, 90, None)))
+    return draw(
+        st.sampled_from(("", f"[{begin}00ms:{'inf' if length is None else f'{begin + length}00ms'}]"))
+    )
 
 
 @pytest.mark.parametrize("time", ["discrete", "dense"])
 @settings(max_examples=40)
 @given(data=st.data())
 def test_law_parts_that_read_no_variable_are_parts_like_others(time, data):
-    free = data.draw(st.sampled_from(FREE))
+    free = data.draw(parts_without_variables())
     other = data.draw(st.sampled_from(("always(x >= 3)", "eventually[0:300ms](x >= 3)", "x >= 3")))
     shape = st.sampled_from(
         ("{0} or {1}", "{0} and {1}", "{1} -> {0}", "always({0} or {1})", "not {0} and {1}")
     )
     text = data.draw(shape).format(free, other)
-    # Below another operator unbounded future needs the whole recording.
     n = data.draw(st.integers(1, 8))
     recording = {
         "time": [i / 10 for i in range(n)],
@@ -231,15 +250,40 @@ def test_law_parts_that_read_no_variable_are_parts_like_others(time, data):
     violated = first_violation(result)
     assert (violated is None) == result.satisfied
     assert result.satisfied == spec.evaluate(recording, semantics="boolean").satisfied
+    (judged,) = spec.judge(recording).values()
+    assert (judged.robustness, judged.satisfied, first_violation(judged)) == (
+        result.robustness,
+        result.satisfied,
+        violated,
+    )
+    domain = ("--period", "100ms") if time == "discrete" else ("--time", "dense")
+    checked = check_in_process(text, recording, *domain)
+    assert (float(checked["robustness"]), checked["satisfied"], checked["first_violation"]) == (
+        result.robustness,
+        result.satisfied,
+        violated,
+    )
     cut = data.draw(st.integers(0, n))
     chunks = [
         {name: column[part] for name, column in recording.items()} for part in (slice(cut), slice(cut, None))
     ]
     try:
         streamed = rtamt.check_stream(spec, chunks)
-    except rtamt.BoundError:
+    except rtamt.BoundError:  # below another operator unbounded future needs the whole recording
         return
     same(streamed, result)
+
+
+def check_in_process(text, recording, *options):
+    """Return the row that ``rtamt check`` prints."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder, "log.csv")
+        rows = zip(recording["time"], recording["x"], strict=True)
+        path.write_text("time,x\n" + "".join(f"{time},{x}\n" for time, x in rows))
+        out = io.StringIO()
+        with contextlib.redirect_stdout(out), contextlib.redirect_stderr(io.StringIO()):
+            assert main(["check", text, str(path), "--json", *options]) < 2
+    return json.loads(out.getvalue())
 
 
 def test_the_right_answer_beside_a_window_over_a_constant():
