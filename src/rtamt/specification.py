@@ -411,8 +411,9 @@ class Specification:
         if mode.monitor is not None:
             return mode.monitor(
                 formula,
-                clock_of(mode, domain, self.backend, time_unit),
+                clock_of(mode, domain, time_unit),
                 text=self.text,
+                backend=self.backend,
                 declared=self.declared,
                 watch=watched,
                 factory=factory,

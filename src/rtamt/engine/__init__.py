@@ -17,6 +17,7 @@ gate                  reject concurrent and reentrant use of a monitor
 native                load the compiled core
 python_backend        the reference implementation behind the interface of the core, discrete time
 dense_python_backend  the same in dense time
+early_python_backend  the definition of bounds behind the interface of the core's EarlyMonitor
 user_operators        call custom operators from the core
 _core                 the compiled core (``core/``); the stub describes its interface
 ====================  ============================================================================

@@ -10,9 +10,11 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from rtamt.compiler.early import compile_graph
 from rtamt.compiler.program import NO_OPERAND
+from rtamt.engine.early_python_backend import PythonEarlyMonitor
 from rtamt.engine.gate import alone, in_use
 from rtamt.engine.native import compiled, core
 from rtamt.engine.online import OnlineMonitor, Watched
+from rtamt.engine.python_backend import Refused
 from rtamt.errors import TraceError, UsageError, did_you_mean, shown
 from rtamt.language.undefined_value import at_sample, undefined
 from rtamt.rewrite.desugar import desugar, written
@@ -41,6 +43,7 @@ class EarlyMonitor(OnlineMonitor):
         domain: Discrete,
         *,
         text: str | None = None,
+        backend: str = "cpp",
         declared: Collection[str] = (),
         watch: Sequence[Watched] = (),
         factory: Callable[[], OnlineMonitor] | None = None,
@@ -53,6 +56,7 @@ class EarlyMonitor(OnlineMonitor):
         assert period is not None
         super().__init__(formula, watch, declared, factory)
         self._program = None
+        self._backend_name = backend
         self._period = period
         self._tolerance = domain.tolerance
         self._ranges = self._read_ranges(ranges or {})
@@ -64,6 +68,17 @@ class EarlyMonitor(OnlineMonitor):
 
     def _open(self) -> Any:
         graph = self._graph
+        if self._backend_name == "python":
+            return PythonEarlyMonitor(
+                self._formulas,
+                self._hidden,
+                self._known_ranges(),
+                self.input_names,
+                self._period,
+                self._tolerance,
+                self._late,
+                self._verdict,
+            )
         return core().EarlyMonitor(
             graph.nodes,
             self._outputs,
@@ -80,8 +95,9 @@ class EarlyMonitor(OnlineMonitor):
 
     def _connect(self, backend: Any) -> None:
         self._backend = backend
-        self._refused: Any = core().Refused
-        self._undefined: Any = core().Undefined
+        python = self._backend_name == "python"
+        self._refused: Any = Refused if python else core().Refused
+        self._undefined: Any = () if python else core().Undefined
 
     def _fingerprint(self) -> bytes:
         return self._graph.fingerprint()

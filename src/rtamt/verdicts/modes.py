@@ -79,17 +79,13 @@ def mode_of(verdict: Any, settings: Mapping[str, Any]) -> Mode:
     return mode
 
 
-def clock_of(mode: Mode, domain: TimeDomain, backend: str, unit: str | None) -> Discrete:
+def clock_of(mode: Mode, domain: TimeDomain, unit: str | None) -> Discrete:
     """Return the time domain of a mode's monitor; raise :class:`UsageError` where there is none.
 
     ``unit``: of times that are numbers.
     """
     if not isinstance(domain, Discrete):
         raise UsageError(f"verdict='{mode.name}' needs discrete time; use it, or verdict='{DELAYED}'")
-    if backend != "cpp":
-        raise UsageError(
-            f"verdict='{mode.name}' needs the compiled core; use backend='cpp', or verdict='{DELAYED}'"
-        )
     if unit not in {None, "s"}:
         raise UsageError(f"verdict='{mode.name}' takes times in seconds, and time_unit is {shown(unit)}")
     return domain

@@ -153,6 +153,8 @@ DEFINITION = Implementation("definition", _Intervals, _Eager, _DenseIntervals, _
 class _Kept:
     """The monitor of the engine, with the bounds of samples that are long final and of the end, as it gave them."""
 
+    backend = "cpp"
+
     def __init__(
         self, formula: Formula, names: tuple[str, ...], ranges: Mapping[str, Range], lateness: int = 0
     ) -> None:
@@ -183,9 +185,11 @@ class _Kept:
 class _Settled:
     """The monitor of verdicts of the engine, whose times are seconds, here samples."""
 
+    backend = "cpp"
+
     def __init__(self, formula: Formula, names: tuple[str, ...], ranges: Mapping[str, Range]) -> None:
         declared = {name: limits for name, limits in ranges.items() if name in names}
-        self._monitor = EagerMonitor(boolean(formula), DISCRETE.online, ranges=declared)
+        self._monitor = EagerMonitor(boolean(formula), DISCRETE.online, ranges=declared, backend=self.backend)
 
     @staticmethod
     def _samples(verdicts: list[Verdict]) -> list[Verdict]:
@@ -198,6 +202,15 @@ class _Settled:
         return self._samples(self._monitor.finish())
 
 
-ENGINE = Implementation("engine", _Kept, _Settled)
+class _KeptByPython(_Kept):
+    backend = "python"
 
-IMPLEMENTATIONS = [DEFINITION, ENGINE]
+
+class _SettledByPython(_Settled):
+    backend = "python"
+
+
+ENGINE = Implementation("engine", _Kept, _Settled)
+PYTHON = Implementation("Python back end", _KeptByPython, _SettledByPython)
+
+IMPLEMENTATIONS = [DEFINITION, ENGINE, PYTHON]

@@ -1,0 +1,211 @@
+"""The definition of bounds and early verdicts behind the interface of the core's ``EarlyMonitor``, discrete time.
+
+Every question is answered from all samples that came, so that it is slow, and needs memory for the whole trace.
+"""
+
+from __future__ import annotations
+
+import pickle
+from math import floor, inf, isfinite
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rtamt.engine.python_backend import Refused
+from rtamt.language.enclosures import Enclosure
+from rtamt.reference.discrete_bounds import Knowledge, bounds
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from fractions import Fraction
+
+    from rtamt.language.formula import Formula
+
+    Pair = tuple[float, float]
+
+
+class PythonEarlyMonitor:
+    """See ``EarlyMonitor`` in ``_core.pyi``. ``outputs`` are formulas, of which the first is that of the start."""
+
+    def __init__(
+        self,
+        formulas: Sequence[Formula],
+        hidden: int,
+        ranges: Sequence[Pair],
+        names: Sequence[str],
+        period: Fraction,
+        tolerance: float,
+        lateness: int | None,
+        verdict: type | None,
+    ) -> None:
+        self._start, self._outputs = formulas[0], tuple(formulas[hidden:])
+        self._ranges = dict(zip(names, ranges, strict=True))
+        self._names = tuple(names)
+        self._period, self._tolerance = period, tolerance
+        self._lateness, self._verdict = lateness, verdict
+        self._known: dict[int, dict[str, Pair]] = {}
+        self._times: dict[int, float] = {}
+        self.samples, self.newest, self.closed, self.finished = 0, -1, -1, False
+        self._told: list[dict[int, Any]] = [{} for _ in self._outputs]
+        # (first, last, satisfied, decided at) of samples that are not reached, in the order of decision.
+        self._decided: list[list[tuple[int, float, bool, int]]] = [[] for _ in self._outputs]
+        self._news: list[list[Any]] = [[] for _ in self._outputs]
+
+    @property
+    def state_bytes(self) -> int:
+        """Bytes of the samples."""
+        return 16 * len(self._known) * len(self._names)
+
+    def take(self, time: float, lower: Sequence[float], upper: Sequence[float], after: int) -> Any:
+        """Take bounds of every input at one time, in order."""
+        return self._take(time, list(zip(range(len(self._names)), lower, upper, strict=True)), after)
+
+    def learn(self, time: float, values: Sequence[tuple[int, float, float]], after: int) -> Any:
+        """Take bounds (input, lower, upper) of some inputs at one time."""
+        return self._take(time, values, after)
+
+    def _take(self, time: float, values: Sequence[tuple[int, float, float]], after: int) -> Any:
+        index = self.place(time)
+        if index is None or after != self.samples:
+            raise Refused("order")
+        before = self.state()
+        known = self._known.setdefault(index, {})
+        known.update({self._names[number]: (low, high) for number, low, high in values})
+        if index > self.newest:
+            self._times[index] = time
+            self.newest = index
+        self.samples += 1
+        late = 0 if self._lateness is None else self._lateness + 1
+        self.closed = max(self.closed, self.newest - late)
+        try:
+            self._look()
+        except BaseException:
+            self.restore(before)
+            raise
+        return self._answer()
+
+    def _knowledge(self) -> Knowledge:
+        n = self.newest + 1
+        columns = {}
+        for name in self._names:
+            each = [self._known.get(i, {}).get(name, self._ranges[name]) for i in range(n)]
+            columns[name] = Enclosure(*(np.array([pair[k] for pair in each], float) for k in (0, 1)))
+        closed = min(n, self.closed + 1)
+        return Knowledge(columns, n, self._ranges, self.finished, closed)
+
+    def _bounds(self, formula: Formula) -> Enclosure:
+        start = self._times[0] if self._times else 0.0
+        return bounds(formula, self._knowledge(), self._period, start)
+
+    def _look(self) -> None:
+        """See what the last sample has made known of each output, up to the newest sample."""
+        self._found = [self._bounds(formula) for formula in self._outputs]
+        self._news = [
+            self._verdicts(i) if self._verdict else self._changes(i) for i in range(len(self._outputs))
+        ]
+
+    def _pair(self, found: Enclosure, sample: int) -> Pair:
+        place = min(sample, len(found.lower) - 1)
+        return float(found.lower[place]), float(found.upper[place])
+
+    def _verdicts(self, output: int) -> list[Any]:
+        found, decided, told = self._found[output], self._decided[output], self._told[output]
+        last = len(found.lower) - 1
+        for sample in range(last + 1):
+            low, high = self._pair(found, sample)
+            if low > 0 or high < 0:
+                # The last entry is that of all later samples too, unless the trace has ended.
+                until = inf if sample == last and not self.finished else sample
+                decided.append((sample, until, low > 0, self.newest))
+        news = []
+        for sample in range(self.newest + 1):
+            verdicts = [each for each in decided if each[0] <= sample <= each[1]]
+            if verdicts and sample not in told:
+                told[sample] = verdicts[0][2:]
+                news.append((sample, *told[sample]))
+        self._decided[output] = [each for each in decided if each[1] > self.newest]
+        return news
+
+    def _changes(self, output: int) -> list[Any]:
+        found, told = self._found[output], self._told[output]
+        news: list[Any] = []
+        for sample in range(self.newest + 1):
+            pair = self._pair(found, sample)
+            if told.get(sample) == pair:
+                continue
+            told[sample] = pair
+            if news and news[-1][1] == sample - 1 and news[-1][2:] == pair:
+                news[-1] = (news[-1][0], sample, *pair)
+            else:
+                news.append((sample, sample, *pair))
+        return news
+
+    def _answer(self) -> Any:
+        return self.verdicts(0) if self._verdict else None
+
+    def watermark(self, time: float) -> None:
+        """Nothing at or before a time will come."""
+        if self.newest >= 0:
+            steps = floor((time - self._times[self.newest]) / float(self._period) + self._tolerance)
+            self.closed = max(self.closed, self.newest + steps)
+
+    def finish(self) -> Any:
+        """End the trace; return what that makes known."""
+        self.finished = True
+        if self._verdict:
+            self._look()
+            return self._answer()
+        rest = []
+        for formula in self._outputs:
+            found = self._bounds(formula)
+            rest.append((0, [self._pair(found, i) for i in range(self.newest + 1)]))
+        start = self.origin() if self.newest >= 0 else None
+        return rest, start
+
+    def verdicts(self, output: int) -> list[Any]:
+        """The verdicts of an output that the last call decided."""
+        assert self._verdict is not None
+        return [self._verdict(self.time(t), holds, self.time(at)) for t, holds, at in self._news[output]]
+
+    def origin(self) -> Pair:
+        """The bounds at the start of the trace."""
+        return self._pair(self._bounds(self._start), 0)
+
+    def bounds(self, output: int, sample: int) -> Pair:
+        """The bounds of an output at a sample."""
+        return self._pair(self._bounds(self._outputs[output]), sample)
+
+    def changes(self, output: int) -> list[Any]:
+        """Runs (first, last, lower, upper) that the last call changed."""
+        return self._news[output]
+
+    def place(self, time: float) -> int | None:
+        """The index of a time, or None."""
+        if not isfinite(time) or self.newest < 0:
+            return 0 if isfinite(time) else None
+        period, last = float(self._period), self._times[self.newest]
+        steps = round((time - last) / period)
+        return None if abs(time - last - steps * period) > self._tolerance * period else self.newest + steps
+
+    def known(self, variable: int, sample: int) -> Pair:
+        """What is known of an input at a sample."""
+        name = self._names[variable]
+        return self._known.get(sample, {}).get(name, self._ranges[name])
+
+    def time(self, sample: int) -> float:
+        """The time of a sample."""
+        earlier = max((i for i in self._times if i <= sample), default=min(self._times, default=0))
+        return self._times.get(earlier, 0.0) + (sample - earlier) * float(self._period)
+
+    def held(self, _output: int) -> int:
+        """The first sample that is held."""
+        return 0
+
+    def state(self) -> bytes:
+        """What the samples so far have left behind."""
+        kept = ("_known", "_times", "samples", "newest", "closed", "finished", "_told", "_decided", "_news")
+        return pickle.dumps({name: getattr(self, name) for name in kept})
+
+    def restore(self, state: bytes) -> None:
+        """Go on as the monitor of this state would, which was made like this one."""
+        self.__dict__.update(pickle.loads(state))  # noqa: S301 - its own
