@@ -3,8 +3,8 @@
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from rtamt.engine.dense_monitor import DenseMonitor
-from rtamt.engine.monitor import Monitor
+from rtamt.engine.dense.monitor import DenseMonitor
+from rtamt.engine.discrete.monitor import Monitor
 from rtamt.errors import (
     BoundError,
     EvaluationError,

@@ -38,8 +38,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
     from rtamt.compiler.program import Program
-    from rtamt.engine.dense_monitor import DenseMonitor
-    from rtamt.engine.monitor import Monitor
+    from rtamt.engine.dense.monitor import DenseMonitor
+    from rtamt.engine.discrete.monitor import Monitor
     from rtamt.engine.online import OnlineMonitor
     from rtamt.language.document import Document
     from rtamt.language.units import Duration
@@ -218,7 +218,7 @@ class Specification:
 
     def result(self, query: Query, recording: DomainTrace) -> Result:
         """Return the result over a normalised recording, for which the formula was checked."""
-        if recording.domain.continuous and len(self.requirements) > 1:
+        if len(self.requirements) > 1 and recording.domain.continuous:
             outputs = [one.outputs(query.semantics) for one in self.requirements.values()]
             if len(by_start(outputs, recording)) > 1:
                 if recording.bounds:

@@ -10,8 +10,8 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from rtamt.engine import dense_evaluate
-from rtamt.engine.dense_monitor import DenseMonitor
+from rtamt.engine.dense.monitor import DenseMonitor
+from rtamt.engine.offline import Evaluators
 from rtamt.errors import EvaluationError
 from rtamt.language.formula import Formula, variables
 from rtamt.reference import dense as dense_reference
@@ -48,7 +48,7 @@ def recording(formula: Formula, trace: dict[str, Any]) -> DenseTrace:
 
 def by_engine(formula: Formula, trace: dict[str, Any]) -> list[tuple[int, float]] | None:
     try:
-        signal = dense_evaluate.evaluate(desugar(formula), recording(formula, trace))
+        signal = Evaluators("cpp")((desugar(formula),), recording(formula, trace))[0]
     except EvaluationError:
         return None
     return stepped(signal.times, signal.values)

@@ -13,8 +13,8 @@ from hypothesis import strategies as st
 
 import rtamt
 from rtamt.compiler.plan import compile_program
-from rtamt.engine.evaluate import Evaluator
-from rtamt.engine.monitor import Monitor
+from rtamt.engine.discrete.evaluate import Evaluator
+from rtamt.engine.discrete.monitor import Monitor
 from rtamt.errors import EvaluationError
 from rtamt.language.formula import Apply, Formula, Var, fold, variables
 from rtamt.language.operators import STL, Bounds, Pointwise, Sort, Tense

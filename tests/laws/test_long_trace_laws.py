@@ -11,7 +11,7 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from rtamt.engine.monitor import Monitor
+from rtamt.engine.discrete.monitor import Monitor
 from rtamt.language.formula import Apply, Formula, Interval, fold
 from rtamt.language.operators import STL, Bounds
 from tests.laws.test_engine_laws import by_definition, by_engine, online

@@ -14,8 +14,8 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 import rtamt
-from rtamt.engine.dense_monitor import DenseMonitor
-from rtamt.engine.monitor import Monitor
+from rtamt.engine.dense.monitor import DenseMonitor
+from rtamt.engine.discrete.monitor import Monitor
 from rtamt.engine.online import Watched
 from rtamt.errors import EvaluationError
 from rtamt.language.formula import Formula, postorder, variables

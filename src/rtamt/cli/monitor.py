@@ -37,8 +37,8 @@ if TYPE_CHECKING:
     import argparse
     from collections.abc import Mapping, Sequence
 
-    from rtamt.engine.dense_monitor import DenseMonitor
-    from rtamt.engine.monitor import Monitor
+    from rtamt.engine.dense.monitor import DenseMonitor
+    from rtamt.engine.discrete.monitor import Monitor
     from rtamt.specification import Specification
 
 #: By how much, as a fraction, a gap may miss a period that it is: stamps since 1970 are no more precise.

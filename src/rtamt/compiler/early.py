@@ -17,10 +17,13 @@ from rtamt.language.formula import Apply, Const, Formula, Var, postorder
 from rtamt.language.operators import Pointwise, Shift, Since, Tense, Until, Window
 from rtamt.rewrite.check import reads_unbounded_future
 from rtamt.rewrite.horizon import horizons
+from rtamt.signals.discrete import Discrete
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from fractions import Fraction
+
+    from rtamt.signals.domain import TimeDomain
 
 #: In the order of the core's enumerations.
 KINDS = (
@@ -72,7 +75,7 @@ class Graph:
 
     period: Fraction
     inputs: tuple[str, ...]
-    domain: str = "discrete"
+    domain: type[TimeDomain] = Discrete
     nodes: list[Node] = field(default_factory=list)
     outputs: list[int] = field(default_factory=list)
     items: list[Item] = field(default_factory=list)
@@ -95,7 +98,7 @@ def compile_graph(
     formulas: Sequence[Formula],
     period: Fraction,
     inputs: tuple[str, ...],
-    domain: str = "discrete",
+    domain: type[TimeDomain] = Discrete,
     *,
     start: bool = False,
 ) -> Graph:
@@ -239,16 +242,16 @@ def _window(graph: Graph, formula: Apply, kernel: Window, operand: int) -> int:
 
 def _before(graph: Graph, begin: int) -> int:
     """Return the last step of what stands for [0, a): in dense time the closed window (SEMANTICS: until)."""
-    return begin - 1 if graph.domain == "discrete" else begin
+    return begin if graph.domain.continuous else begin - 1
 
 
 def _since(graph: Graph, formula: Apply, hold: int, goal: int) -> int:
     """φ since[a, b] ψ is once[a, b] ψ, φ on (t - a, t], and (φ since ψ) a ago."""
     begin, end = _bounds(graph, formula)
     horizon = max(graph.horizon(hold), graph.horizon(goal))
-    kind = "since" if graph.domain == "discrete" else "since_dense"
+    kind = "since_dense" if graph.domain.continuous else "since"
     core = _add(graph, Node(KINDS.index(kind), hold, goal, horizon=horizon))
-    if graph.domain == "dense" and begin == 0:
+    if graph.domain.continuous and begin == 0:
         core = _pair(graph, "either", core, goal)
     value = _over(graph, "greatest", core, -begin, -begin)
     if end < FOREVER:

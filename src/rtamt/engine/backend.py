@@ -1,22 +1,30 @@
-"""The interface of a back end: what computes robustness in one time domain."""
+"""The interface of a back end: what evaluates and monitors formulas in one time domain."""
 
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
+
+from rtamt.engine.native import core, culprit
+from rtamt.errors import UsageError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Collection, Mapping, Sequence
     from fractions import Fraction
 
+    from rtamt.compiler.program import CallSite, Program
     from rtamt.language.formula import Formula
 
 #: The names of the back ends: the compiled core, and the definition in Python. The first is the default.
 BACKENDS = ("cpp", "python")
 
 
+class Refused(Exception):  # noqa: N818 - the compiled monitor's word
+    """An update cannot be taken; nothing has changed."""
+
+
 class Backend(ABC):
-    """Evaluates formulas over traces of one time domain."""
+    """Evaluates and monitors formulas in one time domain."""
 
     @abstractmethod
     def evaluator(
@@ -26,3 +34,93 @@ class Backend(ABC):
 
         ``step``: that of the traces, in seconds. The function may be called again with other traces.
         """
+
+    @abstractmethod
+    def session(
+        self,
+        formulas: Sequence[Formula],
+        inputs: tuple[str, ...],
+        domain: Any,
+        ignored: Collection[str] = (),
+    ) -> Session:
+        """Prepare to monitor formulas of bounded future that read ``inputs``, the result first.
+
+        ``domain``: the time domain, whose step is known. ``ignored``: other variables that an update may hold.
+        """
+
+
+class Session(ABC):
+    """Formulas that a back end has prepared for monitors."""
+
+    #: What a monitor raises for an update that it cannot take; nothing has changed then.
+    refused: type[Exception] = Refused
+    #: What it raises where an operation has no value, for :meth:`culprit`. The definition raises the final error.
+    undefined: tuple[type[Exception], ...] = ()
+    #: Whether its monitors check whatever an update gives them, so that nobody has to do it before.
+    checks: bool = False
+
+    @abstractmethod
+    def open(self) -> Any:
+        """Return a monitor that has taken no sample; ``_core.pyi`` describes its methods."""
+
+    def part(self, monitor: Any, formula: Formula) -> Any:
+        """Return what the last update of a monitor made known of a part of the formulas."""
+        raise NotImplementedError
+
+    def culprit(self, error: Exception) -> Formula:
+        """Return the operation without a value, as it is written in the formulas."""
+        raise error
+
+    @property
+    def fingerprint(self) -> bytes:
+        """What distinguishes the states of monitors of different sessions."""
+        return b""
+
+    @property
+    def calls(self) -> Sequence[CallSite]:
+        """The calls of kernels, whose state cannot be copied."""
+        return ()
+
+    def require_copyable(self) -> None:
+        """Raise :class:`UsageError` where the state of a monitor cannot be copied."""
+        if self.calls:
+            name = self.calls[0].op.name
+            raise UsageError(
+                f"a monitor of '{name}' can be neither copied nor pickled: only the operator's own code knows what "
+                f"it remembers; use backend='python'"
+            )
+
+
+C = TypeVar("C", bound=Backend)
+D = TypeVar("D", bound=Backend)
+
+
+class CompiledSession(Session):
+    """Formulas that run as a program in the compiled core."""
+
+    checks = True
+
+    def __init__(self, formulas: Sequence[Formula], program: Program) -> None:
+        self.program = program
+        self._formulas = tuple(formulas)
+        self.refused = core().Refused
+        self.undefined = (core().Undefined,)
+
+    def culprit(self, error: Exception) -> Formula:
+        """See :class:`Session`."""
+        return culprit(error, self.program, self._formulas)
+
+    @property
+    def fingerprint(self) -> bytes:
+        """The checksum at the end of the program."""
+        return self.program.code()[-4:]
+
+    @property
+    def calls(self) -> Sequence[CallSite]:
+        """See :class:`Session`."""
+        return self.program.calls
+
+
+def named(compiled: C, defined: D) -> Mapping[str, C | D]:
+    """Return the back ends of a time domain by name."""
+    return dict(zip(BACKENDS, (compiled, defined), strict=True))

@@ -6,9 +6,11 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
-from rtamt.engine import bounded, dense_evaluate, evaluate
-from rtamt.engine.dense_monitor import DenseMonitor
-from rtamt.engine.monitor import Monitor
+from rtamt.engine import bounded
+from rtamt.engine.dense import backends as dense
+from rtamt.engine.dense.monitor import DenseMonitor
+from rtamt.engine.discrete import backends as discrete
+from rtamt.engine.discrete.monitor import Monitor
 from rtamt.signals.dense import Dense
 from rtamt.signals.discrete import Discrete
 
@@ -38,8 +40,8 @@ class Engine:
 
 _ENGINES: Mapping[type[TimeDomain], Engine] = MappingProxyType(
     {
-        Discrete: Engine(evaluate.BACKENDS, Monitor, bounded.discrete),
-        Dense: Engine(dense_evaluate.BACKENDS, DenseMonitor, bounded.dense),
+        Discrete: Engine(discrete.BACKENDS, Monitor, bounded.discrete),
+        Dense: Engine(dense.BACKENDS, DenseMonitor, bounded.dense),
     }
 )
 

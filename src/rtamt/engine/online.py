@@ -16,7 +16,7 @@ from rtamt.signals import arrays
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Mapping, Sequence
 
-    from rtamt.compiler.program import Program
+    from rtamt.engine.backend import Session
     from rtamt.language.formula import Formula
 
     Self = TypeVar("Self", bound="OnlineMonitor")
@@ -38,7 +38,7 @@ class OnlineMonitor(ABC):
     _remembered: ClassVar[tuple[str, ...]]
 
     _backend: Any
-    _program: Program | None
+    _session: Session
 
     def __init__(
         self,
@@ -101,10 +101,6 @@ class OnlineMonitor(ABC):
     # ---- copies ----------------------------------------------------------------------------------
 
     @abstractmethod
-    def _open(self) -> Any:
-        """Return a back end that has taken no sample."""
-
-    @abstractmethod
     def _connect(self, backend: Any) -> None:
         """Go on with this back end."""
 
@@ -125,36 +121,21 @@ class OnlineMonitor(ABC):
 
     @alone
     def _state(self) -> tuple[Any, ...]:
-        calls = [site for program in self._programs for site in program.calls]
-        if calls:
-            name = calls[0].op.name
-            raise UsageError(
-                f"a monitor of '{name}' can be neither copied nor pickled: only the operator's own code knows what "
-                f"it remembers; use backend='python'"
-            )
+        self._session.require_copyable()
         remembered = {name: getattr(self, name) for name in self._remembered}
-        return self._fingerprint(), remembered, self._backend.state()
+        return self._session.fingerprint, remembered, self._backend.state()
 
     def _resume(self, state: tuple[Any, ...]) -> None:
         fingerprint, remembered, of_backend = state
-        if fingerprint != self._fingerprint():
+        if fingerprint != self._session.fingerprint:
             raise UsageError(
                 "the monitor was pickled by a version of rtamt that compiles its formula to another program; "
                 "make a new monitor"
             )
         self.__dict__.update(remembered)
-        backend = self._open()
+        backend = self._session.open()
         backend.restore(of_backend)
         self._connect(backend)
-
-    def _fingerprint(self) -> bytes:
-        """The checksums at the ends of the programs."""
-        return b"".join(program.code()[-4:] for program in self._programs)
-
-    @property
-    def _programs(self) -> Sequence[Program]:
-        """What the back end runs; nothing for that of Python."""
-        return () if self._program is None else (self._program,)
 
 
 def depth_of(formula: Formula, period: Fraction = Fraction(1)) -> Fraction:

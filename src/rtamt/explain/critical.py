@@ -22,7 +22,7 @@ from rtamt.rewrite.structure import CHOOSING, NEGATION, opcode, window_of
 if TYPE_CHECKING:
     from fractions import Fraction
 
-    from rtamt.explain.instants import Steps
+    from rtamt.explain.instants import StepFunction
     from rtamt.explain.signals import Signals
 
 #: What decides a value that no predicate does.
@@ -113,7 +113,7 @@ def around(cell: int, first: int, last: int, *, past: bool, end: int) -> tuple[i
     return cell + first, min(cell + last + 1, end)
 
 
-def reached(hold: Steps, goal: Steps, base: int, begin: int, end: int) -> tuple[int, int]:
+def reached(hold: StepFunction, goal: StepFunction, base: int, begin: int, end: int) -> tuple[int, int]:
     """Return which operand (0: φ, 1: ψ) and which cell attains φ until ψ from ``base`` on, t' in [begin, end)."""
     reached_at, goals = goal.between(begin, end)
     if end > base + 1:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from rtamt.engine.offline import Evaluators
 from rtamt.errors import EvaluationError
 from rtamt.explain.critical import Point, Walk
-from rtamt.explain.instants import Steps, two_valued
+from rtamt.explain.instants import StepFunction, two_valued
 from rtamt.explain.minimise import Forcing, intervals_of, minimal
 from rtamt.explain.necessary import Needs
 from rtamt.explain.propagate import Demands
@@ -84,7 +84,7 @@ class _Explainer:
         self._holds = truths(self._structure.order, self._line, self._truth)
         self._walk = Walk(self._signals, self._line.period, self._line.end)
 
-    def _measured(self, formulas: list[Formula]) -> dict[str, Steps]:
+    def _measured(self, formulas: list[Formula]) -> dict[str, StepFunction]:
         """Return what each of as many formulas as there are leaves is worth, by the leaf's name."""
         steps = self._line.measured(formulas) if formulas else []
         return dict(zip(self._structure.leaves, steps, strict=True))
@@ -283,6 +283,6 @@ def _ranked(implicant: Sequence[Interval], point: int) -> tuple[int, ...]:
     return tuple(sorted(order, key=lambda number: number not in first))
 
 
-def _infinite(steps: Steps) -> Steps:
+def _infinite(steps: StepFunction) -> StepFunction:
     """Return +inf where a function is positive, and -inf elsewhere."""
     return two_valued(steps.positive(), inf, -inf, steps.end)

@@ -127,7 +127,7 @@ NONE = Cells(np.empty(0, np.int64), np.empty(0, np.int64))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Steps:
+class StepFunction:
     """A function of cells that is constant from each of ``changes`` up to the next, and up to ``end``."""
 
     changes: Ints
@@ -135,7 +135,7 @@ class Steps:
     end: int
 
     @classmethod
-    def of_samples(cls, samples: Floats) -> Steps:
+    def of_samples(cls, samples: Floats) -> StepFunction:
         """Return the function whose value at cell i is ``samples[i]``."""
         new = np.concatenate(([True], samples[1:] != samples[:-1]))
         return cls(np.flatnonzero(new), samples[new], len(samples))
@@ -152,31 +152,31 @@ class Steps:
         changes[0] = begin
         return changes, self.values[first:last]
 
-    def mirrored(self, begin: int, end: int) -> Steps:
+    def mirrored(self, begin: int, end: int) -> StepFunction:
         """Return the part in [begin, end) as a function of -k."""
         changes, values = self.between(begin, end)
         stops = np.append(changes[1:], end)
-        return Steps(1 - stops[::-1], values[::-1], 1 - begin)
+        return StepFunction(1 - stops[::-1], values[::-1], 1 - begin)
 
     def around(self, cell: int) -> tuple[int, int]:
         """Return the stretch [start, end) around a cell on which the value is the same."""
         i = int(np.searchsorted(self.changes, cell, side="right"))
         return int(self.changes[i - 1]), int(self.changes[i]) if i < len(self.changes) else self.end
 
-    def changed(self, begin: int, end: int, value: float) -> Steps:
+    def changed(self, begin: int, end: int, value: float) -> StepFunction:
         """Return the function with another value on [begin, end), which is not empty."""
         cuts = [cut for cut in (begin, end) if cut < self.end]
         changes = np.union1d(self.changes, np.array(cuts, np.int64))
         values = self.values[np.searchsorted(self.changes, changes, side="right") - 1]
         values[(begin <= changes) & (changes < end)] = value
-        return Steps(changes, values, self.end)
+        return StepFunction(changes, values, self.end)
 
     def positive(self) -> Cells:
         """Return where the value is above 0."""
         return Cells.where(self.changes, self.values > 0, self.end)
 
 
-def two_valued(cells: Cells, inside: float, outside: float, end: int) -> Steps:
+def two_valued(cells: Cells, inside: float, outside: float, end: int) -> StepFunction:
     """Return the function on [0, end) that is ``inside`` on the cells and ``outside`` elsewhere."""
     cells = cells.within(0, end)
     changes = np.empty(2 * len(cells), np.int64)
@@ -186,4 +186,4 @@ def two_valued(cells: Cells, inside: float, outside: float, end: int) -> Steps:
     if not len(changes) or changes[0] > 0:
         changes, values = np.insert(changes, 0, 0), np.insert(values, 0, outside)
     kept = changes < end
-    return Steps(changes[kept], values[kept], end)
+    return StepFunction(changes[kept], values[kept], end)

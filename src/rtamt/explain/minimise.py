@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from math import inf
 from typing import TYPE_CHECKING
 
-from rtamt.explain.instants import NONE, Cells, Steps, two_valued
+from rtamt.explain.instants import NONE, Cells, StepFunction, two_valued
 from rtamt.explain.signals import truths
 from rtamt.rewrite.structure import literal, reaches
 
@@ -38,7 +38,7 @@ class Forcing:
     """Tells where the verdict falls when the predicates are known on some intervals only."""
 
     def __init__(
-        self, structure: Structure, demands: Demands, timeline: Timeline, fixed: Mapping[str, Steps]
+        self, structure: Structure, demands: Demands, timeline: Timeline, fixed: Mapping[str, StepFunction]
     ) -> None:
         self._structure = structure
         self._demands = demands
@@ -57,7 +57,7 @@ class Forcing:
         self.behind = max((found[node][0] for node in nodes), default=0)
         self.ahead = max((found[node][1] for node in nodes), default=0)
 
-    def _signals(self, intervals: Iterable[Interval]) -> dict[str, Steps]:
+    def _signals(self, intervals: Iterable[Interval]) -> dict[str, StepFunction]:
         """Return the stand-ins for the predicates: as they are on the intervals, the worst elsewhere."""
         known: dict[tuple[str, int], list[tuple[int, int]]] = {}
         for interval in intervals:

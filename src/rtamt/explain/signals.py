@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rtamt.explain.instants import Cells, Steps, two_valued
+from rtamt.explain.instants import Cells, StepFunction, two_valued
 from rtamt.language.formula import Apply, Const, Formula, Var, children
 from rtamt.rewrite.structure import CHOOSING, NEGATION, opcode
 
@@ -25,9 +25,9 @@ class Signals:
     minimum, maximum or negation at one instant, found where they are asked for.
     """
 
-    def __init__(self, structure: Structure, timeline: Timeline, leaves: Mapping[str, Steps]) -> None:
+    def __init__(self, structure: Structure, timeline: Timeline, leaves: Mapping[str, StepFunction]) -> None:
         self._end = timeline.end
-        self._steps: dict[Formula, Steps] = {}
+        self._steps: dict[Formula, StepFunction] = {}
         self._at: tuple[int, dict[Formula, float]] = (-1, {})
         wanted: dict[Formula, None] = {}
         for node in structure.order:
@@ -38,11 +38,11 @@ class Signals:
             if isinstance(node, Var):
                 self._steps[node] = leaves[node.name]
             elif isinstance(node, Const):
-                self._steps[node] = Steps(np.zeros(1, np.int64), np.array([node.value]), self._end)
+                self._steps[node] = StepFunction(np.zeros(1, np.int64), np.array([node.value]), self._end)
         if asked:
             self._steps.update(zip(asked, timeline.runner(asked)(leaves), strict=True))
 
-    def of(self, node: Formula) -> Steps:
+    def of(self, node: Formula) -> StepFunction:
         """Return the values of a leaf, of a sub-formula that reads other instants, or of what one reads."""
         return self._steps[node]
 
@@ -72,7 +72,9 @@ def _chosen(code: str | None, values: list[float]) -> float:
     return min(values) if code == CHOOSING[0] else max(values)
 
 
-def truths(order: Sequence[Formula], timeline: Timeline, leaves: Mapping[str, Steps]) -> dict[Formula, Cells]:
+def truths(
+    order: Sequence[Formula], timeline: Timeline, leaves: Mapping[str, StepFunction]
+) -> dict[Formula, Cells]:
     """Return where each sub-formula holds, given signals of its leaves that are above 0 where they hold.
 
     ``order``: the distinct sub-formulas, operands first.
@@ -80,7 +82,7 @@ def truths(order: Sequence[Formula], timeline: Timeline, leaves: Mapping[str, St
     whole = Cells.of([(0, timeline.end)])
     bold = {name: two_valued(steps.positive(), inf, -inf, steps.end) for name, steps in leaves.items()}
     asked = [node for node in order if isinstance(node, Apply) and opcode(node) is None]
-    found: dict[Formula, Steps] = {}
+    found: dict[Formula, StepFunction] = {}
     if asked:
         found.update(zip(asked, timeline.runner(asked)(bold), strict=True))
     holds: dict[Formula, Cells] = {}

@@ -10,14 +10,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rtamt.engine import dense_evaluate, evaluate
+from rtamt.engine.domains import engine_of
 from rtamt.errors import UsageError
-from rtamt.explain.instants import Steps
+from rtamt.explain.instants import StepFunction
 from rtamt.language.formula import Apply, postorder
 from rtamt.language.units import decimal
-from rtamt.reference import dense as dense_reference
-from rtamt.reference import discrete as reference
 from rtamt.rewrite.desugar import desugar
+from rtamt.rewrite.horizon import reach
 from rtamt.rewrite.structure import NEVER
 from rtamt.signals.datetimes import nanoseconds_of
 from rtamt.signals.dense import Dense, DenseTrace
@@ -28,11 +27,12 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
     from rtamt.language.formula import Formula
+    from rtamt.signals.arrays import FloatArray
     from rtamt.signals.dense_arrays import Samples
     from rtamt.signals.domain import DomainTrace, TimeDomain
 
     #: From a function of cells for each variable to one for each formula.
-    Runner = Callable[[Mapping[str, Steps]], list[Steps]]
+    Runner = Callable[[Mapping[str, StepFunction]], list[StepFunction]]
 
 
 class Timeline(ABC):
@@ -45,7 +45,7 @@ class Timeline(ABC):
     end: int
 
     @abstractmethod
-    def measured(self, formulas: Sequence[Formula]) -> list[Steps]:
+    def measured(self, formulas: Sequence[Formula]) -> list[StepFunction]:
         """Evaluate formulas over the recording."""
 
     @abstractmethod
@@ -86,39 +86,31 @@ class DiscreteTimeline(Timeline):
 
     def __init__(self, recording: DiscreteTrace, backend: str) -> None:
         self._recording = recording
-        self._backend = backend
+        self._backend = engine_of(recording.domain).backends[backend]
         self.period = recording.period
         self.end = len(recording)
 
-    def measured(self, formulas: Sequence[Formula]) -> list[Steps]:
+    def measured(self, formulas: Sequence[Formula]) -> list[StepFunction]:
         """See :class:`Timeline`."""
-        return self._evaluated([desugar(formula) for formula in formulas], self._recording)
+        evaluator = self._evaluator([desugar(formula) for formula in formulas])
+        return [StepFunction.of_samples(values) for values in evaluator(self._recording)]
 
     def runner(self, formulas: Sequence[Formula]) -> Runner:
         """See :class:`Timeline`."""
-        evaluator = None if self._backend == "python" else evaluate.Evaluator(formulas, self.period)
+        evaluator = self._evaluator(formulas)
 
-        def run(signals: Mapping[str, Steps]) -> list[Steps]:
+        def run(signals: Mapping[str, StepFunction]) -> list[StepFunction]:
             columns = {name: self._samples(steps) for name, steps in signals.items()}
             recording = DiscreteTrace(self._recording.times, columns, self.period)
-            if evaluator is None:
-                return self._evaluated(formulas, recording)
-            return [Steps.of_samples(values) for values in evaluator(recording)]
+            return [StepFunction.of_samples(values) for values in evaluator(recording)]
 
         return run
 
-    def _evaluated(self, formulas: Sequence[Formula], recording: DiscreteTrace) -> list[Steps]:
-        if self._backend == "python":
-            start = float(recording.times[0])
-            values = [
-                reference.evaluate(formula, recording.columns, self.end, self.period, start)
-                for formula in formulas
-            ]
-        else:
-            values = evaluate.Evaluator(formulas, self.period)(recording)
-        return [Steps.of_samples(samples) for samples in values]
+    def _evaluator(self, formulas: Sequence[Formula]) -> Callable[[DiscreteTrace], Sequence[FloatArray]]:
+        names = tuple(self._recording.columns)
+        return self._backend.evaluator(tuple(formulas), self.period, names)
 
-    def _samples(self, steps: Steps) -> np.ndarray[Any, Any]:
+    def _samples(self, steps: StepFunction) -> np.ndarray[Any, Any]:
         return np.repeat(steps.values, np.diff(steps.changes, append=self.end))
 
     def cell(self, at: Any) -> int:
@@ -159,7 +151,7 @@ class DenseTimeline(Timeline):
 
     def __init__(self, recording: DenseTrace, backend: str) -> None:
         self._recording = recording
-        self._backend = backend
+        self._backend = engine_of(recording.domain).backends[backend]
         self._start = recording.start
         self.period = recording.scale.tick
         self.end = NEVER
@@ -171,35 +163,32 @@ class DenseTimeline(Timeline):
                 "resolution='1us'"
             )
 
-    def measured(self, formulas: Sequence[Formula]) -> list[Steps]:
+    def measured(self, formulas: Sequence[Formula]) -> list[StepFunction]:
         """See :class:`Timeline`."""
         found = self._evaluator([desugar(formula) for formula in formulas])(self._recording.columns)
-        return [Steps(ticks - self._start, values, NEVER) for ticks, values in found]
+        return [StepFunction(ticks - self._start, values, NEVER) for ticks, values in found]
 
     def runner(self, formulas: Sequence[Formula]) -> Runner:
         """See :class:`Timeline`."""
         evaluator = self._evaluator(formulas)
 
-        def run(signals: Mapping[str, Steps]) -> list[Steps]:
+        def run(signals: Mapping[str, StepFunction]) -> list[StepFunction]:
             columns = {name: (steps.changes, steps.values) for name, steps in signals.items()}
-            return [Steps(ticks, values, NEVER) for ticks, values in evaluator(columns)]
+            return [StepFunction(ticks, values, NEVER) for ticks, values in evaluator(columns)]
 
         return run
 
-    def _evaluator(self, formulas: Sequence[Formula]) -> Callable[[Mapping[str, Samples]], list[Samples]]:
+    def _evaluator(self, formulas: Sequence[Formula]) -> Callable[[Mapping[str, Samples]], Sequence[Samples]]:
         """Return what evaluates formulas as far as anything can change, after the recording's end too."""
-        after = max(dense_evaluate.reach(formula, self.period) for formula in formulas)
-        compiled: dense_evaluate.Evaluator | None = None
+        after = min(max(reach(formula, self.period) for formula in formulas), NEVER)
+        evaluator: Callable[[DenseTrace], Sequence[Samples]] | None = None
 
-        def evaluated(columns: Mapping[str, Samples]) -> list[Samples]:
-            nonlocal compiled
-            recording = DenseTrace(_held(columns, after), self._recording.scale)
-            if self._backend == "python":
-                steps = (dense_reference.evaluate(f, recording.columns, self.period) for f in formulas)
-                return [(step.times, step.values) for step in steps]
-            if compiled is None:
-                compiled = dense_evaluate.Evaluator(formulas, self.period, tuple(columns))
-            return compiled(recording)
+        def evaluated(columns: Mapping[str, Samples]) -> Sequence[Samples]:
+            nonlocal evaluator
+            if evaluator is None:
+                evaluator = self._backend.evaluator(tuple(formulas), self.period, tuple(columns))
+            recording = DenseTrace(columns, self._recording.scale)
+            return evaluator(recording.held_until(recording.end + after))
 
         return evaluated
 
@@ -262,12 +251,3 @@ _TIMELINES: Mapping[type[TimeDomain], Callable[[Any, str], Timeline]] = MappingP
 def timeline(recording: DomainTrace, backend: str) -> Timeline:
     """Return the cells of a recording."""
     return _TIMELINES[type(recording.domain)](recording, backend)
-
-
-def _held(columns: Mapping[str, Samples], after: int) -> dict[str, Samples]:
-    """Return the columns with the last value of one of them held on after the end of all."""
-    end = max(int(ticks[-1]) for ticks, _ in columns.values()) + min(after, NEVER)
-    name, (ticks, values) = next(iter(columns.items()))
-    if end > int(ticks[-1]):
-        ticks, values = np.append(ticks, end), np.append(values, values[-1])
-    return {**columns, name: (ticks, values)}

@@ -92,6 +92,8 @@ def check_unit(unit: str) -> str:
 
 #: Durations up to here, and from one over it, are doubles too.
 _EXTREME = Fraction(10) ** 290
+#: Fractions of such numbers are durations at once: a trace computes its time domain often.
+_PLAIN = 2**63
 
 
 def duration(value: str | SupportsFloat, unit: str = "s") -> Fraction:
@@ -104,6 +106,8 @@ def duration(value: str | SupportsFloat, unit: str = "s") -> Fraction:
     >>> duration("100ms"), duration(0.1), duration(5, "us")
     (Fraction(1, 10), Fraction(1, 10), Fraction(1, 200000))
     """
+    if value.__class__ is Fraction and unit == "s" and 0 < value.numerator < _PLAIN > value.denominator:
+        return value
     check_unit(unit)
     try:
         if isinstance(value, str):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from fractions import Fraction
 
-from rtamt.language.formula import Apply, Formula, children, postorder
+from rtamt.language.formula import Apply, Formula, children, fold, postorder
 from rtamt.language.operators import Bounds, Tense
 from rtamt.rewrite.desugar import spelled_out
 
@@ -47,3 +47,15 @@ def horizons(formula: Formula, period: Fraction) -> dict[int, Fraction | None]:
     for node in postorder(formula):
         found[id(node)] = step(node, [found[id(operand)] for operand in children(node)])
     return found
+
+
+def reach(formula: Formula, step: Fraction) -> int:
+    """Return the most steps (seconds each) after its variables' last change for which a formula can still change."""
+
+    def own_and_below(node: Formula, below: tuple[int, ...]) -> int:
+        own = 0
+        if isinstance(node, Apply) and node.interval is not None:
+            own = int((node.interval.end or node.interval.begin) / step)
+        return own + max(below, default=0)
+
+    return fold(formula, own_and_below)

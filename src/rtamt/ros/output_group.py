@@ -6,8 +6,8 @@ from collections import deque
 from fractions import Fraction
 from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
-from rtamt.engine.dense_monitor import DenseMonitor
-from rtamt.engine.monitor import Monitor
+from rtamt.engine.dense.monitor import DenseMonitor
+from rtamt.engine.discrete.monitor import Monitor
 from rtamt.engine.online import Watched
 from rtamt.errors import SpecificationError
 from rtamt.language.formula import variables

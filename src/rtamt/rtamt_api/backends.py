@@ -4,28 +4,23 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from rtamt.compiler.plan import compile_program
-from rtamt.engine import dense_evaluate
-from rtamt.engine.evaluate import Evaluator
-from rtamt.engine.native import core, core_monitor, culprit
-from rtamt.engine.python_backend import PythonMonitor, Refused
+from rtamt.engine.backend import BACKENDS
+from rtamt.engine.discrete import backends as discrete
+from rtamt.engine.native import core
+from rtamt.engine.offline import Evaluators
 from rtamt.errors import UsageError
 from rtamt.language.formula import Const
 from rtamt.language.undefined_value import at_sample, undefined
 from rtamt.language.units import UNITS
-from rtamt.reference import dense as dense_reference
-from rtamt.reference import discrete as reference
-from rtamt.rewrite.desugar import desugar
 from rtamt.rtamt_api.options import Language
+from rtamt.signals.discrete import Discrete
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Mapping, Sequence
     from fractions import Fraction
 
     from rtamt.language.formula import Formula
-    from rtamt.signals.arrays import FloatArray
-    from rtamt.signals.dense import DenseTrace
-    from rtamt.signals.discrete import DiscreteTrace
+    from rtamt.signals.domain import DomainTrace
     from rtamt.signals.signal import Signal
 
 
@@ -57,43 +52,23 @@ def check_language(language: Language) -> None:
         require_core("Language.CPP", "Language.PYTHON")
 
 
-def dense_signal(formula: Formula, recording: DenseTrace) -> Signal:
-    """Return the robustness of a formula over a finished recording in dense time."""
-    if is_compiled():
-        return dense_evaluate.evaluate(formula, recording)
-    steps = dense_reference.evaluate(formula, recording.columns, recording.scale.tick)
-    return recording.signal(steps.times, steps.values)
+def backend() -> str:
+    """Return the name of the back end: the compiled core, or the definition where it cannot be loaded."""
+    return BACKENDS[0] if is_compiled() else BACKENDS[1]
 
 
-def signal(formula: Formula, trace: DiscreteTrace) -> FloatArray:
-    """Return the robustness of a formula at every sample of a finished trace."""
-    if is_compiled():
-        return Evaluator((formula,), trace.period)(trace)[0]
-    start = float(trace.times[0])
-    return reference.evaluate(formula, trace.columns, len(trace), trace.period, start)
+def signal(formula: Formula, recording: DomainTrace) -> Signal:
+    """Return the robustness of a formula over a finished recording."""
+    return Evaluators(backend())((formula,), recording)[0]
 
 
-def open_stream(
-    formulas: Sequence[Formula],
-    inputs: tuple[str, ...],
-    period: Fraction,
-    unit: str,
-    tolerance: float,
-    ignored: Collection[str],
-) -> CompiledStream | DefinedStream:
-    """Return a stream of samples that has not begun.
+class Stream:
+    """A stream of samples that has not begun.
 
     ``formulas``: past formulas, that of the result first. ``inputs``: what they read. ``period``:
     seconds from sample to sample. ``unit``: that of the time stamps. ``tolerance``: the fraction of the
     period by which a gap may miss it before it is counted. ``ignored``: what a sample may hold besides.
     """
-    if is_compiled():
-        return CompiledStream(formulas, inputs, period, unit, tolerance, ignored)
-    return DefinedStream(formulas, inputs, period, unit, tolerance)
-
-
-class CompiledStream:
-    """A stream through the compiled core; made by :func:`open_stream`."""
 
     def __init__(
         self,
@@ -104,19 +79,23 @@ class CompiledStream:
         tolerance: float,
         ignored: Collection[str],
     ) -> None:
-        compiled = core()
-        self._made_of = (formulas, inputs, period, unit, tolerance, ignored)
-        self._program = compile_program([desugar(formula) for formula in formulas], period, inputs)
+        self._made_of = formulas, inputs, period, unit, tolerance, ignored
         self._unit = float(UNITS[unit])
-        self._undefined: Any = compiled.Undefined
-        in_units = float(period / UNITS[unit])
+        self._session = discrete.BACKENDS[backend()].session(
+            formulas, inputs, Discrete(period, tolerance), ignored, strict=False, unit=UNITS[unit]
+        )
         #: Counts samples and gaps, and forgets them.
-        self.monitor: Any = core_monitor(self._program, in_units, tolerance, strict=False, ignored=ignored)
+        self.monitor: Any = self._session.open()
         #: Raised by :meth:`take` for a sample that cannot be taken.
-        self.refused: type[Exception] = compiled.Refused
-        #: A quick way in for whatever a caller has (None if there is none), and what it raises if that will not do.
-        self.quick: Callable[[Any, Any], Any] | None = self.monitor.update_pairs
-        self.refusals: tuple[type[Exception], ...] = (compiled.Refused, compiled.Undefined, UsageError)
+        self.refused = self._session.refused
+        self._undefined: Any = self._session.undefined
+        #: What an update from pairs raises where :meth:`take` has to find out what is wrong.
+        self.refusals: tuple[type[Exception], ...] = ()
+        #: A quick way in for whatever a caller has (None if there is none).
+        self.quick: Callable[[Any, Any], Any] | None = None
+        if self._session.checks:
+            self.refusals = (self.refused, *self._undefined, UsageError)
+            self.quick = self.monitor.update_pairs
 
     def take(self, timestamp: Any, numbers: Mapping[str, Any]) -> float:
         """Take a sample and return the robustness.
@@ -127,7 +106,7 @@ class CompiledStream:
         try:
             robustness: float = self.monitor.update_pairs(timestamp, list(numbers.items()))
         except self._undefined as error:
-            formula = culprit(error, self._program, self._made_of[0])
+            formula = self._session.culprit(error)
             raise undefined(formula, at_sample(error.args[1], error.time * self._unit)) from None
         return robustness
 
@@ -136,39 +115,10 @@ class CompiledStream:
 
     def latest(self, part: Formula) -> float:
         """Return the value of a formula, or of a part of one, at the latest sample."""
-        if isinstance(part, Const):
-            return part.value
-        return float(self.monitor.last(self._program.value_of[desugar(part)]))
+        return part.value if isinstance(part, Const) else self._session.part(self.monitor, part)
 
 
-def _reopened(made_of: tuple[Any, ...], state: bytes) -> CompiledStream:
-    stream = CompiledStream(*made_of)
+def _reopened(made_of: tuple[Any, ...], state: Any) -> Stream:
+    stream = Stream(*made_of)
     stream.monitor.restore(state)
     return stream
-
-
-class DefinedStream:
-    """The same through the definition, in Python; see :class:`CompiledStream`."""
-
-    def __init__(
-        self,
-        formulas: Sequence[Formula],
-        inputs: tuple[str, ...],
-        period: Fraction,
-        unit: str,
-        tolerance: float,
-    ) -> None:
-        self.monitor = PythonMonitor(formulas, inputs, period, tolerance, strict=False, unit=UNITS[unit])
-        self.refused = Refused
-        self.quick = None
-        self.refusals: tuple[type[Exception], ...] = ()
-
-    def take(self, timestamp: Any, numbers: Mapping[str, Any]) -> float:
-        """Take a sample and return the robustness."""
-        robustness = self.monitor.update_pairs(timestamp, list(numbers.items()))
-        assert robustness is not None, "past formulas are known at once"
-        return robustness
-
-    def latest(self, part: Formula) -> float:
-        """Return the value of a formula, or of a part of one, at the latest sample."""
-        return self.monitor.last(part)

@@ -6,7 +6,7 @@ from copy import copy
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from rtamt.engine.dense_monitor import DenseMonitor
+from rtamt.engine.dense.monitor import DenseMonitor
 from rtamt.engine.gate import alone
 from rtamt.engine.online import Watched
 from rtamt.errors import NameInFormulaError, StlError, TraceError, UsageError, shown
@@ -15,7 +15,7 @@ from rtamt.language.operators import Tense
 from rtamt.language.printer import EXCERPT, canonical
 from rtamt.language.units import UNITS
 from rtamt.rewrite.check import TICKS, check_bounds, check_dense, has_future
-from rtamt.rtamt_api.backends import check_language, dense_signal, is_compiled
+from rtamt.rtamt_api.backends import backend, check_language, signal
 from rtamt.rtamt_api.declarations import head_of
 from rtamt.rtamt_api.explained import ExplainedSpecification
 from rtamt.rtamt_api.failures import raises_rtamt
@@ -143,7 +143,7 @@ class StlDenseTimeOfflineSpecification(ExplainedSpecification, DenseTimeSpecific
         held = {name: columns[name] for name in read if name in columns}
         recording = record_dense(held, read, NANOSECOND, scale=scale)
         whole = all(all_integers(times) for times, _ in held.values())
-        return recording, _points(dense_signal(self._worth(part), recording), whole)
+        return recording, _points(signal(self._worth(part), recording), whole)
 
 
 class StlDenseTimeOnlineSpecification(OnlineSpecification, DenseTimeSpecification):
@@ -277,7 +277,6 @@ class StlDenseTimeOnlineSpecification(OnlineSpecification, DenseTimeSpecificatio
             formula, text = self._result, self._parsed_document.text
             check_dense(formula, text)
             require_past(formula, text)
-            backend = "cpp" if is_compiled() else "python"
             # Of variables that the result does not read, samples need not come.
             reads = set(variables(formula))
             named = tuple(self._formulas.values())
@@ -290,7 +289,7 @@ class StlDenseTimeOnlineSpecification(OnlineSpecification, DenseTimeSpecificatio
                 DenseMonitor,
                 self._apply_semantics(formula),
                 text=text,
-                backend=backend,
+                backend=backend(),
                 watch=[Watched(str(i), self._apply_semantics(other), text) for i, other in enumerate(others)],
                 scale=self._scale,
                 parts=True,

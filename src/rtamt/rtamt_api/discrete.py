@@ -111,7 +111,7 @@ class StlDiscreteTimeOfflineSpecification(ExplainedSpecification, DiscreteTimeSp
         """
         formula = self._result
         stamps, trace = self._trace(dataset)
-        values = signal(self._apply_semantics(formula), trace)
+        values = signal(self._apply_semantics(formula), trace).values
         gaps = np.diff(stamps)
         period = self._period_in_units
         self._violations = int(np.count_nonzero(np.abs(gaps - period) > self._tolerance * period))
@@ -121,7 +121,7 @@ class StlDiscreteTimeOfflineSpecification(ExplainedSpecification, DiscreteTimeSp
         return result
 
     def _values_over(self, trace: DiscreteTrace, part: Formula) -> list[float]:
-        values: list[float] = signal(self._worth(part), trace).tolist()
+        values: list[float] = signal(self._worth(part), trace).values.tolist()
         return values
 
     def _trace(self, dataset: Any) -> tuple[arrays.FloatArray, DiscreteTrace]:

@@ -5,12 +5,12 @@ from __future__ import annotations
 from numbers import Real
 from typing import TYPE_CHECKING, Any
 
+from rtamt.engine.discrete.samples import read_time, read_values
 from rtamt.engine.gate import alone, in_use
-from rtamt.engine.monitor import read_time, read_values
 from rtamt.errors import TraceError
 from rtamt.language.formula import Formula, Var
 from rtamt.language.units import UNITS
-from rtamt.rtamt_api.backends import check_language, open_stream, require_core
+from rtamt.rtamt_api.backends import Stream, check_language, require_core
 from rtamt.rtamt_api.declarations import head_of
 from rtamt.rtamt_api.discrete import DiscreteTimeSpecification, StlDiscreteTimeOfflineSpecification
 from rtamt.rtamt_api.failures import raises_rtamt
@@ -20,8 +20,6 @@ from rtamt.signals import arrays
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping
-
-    from rtamt.rtamt_api.backends import CompiledStream, DefinedStream
 
 
 class StlDiscreteTimeOnlineSpecification(OnlineSpecification, DiscreteTimeSpecification):
@@ -41,7 +39,7 @@ class StlDiscreteTimeOnlineSpecification(OnlineSpecification, DiscreteTimeSpecif
 
     def __init__(self) -> None:
         super().__init__()
-        self._stream: CompiledStream | DefinedStream | None = None  # made by the first update
+        self._stream: Stream | None = None  # made by the first update
         self._refusals: tuple[type[Exception], ...] = ()
         self._take: Callable[[Any, Any], Any] = self._begin
         self._shared = False  # whether var_object_dict was handed out: values may come through it
@@ -114,18 +112,18 @@ class StlDiscreteTimeOnlineSpecification(OnlineSpecification, DiscreteTimeSpecif
 
     @raises_rtamt
     @alone
-    def _opened_stream(self) -> CompiledStream | DefinedStream:
+    def _opened_stream(self) -> Stream:
         return self._require_stream()
 
     @raises_rtamt
-    def _require_stream(self) -> CompiledStream | DefinedStream:
+    def _require_stream(self) -> Stream:
         if self._stream is None:
             text = self._parsed_document.text
             formulas = [self._result, *(f for f in self._formulas.values() if f is not self._result)]
             for formula in formulas:
                 require_past(formula, text)
             applied = [self._apply_semantics(formula) for formula in formulas]
-            self._stream = open_stream(
+            self._stream = Stream(
                 applied, self._inputs, self._period, self._unit, self._tolerance, frozenset(self._types)
             )
             self._refusals = self._stream.refusals

@@ -11,7 +11,7 @@ from rtamt.language.formula import Var, variables
 from rtamt.language.printer import canonical
 from rtamt.results import Result
 from rtamt.rewrite.semantics import apply_semantics, semantics_of
-from rtamt.rtamt_api.backends import is_compiled
+from rtamt.rtamt_api.backends import backend
 from rtamt.rtamt_api.declarations import UNNAMED
 from rtamt.rtamt_api.failures import raises_rtamt
 from rtamt.rtamt_api.formulas import Formulas
@@ -84,7 +84,7 @@ class ExplainedSpecification(Formulas):
         found = explain(
             formula,
             recording,
-            backend="cpp" if is_compiled() else "python",
+            backend=backend(),
             at=at,
             text=self._parsed_document.text,
             semantics=lambda predicate: apply_semantics(predicate, semantics, roles),
@@ -104,9 +104,8 @@ class ExplainedSpecification(Formulas):
             raise UsageError("there is nothing to plot yet; call evaluate() first")
         formula, recording, semantics = self._evaluated
         document = replace(self._parsed_document, requirements=(Requirement(UNNAMED, formula),))
-        backend = "cpp" if is_compiled() else "python"
         spec = Specification(
-            document, recording.domain, backend=backend, semantics=semantics, roles=self.var_io_dict
+            document, recording.domain, backend=backend(), semantics=semantics, roles=self.var_io_dict
         )
         signal = spec.signal_of(spec.apply_semantics(formula, semantics), recording)
         return Result(spec, recording, signal, semantics).plot(at, figure=figure)

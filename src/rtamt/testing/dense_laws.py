@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from hypothesis import assume
 
-from rtamt.engine import dense_evaluate
-from rtamt.engine.dense_monitor import DenseMonitor
+from rtamt.engine.dense.monitor import DenseMonitor
+from rtamt.engine.offline import Evaluators
 from rtamt.errors import EvaluationError
 from rtamt.language.formula import variables
 from rtamt.language.operators import Tense
@@ -77,7 +77,7 @@ def _fast_is_the_dense_definition(case: Case, draw: Callable[[Any], Any]) -> Non
     recording = record_dense(_ticks(trace), variables(formula), ONE)
     got: Any
     try:
-        signal = dense_evaluate.evaluate(formula, recording)
+        signal = Evaluators("cpp")((formula,), recording)[0]
         got = _stepped(signal.times, signal.values)
     except EvaluationError as error:
         check_own_code(error)

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from hypothesis import assume
 
-from rtamt.engine.evaluate import Evaluator
-from rtamt.engine.monitor import Monitor
+from rtamt.engine.discrete.evaluate import Evaluator
+from rtamt.engine.discrete.monitor import Monitor
 from rtamt.errors import EvaluationError, SpecificationError
 from rtamt.language.formula import Apply, Formula, Var, fold
 from rtamt.language.operators import STL, Language, Operator, Sort, Tense

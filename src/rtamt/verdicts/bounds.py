@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
     from rtamt.language.formula import Formula
     from rtamt.language.units import Duration
-    from rtamt.signals.discrete import Discrete
+    from rtamt.signals.domain import TimeDomain
 
 #: How many samples come between two snapshots of a monitor that replays corrections.
 _SNAPSHOT_EVERY = 64
@@ -74,7 +74,7 @@ class IntervalMonitor(EarlyMonitor):
     def __init__(
         self,
         formula: Formula,
-        domain: Discrete,
+        domain: TimeDomain,
         *,
         at: str | None = None,
         lateness: Duration | None = None,
@@ -102,7 +102,7 @@ class IntervalMonitor(EarlyMonitor):
         if self._lateness > 0 or self._replays:
             self._late = int(self._lateness / self._period)
         self._forget()
-        self._connect(self._open())
+        self._prepare()
 
     def _forget(self) -> None:
         self._rest: tuple[Any, ...] = ()
@@ -164,7 +164,7 @@ class IntervalMonitor(EarlyMonitor):
                     self._check_late(time)
                 self._learn(time, known)
         except BaseException as error:
-            self._connect(self._open())
+            self._connect(self._session.open())
             self._early, (self._events, self._snapshots) = self._early[:-1], kept
             if isinstance(error, self._undefined):
                 raise self._no_value(error) from None
@@ -242,7 +242,7 @@ class IntervalMonitor(EarlyMonitor):
             kept = tuple(lesson for lesson in taken if there != place or lesson[0] not in corrected)
             events.append((then, there, kept))
         events.append((time, place, tuple(lessons)))
-        backend = self._open()
+        backend = self._session.open()
         backend.restore(state)
         for then, _, taken in events[first:]:
             backend.learn(then, list(taken), backend.samples)
@@ -356,7 +356,7 @@ class IntervalMonitor(EarlyMonitor):
         """Forget the trace; the next sample is the first."""
         self._finished = False
         self._forget()
-        self._connect(self._open())
+        self._connect(self._session.open())
 
 
 def _text(bounds: tuple[float, float]) -> str:

@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from rtamt.compiler.early import compile_graph
 from rtamt.compiler.program import NO_OPERAND
-from rtamt.engine.early_python_backend import PythonEarlyMonitor
+from rtamt.engine.backend import Session
+from rtamt.engine.discrete.early_python_backend import PythonEarlyMonitor
 from rtamt.engine.gate import alone, in_use
 from rtamt.engine.native import compiled, core
 from rtamt.engine.online import OnlineMonitor, Watched
-from rtamt.engine.python_backend import Refused
 from rtamt.errors import TraceError, UsageError, did_you_mean, shown
 from rtamt.language.undefined_value import at_sample, undefined
 from rtamt.rewrite.desugar import desugar, written
@@ -26,8 +26,45 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Mapping, Sequence
     from fractions import Fraction
 
+    from rtamt.compiler.early import Graph
     from rtamt.language.formula import Formula
-    from rtamt.signals.discrete import Discrete
+    from rtamt.signals.domain import TimeDomain
+
+
+class GraphSession(Session):
+    """A graph that monitors of the core run; see ``_core.EarlyMonitor`` for the other arguments."""
+
+    def __init__(self, graph: Graph, *settings: Any) -> None:
+        self._graph = graph
+        self._settings = settings
+        self.refused = core().Refused
+        self.undefined = (core().Undefined,)
+
+    def open(self) -> Any:
+        """See :class:`Session`."""
+        return core().EarlyMonitor(*self._settings)
+
+    @property
+    def fingerprint(self) -> bytes:
+        """See :class:`Session`."""
+        return self._graph.fingerprint()
+
+
+class GraphDefinition(Session):
+    """Formulas that are evaluated by definition; see ``PythonEarlyMonitor`` for the other arguments."""
+
+    def __init__(self, graph: Graph, *settings: Any) -> None:
+        self._graph = graph
+        self._settings = settings
+
+    def open(self) -> PythonEarlyMonitor:
+        """See :class:`Session`."""
+        return PythonEarlyMonitor(*self._settings)
+
+    @property
+    def fingerprint(self) -> bytes:
+        """See :class:`Session`."""
+        return self._graph.fingerprint()
 
 
 class EarlyMonitor(OnlineMonitor):
@@ -40,7 +77,7 @@ class EarlyMonitor(OnlineMonitor):
     def __init__(
         self,
         formula: Formula,
-        domain: Discrete,
+        domain: TimeDomain,
         *,
         text: str | None = None,
         backend: str = "cpp",
@@ -55,7 +92,6 @@ class EarlyMonitor(OnlineMonitor):
         period = domain.period
         assert period is not None
         super().__init__(formula, watch, declared, factory)
-        self._program = None
         self._backend_name = backend
         self._period = period
         self._tolerance = domain.tolerance
@@ -66,10 +102,11 @@ class EarlyMonitor(OnlineMonitor):
         self._outputs = [ref for ref in self._graph.outputs if ref != NO_OPERAND]
         self._hidden = len(self._graph.outputs) - len(self._outputs)
 
-    def _open(self) -> Any:
-        graph = self._graph
+    def _prepare(self) -> None:
+        """Open the first monitor of the back end."""
         if self._backend_name == "python":
-            return PythonEarlyMonitor(
+            self._session = GraphDefinition(
+                self._graph,
                 self._formulas,
                 self._hidden,
                 self._known_ranges(),
@@ -79,10 +116,16 @@ class EarlyMonitor(OnlineMonitor):
                 self._late,
                 self._verdict,
             )
-        return core().EarlyMonitor(
-            graph.nodes,
+        else:
+            self._session = self._compiled()
+        self._connect(self._session.open())
+
+    def _compiled(self) -> GraphSession:
+        return GraphSession(
+            self._graph,
+            self._graph.nodes,
             self._outputs,
-            graph.items,
+            self._graph.items,
             self._known_ranges(),
             list(self.input_names),
             self._unread,
@@ -95,12 +138,8 @@ class EarlyMonitor(OnlineMonitor):
 
     def _connect(self, backend: Any) -> None:
         self._backend = backend
-        python = self._backend_name == "python"
-        self._refused: Any = Refused if python else core().Refused
-        self._undefined: Any = () if python else core().Undefined
-
-    def _fingerprint(self) -> bytes:
-        return self._graph.fingerprint()
+        self._refused = self._session.refused
+        self._undefined: Any = self._session.undefined
 
     #: By how many samples at most a sample may be late; None where all come in order.
     _late: int | None = None
@@ -139,7 +178,7 @@ class EarlyMonitor(OnlineMonitor):
     def reset(self) -> None:
         """Forget the trace; the next sample is the first."""
         self._finished = False
-        self._connect(self._open())
+        self._connect(self._session.open())
 
     # ---- samples ---------------------------------------------------------------------------------
 
@@ -240,9 +279,9 @@ class EagerMonitor(EarlyMonitor):
 
     _verdict = Verdict
 
-    def __init__(self, formula: Formula, domain: Discrete, **settings: Any) -> None:
+    def __init__(self, formula: Formula, domain: TimeDomain, **settings: Any) -> None:
         super().__init__(formula, domain, **settings)
-        self._connect(self._open())
+        self._prepare()
 
     @compiled("early_update")
     def update(self, time: Any, /, **values: Any) -> list[Verdict]:

@@ -10,7 +10,6 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import UsageError, did_you_mean, shown
-from rtamt.signals.discrete import Discrete
 from rtamt.verdicts.bounds import IntervalMonitor
 from rtamt.verdicts.early import EagerMonitor
 
@@ -79,12 +78,12 @@ def mode_of(verdict: Any, settings: Mapping[str, Any]) -> Mode:
     return mode
 
 
-def clock_of(mode: Mode, domain: TimeDomain, unit: str | None) -> Discrete:
+def clock_of(mode: Mode, domain: TimeDomain, unit: str | None) -> TimeDomain:
     """Return the time domain of a mode's monitor; raise :class:`UsageError` where there is none.
 
     ``unit``: of times that are numbers.
     """
-    if not isinstance(domain, Discrete):
+    if domain.continuous:
         raise UsageError(f"verdict='{mode.name}' needs discrete time; use it, or verdict='{DELAYED}'")
     if unit not in {None, "s"}:
         raise UsageError(f"verdict='{mode.name}' takes times in seconds, and time_unit is {shown(unit)}")

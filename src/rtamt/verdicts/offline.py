@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from rtamt.engine.dense_evaluate import reach
-from rtamt.engine.dense_groups import own_variables
+from rtamt.engine.dense.groups import own_variables
 from rtamt.errors import EvaluationError
 from rtamt.rewrite.desugar import desugar
+from rtamt.rewrite.horizon import reach
 from rtamt.rewrite.semantics import no_verdict
 from rtamt.signals.dense_arrays import changes, minimum
 from rtamt.signals.signal import Signal

@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rtamt.engine.dense_groups import own_variables
-from rtamt.engine.dense_monitor import DenseMonitor
-from rtamt.engine.monitor import Monitor
+from rtamt.engine.dense.groups import own_variables
+from rtamt.engine.dense.monitor import DenseMonitor
+from rtamt.engine.discrete.monitor import Monitor
 from rtamt.engine.online import Watched
 from rtamt.errors import TraceError, UsageError
 from rtamt.language.formula import Const

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import rtamt
-from rtamt.engine.dense_monitor import DenseMonitor
+from rtamt.engine.dense.monitor import DenseMonitor
 from rtamt.errors import BoundError, NameInFormulaError, ParseError, TraceError, UsageError
 from rtamt.language.parser import parse_formula
 

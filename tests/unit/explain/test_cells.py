@@ -6,7 +6,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rtamt.explain.instants import Cells, Steps, two_valued
+from rtamt.explain.instants import Cells, StepFunction, two_valued
 
 SETS = st.sets(st.integers(-12, 12))
 
@@ -41,7 +41,7 @@ def test_sets(a, b, before, length):
 @given(st.lists(st.integers(0, 3), min_size=1, max_size=12), st.data())
 def test_steps(samples, data):
     values = np.array(samples, float)
-    steps = Steps.of_samples(values)
+    steps = StepFunction.of_samples(values)
     begin = data.draw(st.integers(0, len(samples) - 1))
     end = data.draw(st.integers(begin + 1, len(samples)))
     assert [steps.at(k) for k in range(len(samples))] == samples

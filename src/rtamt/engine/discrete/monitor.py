@@ -2,45 +2,38 @@
 
 from __future__ import annotations
 
-from fractions import Fraction
-from math import isfinite, isnan
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rtamt.compiler.plan import compile_program
-from rtamt.engine import python_backend
+from rtamt.engine.discrete.backends import BACKENDS
+from rtamt.engine.discrete.caller_times import CallerTimes
+from rtamt.engine.discrete.samples import read_time, read_values
 from rtamt.engine.gate import alone, in_use
-from rtamt.engine.native import compiled, core, core_monitor, culprit
+from rtamt.engine.native import compiled
 from rtamt.engine.online import OnlineMonitor, Watched, depth_of
-from rtamt.errors import TraceError, UsageError, shown
+from rtamt.errors import TraceError, UsageError
 from rtamt.language.undefined_value import at_sample, undefined
-from rtamt.language.units import UNITS, check_unit
+from rtamt.language.units import check_unit
 from rtamt.rewrite.check import check_online
-from rtamt.rewrite.desugar import desugar
 from rtamt.signals import arrays
-from rtamt.signals.arrays import Stamps, plain
-from rtamt.signals.counting import implausible, is_implausible
+from rtamt.signals.arrays import Stamps
 from rtamt.signals.discrete import DISCRETE, Discrete
 from rtamt.signals.regular import (
     check_increasing,
     check_regular,
     irregular,
-    not_increasing,
 )
 from rtamt.signals.signal import Signal
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Mapping, Sequence
+    from fractions import Fraction
 
     from numpy.typing import NDArray
 
     from rtamt.language.formula import Formula
-
-
-#: How messages call what stamps are told in, by the kind of their dtype.
-_KINDS = {"f": "seconds", "M": "datetimes", "m": "timedeltas"}
-_NUMBERS = {"f": np.float64, "i": np.int64, "M": np.int64, "m": np.int64}
 
 
 class Monitor(OnlineMonitor):
@@ -63,7 +56,7 @@ class Monitor(OnlineMonitor):
     raises :class:`UsageError`.
     """
 
-    _remembered = ("_finished", "_news", "_told")
+    _remembered = ("_finished", "_news", "_times")
 
     def __init__(
         self,
@@ -93,30 +86,16 @@ class Monitor(OnlineMonitor):
         # What the last chunk made known, and how many samples there were then: after any other update
         # there are more.
         self._news: tuple[int, list[Signal]] = (0, [])
-        self._unit = None if unit is None else check_unit(unit)
-        # The stamps of the samples that may still have a value to come, and of the last one, where they are not
-        # told in seconds; those in seconds the back end has.
-        self._told: NDArray[Any] | None = None
-        self._program = None
-        if backend != "python":
-            outputs = [desugar(formula) for formula in self._formulas]
-            self._program = compile_program(outputs, period, self.input_names)
-        self._connect(self._open())
-
-    def _open(self) -> Any:
-        if self._program is None:
-            return python_backend.PythonMonitor(
-                self._formulas, self.input_names, self._period, self._tolerance
-            )
-        return core_monitor(self._program, float(self._period), self._tolerance)
+        self._times = CallerTimes(None if unit is None else check_unit(unit), period, self._oldest)
+        self._session = BACKENDS[backend].session(self._formulas, self.input_names, domain)
+        self._connect(self._session.open())
 
     def _connect(self, backend: Any) -> None:
-        plain = self._unit is None and self._told is None
-        self._backend = backend if plain else _Apart(backend)
+        self._backend = backend if self._times.plain else _Apart(backend)
         self._update = backend.update
         self._step = backend.step
-        self._refused: Any = python_backend.Refused if self._program is None else core().Refused
-        self._undefined: Any = () if self._program is None else core().Undefined
+        self._refused = self._session.refused
+        self._undefined: Any = self._session.undefined
 
     @property
     def horizon(self) -> float:
@@ -147,14 +126,14 @@ class Monitor(OnlineMonitor):
         >>> print(monitor.update(0.0, req=5, gnt=0), monitor.update(1.0, req=0, gnt=4))
         None 1.0
         """
-        if self._unit is None and self._told is None:
+        if self._times.plain:
             return self._take(time, values)
         return self._take_told(time, values)
 
     @alone
     def _take_told(self, time: Any, values: dict[str, Any]) -> float | None:
         """Take a sample whose time is not told in seconds."""
-        stamp = self._stamps([time])
+        stamp = self._times.read([time], self.samples)
         robustness = self._take(float(stamp.seconds[0]), values)
         self._remember(stamp.told)
         return robustness
@@ -191,14 +170,14 @@ class Monitor(OnlineMonitor):
         >>> [monitor.step(5, 4), monitor.step(1, 4)]
         [1.0, 1.0]
         """
-        if self._unit is None and self._told is None:
+        if self._times.plain:
             return self._take_row(values)
         return self._take_row_told(values)
 
     @alone
     def _take_row_told(self, values: tuple[float, ...]) -> float | None:
         """Take a sample after those whose times are not told in seconds."""
-        later = self._later(1)
+        later = self._times.later(1)
         robustness = self._take_row(values)
         self._remember(later)
         return robustness
@@ -240,7 +219,7 @@ class Monitor(OnlineMonitor):
         """
         if self._finished:
             raise self._is_finished()
-        return self.push(*arrays.columns_of(data, self.input_names, self._unit))
+        return self.push(*arrays.columns_of(data, self.input_names, self._times.unit))
 
     def push(self, stamps: Stamps | None, given: Mapping[str, arrays.FloatArray], n: int) -> Signal:
         """Take a chunk of ``n`` samples as ``arrays.columns_of`` returns it; not for several threads."""
@@ -251,7 +230,7 @@ class Monitor(OnlineMonitor):
             known = self._backend.push(times, columns, samples)
         except self._undefined as error:
             raise self._no_value(error) from None
-        if self._unit is not None or self._told is not None or (len(told) and told is not times):
+        if not self._times.plain or (len(told) and told is not times):
             self._remember(told)
         every = np.concatenate((before, told)) if len(before) else told
         news = []
@@ -315,8 +294,8 @@ class Monitor(OnlineMonitor):
         self._backend.reset()
         self._finished = False
         self._news = (0, [])
-        if self._told is not None:
-            self._told = None
+        if self._times.told is not None:
+            self._times = replace(self._times, told=None)
             self._connect(self._backend.inner)
 
     @property
@@ -327,57 +306,24 @@ class Monitor(OnlineMonitor):
         last = self._last_time
         return 0.0 if last is None else last + float(self._period)
 
-    # ---- stamps that are not told in seconds -----------------------------------------------------
-
-    def _stamps(self, times: Any) -> Stamps:
-        """Return times that the caller gave; raise :class:`TraceError` where they are not of the kind of the first."""
-        stamps = arrays.stamps(times, self._unit)
-        self._require_alike(stamps)
-        return stamps
-
-    def _require_alike(self, stamps: Stamps) -> None:
-        if self._unit is None and self.samples:
-            before = "f" if self._told is None else self._told.dtype.kind
-            if stamps.told.dtype.kind != before:
-                raise TraceError(
-                    f"'{arrays.TIME}' is told in {_KINDS[stamps.told.dtype.kind]} at sample {self.samples}, but before "
-                    f"in {_KINDS[before]}: use one of them for all",
-                    variable=arrays.TIME,
-                    index=self.samples,
-                )
+    # ---- timestamps that are not told in seconds -------------------------------------------------
 
     def _remember(self, told: NDArray[Any]) -> None:
-        first = self._told is None
-        whole = told if self._told is None else np.concatenate((self._told, told))
-        self._told = whole[-self._oldest - 1 :].copy()
+        first = self._times.told is None
+        self._times = self._times.extended(told)
         if first:
             self._connect(getattr(self._backend, "inner", self._backend))
 
     def _recent(self, count: int) -> NDArray[Any]:
-        """Return the stamps of the last samples, as the caller tells time."""
-        if self._told is not None:
-            return self._told[len(self._told) - count :]
-        return np.array(self._backend.recent(count)) if count or self._unit is None else np.empty(0, np.int64)
-
-    def _later(self, count: int) -> NDArray[Any]:
-        """Return the stamps of samples that come one period after another, as the caller tells time."""
-        if self._told is None or not len(self._told):
-            start, dtype = Fraction(0), np.dtype(np.int64)
-        else:
-            start, dtype = (
-                Fraction(plain(self._told[-1:].view(_NUMBERS[self._told.dtype.kind])[0])),
-                self._told.dtype,
-            )
-            start += self._step_in_unit(dtype)
-        stamps = [start + i * self._step_in_unit(dtype) for i in range(count)]
-        if dtype.kind in "mM":
-            return np.array([round(stamp) for stamp in stamps], np.int64).view(dtype)
-        if dtype.kind == "i" and all(stamp.denominator == 1 for stamp in stamps):
-            return np.array([int(stamp) for stamp in stamps], np.int64)
-        return np.array([float(stamp) for stamp in stamps])
-
-    def _step_in_unit(self, dtype: np.dtype[Any]) -> Fraction:
-        return self._period / UNITS["ns" if dtype.kind in "mM" else self._unit or "s"]
+        """Return the timestamps of the last samples, as the caller tells time."""
+        told = self._times.told
+        if told is not None:
+            return told[len(told) - count :]
+        return (
+            np.array(self._backend.recent(count))
+            if count or self._times.unit is None
+            else np.empty(0, np.int64)
+        )
 
     # ---- what goes wrong -------------------------------------------------------------------------
 
@@ -387,9 +333,9 @@ class Monitor(OnlineMonitor):
         last = self._last_time
         if stamps is None:
             times = np.array(self._next_time() + float(self._period) * np.arange(n), dtype=np.float64)
-            stamps = Stamps(times, times if self._unit is None and self._told is None else self._later(n))
+            stamps = Stamps(times, times if self._times.plain else self._times.later(n))
         elif n:
-            self._require_alike(stamps)
+            self._times.require_alike(stamps, self.samples)
         else:
             stamps = Stamps(stamps.seconds, self._recent(0))
         times = stamps.seconds
@@ -415,9 +361,7 @@ class Monitor(OnlineMonitor):
 
     def _no_value(self, error: Any) -> Exception:
         """Name the sub-formula and the instant of a value that does not exist."""
-        assert self._program is not None
-        formula = culprit(error, self._program, self._formulas)
-        return undefined(formula, at_sample(error.args[1], error.time))
+        return undefined(self._session.culprit(error), at_sample(error.args[1], error.time))
 
 
 class _Apart:
@@ -428,46 +372,3 @@ class _Apart:
 
     def __getattr__(self, name: str) -> Any:
         return getattr(self.inner, name)
-
-
-def read_time(time: Any, index: int, last: float | None, *, again: bool = False) -> float:
-    """Return a sample's time stamp; raise :class:`TraceError` for one that no sample can have.
-
-    ``again``: whether it may be the same as the ``last`` one.
-    """
-    stamp = arrays.number_of(time)
-    if stamp is None:
-        raise TraceError(
-            f"time is {shown(time)} at sample {index}, expected a number of seconds", variable="time"
-        )
-    if is_implausible(stamp):
-        raise implausible("time", index, time if is_implausible(time) else stamp)
-    if not isfinite(stamp):
-        raise TraceError(f"time is {stamp} at sample {index}: give a finite number of seconds")
-    if last is not None and (stamp < last or (stamp == last and not again)):
-        raise not_increasing(index, stamp, last)
-    return stamp
-
-
-def read_values(
-    values: Mapping[str, Any], names: tuple[str, ...], index: int, time: float
-) -> dict[str, float]:
-    """Return a sample's values in the order of the names, each read once; raise :class:`TraceError`."""
-    for name in values:
-        if name not in names:
-            raise arrays.unknown_variable(name, names)
-    numbers = {}
-    for name in names:
-        if name not in values:
-            raise arrays.missing_variable(name, tuple(values))
-        number = arrays.number_of(values[name])
-        if number is None:
-            raise TraceError(
-                f"'{name}' is {shown(values[name])} at sample {index}, expected a number",
-                variable=name,
-                index=index,
-            )
-        if isnan(number):
-            raise arrays.nan_error(name, index, time)
-        numbers[name] = number
-    return numbers

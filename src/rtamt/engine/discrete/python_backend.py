@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from rtamt.engine.backend import Refused
 from rtamt.engine.gate import Gate, alone, in_use
 from rtamt.reference.discrete import ReferenceMonitor, history
 from rtamt.rewrite.horizon import horizon
@@ -24,10 +25,6 @@ if TYPE_CHECKING:
 
     from rtamt.language.formula import Formula
     from rtamt.signals.arrays import FloatArray
-
-
-class Refused(Exception):  # noqa: N818 - the compiled monitor's word
-    """An update cannot be taken; nothing has changed."""
 
 
 class PythonMonitor:

@@ -14,26 +14,22 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
-from rtamt.compiler.plan import compile_program
-from rtamt.engine.dense_python_backend import PythonDenseMonitor
+from rtamt.engine.backend import Refused, Session
 from rtamt.engine.gate import Gate, alone
-from rtamt.engine.native import core, not_made
 from rtamt.engine.online import depth_of
-from rtamt.engine.python_backend import Refused
-from rtamt.engine.user_operators import EventDriver, calls_of
 from rtamt.errors import UsageError
 from rtamt.language.formula import variables
 from rtamt.rewrite.check import always_has_a_value
-from rtamt.rewrite.desugar import desugar
-from rtamt.signals.dense import Dense
 from rtamt.signals.dense_arrays import changes, minimum
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
     from fractions import Fraction
 
-    from rtamt.compiler.program import Program
+    from rtamt.compiler.program import CallSite
+    from rtamt.engine.backend import Backend
     from rtamt.language.formula import Formula
+    from rtamt.signals.dense import Dense
     from rtamt.signals.dense_arrays import Samples
     from rtamt.signals.ticks import TimeScale
 
@@ -50,45 +46,25 @@ def own_variables(formula: Formula, every: Sequence[str]) -> tuple[str, ...]:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Part:
-    """Formulas over one trace. ``program``: None for the Python back end."""
+    """Formulas over one trace, and the session that monitors them."""
 
     names: tuple[str, ...]
     formulas: tuple[Formula, ...]
-    program: Program | None
+    session: Session
     can_fail: bool
 
     @property
     def calls(self) -> bool:
         """Whether a custom operator remembers something that cannot be saved."""
-        return self.program is not None and bool(self.program.calls)
-
-    def open(self, tick: Fraction) -> Any:
-        """Return a back end that has taken no sample."""
-        return opened(self.formulas, self.names, self.program, tick)
-
-
-def opened(
-    formulas: Sequence[Formula],
-    names: Sequence[str],
-    program: Program | None,
-    tick: Fraction,
-    unread: frozenset[str] = frozenset(),
-) -> Any:
-    """Return a back end of one program that has taken no sample; without a program that of Python."""
-    if program is None:
-        return PythonDenseMonitor(formulas, tuple(names), tick)
-    try:
-        return core().DenseMonitor(program.code(), list(names), unread, calls=calls_of(program, EventDriver))
-    except RuntimeError as error:
-        raise not_made(program, error) from None
+        return bool(self.session.calls)
 
 
 def parts_of(
     requirements: Sequence[Formula],
     watched: Sequence[Formula],
     every: Sequence[str],
-    tick: Fraction,
-    backend: str,
+    domain: Dense,
+    backend: Backend,
 ) -> tuple[list[Part], list[Place]]:
     """Return the parts, and where the requirements and then the watched formulas are.
 
@@ -106,10 +82,8 @@ def parts_of(
     parts = {}
     for key, some in formulas.items():
         names = tuple(name for name in every if name in key)
-        program = None
-        if backend != "python":
-            program = compile_program(list(map(desugar, some)), tick, names, domain=Dense)
-        parts[key] = Part(names, tuple(some), program, not all(map(always_has_a_value, some)))
+        session = backend.session(some, names, domain)
+        parts[key] = Part(names, tuple(some), session, not all(map(always_has_a_value, some)))
     if sum(part.calls for part in parts.values()) > 1:
         raise UsageError(
             "custom operators stand in requirements that read different variables, so that a failed update could not "
@@ -129,6 +103,40 @@ class UndefinedInPartError(Exception):
         self.error = error
 
 
+class GroupSession(Session):
+    """Requirements with different variables, and formulas that are watched beside them."""
+
+    def __init__(
+        self,
+        requirements: Sequence[Formula],
+        watched: Sequence[Formula],
+        every: Sequence[str],
+        domain: Dense,
+        backend: Backend,
+    ) -> None:
+        self._parts, self._places = parts_of(requirements, watched, every, domain, backend)
+        self._made_of = len(requirements), tuple(every), domain.resolution
+        self.undefined = (UndefinedInPartError,)
+
+    def open(self) -> DenseGroups:
+        """See :class:`Session`."""
+        return DenseGroups(self._parts, self._places, *self._made_of)
+
+    def culprit(self, error: Any) -> Formula:
+        """See :class:`Session`."""
+        return error.part.session.culprit(error.error)  # type: ignore[no-any-return]
+
+    @property
+    def fingerprint(self) -> bytes:
+        """See :class:`Session`."""
+        return b"".join(part.session.fingerprint for part in self._parts)
+
+    @property
+    def calls(self) -> Sequence[CallSite]:
+        """See :class:`Session`."""
+        return [site for part in self._parts for site in part.session.calls]
+
+
 class DenseGroups:
     """The back end; see ``_core.DenseMonitor`` for what each method means."""
 
@@ -145,13 +153,12 @@ class DenseGroups:
         self._parts = tuple(parts)
         self._requirements, self._watched = places[:requirements], places[requirements:]
         self._names = tuple(names)
-        self._tick = tick
         self._lags = [int(depth_of(parts[part].formulas[i]) / tick) for part, i in self._requirements]
         self._gate = Gate()
         self._start_over()
 
     def _start_over(self) -> None:
-        self._backends = [part.open(self._tick) for part in self._parts]
+        self._backends = [part.session.open() for part in self._parts]
         self._counts = dict.fromkeys(self._names, 0)
         self._last: dict[str, tuple[int, float]] = {}
         self._values = [float("inf")] * len(self._requirements)  # so far, as far as the minimum is known
@@ -211,7 +218,7 @@ class DenseGroups:
         """
         saved: dict[int, Any] = {}
         news = []
-        undefined: Any = core().Undefined if self._parts[0].program is not None else ()
+        undefined = self._parts[0].session.undefined
         for i, (part, backend) in enumerate(zip(self._parts, self._backends, strict=True)):
             later = i + 1 < len(self._parts) and self._parts[i + 1].can_fail
             if part.can_fail and not part.calls and (later or twice):
@@ -220,7 +227,7 @@ class DenseGroups:
                 news.append(step(part, backend))
             except Exception as error:
                 for number, state in saved.items():
-                    self._backends[number] = self._parts[number].open(self._tick)
+                    self._backends[number] = self._parts[number].session.open()
                     self._backends[number].restore(state)
                 if isinstance(error, undefined):
                     raise UndefinedInPartError(part, error) from error

@@ -2,22 +2,19 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rtamt.compiler.plan import compile_program
-from rtamt.engine.dense_groups import DenseGroups, UndefinedInPartError, opened, own_variables, parts_of
+from rtamt.engine.dense.backends import BACKENDS
+from rtamt.engine.dense.groups import GroupSession, own_variables
 from rtamt.engine.gate import alone, in_use
-from rtamt.engine.native import compiled, core, culprit
+from rtamt.engine.native import compiled
 from rtamt.engine.online import OnlineMonitor, Watched, depth_of
-from rtamt.engine.python_backend import Refused
 from rtamt.errors import TraceError, UsageError
 from rtamt.language.undefined_value import undefined
 from rtamt.language.units import check_unit
 from rtamt.rewrite.check import check_online
-from rtamt.rewrite.desugar import desugar
 from rtamt.signals import arrays, dense_arrays
 from rtamt.signals.dense import DENSE, Dense
 from rtamt.signals.dense_arrays import TickSignal
@@ -27,8 +24,6 @@ from rtamt.signals.ticks import TimeScale
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Mapping, Sequence
 
-    from rtamt.compiler.program import Program
-    from rtamt.engine.dense_groups import Part
     from rtamt.errors import EvaluationError
     from rtamt.language.formula import Formula
     from rtamt.signals.dense_arrays import Samples
@@ -80,35 +75,20 @@ class DenseMonitor(OnlineMonitor):
         self._given_scale = scale
         self._unit = None if unit is None else check_unit(unit)
         self._scale: TimeScale | None = None
-        self._program = None
-        self._parts: Sequence[Part] = ()
+        engine = BACKENDS[backend]
         if len({frozenset(own_variables(each, self.input_names)) for each in requirements}) > 1:
-            watched_formulas = self._formulas[1:]
-            self._requirements = len(requirements)
-            self._parts, self._places = parts_of(
-                requirements, watched_formulas, self.input_names, self._tick, backend
+            self._session = GroupSession(requirements, self._formulas[1:], self.input_names, domain, engine)
+        else:
+            self._session = engine.session(
+                self._formulas, self.input_names, domain, self._unread, parts=parts
             )
-        elif backend != "python":
-            outputs = [desugar(formula) for formula in self._formulas]
-            program = compile_program(outputs, self._tick, self.input_names, domain=Dense)
-            every = range(len(program.instructions)) if parts else ()
-            self._program = replace(program, outputs=(*program.outputs, *every))
-        self._connect(self._open())
-
-    def _open(self) -> Any:
-        if self._parts:
-            return DenseGroups(self._parts, self._places, self._requirements, self.input_names, self._tick)
-        return opened(self._formulas, self.input_names, self._program, self._tick, self._unread)
-
-    @property
-    def _programs(self) -> Sequence[Program]:
-        return tuple(part.program for part in self._parts if part.program) or super()._programs
+        self._connect(self._session.open())
 
     def _connect(self, backend: Any) -> None:
         self._backend = backend
         self._update = backend.update
-        self._refused: Any = Refused if self._program is None else core().Refused
-        self._undefined: Any = UndefinedInPartError if self._program is None else core().Undefined
+        self._refused = self._session.refused
+        self._undefined: Any = self._session.undefined
         if self._scale is not None:
             self._tell(self._scale)
 
@@ -200,10 +180,7 @@ class DenseMonitor(OnlineMonitor):
         For monitors that were made with ``parts=True``, whose updates cost a few nanoseconds more for
         each part.
         """
-        if self._program is None:
-            return self._signal(self._backend.part(formula))
-        output = len(self._formulas) + self._program.value_of[desugar(formula)]
-        return self._signal(self._backend.told(output))
+        return self._signal(self._session.part(self._backend, formula))
 
     @alone
     def reset(self) -> None:
@@ -266,13 +243,7 @@ class DenseMonitor(OnlineMonitor):
 
     def _no_value(self, error: Exception, scale: TimeScale | None) -> EvaluationError:
         assert scale is not None
-        if isinstance(error, UndefinedInPartError):
-            program, formulas, error = error.part.program, error.part.formulas, error.error
-        else:
-            program, formulas = self._program, self._formulas
-        assert program is not None
-        formula = culprit(error, program, formulas)
-        return undefined(formula, f"time {scale.show(error.args[1])}")
+        return undefined(self._session.culprit(error), f"time {scale.show(error.args[1])}")
 
     def _signal(self, known: Samples) -> Signal:
         ticks, values = known

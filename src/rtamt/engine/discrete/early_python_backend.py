@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rtamt.engine.python_backend import Refused
+from rtamt.engine.backend import Refused
 from rtamt.language.enclosures import Enclosure
 from rtamt.reference.discrete_bounds import Knowledge, bounds
 

@@ -2,24 +2,20 @@
 
 from __future__ import annotations
 
-from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from rtamt.compiler.plan import DEFINED, compile_plan
-from rtamt.engine.backend import BACKENDS as NAMES
-from rtamt.engine.backend import Backend
 from rtamt.engine.native import core, culprit, not_made
 from rtamt.engine.user_operators import EventDriver, calls_of, defined_signal
-from rtamt.language.formula import Apply, fold
 from rtamt.language.undefined_value import undefined
-from rtamt.reference import dense as reference
 from rtamt.rewrite.desugar import desugar
+from rtamt.rewrite.horizon import reach
 from rtamt.signals.dense import Dense
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
+    from collections.abc import Mapping, Sequence
     from fractions import Fraction
 
     from rtamt.compiler.plan import Plan, Scan
@@ -27,38 +23,7 @@ if TYPE_CHECKING:
     from rtamt.language.formula import Formula
     from rtamt.signals.dense import DenseTrace
     from rtamt.signals.dense_arrays import Samples
-    from rtamt.signals.signal import Signal
     from rtamt.signals.ticks import TimeScale
-
-
-class Compiled(Backend):
-    """The compiled core."""
-
-    def evaluator(self, formulas: tuple[Formula, ...], step: Fraction, inputs: tuple[str, ...]) -> Evaluator:
-        """See :class:`Backend`."""
-        return Evaluator(formulas, step, inputs)
-
-
-class Defined(Backend):
-    """The definition."""
-
-    def evaluator(
-        self,
-        formulas: tuple[Formula, ...],
-        step: Fraction,
-        inputs: tuple[str, ...],  # noqa: ARG002
-    ) -> Callable[[DenseTrace], list[Samples]]:
-        """See :class:`Backend`."""
-
-        def evaluated(trace: DenseTrace) -> list[Samples]:
-            steps = (reference.evaluate(f, trace.columns, step) for f in formulas)
-            return [(each.times, each.values) for each in steps]
-
-        return evaluated
-
-
-#: By name.
-BACKENDS: Mapping[str, Backend] = MappingProxyType(dict(zip(NAMES, (Compiled(), Defined()), strict=True)))
 
 
 class Evaluator:
@@ -84,24 +49,6 @@ class Evaluator:
                 else:
                     columns[scan.name] = core().dense_scan(scan.kind, *operands)
         return run(plan.program, columns, recording.scale, plan, self._asked)
-
-
-def evaluate(formula: Formula, recording: DenseTrace) -> Signal:
-    """Return the robustness of a formula from the recording's start to its end."""
-    evaluator = Evaluator((formula,), recording.scale.tick, tuple(recording.columns))
-    return recording.signal(*evaluator(recording)[0])
-
-
-def reach(formula: Formula, tick: Fraction) -> int:
-    """Return the most ticks after its operands' last change for which a formula can still change."""
-
-    def step(node: Formula, below: tuple[int, ...]) -> int:
-        own = 0
-        if isinstance(node, Apply) and node.interval is not None:
-            own = int((node.interval.end or node.interval.begin) / tick)
-        return own + max(below, default=0)
-
-    return fold(formula, step)
 
 
 def run(

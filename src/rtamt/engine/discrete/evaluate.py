@@ -2,23 +2,19 @@
 
 from __future__ import annotations
 
-from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from rtamt.compiler.plan import DEFINED, Plan, compile_plan
-from rtamt.engine.backend import BACKENDS as NAMES
-from rtamt.engine.backend import Backend
 from rtamt.engine.native import core, culprit, not_made
 from rtamt.engine.user_operators import SampleDriver, calls_of, defined_column
 from rtamt.language.formula import Apply, postorder
 from rtamt.language.undefined_value import at_sample, undefined
-from rtamt.reference import discrete as reference
 from rtamt.rewrite.desugar import desugar
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
+    from collections.abc import Mapping, Sequence
     from fractions import Fraction
 
     from rtamt.compiler.plan import Scan
@@ -26,36 +22,6 @@ if TYPE_CHECKING:
     from rtamt.language.formula import Formula
     from rtamt.signals.arrays import FloatArray
     from rtamt.signals.discrete import DiscreteTrace
-
-
-class Compiled(Backend):
-    """The compiled core."""
-
-    def evaluator(self, formulas: tuple[Formula, ...], step: Fraction, inputs: tuple[str, ...]) -> Evaluator:  # noqa: ARG002
-        """See :class:`Backend`."""
-        return Evaluator(formulas, step)
-
-
-class Defined(Backend):
-    """The definition."""
-
-    def evaluator(
-        self,
-        formulas: tuple[Formula, ...],
-        step: Fraction,
-        inputs: tuple[str, ...],  # noqa: ARG002
-    ) -> Callable[[DiscreteTrace], list[FloatArray]]:
-        """See :class:`Backend`."""
-
-        def evaluated(trace: DiscreteTrace) -> list[FloatArray]:
-            start = float(trace.times[0])
-            return [reference.evaluate(f, trace.columns, len(trace), step, start) for f in formulas]
-
-        return evaluated
-
-
-#: By name.
-BACKENDS: Mapping[str, Backend] = MappingProxyType(dict(zip(NAMES, (Compiled(), Defined()), strict=True)))
 
 
 class Evaluator:

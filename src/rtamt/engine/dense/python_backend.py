@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from rtamt.engine.backend import Refused
 from rtamt.engine.gate import Gate, alone
-from rtamt.engine.python_backend import Refused
 from rtamt.reference.dense import DenseReferenceMonitor
 
 if TYPE_CHECKING:

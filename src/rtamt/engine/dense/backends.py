@@ -1,0 +1,125 @@
+"""The back ends of dense time: the compiled core and the definition."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+from rtamt.compiler.plan import compile_program
+from rtamt.engine.backend import Backend, CompiledSession, Session, named
+from rtamt.engine.dense.evaluate import Evaluator
+from rtamt.engine.dense.python_backend import PythonDenseMonitor
+from rtamt.engine.native import core, not_made
+from rtamt.engine.user_operators import EventDriver, calls_of
+from rtamt.reference import dense as reference
+from rtamt.rewrite.desugar import desugar
+from rtamt.signals.dense import Dense
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Collection, Sequence
+    from fractions import Fraction
+
+    from rtamt.language.formula import Formula
+    from rtamt.signals.dense import DenseTrace
+    from rtamt.signals.dense_arrays import Samples
+
+
+class CompiledDense(Backend):
+    """The compiled core."""
+
+    def evaluator(self, formulas: tuple[Formula, ...], step: Fraction, inputs: tuple[str, ...]) -> Evaluator:
+        """See :class:`Backend`."""
+        return Evaluator(formulas, step, inputs)
+
+    def session(
+        self,
+        formulas: Sequence[Formula],
+        inputs: tuple[str, ...],
+        domain: Dense,
+        ignored: Collection[str] = (),
+        *,
+        parts: bool = False,
+    ) -> EventProgram:
+        """See :class:`Backend`. ``parts``: whether :meth:`Session.part` is needed."""
+        return EventProgram(formulas, inputs, domain, ignored, parts=parts)
+
+
+class DefinedDense(Backend):
+    """The definition."""
+
+    def evaluator(
+        self,
+        formulas: tuple[Formula, ...],
+        step: Fraction,
+        inputs: tuple[str, ...],  # noqa: ARG002
+    ) -> Callable[[DenseTrace], list[Samples]]:
+        """See :class:`Backend`."""
+
+        def evaluated(trace: DenseTrace) -> list[Samples]:
+            steps = (reference.evaluate(f, trace.columns, step) for f in formulas)
+            return [(each.times, each.values) for each in steps]
+
+        return evaluated
+
+    def session(
+        self,
+        formulas: Sequence[Formula],
+        inputs: tuple[str, ...],
+        domain: Dense,
+        ignored: Collection[str] = (),  # noqa: ARG002 - its monitors never read what a formula does not
+        *,
+        parts: bool = False,  # noqa: ARG002 - there is always a part
+    ) -> EventDefinition:
+        """See :class:`Backend`."""
+        return EventDefinition(formulas, inputs, domain)
+
+
+class EventProgram(CompiledSession):
+    """Formulas as a program of the compiled core."""
+
+    def __init__(
+        self,
+        formulas: Sequence[Formula],
+        inputs: tuple[str, ...],
+        domain: Dense,
+        ignored: Collection[str],
+        *,
+        parts: bool,
+    ) -> None:
+        program = compile_program([desugar(f) for f in formulas], domain.resolution, inputs, domain=Dense)
+        every = range(len(program.instructions)) if parts else ()
+        super().__init__(formulas, replace(program, outputs=(*program.outputs, *every)))
+        self._outputs = len(program.outputs)
+        self._ignored = frozenset(ignored)
+
+    def open(self) -> Any:
+        """See :class:`Session`."""
+        program = self.program
+        calls = calls_of(program, EventDriver)
+        try:
+            return core().DenseMonitor(program.code(), list(program.inputs), self._ignored, calls=calls)
+        except RuntimeError as error:
+            raise not_made(program, error) from None
+
+    def part(self, monitor: Any, formula: Formula) -> Samples:
+        """See :class:`Session`; for sessions with ``parts``."""
+        return monitor.told(self._outputs + self.program.value_of[desugar(formula)])  # type: ignore[no-any-return]
+
+
+class EventDefinition(Session):
+    """Formulas that are evaluated by definition."""
+
+    def __init__(self, formulas: Sequence[Formula], inputs: tuple[str, ...], domain: Dense) -> None:
+        self._made_of = formulas, inputs, domain.resolution
+
+    def open(self) -> PythonDenseMonitor:
+        """See :class:`Session`."""
+        return PythonDenseMonitor(*self._made_of)
+
+    def part(self, monitor: PythonDenseMonitor, formula: Formula) -> Samples:
+        """See :class:`Session`."""
+        return monitor.part(formula)
+
+
+#: By name.
+BACKENDS = named(CompiledDense(), DefinedDense())

@@ -1,0 +1,133 @@
+"""The back ends of discrete time: the compiled core and the definition."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import TYPE_CHECKING, Any
+
+from rtamt.compiler.plan import compile_program
+from rtamt.engine.backend import Backend, CompiledSession, Session, named
+from rtamt.engine.discrete.evaluate import Evaluator
+from rtamt.engine.discrete.python_backend import PythonMonitor
+from rtamt.engine.native import core_monitor
+from rtamt.reference import discrete as reference
+from rtamt.rewrite.desugar import desugar
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Collection, Sequence
+
+    from rtamt.language.formula import Formula
+    from rtamt.signals.arrays import FloatArray
+    from rtamt.signals.discrete import Discrete, DiscreteTrace
+
+_SECOND = Fraction(1)
+
+
+class CompiledDiscrete(Backend):
+    """The compiled core."""
+
+    def evaluator(self, formulas: tuple[Formula, ...], step: Fraction, inputs: tuple[str, ...]) -> Evaluator:  # noqa: ARG002
+        """See :class:`Backend`."""
+        return Evaluator(formulas, step)
+
+    def session(
+        self,
+        formulas: Sequence[Formula],
+        inputs: tuple[str, ...],
+        domain: Discrete,
+        ignored: Collection[str] = (),
+        *,
+        strict: bool = True,
+        unit: Fraction = _SECOND,
+    ) -> SampleProgram:
+        """See :class:`Backend`; the other arguments are those of :class:`SampleDefinition`."""
+        return SampleProgram(formulas, inputs, domain, ignored, strict=strict, unit=unit)
+
+
+class DefinedDiscrete(Backend):
+    """The definition."""
+
+    def evaluator(
+        self,
+        formulas: tuple[Formula, ...],
+        step: Fraction,
+        inputs: tuple[str, ...],  # noqa: ARG002
+    ) -> Callable[[DiscreteTrace], list[FloatArray]]:
+        """See :class:`Backend`."""
+
+        def evaluated(trace: DiscreteTrace) -> list[FloatArray]:
+            start = float(trace.times[0])
+            return [reference.evaluate(f, trace.columns, len(trace), step, start) for f in formulas]
+
+        return evaluated
+
+    def session(
+        self,
+        formulas: Sequence[Formula],
+        inputs: tuple[str, ...],
+        domain: Discrete,
+        ignored: Collection[str] = (),  # noqa: ARG002 - its monitors never read what a formula does not
+        *,
+        strict: bool = True,
+        unit: Fraction = _SECOND,
+    ) -> SampleDefinition:
+        """See :class:`Backend`; the other arguments are those of :class:`SampleDefinition`."""
+        return SampleDefinition(formulas, inputs, domain, strict=strict, unit=unit)
+
+
+class SampleProgram(CompiledSession):
+    """Formulas as a program of the compiled core."""
+
+    def __init__(
+        self,
+        formulas: Sequence[Formula],
+        inputs: tuple[str, ...],
+        domain: Discrete,
+        ignored: Collection[str],
+        *,
+        strict: bool,
+        unit: Fraction,
+    ) -> None:
+        assert domain.period is not None
+        program = compile_program([desugar(formula) for formula in formulas], domain.period, inputs)
+        super().__init__(formulas, program)
+        self._made_of = float(domain.period / unit), domain.tolerance, strict, ignored
+
+    def open(self) -> Any:
+        """See :class:`Session`."""
+        return core_monitor(self.program, *self._made_of)
+
+    def part(self, monitor: Any, formula: Formula) -> float:
+        """Return the value at the last sample of a part without future operators."""
+        return float(monitor.last(self.program.value_of[desugar(formula)]))
+
+
+class SampleDefinition(Session):
+    """Formulas that are evaluated by definition.
+
+    ``strict``: reject a sample off the period, instead of counting it. ``unit``: seconds in a unit of the timestamps.
+    """
+
+    def __init__(
+        self,
+        formulas: Sequence[Formula],
+        inputs: tuple[str, ...],
+        domain: Discrete,
+        *,
+        strict: bool,
+        unit: Fraction,
+    ) -> None:
+        assert domain.period is not None
+        self._made_of = formulas, inputs, domain.period, domain.tolerance, strict, unit
+
+    def open(self) -> PythonMonitor:
+        """See :class:`Session`."""
+        return PythonMonitor(*self._made_of)
+
+    def part(self, monitor: PythonMonitor, formula: Formula) -> float:
+        """Return the value at the last sample of a part without future operators."""
+        return monitor.last(formula)
+
+
+#: By name.
+BACKENDS = named(CompiledDiscrete(), DefinedDiscrete())
