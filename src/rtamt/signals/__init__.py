@@ -11,6 +11,7 @@ signal        ``Signal``: the result of evaluations and monitors
 inexact       missing samples, measurement errors, declared ranges
 outcomes      bounds and verdicts that are known before the whole trace is
 trace         ``Trace``: named signals, each with its own time base; resampling
+listing       a trace as text: its signals topic by topic
 arrays        data (lists, arrays, frames, objects) to float64 arrays
 dense_arrays  dense-time data to int64 ticks and float64 values
 regular       infer the sampling period; check order and distance of timestamps
