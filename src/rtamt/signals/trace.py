@@ -5,7 +5,7 @@
     Trace                    what users read from files and frames
       └── Channel            one signal: its times, its values, its unit
     DiscreteTrace                one clock, a period      (signals.py)           discrete time evaluates this
-    DenseTrace           integer ticks            (dense_evaluate.py)    dense time evaluates this
+    DenseTrace           integer ticks            (engine/dense/)        dense time evaluates this
 """
 
 from __future__ import annotations
