@@ -37,11 +37,11 @@ test-cpp: $(VENV)/.group-build ## C++: the core alone, under the address, undefi
 	$(WITH_VENV) cmake --build --preset tsan
 	$(WITH_VENV) ctest --preset tsan --no-tests=error
 
-test-install: $(VENV)/.made ## `pip install .` in an empty environment, and a check with what it installed
+test-install: $(VENV)/.made ## `pip install .` in an empty environment, then the newcomer's path to an explained violation
 	rm -rf build/install
 	$(RUN) -m venv build/install
 	build/install/bin/python -m pip install --quiet .
-	build/install/bin/rtamt check $(EXAMPLE)/spec.stl $(EXAMPLE)/a_satisfied.csv
+	tools/newcomer "$(CURDIR)/build/install/bin/rtamt" build/install/newcomer
 
 lint: $(VENV)/.core $(VENV)/.group-test $(VENV)/.group-lint ## ruff, mypy, import contracts, clang-format, clang-tidy
 	$(RUN) -m ruff check

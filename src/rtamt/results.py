@@ -5,12 +5,14 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from html import escape
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import EvaluationError, UsageError, did_you_mean
 from rtamt.language.formula import variables
 from rtamt.language.grammar import is_number
+from rtamt.language.printer import excerpt
 from rtamt.signals.listing import show_time
 from rtamt.signals.outcomes import BoundedSignal, Interval
 from rtamt.verdicts import offline as verdicts
@@ -49,6 +51,19 @@ class Result:
     def __repr__(self) -> str:
         of = self.specification.name or self.specification.formula
         return f"<result of {of}: robustness {self.robustness} at {self.signal.times[0]}>"
+
+    def _repr_html_(self) -> str:
+        rows = []
+        for name, part in self.requirements.items():
+            violated = first_violation(part)
+            verdict = "satisfied" if violated is None else f"violated, first at {show_time(violated)}"
+            formula = escape(excerpt(part.specification.formula))
+            rows.append(
+                f"<tr><td>{escape(name)}</td><td><code>{formula}</code></td><td>{part.robustness:.6g}</td>"
+                f"<td>{escape(verdict)}</td></tr>"
+            )
+        head = "<tr><th>requirement</th><th>formula</th><th>robustness</th><th>verdict</th></tr>"
+        return f"<table>{head}{''.join(rows)}</table>"
 
     @cached_property
     def requirements(self) -> Mapping[str, Result]:
@@ -209,13 +224,13 @@ class Result:
         >>> [axis.get_title(loc="left") for axis in figure.axes]
         ['', 'always(x >= 3)', 'x >= 3']
         """
-        from rtamt.plot.figure import draw, matplotlib
+        from rtamt.plot.figure import draw, new_figure
         from rtamt.plot.scene import scene
 
         self._require_one_start("plot")
         seen = scene(self, at)
         window = seen.window(start, end, zoom)
-        canvas = matplotlib("pyplot").figure() if figure is None else figure
+        canvas = new_figure() if figure is None else figure
         draw(seen, rows, canvas, window)
         return canvas
 
@@ -230,12 +245,12 @@ class Result:
         >>> [text.get_text() for text in result.plot_tree(figure=Figure()).axes[0].texts][2:4]
         ['φ and ψ', '✗ −1']
         """
-        from rtamt.plot.figure import matplotlib
+        from rtamt.plot.figure import new_figure
         from rtamt.plot.scene import scene
         from rtamt.plot.tree import draw_tree
 
         self._require_one_start("plot")
-        canvas = matplotlib("pyplot").figure() if figure is None else figure
+        canvas = new_figure() if figure is None else figure
         draw_tree(scene(self, at), canvas)
         return canvas
 

@@ -226,3 +226,26 @@ def test_help_is_grouped(capsys):
 def test_characters_of_other_notations_get_a_hint(text):
     with pytest.raises(rtamt.ParseError, match=rf"^unexpected character '{text}'; (write|a comment)"):
         rtamt.parse(f"x > 3 {text} y")
+
+
+@pytest.mark.parametrize(
+    ("first", "moment"),
+    [
+        ("2026-05-01T12:00:00", "2026-05-01 12:00:01 (+1 s)"),
+        ("1700000000", "2023-11-14 22:13:21 (+1 s)"),
+        ("5", "6 s"),
+    ],
+)
+def test_check_shows_the_first_violation_and_epoch_times_as_dates(
+    first, moment, tmp_path, monkeypatch, capsys
+):
+    monkeypatch.chdir(tmp_path)
+    second = first[:-1] + str(int(first[-1]) + 1)
+    (tmp_path / "log.csv").write_text(f"time,x\n{first},4\n{second},2\n")
+    assert main(["check", "always(x >= 3)", "log.csv"]) == 1
+    header, row = capsys.readouterr().out.splitlines()[2:4]
+    assert header.split()[-3:] == ["first", "violation", "verdict"]
+    assert f"  {moment}  violated" in row
+    monkeypatch.setattr("rtamt.cli.runner.LARGE", 0)  # in chunks
+    assert main(["check", "always(x >= 3)", "log.csv"]) == 1
+    assert capsys.readouterr().out.splitlines()[3] == row

@@ -211,20 +211,20 @@ def _as_json(outcome: Outcome, requirement: Requirement) -> str:
 
 
 def _as_table(requirements: Sequence[Requirement], found: Sequence[Outcome], color: bool) -> str:
-    rows = [("requirement", "trace", "samples", "period", "robustness", "verdict")]
+    rows = [("requirement", "trace", "samples", "period", "robustness", "first violation", "verdict")]
     for outcome in found:
-        cells = ("-", "-", "-")
+        cells = ("-", "-", "-", "-")
         if not outcome.error:
             period = requirements[0].spec.time if outcome.period is None else format_duration(outcome.period)
-            cells = (str(outcome.samples), period, short(outcome.robustness))
+            cells = (str(outcome.samples), period, short(outcome.robustness), outcome.moment or "-")
         rows.append((outcome.requirement, outcome.trace, *cells, outcome.verdict))
     kinds = [_KINDS[outcome.verdict] for outcome in found]
     if len(requirements) > 1:
-        text = table(rows, right=(2, 3, 4), kinds=kinds, color=color)
+        text = table(rows, right=(2, 3, 4, 5), kinds=kinds, color=color)
     else:
         spec = requirements[0].spec
         title = f"{spec.name}: {printed(spec.formula)}" if spec.name else printed(spec.formula)
-        text = f"{escaped(title)}\n\n{table([row[1:] for row in rows], right=(1, 2, 3), kinds=kinds, color=color)}"
+        text = f"{escaped(title)}\n\n{table([row[1:] for row in rows], right=(1, 2, 3, 4), kinds=kinds, color=color)}"
     notes = dict.fromkeys(f"note: {outcome.trace}: {note}" for outcome in found for note in outcome.notes)
     if notes:
         text += "\n\n" + "\n".join(notes)

@@ -8,6 +8,7 @@ from collections import Counter
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, replace
 from decimal import Decimal
+from fractions import Fraction
 from multiprocessing import get_context
 from typing import TYPE_CHECKING, Any
 
@@ -20,11 +21,12 @@ from rtamt.readers.assemble import chunks_of
 from rtamt.readers.read import opened
 from rtamt.readers.sql import is_url, shown
 from rtamt.results import first_violation
+from rtamt.signals.datetimes import nanoseconds_of
+from rtamt.signals.epoch import is_epoch, moment_text
 from rtamt.verdicts.streaming import check_stream, check_streamable
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
-    from fractions import Fraction
 
     from rtamt.cli.reading_options import Reading
     from rtamt.language.document import Requirement as Written
@@ -62,7 +64,8 @@ class Outcome:
     """What came of one requirement over one recording, or the sentence that says why nothing did.
 
     ``first_violation``: seconds (a decimal where a double cannot hold them), or a date; None where there is
-    none. ``period``: None in dense time.
+    none. ``moment``: the same as text: seconds, or a date with the seconds since the start of the recording.
+    ``period``: None in dense time.
     ``notes``: what the verdict has to do without (:attr:`Trace.losses`).
     ``explanation``: why it is violated, where that was asked for and the whole recording was read.
     ``seconds``: how long it took. ``result`` stays in the process that made it.
@@ -73,6 +76,7 @@ class Outcome:
     verdict: str  # satisfied, violated or error
     robustness: float = float("nan")
     first_violation: float | str | Decimal | None = None
+    moment: str = ""
     samples: int = 0
     period: Fraction | None = None
     error: str = ""
@@ -183,7 +187,8 @@ def _in_chunks(requirement: Requirement, trace: str, reading: Reading) -> list[O
             shown(trace),
             "satisfied" if part.satisfied else "violated",
             part.robustness,
-            None if part.first_violation is None else _told(part.first_violation),
+            _told(part.first_violation),
+            _moment(part.first_violation, chunks.start),
             part.samples,
             part.period,
             notes=chunks.losses,
@@ -235,7 +240,8 @@ def _outcome(requirement: Requirement, trace: str, result: Result, data: Trace, 
         shown(trace),
         "satisfied" if satisfied else "violated",
         result.robustness,
-        None if violated is None else _told(violated),
+        _told(violated),
+        _moment(violated, recording.origin),
         recording.samples,
         recording.domain.period,
         notes=data.losses,
@@ -248,8 +254,28 @@ def _failed(requirement: Requirement, trace: str, error: str, begin: float) -> O
     return Outcome(requirement.label, shown(trace), "error", error=error, seconds=time.perf_counter() - begin)
 
 
-def _told(moment: Any) -> float | str | Decimal:
+def _moment(time: Any, start: Any) -> str:
+    """Return a time as text: of a recording that counts from 1970 the date and the seconds since its start."""
+    if time is None:
+        return ""
+    dated = isinstance(time, np.datetime64)
+    begin = _seconds(start)
+    if (dated and isinstance(start, np.datetime64)) or (not dated and is_epoch(begin)):
+        return moment_text(_seconds(time), begin)
+    return f"{str(_told(time)).removesuffix('.0')} s"
+
+
+def _seconds(time: Any) -> Fraction:
+    """Return a time in seconds, exactly; dates count from 1970."""
+    if isinstance(time, np.datetime64 | np.timedelta64):
+        return Fraction(nanoseconds_of(time) or 0, 10**9)
+    return Fraction(str(time))
+
+
+def _told(moment: Any) -> float | str | Decimal | None:
     """Return a time for reports: a date where the recording has dates, else seconds, with all their digits."""
+    if moment is None:
+        return None
     if isinstance(moment, np.datetime64):
         return str(moment)
     return Decimal(stamp_text(moment)) if isinstance(moment, np.timedelta64) else float(moment)
@@ -262,12 +288,16 @@ class _Chunks:
         self._chunks = chunks
         self._counts: Counter[str] = Counter()
         self.last: Trace | None = None
+        #: The first time of all.
+        self.start: Any = 0.0
         #: What the last chunk says, which is about all before it, too.
         self.losses: tuple[str, ...] = ()
 
     def __iter__(self) -> Iterator[Trace]:
         for chunk in self._chunks:
-            if self.last is not None:
+            if self.last is None:
+                self.start = chunk.start if chunk.start is not None else 0.0
+            else:
                 self._counts.update({name: len(self.last[name].values) for name in self.last})
             self.last = chunk
             self.losses = chunk.losses

@@ -38,6 +38,15 @@ def matplotlib(module: str = "figure") -> Any:
     return library(f"matplotlib.{module}", "a picture", "plot")
 
 
+def new_figure() -> Any:
+    """Return a figure of pyplot; in a notebook a figure of its own, which a cell shows once, as its last expression.
+
+    Of pyplot's figures a notebook shows each at the end of its cell, and that of the last expression once more.
+    """
+    pyplot = matplotlib("pyplot")
+    return matplotlib().Figure() if "inline" in pyplot.get_backend() else pyplot.figure()
+
+
 def draw(scene: Scene, rows: int, figure: Any, window: tuple[float, float] | None = None) -> None:
     """Draw a scene into a figure, which is made as large as it needs to be.
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from html import escape
 from itertools import groupby
 from typing import TYPE_CHECKING, Any
 
@@ -19,6 +20,19 @@ def listing(trace: Trace) -> str:
     rows = [row for topic, channels in topics(trace) for row in _rows(topic, channels)]
     width = max((len(label) for label, _ in rows), default=0)
     return "\n".join(lines + [f"  {label:<{width}}  {rest}".rstrip() for label, rest in rows])
+
+
+def html(trace: Trace) -> str:
+    """Return what Jupyter shows: the notes, and a table of the signals, topic by topic."""
+    lines = [f"<p>{escape(line)}</p>" for line in (heading(trace), *notes(trace))]
+    rows = [
+        f"<tr><td>{escape(name)}</td><td>{escape(channel.unit)}</td><td>{escape(extent(channel))}</td></tr>"
+        for name in trace.names
+        for channel in [trace.channel(name)]
+    ]
+    return "".join(
+        [*lines, "<table><tr><th>signal</th><th>unit</th><th>samples</th></tr>", *rows, "</table>"]
+    )
 
 
 def heading(trace: Trace) -> str:

@@ -12,14 +12,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any
+from importlib import import_module
+from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 
-from rtamt.errors import TraceError, UsageError, choices
+from rtamt.errors import TraceError, UsageError, choices, shown
 from rtamt.language.units import duration
 from rtamt.signals.arrays import TIME, Clocked, missing_sample, stamps
-from rtamt.signals.listing import extent, listing
+from rtamt.signals.listing import extent, html, listing
 from rtamt.signals.signal import Signal
 
 if TYPE_CHECKING:
@@ -144,8 +145,24 @@ class Trace(Clocked):
             )
         return self._channels[name]
 
-    def __getitem__(self, name: str) -> Signal:
-        """Return times and values of one signal."""
+    @overload
+    def __getitem__(self, name: str) -> Signal: ...
+
+    @overload
+    def __getitem__(self, name: slice) -> Trace: ...
+
+    def __getitem__(self, name: str | slice) -> Signal | Trace:
+        """Return times and values of one signal, or of a slice of times the trace from one to the other.
+
+        Both ends are included, as in pandas: seconds, or dates as text where the trace has dates.
+
+        >>> import rtamt
+        >>> trace = rtamt.read({"time": [0, 1, 2, 3], "x": [5, 4, 2, 6]})
+        >>> trace[1:2]["x"]
+        Signal(times=array([1., 2.]), values=array([4., 2.]))
+        """
+        if isinstance(name, slice):
+            return self._between(name)
         channel = self.channel(name)
         times = np.arange(len(channel.values)) if channel.times is None else channel.times
         return Signal(times, channel.values)
@@ -179,6 +196,59 @@ class Trace(Clocked):
         for name in names:
             self.channel(name)
         return self._with({name: channel for name, channel in self._channels.items() if name in names})
+
+    def extended(self, signals: Mapping[str, Signal], units: Mapping[str, str] | None = None) -> Trace:
+        """Return the trace with further signals, such as those of a result; one of the same name is replaced.
+
+        >>> import rtamt
+        >>> trace = rtamt.read({"time": [0, 1], "v [m/s]": [5, 10]})
+        >>> speed = rtamt.parse("v * 3.6").evaluate(trace).signal
+        >>> trace.extended({"speed": speed}, units={"speed": "km/h"}).names
+        ('v', 'speed')
+        """
+        units = units or {}
+        found = dict(self._channels)
+        for name, signal in signals.items():
+            if not isinstance(signal, Signal):
+                raise UsageError(
+                    f"'{name}' is {shown(signal)}; give a signal, such as rtamt.Signal(times, values)"
+                )
+            found[name] = Channel(
+                np.asarray(signal.times), np.asarray(signal.values, float), units.get(name, "")
+            )
+        return self._with(found)
+
+    def to_pandas(self) -> Any:
+        """Return a pandas DataFrame: a column for each signal, NaN at times at which it has no sample.
+
+        >>> import rtamt
+        >>> rtamt.read({"x": ([0.0, 1.0], [1, 2]), "y": ([1.0], [3])}).to_pandas()["y"].tolist()
+        [nan, 3.0]
+        """
+        try:
+            pd: Any = import_module("pandas")
+        except ModuleNotFoundError:
+            raise UsageError("a DataFrame needs pandas, which is not installed: pip install pandas") from None
+        series = {name: pd.Series(self[name].values, index=self[name].times) for name in self._channels}
+        return pd.DataFrame(series).rename_axis(TIME)
+
+    def _between(self, times: slice) -> Trace:
+        if times.step is not None:
+            raise UsageError(
+                "a slice of a trace takes two times; put it on another clock with resample(period=...)"
+            )
+        found = {}
+        for name, channel in self._channels.items():
+            if channel.times is None:
+                raise TraceError(
+                    f"'{name}' has no time stamps, so that it has no times to slice", variable=name
+                )
+            low, high = (_bound(end, channel.times.dtype) for end in (times.start, times.stop))
+            inside = np.ones(len(channel.times), dtype=bool)
+            inside &= True if low is None else channel.times >= low
+            inside &= True if high is None else channel.times <= high
+            found[name] = replace(channel, times=channel.times[inside], values=channel.values[inside])
+        return self._with(found)
 
     # ---- for the engine --------------------------------------------------------------------------
 
@@ -308,6 +378,28 @@ class Trace(Clocked):
 
     def __repr__(self) -> str:
         return listing(self)
+
+    def _repr_html_(self) -> str:
+        return html(self)
+
+
+def _bound(end: Any, dtype: np.dtype[Any]) -> Any:
+    """Return an end of a slice as times of this type; None where it is open."""
+    if end is None:
+        return None
+    try:
+        if dtype.kind == "M":
+            return np.datetime64(end, "ns")
+        if dtype.kind == "m":
+            return (
+                end
+                if isinstance(end, np.timedelta64)
+                else np.timedelta64(round(Fraction(str(end)) * 10**9), "ns")
+            )
+        return float(end)
+    except (TypeError, ValueError):
+        kind = "a date such as '2026-05-01T12:00'" if dtype.kind == "M" else "a number of seconds"
+        raise UsageError(f"{shown(end)} cannot begin or end a slice of this trace; give {kind}") from None
 
 
 def _passed_over(name: str, places: NDArray[np.intp], count: int) -> list[str]:

@@ -32,9 +32,9 @@ def test_table(run, write, backend):
         1,
         "always(x >= 3)\n"
         "\n"
-        "trace             samples  period  robustness  verdict\n"
-        "good.csv                3     1 s           1  satisfied\n"
-        "violated_one.csv        3     1 s        -1.5  violated\n"
+        "trace             samples  period  robustness  first violation  verdict\n"
+        "good.csv                3     1 s           1                -  satisfied\n"
+        "violated_one.csv        3     1 s        -1.5              1 s  violated\n"
         "\n"
         "1 satisfied, 1 violated\n",
         "",
@@ -47,8 +47,8 @@ def test_one_trace_needs_no_count_of_verdicts(run, write):
         0,
         "always(x >= 3)\n"
         "\n"
-        "trace     samples  period  robustness  verdict\n"
-        "good.csv        3     1 s           1  satisfied\n",
+        "trace     samples  period  robustness  first violation  verdict\n"
+        "good.csv        3     1 s           1                -  satisfied\n",
         "",
     )
 
@@ -68,10 +68,10 @@ def test_an_error_in_one_trace_is_reported_and_the_others_are_checked(run, write
         2,
         "always(x >= 3)\n"
         "\n"
-        "trace  samples  period  robustness  verdict\n"
-        "a.csv        3     1 s           1  satisfied\n"
-        "b.csv        -       -           -  error\n"
-        "c.csv        3     1 s        -1.5  violated\n"
+        "trace  samples  period  robustness  first violation  verdict\n"
+        "a.csv        3     1 s           1                -  satisfied\n"
+        "b.csv        -       -           -                -  error\n"
+        "c.csv        3     1 s        -1.5              1 s  violated\n"
         "\n"
         "1 satisfied, 1 violated, 1 error\n",
         "rtamt: b.csv, line 2: 'x' is 'abc', expected a number\n",
@@ -183,8 +183,8 @@ def test_dense_time_has_no_period(run, write):
         0,
         f"{formula}\n"
         "\n"
-        "trace       samples  period  robustness  verdict\n"
-        "events.csv        4   dense         0.5  satisfied\n",
+        "trace       samples  period  robustness  first violation  verdict\n"
+        "events.csv        4   dense         0.5                -  satisfied\n",
         "",
     )
     assert Path("rho.csv").read_text() == "time,robustness\n0.0,0.5\n2.0,0.5\n"
@@ -204,7 +204,7 @@ def test_in_dense_time_a_variable_has_no_sample_where_its_cell_is_empty(run, wri
     write("events.csv", "time,x,y\n0,5,\n0.1,,1\n0.3,2,\n1,,\n")
     answer = run("check", "x >= 3 and y >= 0", "events.csv", "--time", "dense", "-o", "rho.csv")
     assert (answer.code, answer.err) == (0, "")
-    assert answer.out.splitlines()[-1].split() == ["events.csv", "3", "dense", "1", "satisfied"]
+    assert answer.out.splitlines()[-1].split() == ["events.csv", "3", "dense", "1", "-", "satisfied"]
     assert Path("rho.csv").read_text() == "time,robustness\n0.1,1.0\n0.3,-1.0\n"
     assert run("check", "x >= 3", "events.csv") == (
         2,
@@ -312,9 +312,9 @@ def test_a_file_with_several_requirements_was_judged_by_its_last_one_only(run, w
     answer = run("check", "first_is_violated.stl", write("bad.csv", BAD))
     assert answer == (
         1,
-        "requirement                           trace    samples  period  robustness  verdict\n"
-        "first_is_violated.stl: requirement_1  bad.csv        3     1 s        -1.5  violated\n"
-        "first_is_violated.stl: requirement_2  bad.csv        3     1 s         1.5  satisfied\n"
+        "requirement                           trace    samples  period  robustness  first violation  verdict\n"
+        "first_is_violated.stl: requirement_1  bad.csv        3     1 s        -1.5              1 s  violated\n"
+        "first_is_violated.stl: requirement_2  bad.csv        3     1 s         1.5                -  satisfied\n"
         "\n"
         "1 satisfied, 1 violated\n",
         "",

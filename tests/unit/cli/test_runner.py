@@ -28,11 +28,11 @@ def files(write):
 
 
 TABLE = (
-    "requirement  trace             samples  period  robustness  verdict\n"
-    "low          good.csv                3     1 s           1  satisfied\n"
-    "high.stl     good.csv                3     1 s          -1  violated\n"
-    "low          bad & <ugly>.csv        3     1 s        -1.5  violated\n"
-    "high.stl     bad & <ugly>.csv        3     1 s          -1  violated\n"
+    "requirement  trace             samples  period  robustness  first violation  verdict\n"
+    "low          good.csv                3     1 s           1                -  satisfied\n"
+    "high.stl     good.csv                3     1 s          -1              2 s  violated\n"
+    "low          bad & <ugly>.csv        3     1 s        -1.5              1 s  violated\n"
+    "high.stl     bad & <ugly>.csv        3     1 s          -1              2 s  violated\n"
     "\n"
     "1 satisfied, 3 violated\n"
 )

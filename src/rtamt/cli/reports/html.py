@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any
 
 from rtamt.cli.command import CommandError, short, write_output
 from rtamt.cli.reading_options import instant
-from rtamt.cli.reports.messages import moment
 from rtamt.cli.terminal import printed
 from rtamt.errors import StlError
 from rtamt.plot.scene import scene
@@ -94,7 +93,7 @@ def _row(outcome: Outcome) -> Row:
         outcome.trace,
         outcome.verdict,
         short(outcome.robustness),
-        moment(outcome),
+        outcome.moment,
         str(outcome.samples),
         notes=outcome.notes,
     )
