@@ -22,6 +22,7 @@ namespace rtamt::python {
 namespace nb = nanobind;
 
 using Column = nb::ndarray<const double, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
+using BoundsColumn = nb::ndarray<const double, nb::shape<-1, 2>, nb::c_contig, nb::device::cpu>;
 using Result = nb::ndarray<nb::numpy, double, nb::ndim<1>>;
 
 // Memory of results, one piece an output, handed over to numpy.

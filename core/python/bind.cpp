@@ -12,6 +12,7 @@
 #include "../discrete/stamps.hpp"
 #include "../program/opcodes.hpp"
 #include "../program/program.hpp"
+#include "../values/interval.hpp"
 #include "arrays.hpp"
 #include "calls.hpp"
 #include "dense_monitor.hpp"
@@ -45,6 +46,7 @@ using rtamt::Domain;
 using rtamt::Program;
 using rtamt::dense::EventList;
 using rtamt::discrete::Executor;
+using rtamt::python::BoundsColumn;
 using rtamt::python::Calls;
 using rtamt::python::Column;
 using rtamt::python::DenseMonitor;
@@ -178,6 +180,60 @@ std::vector<Result> evaluate(const nb::bytes& bytes, const std::vector<Column>& 
                                        failure->fault);
     }
     return results.hand_over();
+}
+
+// The same of bounds: columns of (lower, upper), n of each.
+nb::list evaluate_bounds(const nb::bytes& bytes, const std::vector<BoundsColumn>& columns,
+                         std::size_t count, const Exceptions& exceptions) {
+    const nb::list none;
+    Calls held(none);
+    Program program = parse(bytes, Domain::discrete);
+    if (columns.size() != program.inputs) {
+        throw std::invalid_argument("Got " + std::to_string(columns.size()) +
+                                    " columns for a program with " +
+                                    std::to_string(program.inputs) + " inputs.");
+    }
+    std::vector<std::vector<rtamt::Bounds>> inputs;
+    std::vector<const rtamt::Bounds*> columns_of;
+    for (const BoundsColumn& column : columns) {
+        if (column.shape(0) != count) {
+            throw std::invalid_argument("A column has " + std::to_string(column.shape(0)) +
+                                        " samples where " + std::to_string(count) +
+                                        " are expected.");
+        }
+        auto& input = inputs.emplace_back(count);
+        for (std::size_t i = 0; i < count; ++i)
+            input[i] = {column(i, 0), column(i, 1)};
+        columns_of.push_back(input.data());
+    }
+    std::vector<std::vector<rtamt::Bounds>> outputs(program.outputs.size());
+    std::vector<rtamt::Bounds*> results_of;
+    for (auto& output : outputs) {
+        output.resize(count);
+        results_of.push_back(output.data());
+    }
+    const auto failure = rtamt::python::without_gil(count, [&] {
+        return rtamt::discrete::BasicExecutor<rtamt::Interval>::evaluate(
+            std::move(program), columns_of, count, results_of);
+    });
+    if (failure) {
+        rtamt::python::raise_undefined(exceptions, held, failure->instruction, failure->sample,
+                                       failure->fault);
+    }
+    nb::list found;
+    for (const auto& output : outputs) {
+        Results bounds;
+        bounds.add(count);
+        bounds.add(count);
+        const auto pointers = bounds.pointers();
+        for (std::size_t i = 0; i < count; ++i) {
+            pointers[0][i] = output[i].lower;
+            pointers[1][i] = output[i].upper;
+        }
+        auto ends = bounds.hand_over();
+        found.append(nb::make_tuple(std::move(ends[0]), std::move(ends[1])));
+    }
+    return found;
 }
 
 Result scan(std::string_view kind, const Column& a, const std::optional<Column>& b) {
@@ -374,6 +430,14 @@ NB_MODULE(_core, m) {
         },
         nb::arg("program"), nb::arg("columns"), nb::arg("n"), nb::arg("calls") = nb::list(),
         "Run a program over a whole trace of n samples; return n values an output.");
+    m.def(
+        "evaluate_bounds",
+        [exceptions](const nb::bytes& program, const std::vector<BoundsColumn>& columns,
+                     std::size_t n) { return evaluate_bounds(program, columns, n, exceptions); },
+        nb::arg("program"), nb::arg("columns"), nb::arg("n"),
+        "Run a program without calls over bounds of a whole trace, an array of shape (n, 2) an "
+        "input; "
+        "return lower and upper bounds of each output.");
     m.def("scan", &scan, nb::arg("kind"), nb::arg("a"), nb::arg("b") = nb::none(),
           "Unbounded future over a whole column: run_max, run_min, or until.");
     m.def(

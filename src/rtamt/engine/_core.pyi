@@ -245,6 +245,14 @@ def evaluate(
 ) -> list[NDArray[np.float64]]:
     """Run a program over a whole trace of n samples; return n values an output."""
 
+def evaluate_bounds(
+    program: bytes, columns: Sequence[NDArray[np.float64]], n: int
+) -> list[tuple[NDArray[np.float64], NDArray[np.float64]]]:
+    """Run a program without calls over bounds of a whole trace, an array of shape (n, 2) an input.
+
+    Return lower and upper bounds of each output.
+    """
+
 def scan(kind: str, a: NDArray[np.float64], b: NDArray[np.float64] | None = None) -> NDArray[np.float64]:
     """Unbounded future over a whole column: run_max, run_min, or until."""
 

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
 
     from rtamt.compiler.program import CallSite, Program
     from rtamt.language.formula import Formula
+    from rtamt.signals.outcomes import BoundedSignal
 
 #: The names of the back ends: the compiled core, and the definition in Python. The first is the default.
 BACKENDS = ("cpp", "python")
@@ -34,6 +35,12 @@ class Backend(ABC):
 
         ``step``: that of the traces, in seconds. The function may be called again with other traces.
         """
+
+    @abstractmethod
+    def bounds(
+        self, formulas: tuple[Formula, ...], step: Fraction, inputs: tuple[str, ...]
+    ) -> Callable[[Any], list[BoundedSignal]]:
+        """Return the same for traces that are known in part: the bounds of each formula, as signals."""
 
     @abstractmethod
     def session(

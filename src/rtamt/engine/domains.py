@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-from rtamt.engine import bounded
 from rtamt.engine.dense import backends as dense
 from rtamt.engine.dense.monitor import DenseMonitor
 from rtamt.engine.discrete import backends as discrete
@@ -19,9 +18,7 @@ if TYPE_CHECKING:
 
     from rtamt.engine.backend import Backend
     from rtamt.engine.online import OnlineMonitor
-    from rtamt.language.formula import Formula
     from rtamt.signals.domain import TimeDomain
-    from rtamt.signals.outcomes import BoundedSignal
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,19 +26,17 @@ class Engine:
     """What evaluates and monitors formulas in one time domain.
 
     ``backends``: by name, see :data:`rtamt.engine.backend.BACKENDS`. ``monitor``: takes a formula and the time
-    domain; for its settings see :class:`Monitor`. ``bounds``: takes a formula and a recording that is known in
-    part, and returns bounds of the robustness.
+    domain; for its settings see :class:`Monitor`.
     """
 
     backends: Mapping[str, Backend]
     monitor: Callable[..., OnlineMonitor]
-    bounds: Callable[[Formula, Any], BoundedSignal]
 
 
 _ENGINES: Mapping[type[TimeDomain], Engine] = MappingProxyType(
     {
-        Discrete: Engine(discrete.BACKENDS, Monitor, bounded.discrete),
-        Dense: Engine(dense.BACKENDS, DenseMonitor, bounded.dense),
+        Discrete: Engine(discrete.BACKENDS, Monitor),
+        Dense: Engine(dense.BACKENDS, DenseMonitor),
     }
 )
 

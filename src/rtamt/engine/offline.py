@@ -43,10 +43,10 @@ class Evaluators:
 
     def __call__(self, formulas: tuple[Formula, ...], recording: DomainTrace) -> list[Signal]:
         """Return the robustness signal of each formula over a recording, all from one program."""
-        if recording.bounds:
-            bounds = engine_of(recording.domain).bounds
-            return [bounds(formula, recording) for formula in formulas]
         step, inputs = recording.step, tuple(recording.columns)
+        if recording.bounds:
+            backend = engine_of(recording.domain).backends[self._backend]
+            return list(backend.bounds(formulas, step, inputs)(recording))
         key = (type(recording), formulas, step.as_integer_ratio(), inputs)  # fractions are slow to hash
         evaluator = self._evaluators.get(key)
         if evaluator is None:

@@ -6,6 +6,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from rtamt.compiler.plan import compile_program
+from rtamt.engine import bounded
 from rtamt.engine.backend import Backend, CompiledSession, Session, named
 from rtamt.engine.dense.evaluate import Evaluator
 from rtamt.engine.dense.python_backend import PythonDenseMonitor
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
     from rtamt.language.formula import Formula
     from rtamt.signals.dense import DenseTrace
     from rtamt.signals.dense_arrays import Samples
+    from rtamt.signals.outcomes import BoundedSignal
 
 
 class CompiledDense(Backend):
@@ -30,6 +32,15 @@ class CompiledDense(Backend):
     def evaluator(self, formulas: tuple[Formula, ...], step: Fraction, inputs: tuple[str, ...]) -> Evaluator:
         """See :class:`Backend`."""
         return Evaluator(formulas, step, inputs)
+
+    def bounds(
+        self,
+        formulas: tuple[Formula, ...],
+        step: Fraction,  # noqa: ARG002
+        inputs: tuple[str, ...],  # noqa: ARG002
+    ) -> Callable[[DenseTrace], list[BoundedSignal]]:
+        """See :class:`Backend`: by the definition."""
+        return lambda trace: [bounded.dense(formula, trace) for formula in formulas]
 
     def session(
         self,
@@ -60,6 +71,15 @@ class DefinedDense(Backend):
             return [(each.times, each.values) for each in steps]
 
         return evaluated
+
+    def bounds(
+        self,
+        formulas: tuple[Formula, ...],
+        step: Fraction,  # noqa: ARG002
+        inputs: tuple[str, ...],  # noqa: ARG002
+    ) -> Callable[[DenseTrace], list[BoundedSignal]]:
+        """See :class:`Backend`."""
+        return lambda trace: [bounded.dense(formula, trace) for formula in formulas]
 
     def session(
         self,

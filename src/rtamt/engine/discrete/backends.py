@@ -6,12 +6,15 @@ from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
 from rtamt.compiler.plan import compile_program
+from rtamt.engine import bounded
 from rtamt.engine.backend import Backend, CompiledSession, Session, named
-from rtamt.engine.discrete.evaluate import Evaluator
+from rtamt.engine.discrete.evaluate import BoundsEvaluator, Evaluator, is_built_in
 from rtamt.engine.discrete.python_backend import PythonMonitor
 from rtamt.engine.native import core_monitor
+from rtamt.language.formula import postorder
 from rtamt.reference import discrete as reference
 from rtamt.rewrite.desugar import desugar
+from rtamt.signals.outcomes import BoundedSignal
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Sequence
@@ -29,6 +32,18 @@ class CompiledDiscrete(Backend):
     def evaluator(self, formulas: tuple[Formula, ...], step: Fraction, inputs: tuple[str, ...]) -> Evaluator:  # noqa: ARG002
         """See :class:`Backend`."""
         return Evaluator(formulas, step)
+
+    def bounds(
+        self,
+        formulas: tuple[Formula, ...],
+        step: Fraction,
+        inputs: tuple[str, ...],  # noqa: ARG002
+    ) -> Callable[[DiscreteTrace], list[BoundedSignal]]:
+        """See :class:`Backend`. What the core can only call is left to the definition."""
+        if not all(map(is_built_in, postorder(*map(desugar, formulas)))):
+            return lambda trace: [bounded.discrete(formula, trace) for formula in formulas]
+        evaluator = BoundsEvaluator(formulas, step)
+        return lambda trace: [BoundedSignal(trace.stamps, *ends) for ends in evaluator.of_bounds(trace)]
 
     def session(
         self,
@@ -60,6 +75,15 @@ class DefinedDiscrete(Backend):
             return [reference.evaluate(f, trace.columns, len(trace), step, start) for f in formulas]
 
         return evaluated
+
+    def bounds(
+        self,
+        formulas: tuple[Formula, ...],
+        step: Fraction,  # noqa: ARG002
+        inputs: tuple[str, ...],  # noqa: ARG002
+    ) -> Callable[[DiscreteTrace], list[BoundedSignal]]:
+        """See :class:`Backend`."""
+        return lambda trace: [bounded.discrete(formula, trace) for formula in formulas]
 
     def session(
         self,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -10,11 +11,12 @@ from rtamt.compiler.plan import DEFINED, Plan, compile_plan
 from rtamt.engine.native import core, culprit, not_made
 from rtamt.engine.user_operators import SampleDriver, calls_of, defined_column
 from rtamt.language.formula import Apply, postorder
+from rtamt.language.operators import Pointwise, Shift, Since, Until, Window
 from rtamt.language.undefined_value import at_sample, undefined
 from rtamt.rewrite.desugar import desugar
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Iterator, Mapping, Sequence
     from fractions import Fraction
 
     from rtamt.compiler.plan import Scan
@@ -22,6 +24,9 @@ if TYPE_CHECKING:
     from rtamt.language.formula import Formula
     from rtamt.signals.arrays import FloatArray
     from rtamt.signals.discrete import DiscreteTrace
+
+    #: Lower and upper bounds at each sample.
+    Ends = tuple[FloatArray, FloatArray]
 
 
 class Evaluator:
@@ -34,15 +39,19 @@ class Evaluator:
         self._longest = longest_bound(self._formulas, period)
         self._plans: dict[int, Plan] = {}
 
-    def __call__(self, trace: DiscreteTrace) -> list[FloatArray]:
-        """Return the robustness of each formula at each of the n samples of the trace."""
-        n = len(trace)
+    def plan(self, n: int) -> Plan:
+        """Return the plan for traces of n samples."""
         # A trace longer than every bound needs no clipping, so that one plan serves all such traces.
         clip = min(n, self._longest + 1)
         plan = self._plans.get(clip)
         if plan is None:
             self._plans.clear()
             plan = self._plans[clip] = compile_plan(self._formulas, self._period, clip)
+        return plan
+
+    def __call__(self, trace: DiscreteTrace) -> list[FloatArray]:
+        """Return the robustness of each formula at each of the n samples of the trace."""
+        plan = self.plan(len(trace))
         columns = dict(trace.columns)
         for stage in plan.stages:
             values = run(stage.program, columns, trace, plan, self._asked)
@@ -53,6 +62,36 @@ class Evaluator:
                 else:
                     columns[scan.name] = core().scan(scan.kind, *operands)
         return run(plan.program, columns, trace, plan, self._asked)
+
+
+class BoundsEvaluator(Evaluator):
+    """Evaluates bounds of the same formulas over traces that are known in part."""
+
+    def of_bounds(self, trace: DiscreteTrace) -> list[Ends]:
+        """Return lower and upper bounds of each formula at each of the n samples of the trace."""
+        plan = self.plan(len(trace))
+        columns: dict[str, Ends] = dict(trace.bounds)
+        for stage in plan.stages:
+            values = self._run(stage.program, columns, trace, plan)
+            for scan in stage.scans:
+                lower, upper = (core().scan(scan.kind, *(values[i][k] for i in scan.outputs)) for k in (0, 1))
+                columns[scan.name] = lower, upper
+        return self._run(plan.program, columns, trace, plan)
+
+    def _run(
+        self, program: Program, columns: Mapping[str, Ends], trace: DiscreteTrace, plan: Plan
+    ) -> list[Ends]:
+        inputs = [np.stack(columns[name], axis=1) for name in program.inputs]
+        with undefined_named(program, trace, plan, self._asked):
+            found: list[Ends] = core().evaluate_bounds(program.code(), inputs, len(trace))
+        return found
+
+
+def is_built_in(node: Formula) -> bool:
+    """Tell whether the core has a kernel of its own for an operator."""
+    return not isinstance(node, Apply) or isinstance(
+        node.op.kernel, Pointwise | Window | Shift | Since | Until
+    )
 
 
 def longest_bound(formulas: Sequence[Formula], period: Fraction) -> int:
@@ -74,19 +113,27 @@ def run(
     asked: Sequence[Formula],
 ) -> list[FloatArray]:
     """Run one program of a plan, made for the formulas that are ``asked``, over whole columns."""
-    _core = core()
     inputs = [columns[name] for name in program.inputs]
-    try:
-        values: list[FloatArray] = _core.evaluate(
+    with undefined_named(program, trace, plan, asked):
+        values: list[FloatArray] = core().evaluate(
             program.code(), inputs, len(trace), calls_of(program, SampleDriver)
         )
+    return values
+
+
+@contextmanager
+def undefined_named(
+    program: Program, trace: DiscreteTrace, plan: Plan, asked: Sequence[Formula]
+) -> Iterator[None]:
+    """Turn failures of the core into errors that name the sub-formula and the sample."""
+    try:
+        yield
     except RuntimeError as error:
         raise not_made(program, error) from None
-    except _core.Undefined as error:
+    except core().Undefined as error:
         sample = error.args[1]
         formula = culprit(error, program, asked, plan.original)
         raise undefined(formula, at_sample(sample, float(trace.times[sample]))) from None
-    return values
 
 
 def defined(scan: Scan, operands: list[FloatArray], trace: DiscreteTrace, plan: Plan) -> FloatArray:
