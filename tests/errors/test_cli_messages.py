@@ -121,7 +121,7 @@ def run(capsys, monkeypatch, tmp_path):
             "give the right period, or resample the trace",
         ),
         (
-            ["monitor", "always(x)"],
+            ["monitor", "always(x)", "--verdict", "delayed"],
             "'always' without an upper bound needs the whole future and cannot be monitored online; "
             "give it a bound, such as always[0:10], or evaluate the finished trace offline\n"
             "  line 1, column 1:\n"

@@ -14,6 +14,7 @@ language         the option ``--language``
 runner           every requirement on every recording, on all cores
 bag              check a bag, and write a copy with the results
 stdin_reader     JSON or CSV lines to samples
+early_feeds      verdicts and bounds before the horizon, as ``rtamt monitor`` prints them
 live_view        the live view of ``rtamt monitor``
 terminal         output, colours, tables, progress
 compiled         ``rtamt info`` for compiled programs

@@ -24,14 +24,18 @@ from rtamt.cli.command import (
     read_specification,
     stamp_text,
 )
+from rtamt.cli.early_feeds import EagerFeed, IntervalFeed
 from rtamt.cli.live_view import Live
 from rtamt.cli.stdin_reader import STDIN, Samples
 from rtamt.cli.terminal import printed, say
 from rtamt.errors import StlError, TraceError
+from rtamt.rewrite.check import unbounded_future
 from rtamt.signals.dense import Dense
 from rtamt.signals.regular import TOLERANCE
 from rtamt.signals.signal import Signal
 from rtamt.signals.trace import in_seconds
+from rtamt.verdicts.early import EagerMonitor
+from rtamt.verdicts.modes import DELAYED, MODES
 
 if TYPE_CHECKING:
     import argparse
@@ -67,6 +71,12 @@ date where the input has dates. JSON has no infinities: they are the strings "in
 and in the input. With --semantics boolean a line has the verdict too: {"time": 0.0, "robustness": "inf",
 "satisfied": true}.
 
+--verdict eager prints {"time": 0.0, "satisfied": false, "decided_at": 2.0} as soon as no later sample can
+change whether the formula holds; --verdict interval prints bounds of the robustness whenever they change:
+{"time": 0.0, "lower": -1.0, "upper": "inf", "final": false}. A formula of unbounded future is watched at the
+start of the trace, also without --verdict: {"time": 12.3, "lower": "-inf", "upper": -1.0, "status":
+"violated since 12.3 s"}; other states are "open" and "can no longer be violated".
+
 A line that is no sample ends the monitor with exit code 2. With --keep-going it is reported and
 left out, and the exit code is 2 at the end. A sample that is left out leaves a gap in time, which
 --tolerance inf allows: the next sample then takes its place.
@@ -96,6 +106,11 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "else 0)",
     )
     parser.add_argument(
+        "--verdict",
+        choices=tuple(MODES),
+        help="; ".join(f"{mode.name}: {mode.doc}" for mode in MODES.values()) + f" (default: {DELAYED})",
+    )
+    parser.add_argument(
         "--live", action="store_true", help="draw verdict, robustness and values on the terminal"
     )
     parser.add_argument("--keep-going", action="store_true", help="report a bad line and go on")
@@ -110,11 +125,14 @@ def run(args: argparse.Namespace) -> int:
     live = _live(printed(spec.formula)) if args.live else None
     told = Output(verdicts=spec.semantics == "boolean", live=live)
     names = tuple(spec.requirements) if len(spec.requirements) > 1 else ()
-    watched: SampleFeed | EventFeed = (
-        EventFeed(spec.monitor(time=Dense(spec.resolution), watch=names), told, names)
-        if dense
-        else _watched(spec, args.tolerance, told, names)
-    )
+    watched: SampleFeed | EventFeed | EagerFeed | IntervalFeed
+    early = _early(spec, args)
+    if early is not None:
+        watched = early
+    elif dense:
+        watched = EventFeed(spec.monitor(time=Dense(spec.resolution), watch=names), told, names)
+    else:
+        watched = _watched(spec, args.tolerance, told, names)
     samples = Samples(watched.monitor.input_names, args.time_column, dense=dense, unit=args.time_unit)
     if sys.stdin is None:
         raise CommandError(f"{STDIN} is closed: give one JSON object a line, or CSV with a header row")
@@ -143,6 +161,19 @@ def run(args: argparse.Namespace) -> int:
     if live is not None:
         live.draw()
     return code
+
+
+def _early(spec: Specification, args: argparse.Namespace) -> EagerFeed | IntervalFeed | None:
+    """Return what prints before the horizon, if that is asked for, or if there is no horizon."""
+    verdict = args.verdict
+    if verdict is None and not spec.domain.continuous and unbounded_future(spec.formula) is not None:
+        verdict = "interval"
+    if verdict in {None, DELAYED}:
+        return None
+    if args.live:
+        raise CommandError(f"--live draws the robustness; leave it out, or use --verdict {DELAYED}")
+    monitor = spec.monitor(verdict=verdict, tolerance=args.tolerance)
+    return EagerFeed(monitor) if isinstance(monitor, EagerMonitor) else IntervalFeed(monitor)
 
 
 def _watched(spec: Specification, tolerance: float | None, told: Output, names: Sequence[str]) -> SampleFeed:

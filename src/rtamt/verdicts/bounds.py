@@ -64,6 +64,7 @@ class IntervalMonitor(EarlyMonitor):
     _remembered: ClassVar[tuple[str, ...]] = (
         "_finished",
         "_rest",
+        "_open_at_end",
         "_at_end",
         "_events",
         "_snapshots",
@@ -94,7 +95,7 @@ class IntervalMonitor(EarlyMonitor):
                 open_ended.span,
             )
         super().__init__(formula, domain, start=True, **settings)
-        self._at = at
+        self.at = at
         self._lateness = Fraction(0) if lateness is None else duration(lateness)
         if self._lateness < 0:
             raise UsageError(f"the lateness is {shown(lateness)}; it must not be negative")
@@ -106,6 +107,8 @@ class IntervalMonitor(EarlyMonitor):
 
     def _forget(self) -> None:
         self._rest: tuple[Any, ...] = ()
+        #: Of each output the samples whose bounds were open when the trace ended.
+        self._open_at_end: tuple[tuple[int, ...], ...] = ()
         # Samples that came before it is known where the trace starts.
         self._early: tuple[Any, ...] = ()
         self._at_end: Interval | None = None
@@ -287,7 +290,7 @@ class IntervalMonitor(EarlyMonitor):
         """Return the bounds at the start of the trace, or at a sample that is not long final (``at="every"``)."""
         if time is None:
             return Interval(*self._backend.origin()) if self._at_end is None else self._at_end
-        if self._at == "start":
+        if self.at == "start":
             raise UsageError(
                 "the monitor gives bounds at the start alone; make it with at='every' for others"
             )
@@ -309,7 +312,7 @@ class IntervalMonitor(EarlyMonitor):
 
     def changes(self) -> list[Change]:
         """Return runs of samples up to the newest one whose bounds the last update changed, with what they are now."""
-        if self._at == "start":
+        if self.at == "start":
             raise UsageError(
                 "the monitor gives bounds at the start alone; make it with at='every' for others"
             )
@@ -322,9 +325,7 @@ class IntervalMonitor(EarlyMonitor):
     def _changes(self, output: int) -> list[Change]:
         if self._rest:
             first, values = self._rest[output]
-            return [
-                self._change(first + i, first + i, *bounds, output=output) for i, bounds in enumerate(values)
-            ]
+            return [self._change(t, t, *values[t - first], output=output) for t in self._open_at_end[output]]
         if self._retracted is not None and output == 0:
             return list(self._retracted)
         return [self._change(*run, output=output) for run in self._backend.changes(output)]
@@ -343,11 +344,25 @@ class IntervalMonitor(EarlyMonitor):
         if not self._finished:
             if self._early:
                 self._start()
-            rest, at_end = self._backend.finish()
+            backend = self._backend
+            before = [
+                {t: backend.bounds(output, t) for t in range(backend.held(output), backend.newest + 1)}
+                for output in range(len(self._outputs))
+            ]
+            rest, at_end = backend.finish()
             self._at_end = None if at_end is None else Interval(*at_end)
             self._rest = tuple(rest)
+            # In one class of formulas the end changes bounds that had met.
+            self._open_at_end = tuple(
+                tuple(
+                    t
+                    for t, ends in each.items()
+                    if t >= first and (ends[0] != ends[1] or ends != values[t - first])
+                )
+                for each, (first, values) in zip(before, rest, strict=True)
+            )
             self._finished = True
-        if self._at == "start" or self._hidden:
+        if self.at == "start" or self._hidden:
             return []
         return self._changes(0)
 

@@ -298,3 +298,33 @@ def test_in_dense_time_there_is_a_line_where_any_requirement_changes(run):
     assert told[-1] == (4, -1, {"R1": 1, "R2": -1})
     assert all(robustness == min(each.values()) for _, robustness, each in told)
     assert [time for time, _, _ in told] == sorted({time for time, _, _ in told})
+
+
+def test_verdicts_are_printed_once_they_are_settled(run):
+    stdin = jsonl(*({"time": t, "x": x} for t, x in enumerate([5, 4, 1, 7])))
+    answer = run("monitor", "always[0:1](x >= 3)", "--verdict", "eager", stdin=stdin)
+    assert lines(answer.out) == [(0.0, True, 1.0), (1.0, False, 2.0), (2.0, False, 2.0), (3.0, True, 3.0)]
+
+
+def test_bounds_are_printed_when_they_change(run):
+    stdin = jsonl(*({"time": t, "x": x} for t, x in enumerate([5, 1])))
+    answer = run("monitor", "always[0:1](x >= 3)", "--verdict", "interval", stdin=stdin)
+    assert answer.out == (
+        '{"time": 0.0, "lower": "-inf", "upper": 2.0, "final": false}\n'
+        '{"time": 0.0, "lower": -2.0, "upper": -2.0, "final": true}\n'
+        '{"time": 1.0, "lower": "-inf", "upper": -2.0, "final": false}\n'
+        '{"time": 1.0, "lower": -2.0, "upper": -2.0, "final": true}\n'
+    )
+
+
+@pytest.mark.parametrize(
+    ("formula", "states"),
+    [
+        ("always(x >= 3)", ["open", "violated since 1.0 s", "violated since 1.0 s"]),
+        ("eventually(x >= 3)", ["can no longer be violated", "satisfied since 0.0 s"]),
+    ],
+)
+def test_unbounded_future_is_watched_at_the_start(run, formula, states):
+    stdin = jsonl(*({"time": t, "x": x} for t, x in enumerate([5, 1])))
+    answer = run("monitor", formula, stdin=stdin)
+    assert [json.loads(line)["status"] for line in answer.out.splitlines()] == states
