@@ -42,18 +42,47 @@ constexpr std::int64_t farthest = 4'611'686'018'427'387'904; // 2^62
     return program.size() > place && program[place] == 1 ? Domain::dense : Domain::discrete;
 }
 
+// Whether requirements read different inputs, so that in dense time each trace would have a start
+// of its own. The first two outputs are of all requirements together. A requirement that reads no
+// input has no trace.
+[[nodiscard]] bool apart(const Program& program) {
+    std::vector<std::vector<bool>> reads(program.instructions.size());
+    for (std::size_t i = 0; i < reads.size(); ++i) {
+        const Instruction& instruction = program.instructions[i];
+        reads[i].resize(program.inputs);
+        if (instruction.opcode == Opcode::input) {
+            reads[i][static_cast<std::size_t>(instruction.n)] = true;
+            continue;
+        }
+        program.each_operand(instruction, [&](std::uint32_t operand) {
+            for (std::size_t input = 0; input < program.inputs; ++input)
+                reads[i][input] = reads[i][input] || reads[operand][input];
+        });
+    }
+    const std::vector<bool> nothing(program.inputs);
+    const std::vector<bool>* first = nullptr;
+    for (std::size_t output = 2; output < program.outputs.size(); ++output) {
+        const std::vector<bool>& own = reads[program.outputs[output]];
+        if (own == nothing) continue;
+        if (first != nullptr && own != *first) return true;
+        first = &own;
+    }
+    return false;
+}
+
 } // namespace
 
 Monitor::Monitor(std::span<const std::uint8_t> program) {
     Program parsed = Program::parse(program, domain_of(program));
     checksum_ = Reader(program.last(checksum_size)).take<std::uint32_t>();
     metadata_ = Metadata::parse(parsed);
+    apart_ = parsed.domain == Domain::dense && apart(parsed);
     runner_ = make_runner(std::move(parsed));
 }
 
 Monitor::Monitor(Monitor& other)
-    : checksum_(other.checksum_), metadata_(other.metadata_),
-      runner_(make_runner(other.program())) {
+    : checksum_(other.checksum_), metadata_(other.metadata_), runner_(make_runner(other.program())),
+      apart_(other.apart_) {
     other.require_whole();
     Snapshot saved;
     other.runner_->transfer(saved);
@@ -158,7 +187,21 @@ void Monitor::add(DenseRunner& runner, const rtamt_sample& sample) const {
         refuse("The time of '" + name + "' does not increase: " + time_of(sample.tick) +
                " comes after " + time_of(*last) + ".");
     }
+    if (apart_ && !last) require_one_start(runner, sample);
     runner.add(sample.input, sample.tick, sample.value);
+}
+
+// Refuses the first sample of an input at another time than that of the others: the requirements
+// have one trace here, but the verdict of each is about the trace of its own inputs.
+void Monitor::require_one_start(const DenseRunner& runner, const rtamt_sample& sample) const {
+    for (std::size_t input = 0; input < metadata_.inputs.size(); ++input) {
+        const auto first = runner.first(input);
+        if (!first || *first == sample.tick) continue;
+        refuse("'" + metadata_.inputs[input] + "' starts at " + time_of(*first) + " and '" +
+               metadata_.inputs[sample.input] + "' at " + time_of(sample.tick) +
+               ", but the requirements of this program read different inputs and share one trace: "
+               "start all inputs together, or compile each requirement alone.");
+    }
 }
 
 void Monitor::finish() {

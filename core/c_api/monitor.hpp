@@ -52,6 +52,7 @@ class Monitor {
     std::uint32_t checksum_ = 0; // of the program as it came, without parameters set since
     Metadata metadata_;
     std::unique_ptr<Runner> runner_;
+    bool apart_ = false;  // requirements read different inputs
     bool broken_ = false; // memory ran out in the middle of something
 
     [[nodiscard]] std::string time_of(std::int64_t step) const;
@@ -61,6 +62,7 @@ class Monitor {
     void require_whole() const;
     void require_ready() const;
     void add(DenseRunner& runner, const rtamt_sample& sample) const;
+    void require_one_start(const DenseRunner& runner, const rtamt_sample& sample) const;
     template <class Work>
     void unbroken(Work&& work);
 };

@@ -134,7 +134,8 @@ RTAMT_API rtamt_status rtamt_step(rtamt_monitor* monitor, const double* values, 
                                   rtamt_value* results, size_t outputs);
 
 /* Dense time: takes samples; those of one input at increasing ticks. rtamt_told has what became
- * known. */
+ * known. The trace starts when every input has started; where several requirements read different
+ * inputs, all inputs must start at the same tick. */
 RTAMT_API rtamt_status rtamt_push(rtamt_monitor* monitor, const rtamt_sample* samples,
                                   size_t count);
 

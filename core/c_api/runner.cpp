@@ -108,6 +108,12 @@ void DenseRunner::push() {
     if (failure) throw Undefined{failure->instruction, failure->time};
 }
 
+std::optional<std::int64_t> DenseRunner::first(std::size_t input) const noexcept {
+    if (const auto first = executor_.first_time(input)) return first;
+    const dense::Events fresh = fresh_[input].view();
+    return fresh.count != 0 ? std::optional(fresh.times[0]) : std::nullopt;
+}
+
 std::optional<std::int64_t> DenseRunner::last(std::size_t input) const noexcept {
     const dense::Events fresh = fresh_[input].view();
     if (fresh.count != 0) return fresh.times[fresh.count - 1];

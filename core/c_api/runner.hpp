@@ -92,7 +92,8 @@ class DenseRunner final : public Runner {
     void discard() noexcept;
     void push();
 
-    // The last tick of an input so far, added ones included.
+    // The first and the last tick of an input so far, added ones included.
+    [[nodiscard]] std::optional<std::int64_t> first(std::size_t input) const noexcept;
     [[nodiscard]] std::optional<std::int64_t> last(std::size_t input) const noexcept;
     [[nodiscard]] std::int64_t last_possible() const noexcept { return executor_.last_possible(); }
 

@@ -89,6 +89,10 @@ class BasicExecutor {
     // What an output is worth there; any number while it is known nowhere.
     [[nodiscard]] Formula value(std::size_t output) const noexcept { return outputs_[output].last; }
 
+    [[nodiscard]] std::optional<std::int64_t> first_time(std::size_t input) const noexcept {
+        return queues()[input].first();
+    }
+
     [[nodiscard]] std::optional<std::int64_t> last_time(std::size_t input) const noexcept {
         return queues()[input].last();
     }

@@ -78,3 +78,32 @@ def test_messages_name_the_constant_that_may_have_another_value_by_now():
         c_api.REFUSED,
         "Sample 0 has the wrong number of values: expected 2 (x, y), got 3.",
     )
+
+
+def test_requirements_over_different_inputs_share_a_start_in_a_dense_program():
+    spec = rtamt.parse("require A: once(x >= 3); require B: x >= y", time="dense", resolution="1s")
+    program = spec.compile().to_bytes()
+    message = (
+        "'x' starts at time 1 s and 'y' at time 2 s, but the requirements of this program read different inputs and "
+        "share one trace: start all inputs together, or compile each requirement alone."
+    )
+    for before, samples in (([(0, 1, 5.0)], [(1, 2, 4.0)]), ([], [(0, 1, 5.0), (1, 2, 4.0)])):
+        monitor = c_api.Monitor(program)
+        monitor.push(before)
+        with pytest.raises(c_api.RefusedError) as refused:
+            monitor.push(samples)
+        assert refused.value.args == (c_api.REFUSED, message)
+    monitor = c_api.Monitor(program)
+    known = []
+    for samples in ([(0, 1, 5.0)], [(0, 2, 1.0), (1, 1, 4.0)], [(1, 4, 0.0), (0, 4, 0.0)]):
+        monitor.push(samples)
+        known += zip(*(column.tolist() for column in monitor.told(4)), strict=True)
+    result = spec.evaluate({"x": ([1.0, 2, 4], [5, 1, 0]), "y": ([1.0, 4], [4, 0])})
+    assert known == result.requirements["B"].signal.points()
+    alike = rtamt.parse(
+        "require A: once(x >= y); require B: y >= x; require C: true", time="dense", resolution="1s"
+    )
+    monitor = c_api.Monitor(alike.compile().to_bytes())
+    monitor.push([(0, 1, 5.0), (1, 2, 4.0)])  # one trace for all, which starts at 2 s
+    monitor.finish()
+    assert monitor.told(2)[0].tolist() == [2]
