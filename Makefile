@@ -15,7 +15,7 @@ CXX_FILES := find core tests/cpp tests/fuzz benchmarks -name
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help run test test-python test-cpp test-install lint format docs pictures paper bench bench-ros costs peers conformance soak fuzz clean
+.PHONY: help run test test-python test-cpp test-install lint format docs pictures paper bench bench-ros field costs peers conformance soak fuzz clean
 
 help: ## list the tasks
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-13s %s\n", $$1, $$2 }' Makefile
@@ -73,6 +73,9 @@ bench: $(VENV)/.core $(VENV)/.extras $(VENV)/.group-build peers ## every tool ti
 
 bench-ros: $(VENV)/.core $(VENV)/.group-test $(VENV)/.apt ## 200 monitors in one ROS 1 node at 100 Hz, and rospy alone: benchmarks/ROS.md
 	$(RUN) benchmarks/ros_bench.py --output benchmarks/ROS.md
+
+field: $(VENV)/.core $(VENV)/.extras ## read, profile, plot and report every log in a folder: LOGS=FOLDER, output in build/field
+	$(RUN) tools/field.py "$(LOGS)"
 
 costs: $(VENV)/.core $(VENV)/.extras ## what a sample costs us, beside the figures to reach; memory of dense time and of streams
 	$(RUN) benchmarks/costs.py

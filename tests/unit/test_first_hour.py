@@ -3,8 +3,15 @@
 from __future__ import annotations
 
 import json
+import os
+import runpy
 import sqlite3
 import struct
+import subprocess
+import sys
+from contextlib import redirect_stdout
+from io import StringIO
+from pathlib import Path
 
 import pytest
 
@@ -249,3 +256,43 @@ def test_check_shows_the_first_violation_and_epoch_times_as_dates(
     monkeypatch.setattr("rtamt.cli.runner.LARGE", 0)  # in chunks
     assert main(["check", "always(x >= 3)", "log.csv"]) == 1
     assert capsys.readouterr().out.splitlines()[3] == row
+
+
+def test_what_the_environment_sets_for_ros_is_named_in_errors(tmp_path):
+    (tmp_path / "r.stl").write_text(
+        "from std_msgs.msg import Float64\ninput Float64 req\n@ topic(req, /req)\nout = always[0:1](req.data >= 3)\n"
+    )
+
+    def answer(**environment: str) -> str:
+        command = [sys.executable, "-m", "rtamt", "ros2", "r.stl", "--period", "1"]
+        done = subprocess.run(
+            command,
+            cwd=tmp_path,
+            env={**os.environ, **environment},
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+        assert done.returncode == 2
+        return done.stderr
+
+    assert (
+        "check the environment variable CYCLONEDDS_URI, which configures the network and is '<bad'"
+        in answer(CYCLONEDDS_URI="<bad")
+    )
+    sentence = "unknown distribution 'jazy' of ROS 2 (from the environment variable ROS_DISTRO); did you mean 'jazzy'?"
+    assert sentence in answer(ROS_DISTRO="jazy")
+
+
+def test_a_folder_of_logs_is_gone_through_with_a_table_of_outcomes(tmp_path):
+    (tmp_path / "good.csv").write_text("time,x [m],q[0]\n0,1,2\n1,3,2\n2,2,2\n")
+    (tmp_path / "bad.csv").write_text("0,1\n1,2\n")
+    field = runpy.run_path(str(Path(__file__).parents[2] / "tools" / "field.py"))
+    with redirect_stdout(StringIO()) as out:
+        assert field["main"](tmp_path, tmp_path / "out") == 0
+    header, bad, good, *_ = out.getvalue().splitlines()
+    assert header.split() == ["log", "signals", "samples", "seconds", "outcome"]
+    assert "rejected: " in bad
+    assert "expected a row of column names" in bad
+    assert good.endswith("read, explained, plotted, reported")
+    assert sorted(path.suffix for path in (tmp_path / "out").iterdir()) == [".html", ".png"]
