@@ -192,7 +192,8 @@ def api() -> str:
     lines = ["# The API\n"]
     for title, names in groups.items():
         lines.append(f"## {title}\n")
-        lines += [f"::: {name}\n" for name in names]
+        inherited = "true" if title == "The library" else "false"
+        lines += [f"::: {name}\n    options:\n      inherited_members: {inherited}\n" for name in names]
     for module in public_modules():
         lines.append(f"## {module}\n\n::: {module}\n    options:\n      show_root_heading: false\n")
     return "\n".join(lines)

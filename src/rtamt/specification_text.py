@@ -1,0 +1,226 @@
+"""What a specification contains: its text, names and formulas, and how these are rewritten."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from fractions import Fraction
+from functools import cached_property
+from types import MappingProxyType
+from typing import TYPE_CHECKING
+
+from rtamt.engine.online import Watched
+from rtamt.language.formula import Formula, variables
+from rtamt.language.grammar import is_number
+from rtamt.language.lint import LintWarning, warnings_of
+from rtamt.language.operators import STL, Language
+from rtamt.language.parser import parse_formula
+from rtamt.language.printer import to_text
+from rtamt.language.units import positive_period
+from rtamt.rewrite.horizon import horizon
+from rtamt.rewrite.pastify import pastify
+from rtamt.rewrite.semantics import apply_semantics, semantics_of
+from rtamt.signals.discrete import DISCRETE
+from rtamt.signals.domains import Defaults, time_domain
+from rtamt.signals.ticks import NANOSECOND
+from rtamt.verdicts.outputs import Outputs, outputs_of
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from typing_extensions import Self
+
+    from rtamt.language.document import Document
+    from rtamt.language.units import Duration
+    from rtamt.rewrite.semantics import PredicateSemantics
+    from rtamt.settings import Semantics
+    from rtamt.signals.domain import TimeDomain
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class SpecificationText:
+    """The text of one requirement or several, with the settings under which it is read."""
+
+    document: Document
+    domain: TimeDomain = DISCRETE
+    #: The settings of evaluations and monitors in another time domain than ``domain``.
+    period: Fraction | None = None
+    resolution: Fraction = NANOSECOND
+    unit: str = "s"
+    backend: str = "cpp"
+    language: Language = STL
+    semantics: str | PredicateSemantics = "standard"
+    #: From a variable to ``"input"`` or ``"output"``: what the text declares, and what was given.
+    roles: Mapping[str, str] = field(default_factory=dict)
+
+    def __repr__(self) -> str:
+        return f"<specification {f'{self.name}: ' if self.name else ''}{self.formula}>"
+
+    @property
+    def time(self) -> str:
+        """The name of the time domain: ``"discrete"`` or ``"dense"``."""
+        return self.domain.name
+
+    @property
+    def formula(self) -> Formula:
+        """The formula of the requirement; of several their conjunction, whose robustness is the minimum."""
+        return self.document.formula
+
+    @cached_property
+    def requirements(self) -> Mapping[str, Self]:
+        """Every requirement by name, in the order of the text, each as a specification of its own.
+
+        The requirements are the formulas after ``require``; in a text without any, the formulas (not
+        numbers) that no other one uses. One that has no name is ``requirement_2``, if it is the second.
+
+        >>> import rtamt
+        >>> spec = rtamt.parse('''
+        ...     near = distance <= 30
+        ...     require REQ-7 "brakes in time" severity warning: always(near -> eventually[0:1](brake >= 1))
+        ...     require REQ-8: always(distance >= 2)''')
+        >>> spec.requirements["REQ-8"]
+        <specification REQ-8: always(distance >= 2)>
+        >>> [(requirement.name, requirement.severity) for requirement in spec.document.requirements]
+        [('REQ-7', 'warning'), ('REQ-8', 'error')]
+        """
+        known = self.document.requirements
+        if len(known) == 1:
+            return MappingProxyType({known[0].name: self})
+        return MappingProxyType({requirement.name: self.select(requirement.name) for requirement in known})
+
+    @cached_property
+    def warnings(self) -> tuple[LintWarning, ...]:
+        """What is legal in the text and seldom meant; each with a code, a message and its place.
+
+        >>> import rtamt
+        >>> print(*rtamt.parse("prev(x) - x <= 3").warnings)
+        RT105: 'prev' applies to all of '(x) - x <= 3'; write prev((x) - x <= 3) if that is meant
+          line 1, column 1:
+            prev(x) - x <= 3
+            ^^^^^^^^^^^^^^^^
+        """
+        return warnings_of(self.document)
+
+    def select(self, name: str) -> Self:
+        """Return the specification of one requirement or named sub-specification alone.
+
+        Raises :class:`UsageError` where there is none of this name.
+        """
+        return replace(self, document=self.document.select(name))
+
+    @property
+    def text(self) -> str:
+        """The text as it was given."""
+        return self.document.text
+
+    @property
+    def name(self) -> str | None:
+        """The name of a requirement of several; else the one after ``specification``, if there is one."""
+        return self.document.selected or self.document.name
+
+    @cached_property
+    def input_names(self) -> tuple[str, ...]:
+        """The variables that the formula reads, of several requirements those of all, in order of appearance."""
+        return variables(self.formula)
+
+    @property
+    def horizon(self) -> float:
+        """Seconds after t at which ρ at t is known online; inf if never. The paper's Definition 3."""
+        depth = horizon(self.apply_semantics(self.formula), self.period or Fraction(1))
+        return float("inf") if depth is None else float(depth)
+
+    def pastified(self, period: Duration | None = None) -> Formula:
+        """Return Π(φ): past operators only, the same value one horizon later (Definition 4).
+
+        That holds under every semantics, since predicates stay what they are.
+
+        >>> import rtamt
+        >>> print(rtamt.parse("x >= 3 -> eventually[0:5](y >= 3)").pastified())
+        once[5:5](x >= 3) -> once[0:5](y >= 3)
+        """
+        step = self.period if period is None else positive_period(period)
+        return pastify(self.formula, step or Fraction(1), self.text, self.unit)
+
+    def apply_semantics(self, formula: Formula, semantics: str | PredicateSemantics | None = None) -> Formula:
+        """Return the formula whose robustness is the value of ``formula`` under a semantics.
+
+        ``semantics``: by default that of the specification; see :func:`rtamt.rewrite.semantics.lower`.
+        """
+        chosen = self._semantics(semantics)
+        if not isinstance(chosen, str):
+            return apply_semantics(formula, chosen, self.roles)
+        applied = self._lowered.get((formula, chosen))
+        if applied is None:
+            applied = self._lowered[formula, chosen] = apply_semantics(formula, chosen, self.roles)
+        return applied
+
+    def outputs(
+        self, semantics: str | PredicateSemantics | None = None, formula: Formula | None = None
+    ) -> Outputs:
+        """Return what is computed to judge the requirement: robustness under a semantics, and truth.
+
+        ``formula``: one that replaces that of the specification, such as its pastified form.
+        """
+        judged = self.formula if formula is None else formula
+        return outputs_of(judged, self.apply_semantics(judged, semantics))
+
+    def named(self, name: str) -> Formula:
+        """Return a named sub-specification or requirement, or the formula of any other text, read in its place.
+
+        >>> import rtamt
+        >>> spec = rtamt.parse("asked = req >= 3; always(asked -> gnt >= 3)")
+        >>> print(spec.named("asked"), "|", spec.named("once asked"))
+        req >= 3 | once(req >= 3)
+        """
+        known = self._known(name)
+        if known is not None:
+            return known
+        return parse_formula(
+            name,
+            language=self.language,
+            constants=self.document.constants,
+            definitions=self.document.definitions,
+            variables=self.document.variables or None,
+            unit=self.unit,
+        )
+
+    def _watched(self, name: str, semantics: Semantics | None) -> Watched:
+        formula = self.named(name)
+        if not is_number(formula):
+            formula = self.apply_semantics(formula, self._semantics(semantics))
+        return Watched(name, formula, name if self._known(name) is None else self.text)
+
+    def _known(self, name: str) -> Formula | None:
+        """Return a named sub-specification or requirement, if there is one."""
+        definition = self.document.definitions.get(name)
+        if definition is not None:
+            return definition
+        return next((known.formula for known in self.document.requirements if known.name == name), None)
+
+    @cached_property
+    def _lowered(self) -> dict[tuple[Formula, str], Formula]:
+        return {}
+
+    @cached_property
+    def declared(self) -> tuple[str, ...]:
+        """The names that the text declares: data may have them, also where the formula reads none of them."""
+        return tuple(declaration.name for declaration in self.document.declarations)
+
+    def domain_for(
+        self,
+        time: str | TimeDomain | None = None,
+        period: Duration | None = None,
+        tolerance: float | None = None,
+        resolution: Duration | None = None,
+    ) -> TimeDomain:
+        """Return the time domain that is asked for; what is left out is that of the specification."""
+        if time is period is tolerance is resolution is None:
+            return self.domain
+        defaults = Defaults(self.period, self.domain.tolerance, self.resolution)
+        named = self.domain.name if time is None else time
+        return time_domain(named, period, tolerance, resolution, defaults)
+
+    def _semantics(self, semantics: Semantics | None) -> str | PredicateSemantics:
+        return self.semantics if semantics is None else semantics_of(semantics)
+
+    def __str__(self) -> str:
+        return to_text(self.formula, self.language)
