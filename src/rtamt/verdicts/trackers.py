@@ -35,7 +35,7 @@ class Tracker:
         self._dense = dense
         self._pending: tuple[int, float] | None = None
         self.value = float("-inf") if leaf.reduce == "max" else float("inf")
-        #: The earliest position of the window at which the value is below 0.
+        #: Of a minimum the earliest position of the window at which the value is below 0.
         self.violated: int | None = None
 
     def take(self, positions: Positions, values: FloatArray) -> None:
@@ -57,22 +57,22 @@ class Tracker:
             self._pending = None
 
     def _reduce(self, starts: Positions, stops: Positions, values: FloatArray) -> None:
-        inside = stops > self._begin
-        if self._end is not None:
-            inside &= starts <= self._end
-        where = np.flatnonzero(inside)
-        if not len(where):
+        # Positions increase: those of the window are a slice, which costs no copy.
+        first = int(stops.searchsorted(self._begin, "right"))
+        end = len(starts) if self._end is None else int(starts.searchsorted(self._end, "right"))
+        if first >= end:
             return
-        found = values[where]
+        found = values[first:end]
         if self.leaf.reduce is None:
             self.value = float(found[0])
-        elif self.leaf.reduce == "min":
-            self.value = min(self.value, float(found.min()))
-        else:
+        elif self.leaf.reduce == "max":
             self.value = max(self.value, float(found.max()))
-        below = found < 0
-        if self.violated is None and below.any():
-            self.violated = max(int(starts[where[int(below.argmax())]]), self._begin)
+        else:
+            lowest = float(found.min())
+            self.value = min(self.value, lowest)
+            if self.violated is None and lowest < 0:
+                place = first + int((found < 0).argmax())
+                self.violated = max(int(starts[place]), self._begin)
 
 
 class Trackers:
