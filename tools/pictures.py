@@ -2,16 +2,24 @@
 
 from __future__ import annotations
 
+import base64
+import contextlib
+import re
 import shutil
-import subprocess
+import sys
 import tempfile
+import time
 from pathlib import Path
 
+import numpy as np
 from matplotlib.figure import Figure
 from PIL import Image
 
 import rtamt
 from rtamt.cli import main
+
+sys.path.insert(0, str(Path(__file__).parents[1]))
+from tests.unit.report.browser import chromium
 
 IMAGES = Path(__file__).parents[1] / "docs" / "images"
 
@@ -31,7 +39,20 @@ def draw() -> None:
     save(rtamt.parse(README).evaluate(FIVE).plot(rows=3, figure=Figure()), "plot.png")
     save(dense.plot(rows=3, figure=Figure()), "plot_dense.png")
     save(discrete.plot_tree(figure=Figure()), "tree.png")
-    photograph("report.png")
+    gallery()
+    reports()
+
+
+def gallery() -> None:
+    """Run the code of the gallery, which writes its pictures into the current directory."""
+    page = (IMAGES.parent / "how-to" / "gallery.md").read_text(encoding="utf-8")
+    names: dict[str, object] = {}
+    with tempfile.TemporaryDirectory() as folder, contextlib.chdir(folder):
+        for block in re.findall(r"```python\n(.*?)```", page, re.DOTALL):
+            exec(compile(block, "gallery.md", "exec"), names)  # noqa: S102 - our own page
+        for path in Path(folder).glob("gallery_*.png"):
+            shrink(path)
+            shutil.move(path, IMAGES / path.name)
 
 
 def save(figure: Figure, name: str) -> None:
@@ -40,30 +61,75 @@ def save(figure: Figure, name: str) -> None:
     shrink(IMAGES / name)
 
 
-def photograph(name: str) -> None:
-    """Write what a browser shows of a report."""
-    browser = shutil.which("chromium")
-    if browser is None:
-        raise SystemExit(
-            "error: the picture of the report needs Chromium; install it as root: apt-get install chromium"
-        )
-    with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as folder:
-        spec, log, page = (Path(folder, part) for part in ("response.stl", "drive.csv", "report.html"))
-        spec.write_text(f"specification response; {SPEC}")
+def reports() -> None:
+    """Draw a report of one requirement, of ten on six traces, and of 10^6 samples, as a browser shows them."""
+    with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as folder, contextlib.chdir(folder):
+        Path("response.stl").write_text(f"specification response; {SPEC}")
         rows = zip(range(12), DATA["req"], DATA["gnt"], strict=True)
-        log.write_text("time,req,gnt\n" + "".join(f"{t},{req},{gnt}\n" for t, req, gnt in rows))
-        main(["report", str(spec), str(log), "-o", str(page)])
-        page.write_text(page.read_text().replace(f"{folder}/", ""))
-        # As root there is no sandbox.
-        options = [
-            "--headless",
-            "--no-sandbox",
-            "--disable-gpu",
-            "--hide-scrollbars",
-            "--window-size=1000,1560",
-        ]
-        command = [browser, *options, f"--user-data-dir={folder}/profile", f"--screenshot={IMAGES / name}"]
-        subprocess.run([*command, page.as_uri()], check=True, capture_output=True, timeout=120)
+        Path("drive.csv").write_text("time,req,gnt\n" + "".join(f"{t},{req},{gnt}\n" for t, req, gnt in rows))
+        photograph(["response.stl", "drive.csv"], "report.png", (1000, 1500))
+        limits = [80, 85, 88, 92, 97, 101, 104, 109, 115, 120]
+        Path("limits.stl").write_text(
+            "".join(
+                f'require SPEED-{i} "back below {limit} km/h within 5 s":'
+                f" always(speed >= {limit} -> eventually[0:5](speed <= {limit}));\n"
+                for i, limit in enumerate(limits, 1)
+            )
+        )
+        traces = []
+        for k in range(6):
+            traces.append(f"drive_{k + 1}.csv")
+            speed = 80 + (18 + 5 * k) * np.sin(np.arange(3000) / (18 + 9 * k)) * np.sin(
+                np.arange(3000) / 700 + k
+            )
+            Path(traces[-1]).write_text(
+                "time,speed\n" + "".join(f"{i / 10},{v:.2f}\n" for i, v in enumerate(speed))
+            )
+        photograph(["limits.stl", *traces, "--period", "100ms"], "report_matrix.png", (1000, 640))
+        speed = (
+            np.random.default_rng(1).normal(0, 0.4, 1_000_000) + 80 + 9 * np.sin(np.arange(1_000_000) / 3000)
+        )
+        speed[432_100:432_160] = 97 + np.arange(60) / 40
+        np.savetxt(
+            "long.csv",
+            np.c_[np.arange(1_000_000) / 100, speed],
+            "%.6g",
+            ",",
+            header="time,speed",
+            comments="",
+        )
+        Path("long.stl").write_text("require LIMIT: always(speed >= 95 -> eventually[0:200ms](speed <= 95));")
+        photograph(
+            ["long.stl", "long.csv", "--period", "10ms"], "report_zoom.png", (1000, 760),
+            "document.querySelector('.go[data-go^=\"0 \"] button').click();"
+            "document.getElementById('theme').click();"
+            "press('a'); for (let i = 0; i < 12; i++) press('ArrowRight'); press('b');"
+            "document.querySelector('body > header').hidden = document.querySelector('main section').hidden = true;",
+        )  # fmt: skip
+
+
+def photograph(arguments: list[str], name: str, size: tuple[int, int], script: str = "") -> None:
+    """Write what a browser shows of a report; ``script`` runs when its card is drawn."""
+    page = Path("report.html").resolve()
+    main(["report", *arguments, "-o", str(page)])
+    with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as profile, chromium(Path(profile)) as tab:
+        width, height = size
+        tab.send(
+            "Emulation.setDeviceMetricsOverride",
+            width=width,
+            height=height,
+            deviceScaleFactor=1,
+            mobile=False,
+        )
+        tab.open(page.as_uri())
+        time.sleep(4)
+        if script:
+            tab.run(
+                "const press = (key) => document.querySelector('.body')"
+                f".dispatchEvent(new KeyboardEvent('keydown', {{key}})); {script}"
+            )
+            time.sleep(2)
+        (IMAGES / name).write_bytes(base64.b64decode(tab.send("Page.captureScreenshot")["data"]))
     shrink(IMAGES / name)
 
 

@@ -64,7 +64,8 @@ class Clock:
         """
         if isinstance(self.origin, np.datetime64):
             start = Fraction(nanoseconds_of(self.origin) or 0, 10**9)
-            return moment_text(start + Fraction(round(position * 1e9), 10**9), start)
+            # Positions are differences of numbers near 1e9, which doubles hold to less than a microsecond.
+            return moment_text(start + Fraction(round(position * 1e6), 10**6), start)
         return f"{self.origin + position:.15g} s"
 
     @property
