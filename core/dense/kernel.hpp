@@ -14,6 +14,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <type_traits>
 
 namespace rtamt::dense {
 
@@ -108,25 +109,65 @@ class Writing : public Kernel {
     BasicEvents<Value> out_;
 };
 
-// A kernel whose result need not begin where its operands do. What it says before its start is
-// held back, and its value at the start told there.
-template <ValueDomain D>
-class Temporal : public Writing<typename D::Value> {
+// A kernel whose state is one value, from which all that keeps and takes back state follows.
+template <class Value, class State>
+class Scalar : public Writing<Value> {
   public:
-    using Value = typename D::Value;
+    explicit Scalar(std::int64_t lag, const State& initial = {}) noexcept
+        : Writing<Value>(lag), initial_(initial), state_(initial), saved_(initial) {}
 
-    // `before` is the value as long as the operands have brought nothing.
-    Temporal(std::int64_t lag, const Value& before) noexcept
-        : Writing<Value>(lag), before_(before), told_{before, false}, saved_(told_) {}
-
-    void checkpoint() noexcept override { saved_ = told_; }
-    void rollback() noexcept override { told_ = saved_; }
-    void transfer(Snapshot& snapshot, std::int64_t frontier) override {
-        snapshot.item(told_.last);
-        told_.begun = this->start() <= frontier;
+    void checkpoint() noexcept override { saved_ = state_; }
+    void rollback() noexcept override { state_ = saved_; }
+    void transfer(Snapshot& snapshot, std::int64_t /*frontier*/) override {
+        state_.transfer(snapshot);
     }
 
   protected:
+    void reset() noexcept override { state_ = initial_; }
+    [[nodiscard]] State& state() noexcept { return state_; }
+    [[nodiscard]] const State& state() const noexcept { return state_; }
+
+  private:
+    State initial_;
+    State state_;
+    State saved_;
+};
+
+// What a kernel has put out so far, and what it keeps itself, which is one value.
+template <class Value, class Own>
+struct Progress {
+    Value last;         // the value at the frontier
+    bool begun = false; // whether the start has been put out
+    [[no_unique_address]] Own own{};
+
+    void transfer(Snapshot& snapshot) {
+        snapshot.item(last);
+        if constexpr (!std::is_empty_v<Own>) snapshot.item(own);
+    }
+};
+
+struct Nothing {};
+
+// A kernel whose result need not begin where its operands do. Values before its start are held
+// back, and the last one is put out at the start. `Own` is the state of the kernel itself.
+template <ValueDomain D, class Own = Nothing>
+class Temporal : public Scalar<typename D::Value, Progress<typename D::Value, Own>> {
+  public:
+    using Value = typename D::Value;
+    using Base = Scalar<Value, Progress<Value, Own>>;
+
+    // `before` is the value as long as the operands have brought nothing.
+    Temporal(std::int64_t lag, const Value& before) noexcept : Base(lag, {before}) {}
+
+    void transfer(Snapshot& snapshot, std::int64_t frontier) override {
+        Base::transfer(snapshot, frontier);
+        this->state().begun = this->start() <= frontier;
+    }
+
+  protected:
+    [[nodiscard]] Own& own() noexcept { return this->state().own; }
+    [[nodiscard]] const Own& own() const noexcept { return this->state().own; }
+
     // Takes events, at most one an instant, and merges those that change nothing. A copy on the
     // stack, so that the loop around it need not reload it after every store.
     struct Writer {
@@ -164,26 +205,16 @@ class Temporal : public Writing<typename D::Value> {
     [[nodiscard]] Writer open(std::size_t count) {
         BasicEventList<Value>& list =
             this->room(count + 2); // the start, and one that changes nothing
-        return {list.times(), list.values(), 0, this->start(), told_.last, told_.begun};
+        return {list.times(),  list.values(),      0,
+                this->start(), this->state().last, this->state().begun};
     }
 
     void close(Writer& writer, std::int64_t frontier) noexcept {
         if (!writer.begun && writer.start <= frontier) writer.begin();
-        told_ = {writer.last, writer.begun};
+        this->state().last = writer.last;
+        this->state().begun = writer.begun;
         this->publish(writer.count);
     }
-
-    void reset() noexcept override { told_ = {before_, false}; }
-
-  private:
-    struct Told {
-        Value last;
-        bool begun;
-    };
-
-    Value before_;
-    Told told_;
-    Told saved_;
 };
 
 } // namespace rtamt::dense

@@ -4,7 +4,7 @@
 
 #include "kernels.hpp"
 
-#include "../values/functions.hpp"
+#include "../program/kernel_factory.hpp"
 #include "constant.hpp"
 #include "pointwise.hpp"
 #include "running.hpp"
@@ -17,93 +17,45 @@ namespace rtamt::dense {
 
 namespace detail {
 
-// A window, an operation on values that may be numbers or formulas, or null.
-template <ValueDomain D>
-std::unique_ptr<Kernel> make_either(const Instruction& at) {
-    using Most = MaxOf<D>;
-    using Least = MinOf<D>;
-    const std::int64_t lag = at.lag;
-    switch (at.opcode) {
-    case Opcode::neg:
-        return std::make_unique<Unary<operations::Not<D>>>(lag);
-    case Opcode::min:
-        return std::make_unique<Binary<operations::Connect<Least>>>(lag);
-    case Opcode::max:
-        return std::make_unique<Binary<operations::Connect<Most>>>(lag);
-    case Opcode::shift:
-        return std::make_unique<Shift<D>>(lag, at.n, D::of(at.x));
-    case Opcode::slide_max:
-        return std::make_unique<Slide<Most>>(lag, at.n);
-    case Opcode::slide_min:
-        return std::make_unique<Slide<Least>>(lag, at.n);
-    case Opcode::run_max:
-        return std::make_unique<Running<Most>>(lag);
-    case Opcode::run_min:
-        return std::make_unique<Running<Least>>(lag);
-    default:
-        return nullptr;
-    }
-}
+struct Make {
+    using Pointer = std::unique_ptr<Kernel>;
+    const Instruction& at;
 
-// Arithmetic, or null.
-template <ValueDomain N>
-std::unique_ptr<Kernel> make_number(const Instruction& at) {
-    using namespace functions;
-    using operations::Map;
-    const std::int64_t lag = at.lag;
-    switch (at.opcode) {
-    case Opcode::abs:
-        return std::make_unique<Unary<Map<N, Abs>>>(lag);
-    case Opcode::sqrt:
-        return std::make_unique<Unary<Map<N, Sqrt>>>(lag);
-    case Opcode::exp:
-        return std::make_unique<Unary<Map<N, Exp>>>(lag);
-    case Opcode::ln:
-        return std::make_unique<Unary<Map<N, Ln>>>(lag);
-    case Opcode::add:
-        return std::make_unique<Binary<Map<N, Add>>>(lag);
-    case Opcode::sub:
-        return std::make_unique<Binary<Map<N, Sub>>>(lag);
-    case Opcode::mul:
-        return std::make_unique<Binary<Map<N, Mul>>>(lag);
-    case Opcode::div:
-        return std::make_unique<Binary<Map<N, Div>>>(lag);
-    case Opcode::pow:
-        return std::make_unique<Binary<Map<N, Pow>>>(lag);
-    case Opcode::log:
-        return std::make_unique<Binary<Map<N, Log>>>(lag);
-    default:
-        return make_either<N>(at);
+    template <class Operation>
+    [[nodiscard]] Pointer unary() const {
+        return std::make_unique<Unary<Operation>>(at.lag);
     }
-}
-
-template <ValueDomain D>
-std::unique_ptr<Kernel> make_formula(const Instruction& at) {
-    using namespace functions;
-    using operations::Test;
-    const std::int64_t lag = at.lag;
-    switch (at.opcode) {
-    case Opcode::holds_gt:
-        return std::make_unique<Binary<Test<D, HoldsGreater>>>(lag);
-    case Opcode::holds_ge:
-        return std::make_unique<Binary<Test<D, HoldsGreaterEqual>>>(lag);
-    case Opcode::holds_eq:
-        return std::make_unique<Binary<Test<D, HoldsEqual>>>(lag);
-    case Opcode::since:
-        return std::make_unique<Since<D>>(lag);
-    case Opcode::until:
-        return std::make_unique<Until<D>>(lag, at.n);
-    default:
-        return make_either<D>(at);
+    template <class Operation>
+    [[nodiscard]] Pointer binary() const {
+        return std::make_unique<Binary<Operation>>(at.lag);
     }
-}
+    template <ValueDomain D>
+    [[nodiscard]] Pointer shift() const {
+        return std::make_unique<Shift<D>>(at.lag, at.n, D::of(at.x));
+    }
+    template <class Algebra>
+    [[nodiscard]] Pointer slide() const {
+        return std::make_unique<Slide<Algebra>>(at.lag, at.n);
+    }
+    template <class Algebra>
+    [[nodiscard]] Pointer running() const {
+        return std::make_unique<Running<Algebra>>(at.lag);
+    }
+    template <ValueDomain D>
+    [[nodiscard]] Pointer since() const {
+        return std::make_unique<Since<D>>(at.lag);
+    }
+    template <ValueDomain D>
+    [[nodiscard]] Pointer until() const {
+        return std::make_unique<Until<D>>(at.lag, at.n);
+    }
+};
 
 } // namespace detail
 
 template <ValueDomain D>
 std::unique_ptr<Kernel> Kernels<D>::make(const Instruction& instruction, Sort sort) {
-    return sort == Sort::number ? detail::make_number<typename D::Number>(instruction)
-                                : detail::make_formula<D>(instruction);
+    return make_kernel<D>(instruction.opcode, sort, detail::Make{instruction});
 }
 
 template <ValueDomain D>

@@ -65,34 +65,14 @@ class Results {
     bool undefined_ = false;
 };
 
-// A kernel whose state is one value, from which all that keeps and takes back state follows.
-template <class Value, class State>
-class Scalar : public Writing<Value> {
-  public:
-    using Writing<Value>::Writing;
-
-    void checkpoint() noexcept override { saved_ = state_; }
-    void rollback() noexcept override { state_ = saved_; }
-    void transfer(Snapshot& snapshot, std::int64_t /*frontier*/) override {
-        state_.transfer(snapshot);
-    }
-
-  protected:
-    void reset() noexcept override { state_ = {}; }
-    [[nodiscard]] State& state() noexcept { return state_; }
-
-  private:
-    State state_;
-    State saved_;
-};
-
 template <class Operation>
 class Unary final
     : public Scalar<typename Operation::Out::Value, Told<typename Operation::Out::Value>> {
   public:
     using In = typename Operation::In::Value;
     using Out = typename Operation::Out::Value;
-    using Scalar<Out, Told<Out>>::Scalar;
+
+    explicit Unary(std::int64_t lag) noexcept : Scalar<Out, Told<Out>>(lag) {}
 
     std::int64_t run(std::int64_t /*frontier*/) override {
         const BasicEvents<In> a = Kernel::a<In>();
@@ -124,7 +104,8 @@ class Binary final
   public:
     using In = typename Operation::In::Value;
     using Out = typename Operation::Out::Value;
-    using Scalar<Out, Combined<In, Out>>::Scalar;
+
+    explicit Binary(std::int64_t lag) noexcept : Scalar<Out, Combined<In, Out>>(lag) {}
 
     std::int64_t run(std::int64_t /*frontier*/) override {
         const BasicEvents<In> a = Kernel::a<In>();

@@ -13,7 +13,8 @@
 namespace rtamt::dense {
 
 // Removes events that change nothing.
-inline void merge_equal(EventList& list) noexcept {
+template <class Value>
+void merge_equal(BasicEventList<Value>& list) noexcept {
     std::size_t kept = 0;
     for (std::size_t i = 0; i < list.count(); ++i) {
         if (kept != 0 && list.values()[kept - 1] == list.values()[i]) continue;
@@ -25,10 +26,10 @@ inline void merge_equal(EventList& list) noexcept {
 
 // At t, the extremum from t on: unbounded eventually (Max) and always (Min).
 template <class Algebra>
-[[nodiscard]] EventList scan(const Events& a) {
-    EventList result;
+[[nodiscard]] auto scan(const BasicEvents<typename Algebra::Value>& a) {
+    BasicEventList<typename Algebra::Value> result;
     result.append(a);
-    double extremum = Algebra::identity;
+    auto extremum = Algebra::identity;
     for (std::size_t i = a.count; i-- > 0;) {
         extremum = Algebra::join(a.values[i], extremum);
         result.values()[i] = extremum;
@@ -39,20 +40,23 @@ template <class Algebra>
 
 // U = max(psi, min(phi, U of the next segment)), psi on the last one: unbounded until, from where
 // both operands have begun.
-[[nodiscard]] inline EventList scan_until(const Events& phi, const Events& psi) {
-    EventList holds; // phi and psi on the same segments
-    EventList result;
+template <ValueDomain D>
+[[nodiscard]] BasicEventList<typename D::Value>
+scan_until(const BasicEvents<typename D::Value>& phi, const BasicEvents<typename D::Value>& psi) {
+    using Value = typename D::Value;
+    BasicEventList<Value> holds; // phi and psi on the same segments
+    BasicEventList<Value> result;
     if (phi.count == 0 || psi.count == 0) return result;
     const std::int64_t start = std::max(phi.times[0], psi.times[0]);
-    Pair<double> values;
-    merge(phi, psi, values, [&](std::int64_t time, const Pair<double>& now) {
+    Pair<Value> values;
+    merge(phi, psi, values, [&](std::int64_t time, const Pair<Value>& now) {
         if (time < start) return;
         holds.append(time, now.a);
         result.append(time, now.b);
     });
-    double until = Max::identity;
+    auto until = D::bottom;
     for (std::size_t i = result.count(); i-- > 0;) {
-        until = Max::join(result.values()[i], Min::join(holds.values()[i], until));
+        until = D::join(result.values()[i], D::meet(holds.values()[i], until));
         result.values()[i] = until;
     }
     merge_equal(result);

@@ -13,56 +13,35 @@
 
 namespace rtamt::dense {
 
+template <class D>
+struct SinceState {
+    Pair<typename D::Value> operands{D::bottom, D::bottom}; // phi and psi of the last segment
+    typename D::Value carry = D::bottom;                    // what the segments before it leave
+};
+
 template <ValueDomain D>
-class Since final : public Temporal<D> {
+class Since final : public Temporal<D, SinceState<D>> {
   public:
     using Value = typename D::Value;
-    using Base = Temporal<D>;
 
-    explicit Since(std::int64_t lag) noexcept : Base(lag, D::bottom) {}
+    explicit Since(std::int64_t lag) noexcept : Temporal<D, SinceState<D>>(lag, D::bottom) {}
 
     std::int64_t run(std::int64_t frontier) override {
         const BasicEvents<Value> phi = Kernel::a<Value>();
         const BasicEvents<Value> psi = Kernel::b<Value>();
         auto out = this->open(phi.count + psi.count);
-        Pair<Value> segment = state_.operands;
-        Value carry = state_.carry;
-        merge(phi, psi, state_.operands, [&](std::int64_t time, const Pair<Value>& now) {
+        SinceState<D>& state = this->own();
+        Pair<Value> segment = state.operands;
+        Value carry = state.carry;
+        merge(phi, psi, state.operands, [&](std::int64_t time, const Pair<Value>& now) {
             carry = D::meet(segment.a, D::join(segment.b, carry));
             segment = now;
             out.put(time, D::join(now.b, D::meet(now.a, carry)));
         });
-        state_.carry = carry;
+        state.carry = carry;
         this->close(out, frontier);
         return never;
     }
-
-    void checkpoint() noexcept override {
-        Base::checkpoint();
-        saved_ = state_;
-    }
-    void rollback() noexcept override {
-        Base::rollback();
-        state_ = saved_;
-    }
-    void transfer(Snapshot& snapshot, std::int64_t frontier) override {
-        Base::transfer(snapshot, frontier);
-        snapshot.item(state_);
-    }
-
-  protected:
-    void reset() noexcept override {
-        Base::reset();
-        state_ = {};
-    }
-
-  private:
-    struct State {
-        Pair<Value> operands{D::bottom, D::bottom}; // phi and psi of the last segment
-        Value carry = D::bottom;                    // what the segments before it leave
-    };
-    State state_;
-    State saved_;
 };
 
 } // namespace rtamt::dense

@@ -16,12 +16,19 @@
 
 namespace rtamt::dense {
 
+template <Monoid M>
+struct SlidingState {
+    Pair<typename M::Value> operands;        // of the last segment
+    std::size_t older = 0;                   // segments in the stack of the older ones
+    typename M::Element newer = M::identity; // total of the rest
+};
+
 template <Monoid M, ValueDomain D>
-class Sliding final : public Temporal<D> {
+class Sliding final : public Temporal<D, SlidingState<M>> {
   public:
     using Value = typename D::Value;
     using Element = typename M::Element;
-    using Base = Temporal<D>;
+    using Base = Temporal<D, SlidingState<M>>;
     using Writer = typename Base::Writer;
 
     Sliding(std::int64_t lag, std::int64_t width) noexcept
@@ -33,7 +40,7 @@ class Sliding final : public Temporal<D> {
             window_.count_while([&](std::size_t i) { return expiry(i) <= frontier; });
         Writer out = this->open(due + 2 * arriving); // what arrives may leave again
         if constexpr (M::binary) {
-            merge(Kernel::a<Value>(), Kernel::b<Value>(), state_.operands,
+            merge(Kernel::a<Value>(), Kernel::b<Value>(), this->own().operands,
                   [&](std::int64_t time, const Pair<Value>& now) {
                       arrive(out, time, M::element(now.a, now.b));
                   });
@@ -50,18 +57,15 @@ class Sliding final : public Temporal<D> {
     void checkpoint() noexcept override {
         Base::checkpoint();
         window_.checkpoint();
-        saved_ = state_;
     }
     void rollback() noexcept override {
         Base::rollback();
         window_.rollback();
-        state_ = saved_;
     }
     void transfer(Snapshot& snapshot, std::int64_t frontier) override {
         Base::transfer(snapshot, frontier);
         window_.transfer(snapshot);
-        snapshot.item(state_);
-        snapshot.require(state_.older <= window_.size());
+        snapshot.require(this->own().older <= window_.size());
         snapshot.require(window_.increasing(-never - 1, frontier, &Segment::begin));
         snapshot.require(window_.empty() || expiry(0) > frontier);
     }
@@ -75,7 +79,6 @@ class Sliding final : public Temporal<D> {
     void reset() noexcept override {
         Base::reset();
         window_.clear();
-        state_ = {};
     }
 
   private:
@@ -83,15 +86,8 @@ class Sliding final : public Temporal<D> {
         std::int64_t begin = 0;
         Element total{};
     };
-    struct State {
-        Pair<Value> operands;        // of the last segment
-        std::size_t older = 0;       // segments in the stack of the older ones
-        Element newer = M::identity; // total of the rest
-    };
     std::int64_t width_;
     Ring<Segment> window_;
-    State state_;
-    State saved_;
 
     // When a segment leaves: w after its end, where the next one begins. The last one lasts.
     [[nodiscard]] std::int64_t expiry(std::size_t i) const noexcept {
@@ -99,8 +95,8 @@ class Sliding final : public Temporal<D> {
     }
 
     [[nodiscard]] Value value() const noexcept {
-        return state_.older != 0 ? M::result(window_.front().total, state_.newer)
-                                 : M::result(state_.newer);
+        return this->own().older != 0 ? M::result(window_.front().total, this->own().newer)
+                                      : M::result(this->own().newer);
     }
 
     [[nodiscard]] std::size_t arrivals() const noexcept {
@@ -110,7 +106,7 @@ class Sliding final : public Temporal<D> {
     void arrive(Writer& out, std::int64_t time, Element element) {
         expire(out, time - 1);
         window_.push_back({time, element});
-        state_.newer = M::append(state_.newer, element);
+        this->own().newer = M::append(this->own().newer, element);
         while (expiry(0) <= time)
             leave();
         out.put(time, value());
@@ -124,9 +120,9 @@ class Sliding final : public Temporal<D> {
     }
 
     void leave() {
-        if (state_.older == 0) turn_over();
+        if (this->own().older == 0) turn_over();
         window_.pop_front();
-        --state_.older;
+        --this->own().older;
     }
 
     // All newer segments become older ones.
@@ -137,8 +133,8 @@ class Sliding final : public Temporal<D> {
             tail = M::prepend(segment.total, tail);
             segment.total = tail;
         }
-        state_.older = window_.size();
-        state_.newer = M::identity;
+        this->own().older = window_.size();
+        this->own().newer = M::identity;
     }
 };
 

@@ -4,7 +4,7 @@
 
 #include "kernels.hpp"
 
-#include "../values/functions.hpp"
+#include "../program/kernel_factory.hpp"
 #include "running.hpp"
 #include "shift.hpp"
 #include "since.hpp"
@@ -15,100 +15,52 @@ namespace rtamt::discrete {
 
 namespace detail {
 
-struct Setting {
-    const Instruction& instruction;
-    std::int64_t operand_lag;
+struct Make {
+    using Pointer = std::unique_ptr<Kernel>;
+    const Instruction& at;
+    std::int64_t lag; // of the operands
     void* state;
     void* journal;
     Same same;
-};
 
-// A window, an operation on values that may be numbers or formulas, or null.
-template <ValueDomain D>
-std::unique_ptr<Kernel> make_either(const Setting& at) {
-    using Value = typename D::Value;
-    using Most = MaxOf<D>;
-    using Least = MinOf<D>;
-    const std::int64_t lag = at.operand_lag;
-    const auto n = static_cast<std::size_t>(at.instruction.n);
-    auto* state = static_cast<Value*>(at.state);
-    auto* journal = static_cast<Value*>(at.journal);
-    switch (at.instruction.opcode) {
-    case Opcode::neg:
-        return std::make_unique<Unary<operations::Not<D>>>(lag);
-    case Opcode::min:
-        return std::make_unique<Binary<operations::Connect<Least>>>(lag, at.same);
-    case Opcode::max:
-        return std::make_unique<Binary<operations::Connect<Most>>>(lag, at.same);
-    case Opcode::shift:
-        return std::make_unique<Shift<Value>>(lag, n, D::of(at.instruction.x), state, journal);
-    case Opcode::slide_max:
-        return std::make_unique<Slide<Most>>(lag, n, state, journal);
-    case Opcode::slide_min:
-        return std::make_unique<Slide<Least>>(lag, n, state, journal);
-    case Opcode::run_max:
-        return std::make_unique<Running<Most>>(lag);
-    case Opcode::run_min:
-        return std::make_unique<Running<Least>>(lag);
-    default:
-        return nullptr;
+    template <class Operation>
+    [[nodiscard]] Pointer unary() const {
+        return std::make_unique<Unary<Operation>>(lag);
     }
-}
-
-// Arithmetic, or null.
-template <ValueDomain N>
-std::unique_ptr<Kernel> make_number(const Setting& at) {
-    using namespace functions;
-    using operations::Map;
-    const std::int64_t lag = at.operand_lag;
-    switch (at.instruction.opcode) {
-    case Opcode::abs:
-        return std::make_unique<Unary<Map<N, Abs>>>(lag);
-    case Opcode::sqrt:
-        return std::make_unique<Unary<Map<N, Sqrt>>>(lag);
-    case Opcode::exp:
-        return std::make_unique<Unary<Map<N, Exp>>>(lag);
-    case Opcode::ln:
-        return std::make_unique<Unary<Map<N, Ln>>>(lag);
-    case Opcode::add:
-        return std::make_unique<Binary<Map<N, Add>>>(lag, at.same);
-    case Opcode::sub:
-        return std::make_unique<Binary<Map<N, Sub>>>(lag, at.same);
-    case Opcode::mul:
-        return std::make_unique<Binary<Map<N, Mul>>>(lag, at.same);
-    case Opcode::div:
-        return std::make_unique<Binary<Map<N, Div>>>(lag, at.same);
-    case Opcode::pow:
-        return std::make_unique<Binary<Map<N, Pow>>>(lag, at.same);
-    case Opcode::log:
-        return std::make_unique<Binary<Map<N, Log>>>(lag, at.same);
-    default:
-        return make_either<N>(at);
+    template <class Operation>
+    [[nodiscard]] Pointer binary() const {
+        return std::make_unique<Binary<Operation>>(lag, same);
     }
-}
-
-template <ValueDomain D>
-std::unique_ptr<Kernel> make_formula(const Setting& at) {
-    using namespace functions;
-    using operations::Test;
-    const std::int64_t lag = at.operand_lag;
-    switch (at.instruction.opcode) {
-    case Opcode::holds_gt:
-        return std::make_unique<Binary<Test<D, HoldsGreater>>>(lag, at.same);
-    case Opcode::holds_ge:
-        return std::make_unique<Binary<Test<D, HoldsGreaterEqual>>>(lag, at.same);
-    case Opcode::holds_eq:
-        return std::make_unique<Binary<Test<D, HoldsEqual>>>(lag, at.same);
-    case Opcode::since:
+    template <ValueDomain D>
+    [[nodiscard]] Pointer shift() const {
+        using Value = typename D::Value;
+        return with_ring<Shift<Value>, Value>(D::of(at.x));
+    }
+    template <class Algebra>
+    [[nodiscard]] Pointer slide() const {
+        return with_ring<Slide<Algebra>, typename Algebra::Value>();
+    }
+    template <class Algebra>
+    [[nodiscard]] Pointer running() const {
+        return std::make_unique<Running<Algebra>>(lag);
+    }
+    template <ValueDomain D>
+    [[nodiscard]] Pointer since() const {
         return std::make_unique<Since<D>>(lag);
-    case Opcode::until:
-        return std::make_unique<Until<D>>(lag, static_cast<std::size_t>(at.instruction.n),
-                                          static_cast<ClampOf<D>*>(at.state),
-                                          static_cast<ClampOf<D>*>(at.journal));
-    default:
-        return make_either<D>(at);
     }
-}
+    template <ValueDomain D>
+    [[nodiscard]] Pointer until() const {
+        return with_ring<Until<D>, ClampOf<D>>();
+    }
+
+  private:
+    template <class Ringed, class Element, class... Arguments>
+    [[nodiscard]] Pointer with_ring(const Arguments&... arguments) const {
+        return std::make_unique<Ringed>(lag, static_cast<std::size_t>(at.n), arguments...,
+                                        static_cast<Element*>(state),
+                                        static_cast<Element*>(journal));
+    }
+};
 
 } // namespace detail
 
@@ -132,9 +84,8 @@ template <ValueDomain D>
 std::unique_ptr<Kernel> Kernels<D>::make(const Instruction& instruction, Sort sort,
                                          std::int64_t operand_lag, void* state, void* journal,
                                          Same same) {
-    const detail::Setting at{instruction, operand_lag, state, journal, same};
-    return sort == Sort::number ? detail::make_number<typename D::Number>(at)
-                                : detail::make_formula<D>(at);
+    return make_kernel<D>(instruction.opcode, sort,
+                          detail::Make{instruction, operand_lag, state, journal, same});
 }
 
 template <ValueDomain D>

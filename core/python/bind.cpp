@@ -249,7 +249,7 @@ Result scan(std::string_view kind, const Column& a, const std::optional<Column>&
         if (!b || b->shape(0) != first.size()) {
             throw std::invalid_argument("The scan 'until' takes two columns of the same length.");
         }
-        rtamt::discrete::scan_until(first, {b->data(), b->shape(0)}, out);
+        rtamt::discrete::scan_until<rtamt::Real>(first, {b->data(), b->shape(0)}, out);
     } else {
         throw std::invalid_argument("There is no scan '" + std::string(kind) +
                                     "': it is run_max, run_min or until.");
@@ -293,7 +293,7 @@ nb::tuple dense_scan(std::string_view kind, const EventColumn& a,
     } else if (kind == "run_min") {
         result = rtamt::dense::scan<rtamt::Min>(events[0]);
     } else if (kind == "until") {
-        result = rtamt::dense::scan_until(events[0], events[1]);
+        result = rtamt::dense::scan_until<rtamt::Real>(events[0], events[1]);
     } else {
         throw std::invalid_argument("There is no scan '" + std::string(kind) +
                                     "': it is run_max, run_min or until.");

@@ -63,13 +63,13 @@ static rtamt::Program everything() {
     return builder.program();
 }
 
-TEST(counting_sees_the_allocations_of_a_new_executor) {
+TEST_CASE("counting sees the allocations of a new executor") {
     const std::size_t before = allocations;
     Executor executor(everything());
     CHECK(allocations > before + 10);
 }
 
-TEST(running_a_monitor_allocates_nothing) {
+TEST_CASE("running a monitor allocates nothing") {
     Executor executor(everything());
     double value = 0;
     const std::vector<double> row{5.0, 6.0};
@@ -85,7 +85,7 @@ TEST(running_a_monitor_allocates_nothing) {
         (void)executor.step(row.data(), value);
     const bool failed = executor.step(bad.data(), value) == Outcome::failed;
     CHECK(allocations == before);
-    CHECK(failed && executor.samples() == 500);
+    CHECK((failed && executor.samples() == 500));
 
     executor.reserve(5000);
     before = allocations;
@@ -100,5 +100,5 @@ TEST(running_a_monitor_allocates_nothing) {
     for (int i = 0; i < 500; ++i)
         (void)executor.step(row.data(), value);
     CHECK(allocations == before);
-    CHECK(valid && executor.samples() == 500);
+    CHECK((valid && executor.samples() == 500));
 }

@@ -2,8 +2,8 @@
 // taken over without harm, through the C API.
 //
 // The first byte chooses the program and how many samples come afterwards, the rest is a state,
-// whose checksum and whose program's are set right here: else nothing that was changed would ever
-// get past them.
+// whose layout and checksums, its own and the program's, are set right here: else nothing that was
+// changed would ever get past them, nor a corpus that is older than the layout.
 #include "c_api/rtamt.h"
 
 #include "program/crc32.hpp"
@@ -103,13 +103,14 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (size < 1 + sum_place + 2 * sum_size) return 0;
     const unsigned seed = data[0];
     const Subject& subject = subjects()[seed % 2];
-    Bytes state(data + 1, data + size);
-    std::memcpy(state.data() + sum_place,
-                subject.program.data() + subject.program.size() - sum_size, sum_size);
-    seal(state);
     const Handle monitor = create(subject.program);
     go_on(monitor.get(), subject.domain, seed);
     const Bytes before = save(monitor.get());
+    Bytes state(data + 1, data + size);
+    std::memcpy(state.data(), before.data(), sum_place);
+    std::memcpy(state.data() + sum_place,
+                subject.program.data() + subject.program.size() - sum_size, sum_size);
+    seal(state);
     if (!taken(monitor.get(), rtamt_restore(monitor.get(), state.data(), state.size()))) {
         expect(save(monitor.get()) == before);
         return 0;

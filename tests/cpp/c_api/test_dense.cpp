@@ -58,7 +58,7 @@ rtamt_sample sample(int i) {
 }
 } // namespace
 
-TEST(samples_in_events_out) {
+TEST_CASE("samples in events out") {
     const Handle monitor = example();
     CHECK(rtamt_time(monitor.get()) == RTAMT_DENSE);
     CHECK(push(monitor, {{0, 3.0, 0}, {0, 1.0, 1}}).empty());
@@ -66,17 +66,17 @@ TEST(samples_in_events_out) {
     CHECK(push(monitor, {{5, 5.0, 0}}).empty());
     CHECK(push(monitor, {{7, 2.0, 1}, {6, 4.0, 0}}) == Told({{0, 1.5}}));
     std::int64_t until = 0;
-    CHECK(rtamt_known_until(monitor.get(), 0, &until) == 1 && until == 3);
-    CHECK(rtamt_known_until(monitor.get(), 2, &until) == 0 &&
-          rtamt_sample_count(monitor.get()) == 0);
+    CHECK((rtamt_known_until(monitor.get(), 0, &until) == 1 && until == 3));
+    CHECK((rtamt_known_until(monitor.get(), 2, &until) == 0 &&
+           rtamt_sample_count(monitor.get()) == 0));
     CHECK(rtamt_finish(monitor.get()) == RTAMT_OK);
     CHECK(told(monitor) == Told({{4, 0.5}}));
-    CHECK(rtamt_known_until(monitor.get(), 0, &until) == 1 && until == 7);
+    CHECK((rtamt_known_until(monitor.get(), 0, &until) == 1 && until == 7));
     rtamt_reset(monitor.get());
-    CHECK(told(monitor).empty() && rtamt_known_until(monitor.get(), 0, &until) == 0);
+    CHECK((told(monitor).empty() && rtamt_known_until(monitor.get(), 0, &until) == 0));
 }
 
-TEST(a_refused_sample_leaves_the_monitor_as_it_was) {
+TEST_CASE("a refused sample leaves the monitor as it was") {
     const Handle monitor = example();
     (void)push(monitor, {{0, 3.0, 0}, {0, 1.0, 1}});
     const Bytes before = save(monitor);
@@ -103,9 +103,10 @@ TEST(a_refused_sample_leaves_the_monitor_as_it_was) {
     std::uint32_t instruction = 0;
     std::int64_t tick = 0;
     rtamt_failure(monitor.get(), &instruction, &tick);
-    CHECK(instruction == 3 && tick == 4);
-    double known = 0.0;
-    CHECK(rtamt_step(monitor.get(), &known, 1, &known, 1) == RTAMT_REFUSED);
+    CHECK((instruction == 3 && tick == 4));
+    const double value = 0.0;
+    rtamt_value known{};
+    CHECK(rtamt_step(monitor.get(), &value, 1, &known, 1) == RTAMT_REFUSED);
     CHECK(rtamt_message(monitor.get()) ==
           std::string("The program is for dense time: use rtamt_push."));
     CHECK(rtamt_set_parameter(monitor.get(), 0, 2.0) == RTAMT_REFUSED);
@@ -115,7 +116,7 @@ TEST(a_refused_sample_leaves_the_monitor_as_it_was) {
           std::string("The trace has ended: reset the monitor before the next sample."));
 }
 
-TEST(a_state_is_saved_restored_and_cloned_anywhere_in_a_trace) {
+TEST_CASE("a state is saved restored and cloned anywhere in a trace") {
     for (int cut = 0; cut < 14; ++cut) {
         const Handle monitor = create(programs::everything_dense());
         for (int i = 0; i < cut; ++i)
@@ -127,19 +128,19 @@ TEST(a_state_is_saved_restored_and_cloned_anywhere_in_a_trace) {
         rtamt_monitor* copied = nullptr;
         CHECK(rtamt_clone(monitor.get(), &copied) == RTAMT_OK);
         const Handle copy(copied);
-        CHECK(save(other) == state && save(copy) == state);
+        CHECK((save(other) == state && save(copy) == state));
         for (int i = cut; i < 30; ++i) {
             const Told expected = push(monitor, {sample(i)});
-            CHECK(push(other, {sample(i)}) == expected && push(copy, {sample(i)}) == expected);
+            CHECK((push(other, {sample(i)}) == expected && push(copy, {sample(i)}) == expected));
         }
         for (const Handle* each : {&monitor, &other, &copy})
             CHECK(rtamt_finish(each->get()) == RTAMT_OK);
         CHECK(!told(monitor).empty());
-        CHECK(told(other) == told(monitor) && told(copy) == told(monitor));
+        CHECK((told(other) == told(monitor) && told(copy) == told(monitor)));
     }
 }
 
-TEST(no_damaged_state_is_restored) {
+TEST_CASE("no damaged state is restored") {
     const Handle monitor = create(programs::everything_dense());
     for (int i = 0; i < 11; ++i)
         (void)push(monitor, {sample(i)});
@@ -153,7 +154,7 @@ TEST(no_damaged_state_is_restored) {
     CHECK(save(monitor) == state);
 }
 
-TEST(a_forged_state_with_a_right_checksum_is_refused_or_does_no_harm) {
+TEST_CASE("a forged state with a right checksum is refused or does no harm") {
     const programs::Program program = programs::everything_dense();
     std::size_t refused = 0;
     std::size_t taken = 0;
@@ -187,5 +188,6 @@ TEST(a_forged_state_with_a_right_checksum_is_refused_or_does_no_harm) {
             (void)rtamt_known_until(victim.get(), 0, &until);
         });
     }
-    CHECK(refused > 1000 && taken > 1000); // numbers that only change values are as good as others
+    CHECK(
+        (refused > 1000 && taken > 1000)); // numbers that only change values are as good as others
 }

@@ -68,17 +68,17 @@ Values known(double a, double b) {
 }
 } // namespace
 
-TEST(a_program_says_what_it_is) {
+TEST_CASE("a program says what it is") {
     const Handle monitor = example();
-    CHECK(rtamt_abi() == RTAMT_ABI && rtamt_time(monitor.get()) == RTAMT_DISCRETE);
+    CHECK((rtamt_abi() == RTAMT_ABI && rtamt_time(monitor.get()) == RTAMT_DISCRETE));
     CHECK(rtamt_name(monitor.get()) == std::string("ratio"));
     CHECK(rtamt_formula(monitor.get()) == std::string("always[0:0.3](a / b >= limit)"));
-    CHECK(rtamt_inputs(monitor.get()) == 2 && rtamt_outputs(monitor.get()) == 2);
+    CHECK((rtamt_inputs(monitor.get()) == 2 && rtamt_outputs(monitor.get()) == 2));
     CHECK(rtamt_input(monitor.get(), 1) == std::string("b"));
     CHECK(rtamt_output(monitor.get(), 0) == std::string("robustness"));
-    CHECK(rtamt_input(monitor.get(), 2) == nullptr && rtamt_output(monitor.get(), 2) == nullptr);
-    CHECK(rtamt_lag(monitor.get(), 0) == 3 && rtamt_lag(monitor.get(), 1) == 0);
-    CHECK(rtamt_lag(monitor.get(), 2) == -1 && rtamt_parameters(monitor.get()) == 1);
+    CHECK((rtamt_input(monitor.get(), 2) == nullptr && rtamt_output(monitor.get(), 2) == nullptr));
+    CHECK((rtamt_lag(monitor.get(), 0) == 3 && rtamt_lag(monitor.get(), 1) == 0));
+    CHECK((rtamt_lag(monitor.get(), 2) == -1 && rtamt_parameters(monitor.get()) == 1));
     CHECK(rtamt_parameter(monitor.get(), 0) == std::string("limit"));
     CHECK(rtamt_parameter(monitor.get(), 1) == nullptr);
     double none = 0.0;
@@ -87,10 +87,10 @@ TEST(a_program_says_what_it_is) {
     std::int64_t numerator = 0;
     std::int64_t denominator = 0;
     rtamt_period(monitor.get(), &numerator, &denominator);
-    CHECK(numerator == 1 && denominator == 10);
+    CHECK((numerator == 1 && denominator == 10));
 }
 
-TEST(what_is_no_program_is_refused_with_a_sentence_cut_to_the_room) {
+TEST_CASE("what is no program is refused with a sentence cut to the room") {
     Bytes damaged = programs::bytes_of(programs::carried());
     damaged[40] ^= 1U;
     rtamt_monitor* monitor = nullptr;
@@ -114,7 +114,7 @@ TEST(what_is_no_program_is_refused_with_a_sentence_cut_to_the_room) {
     rtamt_destroy(nullptr);
 }
 
-TEST(null_pointers_and_wrong_sizes_are_refused_by_every_function) {
+TEST_CASE("null pointers and wrong sizes are refused by every function") {
     using Call = std::function<rtamt_status(rtamt_monitor*)>;
     const Handle monitor = example();
     (void)step(monitor, {3.0, 1.0});
@@ -148,7 +148,7 @@ TEST(null_pointers_and_wrong_sizes_are_refused_by_every_function) {
         CHECK(call(nullptr) == RTAMT_REFUSED);
         CHECK(save(monitor) == before);
     }
-    CHECK(size == before.size() && little == decltype(little){});
+    CHECK((size == before.size() && little == decltype(little){}));
     const std::vector<Call> without{
         [](auto* self) { return rtamt_failure(self, nullptr, nullptr); },
         [](auto* self) { return rtamt_period(self, nullptr, nullptr); },
@@ -158,14 +158,14 @@ TEST(null_pointers_and_wrong_sizes_are_refused_by_every_function) {
         [](auto* self) { return rtamt_set_parameter(self, 0, 1.0); },
     };
     for (const Call& call : without)
-        CHECK(call(monitor.get()) == RTAMT_OK && call(nullptr) == RTAMT_REFUSED);
-    CHECK(rtamt_time(nullptr) == RTAMT_NO_DOMAIN && rtamt_sample_count(nullptr) == -1);
-    CHECK(rtamt_name(nullptr) == nullptr && rtamt_formula(nullptr) == nullptr);
-    CHECK(rtamt_inputs(nullptr) == 0 && rtamt_input(nullptr, 0) == nullptr);
-    CHECK(rtamt_outputs(nullptr) == 0 && rtamt_output(nullptr, 0) == nullptr);
-    CHECK(rtamt_parameters(nullptr) == 0 && rtamt_parameter(nullptr, 0) == nullptr);
-    CHECK(rtamt_lag(nullptr, 0) == -1 &&
-          rtamt_parameter_value(nullptr, 0, nullptr) == RTAMT_REFUSED);
+        CHECK((call(monitor.get()) == RTAMT_OK && call(nullptr) == RTAMT_REFUSED));
+    CHECK((rtamt_time(nullptr) == RTAMT_NO_DOMAIN && rtamt_sample_count(nullptr) == -1));
+    CHECK((rtamt_name(nullptr) == nullptr && rtamt_formula(nullptr) == nullptr));
+    CHECK((rtamt_inputs(nullptr) == 0 && rtamt_input(nullptr, 0) == nullptr));
+    CHECK((rtamt_outputs(nullptr) == 0 && rtamt_output(nullptr, 0) == nullptr));
+    CHECK((rtamt_parameters(nullptr) == 0 && rtamt_parameter(nullptr, 0) == nullptr));
+    CHECK((rtamt_lag(nullptr, 0) == -1 &&
+           rtamt_parameter_value(nullptr, 0, nullptr) == RTAMT_REFUSED));
     CHECK(rtamt_told(nullptr, 0, nullptr, nullptr) == 0);
     CHECK(rtamt_told(monitor.get(), 0, nullptr, nullptr) == 0);
     CHECK(rtamt_known_until(nullptr, 0, nullptr) == -1);
@@ -175,20 +175,20 @@ TEST(null_pointers_and_wrong_sizes_are_refused_by_every_function) {
     CHECK(message.data() == std::string("The place for the result is null: pass an address."));
 }
 
-TEST(samples_in_robustness_out) {
+TEST_CASE("samples in robustness out") {
     const Handle monitor = example();
     for (int i = 0; i < 3; ++i)
         CHECK(step(monitor, {3.0 + i, 1.0})[0].known == 0);
     CHECK(same(step(monitor, {9.0, 1.0}), known(1.5, 9.0)));
     CHECK(same(step(monitor, {9.0, 1.0}), known(2.5, 9.0)));
     std::int64_t until = 0;
-    CHECK(rtamt_known_until(monitor.get(), 0, &until) == 1 && until == 1);
+    CHECK((rtamt_known_until(monitor.get(), 0, &until) == 1 && until == 1));
     CHECK(rtamt_sample_count(monitor.get()) == 5);
     CHECK(rtamt_finish(monitor.get()) == RTAMT_OK);
     const std::int64_t* steps = nullptr;
     const double* values = nullptr;
     CHECK(rtamt_told(monitor.get(), 0, &steps, &values) == 3);
-    CHECK(steps[0] == 2 && values[0] == 3.5 && steps[2] == 4 && values[2] == 7.5);
+    CHECK((steps[0] == 2 && values[0] == 3.5 && steps[2] == 4 && values[2] == 7.5));
     CHECK(rtamt_told(monitor.get(), 2, &steps, &values) == 0);
     CHECK(rtamt_finish(monitor.get()) == RTAMT_REFUSED);
     CHECK(rtamt_message(monitor.get()) ==
@@ -198,12 +198,12 @@ TEST(samples_in_robustness_out) {
     CHECK(rtamt_message(monitor.get()) ==
           std::string("The trace has ended: reset the monitor before the next sample."));
     rtamt_reset(monitor.get());
-    CHECK(rtamt_known_until(monitor.get(), 0, &until) == 0 &&
-          rtamt_sample_count(monitor.get()) == 0);
+    CHECK((rtamt_known_until(monitor.get(), 0, &until) == 0 &&
+           rtamt_sample_count(monitor.get()) == 0));
     CHECK(step(monitor, row)[0].known == 0);
 }
 
-TEST(a_refused_sample_leaves_the_monitor_as_it_was) {
+TEST_CASE("a refused sample leaves the monitor as it was") {
     const Handle monitor = example();
     (void)step(monitor, {3.0, 1.0});
     const Bytes before = save(monitor);
@@ -211,7 +211,7 @@ TEST(a_refused_sample_leaves_the_monitor_as_it_was) {
         Values known{};
         const rtamt_status status =
             rtamt_step(monitor.get(), row.data(), row.size(), known.data(), outputs);
-        CHECK(status != RTAMT_OK && save(monitor) == before);
+        CHECK((status != RTAMT_OK && save(monitor) == before));
         return std::string(rtamt_message(monitor.get()));
     };
     // Saving has its own message; the one of the step is what was said before it.
@@ -233,7 +233,7 @@ TEST(a_refused_sample_leaves_the_monitor_as_it_was) {
     std::uint32_t instruction = 0;
     std::int64_t sample = 0;
     rtamt_failure(monitor.get(), &instruction, &sample);
-    CHECK(instruction == 3 && sample == 1);
+    CHECK((instruction == 3 && sample == 1));
     const rtamt_sample dense{0, 1.0, 0};
     CHECK(rtamt_push(monitor.get(), &dense, 1) == RTAMT_REFUSED);
     CHECK(rtamt_message(monitor.get()) ==
@@ -241,7 +241,7 @@ TEST(a_refused_sample_leaves_the_monitor_as_it_was) {
     CHECK(save(monitor) == before);
 }
 
-TEST(parameters_are_set_before_the_first_sample) {
+TEST_CASE("parameters are set before the first sample") {
     const Handle monitor = example();
     CHECK(parameter(monitor) == 1.5);
     CHECK(rtamt_set_parameter(monitor.get(), 0, 2.0) == RTAMT_OK);
@@ -262,7 +262,7 @@ TEST(parameters_are_set_before_the_first_sample) {
     CHECK(rtamt_set_parameter(monitor.get(), 0, 1.0) == RTAMT_OK);
 }
 
-TEST(a_state_is_saved_restored_and_cloned_anywhere_in_a_trace) {
+TEST_CASE("a state is saved restored and cloned anywhere in a trace") {
     const auto row = [](int i) { return Row{static_cast<double>(i * 7 % 5), 1.0 + i % 3}; };
     for (int cut = 0; cut < 12; ++cut) {
         const Handle monitor = example();
@@ -276,18 +276,18 @@ TEST(a_state_is_saved_restored_and_cloned_anywhere_in_a_trace) {
         rtamt_monitor* copied = nullptr;
         CHECK(rtamt_clone(monitor.get(), &copied) == RTAMT_OK);
         const Handle copy(copied);
-        CHECK(parameter(other) == 0.25 && save(other) == state);
+        CHECK((parameter(other) == 0.25 && save(other) == state));
         CHECK(save(copy) == state);
         for (int i = cut; i < 20; ++i) {
             const Values expected = step(monitor, row(i));
-            CHECK(same(step(other, row(i)), expected) && same(step(copy, row(i)), expected));
+            CHECK((same(step(other, row(i)), expected) && same(step(copy, row(i)), expected)));
         }
         CHECK(rtamt_restore(monitor.get(), state.data(), state.size()) == RTAMT_OK);
         CHECK(save(monitor) == state);
     }
 }
 
-TEST(no_damaged_state_is_restored) {
+TEST_CASE("no damaged state is restored") {
     const Handle monitor = example();
     for (int i = 0; i < 6; ++i)
         (void)step(monitor, {5.0 + i, 2.0});
@@ -313,7 +313,7 @@ TEST(no_damaged_state_is_restored) {
     CHECK(save(other) == before);
 }
 
-TEST(a_forged_state_with_a_right_checksum_is_refused_or_does_no_harm) {
+TEST_CASE("a forged state with a right checksum is refused or does no harm") {
     const Bytes bytes = programs::bytes_of(programs::everything());
     std::size_t refused = 0;
     std::size_t taken = 0;
@@ -345,5 +345,6 @@ TEST(a_forged_state_with_a_right_checksum_is_refused_or_does_no_harm) {
             (void)rtamt_known_until(victim.get(), 0, &until);
         });
     }
-    CHECK(refused > 1000 && taken > 1000); // numbers that only change values are as good as others
+    CHECK(
+        (refused > 1000 && taken > 1000)); // numbers that only change values are as good as others
 }

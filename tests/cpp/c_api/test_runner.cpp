@@ -13,42 +13,42 @@ using rtamt::c_api::DiscreteRunner;
 using rtamt::c_api::make_runner;
 using rtamt::c_api::Undefined;
 
-TEST(a_runner_is_for_the_domain_of_its_program) {
+TEST_CASE("a runner is for the domain of its program") {
     CHECK(dynamic_cast<DiscreteRunner*>(make_runner(carried()).get()) != nullptr);
     CHECK(dynamic_cast<DenseRunner*>(make_runner(carried(Domain::dense)).get()) != nullptr);
 }
 
-TEST(in_discrete_time_known_values_follow_their_lags) {
+TEST_CASE("in discrete time known values follow their lags") {
     DiscreteRunner runner(carried());
     std::array<rtamt_value, 2> known{};
-    CHECK(!runner.begun() && !runner.known_until(0) && !runner.known_until(1));
+    CHECK((!runner.begun() && !runner.known_until(0) && !runner.known_until(1)));
     for (int i = 0; i < 5; ++i) {
         const std::array<double, 2> row{3.0 + i, 1.0};
         runner.step(row.data(), known);
-        CHECK((known[0].known == 0) == (i < 3) && known[1].value == 3.0 + i);
+        CHECK(((known[0].known == 0) == (i < 3) && known[1].value == 3.0 + i));
     }
-    CHECK(known[0].value == 2.5 && runner.begun() && runner.samples() == 5);
-    CHECK(runner.known_until(0) == 1 && runner.known_until(1) == 4);
+    CHECK((known[0].value == 2.5 && runner.begun() && runner.samples() == 5));
+    CHECK((runner.known_until(0) == 1 && runner.known_until(1) == 4));
     runner.finish();
-    CHECK(runner.told(0).count == 3 && runner.told(0).times[0] == 2 && runner.told(1).count == 0);
-    CHECK(runner.told(0).values[2] == 5.5 && runner.known_until(0) == 4);
+    CHECK((runner.told(0).count == 3 && runner.told(0).times[0] == 2 && runner.told(1).count == 0));
+    CHECK((runner.told(0).values[2] == 5.5 && runner.known_until(0) == 4));
     runner.reset();
-    CHECK(!runner.begun() && !runner.finished() && runner.told(0).count == 0);
+    CHECK((!runner.begun() && !runner.finished() && runner.told(0).count == 0));
 }
 
-TEST(in_dense_time_what_is_discarded_was_never_there) {
+TEST_CASE("in dense time what is discarded was never there") {
     DenseRunner runner(carried(Domain::dense));
     runner.add(0, 5, 3.0);
     CHECK(runner.last(0) == 5);
     runner.discard();
-    CHECK(!runner.last(0) && !runner.begun());
+    CHECK((!runner.last(0) && !runner.begun()));
     runner.add(0, 0, 3.0);
     runner.add(1, 0, 1.0);
     runner.push();
-    CHECK(runner.told(0).count == 0 && runner.told(1).count == 1 && runner.begun());
+    CHECK((runner.told(0).count == 0 && runner.told(1).count == 1 && runner.begun()));
     runner.add(0, 4, 4.0);
     runner.add(1, 4, 0.0);
     runner.push();
-    CHECK(runner.told(0).count == 1 && runner.told(0).values[0] == 1.5);
-    CHECK(runner.known_until(0) == 1 && runner.known_until(1) == 4);
+    CHECK((runner.told(0).count == 1 && runner.told(0).values[0] == 1.5));
+    CHECK((runner.known_until(0) == 1 && runner.known_until(1) == 4));
 }

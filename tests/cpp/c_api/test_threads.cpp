@@ -106,7 +106,7 @@ Bits dense_run(const std::vector<std::uint8_t>& bytes) {
 }
 } // namespace
 
-TEST(monitors_in_threads_of_their_own_are_independent) {
+TEST_CASE("monitors in threads of their own are independent") {
     const auto discrete = programs::bytes_of(programs::everything());
     const auto dense = programs::bytes_of(programs::everything_dense());
     const Bits expected[] = {discrete_run(discrete), dense_run(dense)};
@@ -116,7 +116,7 @@ TEST(monitors_in_threads_of_their_own_are_independent) {
         CHECK(answers[static_cast<std::size_t>(thread)] == expected[thread % 2]);
 }
 
-TEST(threads_share_a_parsed_program) {
+TEST_CASE("threads share a parsed program") {
     const programs::Program discrete = programs::everything();
     const auto run = [&](int /*thread*/) {
         rtamt::discrete::Executor executor(discrete);
@@ -134,7 +134,7 @@ TEST(threads_share_a_parsed_program) {
         CHECK(bits == expected);
 }
 
-TEST(threads_take_turns_with_a_monitor) {
+TEST_CASE("threads take turns with a monitor") {
     const auto bytes = programs::bytes_of(programs::everything());
     rtamt_monitor* monitor = create(bytes);
     std::mutex turn;
@@ -147,6 +147,6 @@ TEST(threads_take_turns_with_a_monitor) {
         }
         return 0;
     });
-    CHECK(taken > samples && rtamt_sample_count(monitor) == taken);
+    CHECK((taken > samples && rtamt_sample_count(monitor) == taken));
     rtamt_destroy(monitor);
 }

@@ -108,7 +108,7 @@ class Hasty {
 
 } // namespace
 
-TEST(a_call_counts_time_as_the_trace_does) {
+TEST_CASE("a call counts time as the trace does") {
     for (const bool whole : {true, false}) {
         const Heard heard = run(ahead, whole);
         CHECK((heard.times == std::vector<std::int64_t>{10, 15, 16}));
@@ -117,7 +117,7 @@ TEST(a_call_counts_time_as_the_trace_does) {
     }
 }
 
-TEST(what_no_kernel_may_say_is_a_fault) {
+TEST_CASE("what no kernel may say is a fault") {
     CHECK(run(rtamt::KernelOf<Stubborn<-1>>::table(), true).fault ==
           "it gave no value at the start of the trace");
     CHECK(run(rtamt::KernelOf<Stubborn<1>>::table(), true).fault ==

@@ -9,16 +9,16 @@ using rtamt::Opcode;
 using ways::Random;
 using ways::Signal;
 
-TEST(a_constant_is_one_event_where_it_begins) {
+TEST_CASE("a constant is one event where it begins") {
     rtamt::dense::Constant<rtamt::Real> constant(3, 2.5);
     constant.begin(100);
-    CHECK(constant.run(102) == rtamt::dense::never && constant.out().count == 0);
+    CHECK((constant.run(102) == rtamt::dense::never && constant.out().count == 0));
     CHECK(constant.run(200) == rtamt::dense::never);
     CHECK((dense_oracle::signal_of(constant.out()) == Signal{{103}, {2.5}}));
-    CHECK(constant.run(300) == rtamt::dense::never && constant.out().count == 0);
+    CHECK((constant.run(300) == rtamt::dense::never && constant.out().count == 0));
 }
 
-TEST(constants_are_there_wherever_they_are_read) {
+TEST_CASE("constants are there wherever they are read") {
     Random random(11);
     Builder builder;
     const auto three = builder.constant(3);

@@ -16,7 +16,7 @@ using dense_ways::Lists;
 using dense_ways::offline;
 using dense_ways::Random;
 using dense_ways::Trace;
-using programs::random_dense_program;
+using programs::random_program;
 using rtamt::Interval;
 using rtamt::Lanes;
 using rtamt::Program;
@@ -50,14 +50,14 @@ std::string round_note(int round) {
 
 } // namespace
 
-TEST(eight_lanes_are_eight_traces) {
+TEST_CASE("eight lanes are eight traces") {
     using Eight = Lanes<8>;
     Random random(1);
     int failed = 0;
     for (int round = 0; round < 300; ++round) {
         const std::string note = round_note(round);
         const Program program =
-            random_dense_program(random, static_cast<int>(random.between(1, 10)));
+            random_program(random, static_cast<int>(random.between(1, 10)), rtamt::Domain::dense);
         const auto trace = sampled<Eight>(random, 25);
         Lists<Eight> outputs;
         const auto failure = offline<Eight>(program, trace, outputs);
@@ -70,26 +70,27 @@ TEST(eight_lanes_are_eight_traces) {
             }
             if (failure) continue;
             for (std::size_t output = 0; output < outputs.size(); ++output) {
-                CHECK_NOTE(component(outputs[output].view(), get) ==
-                               component(expected[output].view(), itself),
-                           note);
+                CHECK_MESSAGE(component(outputs[output].view(), get) ==
+                                  component(expected[output].view(), itself),
+                              note);
             }
         }
-        CHECK_NOTE(failure.has_value() == first.has_value(), note);
-        if (failure && first) CHECK_NOTE(order(program, *failure) == order(program, *first), note);
+        CHECK_MESSAGE(failure.has_value() == first.has_value(), note);
+        if (failure && first)
+            CHECK_MESSAGE(order(program, *failure) == order(program, *first), note);
         failed += failure ? 1 : 0;
         check_online<Eight>(program, trace, 6, random, failure ? nullptr : &outputs, note);
     }
-    CHECK(failed > 30 && failed < 270); // both kinds were tried
+    CHECK((failed > 30 && failed < 270)); // both kinds were tried
 }
 
-TEST(bounds_are_two_runs_at_the_corners) {
+TEST_CASE("bounds are two runs at the corners") {
     Random random(2);
     int compared = 0;
     for (int round = 0; round < 6000 && compared < 300; ++round) {
         const std::string note = round_note(round);
         const Program program =
-            random_dense_program(random, static_cast<int>(random.between(1, 9)));
+            random_program(random, static_cast<int>(random.between(1, 9)), rtamt::Domain::dense);
         if (!programs::monotone(program)) continue;
         const auto trace = sampled<Interval>(random, 25);
         Trace<Real> ends;
@@ -105,23 +106,23 @@ TEST(bounds_are_two_runs_at_the_corners) {
         if (offline<Real>(programs::corners(program), ends, expected)) continue; // inf - inf
         ++compared;
         Lists<Interval> outputs;
-        CHECK_NOTE(!offline<Interval>(program, trace, outputs), note);
+        CHECK_MESSAGE(!offline<Interval>(program, trace, outputs), note);
         for (std::size_t output = 0; output < outputs.size(); ++output) {
             const auto lower = [](const auto& bounds) { return bounds.lower; };
             const auto upper = [](const auto& bounds) { return bounds.upper; };
-            CHECK_NOTE(component(outputs[output].view(), lower) ==
-                           component(expected[2 * output].view(), itself),
-                       note);
-            CHECK_NOTE(component(outputs[output].view(), upper) ==
-                           component(expected[2 * output + 1].view(), itself),
-                       note);
+            CHECK_MESSAGE(component(outputs[output].view(), lower) ==
+                              component(expected[2 * output].view(), itself),
+                          note);
+            CHECK_MESSAGE(component(outputs[output].view(), upper) ==
+                              component(expected[2 * output + 1].view(), itself),
+                          note);
         }
         check_online<Interval>(program, trace, 8, random, &outputs, note);
     }
     CHECK(compared == 300);
 }
 
-TEST(sixty_four_truth_values_are_the_signs_of_sixty_four_robustnesses) {
+TEST_CASE("sixty four truth values are the signs of sixty four robustnesses") {
     Random random(3);
     for (int round = 0; round < 80; ++round) {
         const std::string note = round_note(round);
@@ -131,28 +132,28 @@ TEST(sixty_four_truth_values_are_the_signs_of_sixty_four_robustnesses) {
         for (auto& value : trace[1].values) // the second input is true or false
             value = Truth::number(laws::Sampler<Truth>::one(random));
         Lists<Truth> outputs;
-        CHECK_NOTE(!offline<Truth>(program, trace, outputs), note);
+        CHECK_MESSAGE(!offline<Truth>(program, trace, outputs), note);
         for (std::size_t k = 0; k < Truth::traces; ++k) {
             const auto lane = [&](const auto& value) { return value.lane[k]; };
             Lists<Real> robustness;
-            CHECK_NOTE(!offline<Real>(program, component<Truth>(trace, lane), robustness), note);
+            CHECK_MESSAGE(!offline<Real>(program, component<Truth>(trace, lane), robustness), note);
             for (std::size_t output = 0; output < outputs.size(); ++output) {
                 const auto bit = [&](std::uint64_t word) { return (word >> k) & 1U ? 1.0 : 0.0; };
                 const auto sign = [](double x) { return x > 0 ? 1.0 : 0.0; };
-                CHECK_NOTE(component(outputs[output].view(), bit) ==
-                               component(robustness[output].view(), sign),
-                           note);
+                CHECK_MESSAGE(component(outputs[output].view(), bit) ==
+                                  component(robustness[output].view(), sign),
+                              note);
             }
         }
         check_online<Truth>(program, trace, 5, random, &outputs, note);
     }
 }
 
-TEST(a_program_with_code_of_its_own_is_for_reals) {
+TEST_CASE("a program with code of its own is for reals") {
     const rtamt_kernel kernel{};
     programs::Builder builder;
     builder.output(builder.call(kernel, {}, {builder.input()}, 0));
-    CHECK(check::message<std::invalid_argument>([&] {
+    CHECK(thrown<std::invalid_argument>([&] {
               const rtamt::dense::BasicExecutor<Interval> executor(builder.program());
           }) == "This program runs code of its own, which computes with real numbers only.");
 }

@@ -7,7 +7,7 @@
 
 using dense_oracle::inf;
 using programs::Builder;
-using programs::random_dense_program;
+using programs::random_program;
 using rtamt::Opcode;
 using rtamt::Program;
 using ways::EventList;
@@ -26,33 +26,34 @@ std::string round_note(int round) {
 
 } // namespace
 
-TEST(random_programs_offline_are_their_definition) {
+TEST_CASE("random programs offline are their definition") {
     Random random(20);
     int failed = 0;
     for (int round = 0; round < 1500; ++round) {
         const Program program =
-            random_dense_program(random, static_cast<int>(random.between(1, 12)));
+            random_program(random, static_cast<int>(random.between(1, 12)), rtamt::Domain::dense);
         const Trace trace = dense_oracle::random_trace(random, 2, 20, random.between(-50, 50), 1);
         const std::int64_t extra = random.chance(30) ? random.between(0, 30) : 0;
         const auto expected = dense_oracle::answer(program, trace, extra);
         std::vector<Signal> outputs;
         const auto failure = ways::offline(program, trace, outputs, extra);
-        CHECK_NOTE(failure.has_value() == expected.undefined.has_value(), round_note(round));
+        CHECK_MESSAGE(failure.has_value() == expected.undefined.has_value(), round_note(round));
         if (failure && expected.undefined) {
             ++failed;
-            CHECK_NOTE(failure->instruction == expected.undefined->instruction, round_note(round));
-            CHECK_NOTE(failure->time == expected.undefined->time, round_note(round));
+            CHECK_MESSAGE(failure->instruction == expected.undefined->instruction,
+                          round_note(round));
+            CHECK_MESSAGE(failure->time == expected.undefined->time, round_note(round));
         } else {
-            CHECK_NOTE(outputs == expected.outputs, round_note(round));
+            CHECK_MESSAGE(outputs == expected.outputs, round_note(round));
         }
     }
-    CHECK(failed > 100 && failed < 1400); // both kinds were tried
+    CHECK((failed > 100 && failed < 1400)); // both kinds were tried
 }
 
 // Online in random chunks, where a chunk that fails is taken back and left out: after each update
 // exactly that is told which is known of the events that were accepted, and each failure is the
 // definition's first.
-TEST(random_programs_online_are_their_definition_and_failures_leave_no_trace) {
+TEST_CASE("random programs online are their definition and failures leave no trace") {
     Random random(21);
     int failed = 0;
     int finished = 0;
@@ -60,7 +61,7 @@ TEST(random_programs_online_are_their_definition_and_failures_leave_no_trace) {
     for (int round = 0; round < 1200; ++round) {
         const std::string note = round_note(round);
         const Program program =
-            random_dense_program(random, static_cast<int>(random.between(1, 10)));
+            random_program(random, static_cast<int>(random.between(1, 10)), rtamt::Domain::dense);
         const Trace all = dense_oracle::random_trace(random, 2, 20, random.between(-50, 50), 1);
         Executor executor(program);
         // Events that were refused are left out of `trace`, which grows event by event.
@@ -82,29 +83,30 @@ TEST(random_programs_online_are_their_definition_and_failures_leave_no_trace) {
             const bool complete = tried[0].size() != 0 && tried[1].size() != 0;
             const auto failure = executor.push(inputs, outputs);
             if (!complete) {
-                CHECK_NOTE(!failure && outputs[0].count() == 0, note);
+                CHECK_MESSAGE((!failure && outputs[0].count() == 0), note);
                 trace = tried;
                 continue;
             }
             const auto expected = dense_oracle::answer(program, tried);
             const bool undefined = expected.undefined &&
                                    expected.undefined->arrival <= dense_oracle::frontier_of(tried);
-            CHECK_NOTE(failure.has_value() == undefined, note);
+            CHECK_MESSAGE(failure.has_value() == undefined, note);
             if (failure) {
                 ++failed;
-                CHECK_NOTE(failure->instruction == expected.undefined->instruction, note);
-                CHECK_NOTE(failure->time == expected.undefined->time, note);
+                CHECK_MESSAGE(failure->instruction == expected.undefined->instruction, note);
+                CHECK_MESSAGE(failure->time == expected.undefined->time, note);
             } else {
                 trace = tried;
                 for (std::size_t i = 0; i < 2; ++i) {
                     const auto known = executor.known_until(i);
                     const std::int64_t lag = program.instructions[program.outputs[i]].lag;
                     const std::int64_t until = dense_oracle::frontier_of(trace) - lag;
-                    CHECK_NOTE(known.has_value() == (until >= dense_oracle::start_of(trace)), note);
-                    if (known) CHECK_NOTE(*known == until, note);
-                    CHECK_NOTE(dense_oracle::signal_of(outputs[i].view()) ==
-                                   (known ? expected.outputs[i].merged(until) : Signal{}),
-                               note);
+                    CHECK_MESSAGE(known.has_value() == (until >= dense_oracle::start_of(trace)),
+                                  note);
+                    if (known) CHECK_MESSAGE(*known == until, note);
+                    CHECK_MESSAGE(dense_oracle::signal_of(outputs[i].view()) ==
+                                      (known ? expected.outputs[i].merged(until) : Signal{}),
+                                  note);
                 }
             }
             for (std::size_t i = 0; i < 2; ++i) {
@@ -113,26 +115,26 @@ TEST(random_programs_online_are_their_definition_and_failures_leave_no_trace) {
             }
         }
         if (trace[0].size() == 0 || trace[1].size() == 0) {
-            CHECK(!executor.finish(outputs) && outputs[0].count() == 0);
+            CHECK((!executor.finish(outputs) && outputs[0].count() == 0));
             continue;
         }
         const auto expected = dense_oracle::answer(program, trace);
         if (const auto failure = executor.finish(outputs)) {
             ++finish_failed;
-            CHECK_NOTE(expected.undefined && expected.undefined->time == failure->time, note);
+            CHECK_MESSAGE((expected.undefined && expected.undefined->time == failure->time), note);
             CHECK(!executor.finished());
             const auto again = executor.finish(outputs);
-            CHECK_NOTE(again && again->instruction == failure->instruction, note);
+            CHECK_MESSAGE((again && again->instruction == failure->instruction), note);
         } else {
             ++finished;
-            CHECK_NOTE(!expected.undefined, note);
-            CHECK_NOTE(ways::signals_of(outputs) == expected.outputs, note);
+            CHECK_MESSAGE(!expected.undefined, note);
+            CHECK_MESSAGE(ways::signals_of(outputs) == expected.outputs, note);
         }
     }
-    CHECK(failed > 300 && finished > 300 && finish_failed > 10);
+    CHECK((failed > 300 && finished > 300 && finish_failed > 10));
 }
 
-TEST(chunks_of_many_blocks_that_fail_leave_no_trace) {
+TEST_CASE("chunks of many blocks that fail leave no trace") {
     Random random(22);
     Builder builder;
     const auto a = builder.input();
@@ -153,7 +155,7 @@ TEST(chunks_of_many_blocks_that_fail_leave_no_trace) {
             signal.values[i] = -1000;
     }
     const auto reference = dense_oracle::answer(builder.program(), bad);
-    CHECK(!expected.undefined && reference.undefined);
+    CHECK((!expected.undefined && reference.undefined));
     Executor executor(builder.program());
     for (const std::size_t cut : {std::size_t{0}, std::size_t{1}, std::size_t{700}}) {
         std::vector<EventList> outputs(1);
@@ -165,16 +167,16 @@ TEST(chunks_of_many_blocks_that_fail_leave_no_trace) {
         CHECK(!push(trace, 0, cut));
         for (int again = 0; again < 2; ++again) {
             const auto failure = push(bad, cut, 1500);
-            CHECK(failure && failure->instruction == root);
-            CHECK(failure && failure->time == reference.undefined->time);
+            CHECK((failure && failure->instruction == root));
+            CHECK((failure && failure->time == reference.undefined->time));
         }
-        CHECK(!push(trace, cut, 1500) && !executor.finish(outputs));
+        CHECK((!push(trace, cut, 1500) && !executor.finish(outputs)));
         CHECK(ways::signals_of(outputs) == expected.outputs);
         executor.reset();
     }
 }
 
-TEST(a_value_that_nobody_asks_for_after_the_end_may_be_undefined) {
+TEST_CASE("a value that nobody asks for after the end may be undefined") {
     // 1 / once[0,5](x) with x = 0 from 3 on is 1/0 = inf; 0 / it would be 0/0 from 8 on, after the
     // end at 6: that is no failure, unless a future operator looks so far.
     Builder builder;
@@ -197,10 +199,10 @@ TEST(a_value_that_nobody_asks_for_after_the_end_may_be_undefined) {
     Builder farther = builder;
     farther.output(farther.unary(Opcode::slide_max, ratio, 2, 2));
     const auto failure = ways::offline(farther.program(), trace, outputs);
-    CHECK(failure && failure->instruction == ratio && failure->time == 8);
+    CHECK((failure && failure->instruction == ratio && failure->time == 8));
 }
 
-TEST(the_trace_begins_when_every_input_has_come) {
+TEST_CASE("the trace begins when every input has come") {
     Builder builder;
     const auto a = builder.input();
     const auto b = builder.input();
@@ -209,51 +211,51 @@ TEST(the_trace_begins_when_every_input_has_come) {
     const Trace trace{{{0, 2, 9}, {1, 2, 3}}, {{5}, {0}}};
     Online online(executor, trace);
     CHECK(!online.push({2, 0}));
-    CHECK(!executor.start() && !executor.known_until(0));
+    CHECK((!executor.start() && !executor.known_until(0)));
     CHECK(!online.push({0, 1}));
-    CHECK(executor.start() == 5 && !executor.known_until(0)); // a is known until 2 only
+    CHECK((executor.start() == 5 && !executor.known_until(0))); // a is known until 2 only
     CHECK(!online.push({1, 0}));
-    CHECK(executor.known_until(0) == 5 && executor.last_time(0) == 9);
+    CHECK((executor.known_until(0) == 5 && executor.last_time(0) == 9));
     CHECK((ways::signals_of(online.outputs)[1] == Signal{{5}, {2}}));
     CHECK(!executor.finish(online.outputs));
     CHECK(executor.known_until(0) == 9);
     CHECK((ways::signals_of(online.outputs)[0] == Signal{{5, 9}, {2, 3}}));
 }
 
-TEST(nothing_is_known_without_samples) {
+TEST_CASE("nothing is known without samples") {
     Builder builder;
     builder.output(builder.unary(Opcode::slide_max, builder.input(), 3, 2));
     Executor executor(builder.program());
     std::vector<EventList> outputs(1);
-    CHECK(!executor.push(std::vector<Events>(1), outputs) && !executor.finish(outputs));
-    CHECK(outputs[0].count() == 0 && executor.finished() && !executor.known_until(0));
+    CHECK((!executor.push(std::vector<Events>(1), outputs) && !executor.finish(outputs)));
+    CHECK((outputs[0].count() == 0 && executor.finished() && !executor.known_until(0)));
     Builder constant;
     constant.output(constant.constant(1));
     Executor empty(constant.program());
-    CHECK(!empty.push({}, outputs) && !empty.finish(outputs) && outputs[0].count() == 0);
+    CHECK((!empty.push({}, outputs) && !empty.finish(outputs) && outputs[0].count() == 0));
     std::vector<Signal> signals;
-    CHECK(!ways::offline(builder.program(), {Signal{}}, signals) && signals[0].size() == 0);
+    CHECK((!ways::offline(builder.program(), {Signal{}}, signals) && signals[0].size() == 0));
 }
 
-TEST(after_finish_a_sample_is_refused_until_reset) {
+TEST_CASE("after finish a sample is refused until reset") {
     Builder builder;
     builder.output(builder.unary(Opcode::slide_max, builder.input(), 3, 2));
     Executor executor(builder.program());
     const Trace trace{{{1, 2, 3}, {1, 2, 3}}};
     Online online(executor, trace);
-    CHECK(!online.push({2}) && !executor.finish(online.outputs));
+    CHECK((!online.push({2}) && !executor.finish(online.outputs)));
     CHECK(!executor.finish(online.outputs));
-    CHECK(check::message<std::logic_error>([&] { (void)online.push({1}); }) ==
+    CHECK(thrown<std::logic_error>([&] { (void)online.push({1}); }) ==
           "The trace has ended: reset the monitor before the next sample.");
     executor.reset();
-    CHECK(!executor.start() && !executor.last_time(0) && !executor.finished());
+    CHECK((!executor.start() && !executor.last_time(0) && !executor.finished()));
 }
 
-TEST(the_answers_at_the_ends_of_time_are_those_at_0) {
+TEST_CASE("the answers at the ends of time are those at 0") {
     Random random(23);
     int checked = 0;
     for (int round = 0; round < 200; ++round) {
-        const Program program = random_dense_program(random, 8);
+        const Program program = random_program(random, 8, rtamt::Domain::dense);
         const Trace trace = dense_oracle::random_trace(random, 2, 20, 0, 1);
         const auto expected = dense_oracle::answer(program, trace);
         if (expected.undefined) continue;
@@ -272,13 +274,13 @@ TEST(the_answers_at_the_ends_of_time_are_those_at_0) {
             }
             std::vector<Signal> found;
             CHECK(!ways::offline(program, moved, found));
-            CHECK_NOTE(found == outputs, round_note(round) + " at " + std::to_string(base));
+            CHECK_MESSAGE(found == outputs, (round_note(round) + " at " + std::to_string(base)));
         }
     }
     CHECK(checked > 50);
 }
 
-TEST(the_rest_of_a_long_window_comes_in_steps) {
+TEST_CASE("the rest of a long window comes in steps") {
     Builder builder;
     const auto a = builder.input();
     builder.output(builder.unary(Opcode::shift, a, 1'000'000, 1'000'000))

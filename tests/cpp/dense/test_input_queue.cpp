@@ -21,7 +21,7 @@ Signal loaded(InputQueue& queue, std::int64_t time, std::size_t limit = 100) {
 
 } // namespace
 
-TEST(what_is_left_over_waits_for_the_next_update) {
+TEST_CASE("what is left over waits for the next update") {
     InputQueue queue;
     {
         const Signal signal{{1, 3, 5}, {1, 2, 3}};
@@ -29,14 +29,14 @@ TEST(what_is_left_over_waits_for_the_next_update) {
         CHECK((loaded(queue, 3) == Signal{{1, 3}, {1, 2}}));
         queue.settle();
     }
-    CHECK(queue.first() == 1 && queue.last() == 5);
+    CHECK((queue.first() == 1 && queue.last() == 5));
     const Signal more{{7, 9}, {4, 5}};
     attach(queue, more);
     CHECK((loaded(queue, 4) == Signal{}));
     CHECK((loaded(queue, 7, 1) == Signal{{5}, {3}}));
     CHECK((loaded(queue, 7) == Signal{{7}, {4}}));
     queue.rewind();
-    CHECK(queue.reach(3) == never && queue.reach(2) == 7 && queue.reach(1) == 5);
+    CHECK((queue.reach(3) == never && queue.reach(2) == 7 && queue.reach(1) == 5));
     CHECK((loaded(queue, 100) == Signal{{5, 7, 9}, {3, 4, 5}}));
     queue.settle();
     queue.attach({});
@@ -44,12 +44,12 @@ TEST(what_is_left_over_waits_for_the_next_update) {
     CHECK(queue.last() == 9);
 }
 
-TEST(an_update_that_is_restored_never_was) {
+TEST_CASE("an update that is restored never was") {
     InputQueue queue;
     const Signal first{{1, 3}, {1, 2}};
     attach(queue, first);
     queue.restore();
-    CHECK(!queue.first() && !queue.last());
+    CHECK((!queue.first() && !queue.last()));
     attach(queue, first);
     CHECK((loaded(queue, 1) == Signal{{1}, {1}}));
     queue.settle();
@@ -63,7 +63,7 @@ TEST(an_update_that_is_restored_never_was) {
     CHECK((loaded(queue, 100) == Signal{{3, 4}, {2, 4}}));
 }
 
-TEST(a_trace_begins_with_the_value_at_its_start) {
+TEST_CASE("a trace begins with the value at its start") {
     InputQueue queue;
     const Signal signal{{1, 3, 5, 8}, {1, 2, 3, 4}};
     attach(queue, signal);
@@ -76,7 +76,7 @@ TEST(a_trace_begins_with_the_value_at_its_start) {
     CHECK((loaded(queue, 100) == Signal{}));
 }
 
-TEST(a_queue_that_empties_is_reused) {
+TEST_CASE("a queue that empties is reused") {
     InputQueue queue;
     for (std::int64_t t = 0; t < 100000; ++t) { // always three samples behind
         const Signal sample{{t}, {0.5}};

@@ -34,7 +34,7 @@ Signal told(Echo& echo, const Signal& signal, std::int64_t frontier) {
 
 } // namespace
 
-TEST(what_comes_before_the_start_is_one_event_at_the_start) {
+TEST_CASE("what comes before the start is one event at the start") {
     Echo echo(5);
     echo.begin(10);
     CHECK((told(echo, {{10, 11}, {1, 2}}, 12) == Signal{}));
@@ -46,14 +46,14 @@ TEST(what_comes_before_the_start_is_one_event_at_the_start) {
     CHECK((told(echo, {}, 20) == Signal{{15}, {-1}}));
 }
 
-TEST(what_changes_nothing_is_not_told) {
+TEST_CASE("what changes nothing is not told") {
     Echo echo(0);
     echo.begin(0);
     CHECK((told(echo, {{0, 1, 2}, {-1, -1, 3}}, 2) == Signal{{0, 2}, {-1, 3}}));
     CHECK((told(echo, {{3, 4}, {3, 5}}, 4) == Signal{{4}, {5}}));
 }
 
-TEST(an_update_that_is_taken_back_was_never_told) {
+TEST_CASE("an update that is taken back was never told") {
     Echo echo(0);
     echo.begin(0);
     echo.checkpoint();
@@ -66,7 +66,7 @@ TEST(an_update_that_is_taken_back_was_never_told) {
     CHECK((told(echo, {{1, 2}, {2, 3}}, 2) == Signal{{2}, {3}}));
 }
 
-TEST(a_start_beyond_the_last_tick_never_comes) {
+TEST_CASE("a start beyond the last tick never comes") {
     Echo echo(100);
     echo.begin(never - 50);
     CHECK((told(echo, {{never - 40}, {2}}, never - 1) == Signal{}));

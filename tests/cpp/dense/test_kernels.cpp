@@ -23,14 +23,14 @@ void check_opcodes() {
             if (opcode.gives != Sort::either && opcode.gives != sort) continue;
             const auto kernel = Kernels<D>::make(instruction, sort);
             CHECK((kernel != nullptr) == (opcode.operands > 0));
-            if (kernel) CHECK(kernel->bytes() == 0 && kernel->pending() == 0);
+            if (kernel) CHECK((kernel->bytes() == 0 && kernel->pending() == 0));
         }
     }
 }
 
 } // namespace
 
-TEST(every_opcode_that_computes_has_a_kernel_in_every_domain) {
+TEST_CASE("every opcode that computes has a kernel in every domain") {
     check_opcodes<rtamt::Real>();
     check_opcodes<rtamt::Interval>();
     check_opcodes<rtamt::Lanes<8>>();

@@ -6,7 +6,7 @@
 
 using ways::Random;
 
-TEST(every_instant_of_either_signal_comes_once_with_both_values) {
+TEST_CASE("every instant of either signal comes once with both values") {
     Random random(9);
     for (int round = 0; round < 300; ++round) {
         const auto trace = dense_oracle::random_trace(random, 2, 12);
@@ -25,6 +25,6 @@ TEST(every_instant_of_either_signal_comes_once_with_both_values) {
                                 CHECK(now.b == (time < b.times[0] ? 200 : at(b, time)));
                             });
         CHECK(seen == expected);
-        CHECK(values.a == a.values.back() && values.b == b.values.back());
+        CHECK((values.a == a.values.back() && values.b == b.values.back()));
     }
 }

@@ -9,7 +9,7 @@ using rtamt::Opcode;
 using ways::Random;
 using ways::Signal;
 
-TEST(every_function_is_its_definition_at_every_instant) {
+TEST_CASE("every function is its definition at every instant") {
     Random random(1);
     for (int round = 0; round < 60; ++round) {
         for (const Opcode opcode :
@@ -34,7 +34,7 @@ TEST(every_function_is_its_definition_at_every_instant) {
     }
 }
 
-TEST(a_result_that_does_not_change_is_one_event) {
+TEST_CASE("a result that does not change is one event") {
     Builder builder;
     const auto a = builder.input();
     const auto b = builder.input();
@@ -45,7 +45,7 @@ TEST(a_result_that_does_not_change_is_one_event) {
     CHECK((outputs[0] == Signal{{1, 7}, {4, 9}}));
 }
 
-TEST(zeros_of_both_signs_are_one_value) {
+TEST_CASE("zeros of both signs are one value") {
     Builder builder;
     const auto negated = builder.pointwise(Opcode::neg, builder.input());
     builder.output(negated);
@@ -56,12 +56,12 @@ TEST(zeros_of_both_signs_are_one_value) {
     CHECK((outputs[1] == Signal{{0, 2}, {inf, -1.0}}));
 }
 
-TEST(the_first_result_that_is_nan_is_the_failure) {
+TEST_CASE("the first result that is nan is the failure") {
     Builder builder;
     const auto root = builder.pointwise(Opcode::sqrt, builder.later(builder.input(), 4));
     builder.output(root);
     std::vector<Signal> outputs;
     const auto failure =
         ways::offline(builder.program(), {{{-3, 0, 2, 7}, {1.0, 4.0, -1.0, -2.0}}}, outputs);
-    CHECK(failure && failure->instruction == root && failure->time == 2);
+    CHECK((failure && failure->instruction == root && failure->time == 2));
 }

@@ -40,7 +40,7 @@ void change(Ring<int>& ring, std::deque<int>& model, Random& random, int& next) 
 
 } // namespace
 
-TEST(a_ring_is_a_deque_and_takes_back_any_update) {
+TEST_CASE("a ring is a deque and takes back any update") {
     Random random(10);
     for (int round = 0; round < 300; ++round) {
         Ring<int> ring;
@@ -65,16 +65,16 @@ TEST(a_ring_is_a_deque_and_takes_back_any_update) {
     }
 }
 
-TEST(a_ring_that_is_emptied_is_reused) {
+TEST_CASE("a ring that is emptied is reused") {
     Ring<int> ring;
     for (int i = 0; i < 100000; ++i) {
         ring.push_back(i);
         if (ring.size() > 5) ring.pop_front();
     }
-    CHECK(ring.size() == 5 && ring.bytes() == 8 * sizeof(int));
+    CHECK((ring.size() == 5 && ring.bytes() == 8 * sizeof(int)));
 }
 
-TEST(counting_from_the_front_stops_where_the_condition_does) {
+TEST_CASE("counting from the front stops where the condition does") {
     Ring<int> ring;
     for (int size = 0; size < 40; ++size) {
         for (int limit = 0; limit <= size + 1; ++limit) {

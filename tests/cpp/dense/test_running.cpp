@@ -7,7 +7,7 @@ using programs::Builder;
 using rtamt::Opcode;
 using ways::Random;
 
-TEST(extremum_so_far_is_its_definition_for_any_lag_and_chunks) {
+TEST_CASE("extremum so far is its definition for any lag and chunks") {
     Random random(2);
     for (int round = 0; round < 100; ++round) {
         Builder builder;

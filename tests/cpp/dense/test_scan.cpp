@@ -1,5 +1,6 @@
 #include "dense/scan.hpp"
 
+#include "values/truth.hpp"
 #include "ways.hpp"
 
 #include <algorithm>
@@ -10,7 +11,7 @@ using dense_oracle::signal_of;
 using ways::Random;
 using ways::Signal;
 
-TEST(scans_are_the_suprema_and_infima_over_the_rest_of_time) {
+TEST_CASE("scans are the suprema and infima over the rest of time") {
     Random random(8);
     for (int round = 0; round < 200; ++round) {
         const auto trace = dense_oracle::random_trace(random, 2, 20, 0, 5);
@@ -43,11 +44,29 @@ TEST(scans_are_the_suprema_and_infima_over_the_rest_of_time) {
         const auto second = psi.events(0, psi.size());
         CHECK(signal_of(rtamt::dense::scan<rtamt::Max>(first).view()) == most.merged());
         CHECK(signal_of(rtamt::dense::scan<rtamt::Min>(first).view()) == least.merged());
-        CHECK(signal_of(rtamt::dense::scan_until(first, second).view()) == until.merged());
+        CHECK(signal_of(rtamt::dense::scan_until<rtamt::Real>(first, second).view()) ==
+              until.merged());
     }
 }
 
-TEST(a_scan_of_nothing_is_nothing) {
+TEST_CASE("a scan of nothing is nothing") {
     CHECK(rtamt::dense::scan<rtamt::Max>({}).count() == 0);
-    CHECK(rtamt::dense::scan_until({}, {}).count() == 0);
+    CHECK(rtamt::dense::scan_until<rtamt::Real>({}, {}).count() == 0);
+}
+
+TEST_CASE("scans compute 64 truth values at once") {
+    const std::vector<std::int64_t> times{0, 5, 7};
+    const std::vector<std::uint64_t> phi{0b110, 0b011, 0b011};
+    const std::vector<std::uint64_t> psi{0b000, 0b100, 0b001};
+    const rtamt::dense::BasicEvents<std::uint64_t> a{times.data(), phi.data(), 3};
+    const rtamt::dense::BasicEvents<std::uint64_t> b{times.data(), psi.data(), 3};
+    const auto most = rtamt::dense::scan<rtamt::MaxOf<rtamt::Truth>>(a);
+    CHECK(most.count() == 2); // the last two are equal
+    CHECK(most.view().values[0] == 0b111);
+    CHECK(most.view().values[1] == 0b011);
+    const auto until = rtamt::dense::scan_until<rtamt::Truth>(a, b);
+    CHECK(until.count() == 3);
+    CHECK(until.view().values[0] == 0b100);
+    CHECK(until.view().values[1] == 0b101);
+    CHECK(until.view().values[2] == 0b001);
 }

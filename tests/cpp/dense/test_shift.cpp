@@ -12,7 +12,7 @@ using ways::Executor;
 using ways::Random;
 using ways::Signal;
 
-TEST(shift_is_its_definition_for_any_distance_lag_and_chunks) {
+TEST_CASE("shift is its definition for any distance lag and chunks") {
     Random random(4);
     for (int round = 0; round < 150; ++round) {
         Builder builder;
@@ -29,7 +29,7 @@ TEST(shift_is_its_definition_for_any_distance_lag_and_chunks) {
     }
 }
 
-TEST(what_moves_beyond_the_last_tick_never_happens) {
+TEST_CASE("what moves beyond the last tick never happens") {
     Builder builder;
     const auto a = builder.input();
     builder.output(builder.unary(Opcode::shift, a, rtamt::longest_dense, 0, 0.5));
@@ -39,7 +39,7 @@ TEST(what_moves_beyond_the_last_tick_never_happens) {
     CHECK((outputs[0] == Signal{{late}, {0.5}}));
 }
 
-TEST(memory_follows_the_events_within_the_distance) {
+TEST_CASE("memory follows the events within the distance") {
     Builder builder;
     builder.output(builder.unary(Opcode::shift, builder.input(), 1000, 0, 0));
     Executor executor(builder.program());

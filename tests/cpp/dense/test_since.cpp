@@ -8,7 +8,7 @@ using rtamt::Opcode;
 using ways::Random;
 using ways::Signal;
 
-TEST(since_is_its_definition_for_any_chunks) {
+TEST_CASE("since is its definition for any chunks") {
     Random random(3);
     for (int round = 0; round < 200; ++round) {
         Builder builder;
@@ -22,7 +22,7 @@ TEST(since_is_its_definition_for_any_chunks) {
     }
 }
 
-TEST(phi_counts_in_the_rest_of_the_segment_in_which_psi_held) {
+TEST_CASE("phi counts in the rest of the segment in which psi held") {
     Builder builder;
     const auto phi = builder.input();
     const auto psi = builder.input();

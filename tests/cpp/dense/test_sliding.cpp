@@ -56,14 +56,14 @@ void check_windows() {
         stacks.begin(0);
         const std::int64_t end = signal.times.back() + 60;
         const auto seed = static_cast<std::uint32_t>(round);
-        CHECK_NOTE(run(wedge, signal, end, seed) == run(stacks, signal, end, seed),
-                   "round " + std::to_string(round));
+        CHECK_MESSAGE(run(wedge, signal, end, seed) == run(stacks, signal, end, seed),
+                      ("round " + std::to_string(round)));
     }
 }
 
 } // namespace
 
-TEST(two_stacks_give_what_the_wedge_gives_where_values_are_ordered) {
+TEST_CASE("two stacks give what the wedge gives where values are ordered") {
     check_windows<Max>();
     check_windows<Min>();
 }

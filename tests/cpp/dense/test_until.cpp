@@ -11,7 +11,7 @@ using ways::Executor;
 using ways::Random;
 using ways::Signal;
 
-TEST(until_is_its_definition_for_any_width_lag_and_chunks) {
+TEST_CASE("until is its definition for any width lag and chunks") {
     Random random(7);
     for (int round = 0; round < 80; ++round) {
         for (const std::int64_t width : {0, 1, 2, 4, 11, 60}) {
@@ -28,7 +28,7 @@ TEST(until_is_its_definition_for_any_width_lag_and_chunks) {
     }
 }
 
-TEST(phi_is_not_required_where_psi_holds) {
+TEST_CASE("phi is not required where psi holds") {
     Builder builder;
     const auto phi = builder.input();
     const auto psi = builder.input();
@@ -38,7 +38,7 @@ TEST(phi_is_not_required_where_psi_holds) {
     CHECK((outputs[0] == Signal{{0}, {3}}));
 }
 
-TEST(until_within_one_second_sees_psi_jump_while_phi_falls) {
+TEST_CASE("until within one second sees psi jump while phi falls") {
     // (h < 0.5) until[0,1] (h >= 0.5), h 0@0 1@0.5, in milliseconds: +0.5 at 0
     Builder builder;
     const auto h = builder.input();
@@ -50,7 +50,7 @@ TEST(until_within_one_second_sees_psi_jump_while_phi_falls) {
     CHECK((outputs[0] == Signal{{0}, {0.5}}));
 }
 
-TEST(memory_follows_the_events_within_the_window) {
+TEST_CASE("memory follows the events within the window") {
     Builder builder;
     const auto a = builder.input();
     builder.output(builder.binary(Opcode::until, a, builder.pointwise(Opcode::neg, a), 1000, 1000));

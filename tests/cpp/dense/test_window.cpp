@@ -12,7 +12,7 @@ using ways::Executor;
 using ways::Random;
 using ways::Signal;
 
-TEST(extremum_is_its_definition_for_any_width_lag_and_chunks) {
+TEST_CASE("extremum is its definition for any width lag and chunks") {
     Random random(5);
     for (int round = 0; round < 60; ++round) {
         for (const std::int64_t width : {0, 1, 2, 3, 5, 9, 40, 200}) {
@@ -31,7 +31,7 @@ TEST(extremum_is_its_definition_for_any_width_lag_and_chunks) {
     }
 }
 
-TEST(long_traces_are_cut_into_steps_that_nobody_sees) {
+TEST_CASE("long traces are cut into steps that nobody sees") {
     Random random(6);
     for (const std::int64_t width : {0, 7, 3000}) {
         Builder builder;
@@ -41,7 +41,7 @@ TEST(long_traces_are_cut_into_steps_that_nobody_sees) {
     }
 }
 
-TEST(an_arrival_and_an_expiry_at_the_same_instant_are_one_event) {
+TEST_CASE("an arrival and an expiry at the same instant are one event") {
     Builder builder;
     builder.output(builder.unary(Opcode::slide_max, builder.input(), 5, 0));
     std::vector<Signal> outputs;
@@ -49,7 +49,7 @@ TEST(an_arrival_and_an_expiry_at_the_same_instant_are_one_event) {
     CHECK((outputs[0] == Signal{{0, 6}, {9, 4}}));
 }
 
-TEST(exact_ticks_at_stamps_of_nanoseconds_since_1970) {
+TEST_CASE("exact ticks at stamps of nanoseconds since 1970") {
     constexpr std::int64_t base = 1'700'000'000'000'000'000;
     Builder builder;
     builder.output(builder.unary(Opcode::slide_max, builder.input(), 100'000'000, 100'000'000));
@@ -61,7 +61,7 @@ TEST(exact_ticks_at_stamps_of_nanoseconds_since_1970) {
     CHECK((outputs[0] == Signal{{base, base + 100'000'000, base + 200'000'001}, {0, 7, 0}}));
 }
 
-TEST(a_window_longer_than_time_itself_never_forgets) {
+TEST_CASE("a window longer than time itself never forgets") {
     Builder builder;
     builder.output(builder.unary(Opcode::slide_max, builder.input(), rtamt::longest_dense, 0));
     constexpr std::int64_t base = 9'000'000'000'000'000'000;
@@ -73,7 +73,7 @@ TEST(a_window_longer_than_time_itself_never_forgets) {
     CHECK((outputs[0] == Signal{{base}, {3}}));
 }
 
-TEST(memory_follows_the_events_within_the_window) {
+TEST_CASE("memory follows the events within the window") {
     Builder builder;
     const auto a = builder.input();
     builder.output(builder.unary(Opcode::slide_max, a, 1000, 0));

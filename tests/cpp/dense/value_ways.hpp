@@ -106,8 +106,8 @@ void check_online(const Program& program, const Trace<D>& trace, std::int64_t la
             taken[i] += count;
         }
         const bool valid = !executor.push(inputs, outputs);
-        CHECK_NOTE(valid || expected == nullptr, note);
-        if (valid) CHECK_NOTE(!twin->push(inputs, others), note);
+        CHECK_MESSAGE((valid || expected == nullptr), note);
+        if (valid) CHECK_MESSAGE(!twin->push(inputs, others), note);
         if (random.chance(20)) {
             rtamt::Snapshot written;
             twin->transfer(written);
@@ -118,9 +118,9 @@ void check_online(const Program& program, const Trace<D>& trace, std::int64_t la
         }
     }
     const bool finished = !executor.finish(outputs);
-    CHECK_NOTE(finished == !twin->finish(others), note);
-    CHECK_NOTE(equal<D>(outputs, others), note);
-    if (expected != nullptr) CHECK_NOTE(finished && equal<D>(outputs, *expected), note);
+    CHECK_MESSAGE(finished == !twin->finish(others), note);
+    CHECK_MESSAGE(equal<D>(outputs, others), note);
+    if (expected != nullptr) CHECK_MESSAGE((finished && equal<D>(outputs, *expected)), note);
 }
 
 } // namespace dense_ways

@@ -142,19 +142,19 @@ inline void check_copy(const Program& program, const Trace& trace, Random& rando
     Executor original(program);
     Online begun(original, trace);
     for (std::int64_t updates = random.between(0, 6); updates > 0; --updates)
-        CHECK_NOTE(!begun.push(begun.random_counts(random, 5)), note);
+        CHECK_MESSAGE(!begun.push(begun.random_counts(random, 5)), note);
     Executor twin(program);
     copy(original, twin);
     Online branch(twin, begun);
-    CHECK_NOTE(!original.finish(begun.outputs), note);
+    CHECK_MESSAGE(!original.finish(begun.outputs), note);
     while (!branch.done()) {
-        CHECK_NOTE(!branch.push(branch.random_counts(random, 20)), note);
-        CHECK_NOTE(branch.exact(expected), note);
+        CHECK_MESSAGE(!branch.push(branch.random_counts(random, 20)), note);
+        CHECK_MESSAGE(branch.exact(expected), note);
     }
-    CHECK_NOTE(!twin.finish(branch.outputs), note);
-    CHECK_NOTE(signals_of(branch.outputs) == expected, note);
+    CHECK_MESSAGE(!twin.finish(branch.outputs), note);
+    CHECK_MESSAGE(signals_of(branch.outputs) == expected, note);
     copy(twin, original);
-    CHECK(original.finished() && original.known_until(0) == twin.known_until(0));
+    CHECK((original.finished() && original.known_until(0) == twin.known_until(0)));
 }
 
 // The one thing to check of a program that cannot fail: offline, online in any chunks, copied, and
@@ -162,20 +162,20 @@ inline void check_copy(const Program& program, const Trace& trace, Random& rando
 inline void check_all_ways(const Program& program, const Trace& trace, Random& random,
                            const std::string& note) {
     const auto expected = dense_oracle::answer(program, trace);
-    CHECK_NOTE(!expected.undefined, note);
+    CHECK_MESSAGE(!expected.undefined, note);
     std::vector<Signal> outputs;
-    CHECK_NOTE(!offline(program, trace, outputs), note);
-    CHECK_NOTE(outputs == expected.outputs, note);
+    CHECK_MESSAGE(!offline(program, trace, outputs), note);
+    CHECK_MESSAGE(outputs == expected.outputs, note);
     Executor executor(program);
     for (const std::int64_t largest : {1, 3, 20, 1000}) {
         Online online(executor, trace);
         const std::string chunks = note + ", chunks up to " + std::to_string(largest);
         while (!online.done()) {
-            CHECK_NOTE(!online.push(online.random_counts(random, largest)), chunks);
-            CHECK_NOTE(online.exact(expected.outputs), chunks);
+            CHECK_MESSAGE(!online.push(online.random_counts(random, largest)), chunks);
+            CHECK_MESSAGE(online.exact(expected.outputs), chunks);
         }
-        CHECK_NOTE(!executor.finish(online.outputs), chunks);
-        CHECK_NOTE(signals_of(online.outputs) == expected.outputs, chunks);
+        CHECK_MESSAGE(!executor.finish(online.outputs), chunks);
+        CHECK_MESSAGE(signals_of(online.outputs) == expected.outputs, chunks);
         CHECK(executor.known_until(0) == dense_oracle::end_of(trace));
         executor.reset();
     }

@@ -6,7 +6,7 @@
 
 using rtamt::discrete::Arena;
 
-TEST(pieces_follow_one_another) {
+TEST_CASE("pieces follow one another") {
     Arena arena(5 * sizeof(double));
     const auto* first = static_cast<double*>(arena.take(2 * sizeof(double)));
     auto* second = static_cast<double*>(arena.take(3 * sizeof(double)));
@@ -16,14 +16,14 @@ TEST(pieces_follow_one_another) {
     CHECK(second[2] == 1.0);
 }
 
-TEST(empty_arena_holds_nothing) {
+TEST_CASE("empty arena holds nothing") {
     Arena arena(0);
     CHECK(arena.bytes() == 0);
     CHECK(arena.take(0) == nullptr);
 }
 
-TEST(a_size_that_overflows_is_bad_alloc_and_not_a_small_arena) {
+TEST_CASE("a size that overflows is bad alloc and not a small arena") {
     constexpr std::size_t most = std::numeric_limits<std::size_t>::max();
-    CHECK(check::message<std::bad_alloc>([] { (void)Arena(most / 2 + 1); }) ==
+    CHECK(thrown<std::bad_alloc>([] { (void)Arena(most / 2 + 1); }) ==
           std::string(std::bad_alloc().what()));
 }

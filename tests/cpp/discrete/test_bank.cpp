@@ -6,39 +6,39 @@
 
 using rtamt::discrete::Bank;
 
-TEST(registers_keep_their_last_slot_when_they_grow) {
+TEST_CASE("registers keep their last slot when they grow") {
     Bank<double> bank;
     const auto a = bank.add();
     const auto c = bank.add_constant(7.5);
     bank.settle(1);
     *bank.at(a) = 3.0;
-    CHECK(*bank.at(c) == 7.5 && bank.bytes() == 16);
+    CHECK((*bank.at(c) == 7.5 && bank.bytes() == 16));
     bank.grow(10, 0);
     bank.settle(9);
-    CHECK(bank.at(a)[0] == 3.0 && bank.at(c) - bank.at(a) == 10);
+    CHECK((bank.at(a)[0] == 3.0 && bank.at(c) - bank.at(a) == 10));
     for (std::size_t i = 0; i < 9; ++i)
         CHECK(bank.at(c)[i] == 7.5);
 }
 
-TEST(samples_go_to_the_registers_of_their_inputs) {
+TEST_CASE("samples go to the registers of their inputs") {
     Bank<double> bank;
     const auto b = bank.add_input(5, 1);
     const auto a = bank.add_input(6, 0);
     bank.settle(1);
     const std::vector<double> row{1.0, 2.0};
     bank.load(row.data());
-    CHECK(*bank.at(a) == 1.0 && *bank.at(b) == 2.0);
+    CHECK((*bank.at(a) == 1.0 && *bank.at(b) == 2.0));
     bank.grow(4, 0);
     bank.settle(4);
     const std::vector<double> first{1, 2, 3, 4};
     const std::vector<double> second{5, 6, 7, 8};
     const std::vector<const double*> columns{first.data(), second.data()};
     bank.load(std::span(columns), 1, 3, [](std::uint32_t input) { return input == 6; });
-    CHECK(bank.at(b)[0] == 6 && bank.at(b)[2] == 8);
+    CHECK((bank.at(b)[0] == 6 && bank.at(b)[2] == 8));
     CHECK(bank.at(a)[0] == 1.0); // skipped
 }
 
-TEST(rollback_restores_the_last_slot_of_protected_registers) {
+TEST_CASE("rollback restores the last slot of protected registers") {
     Bank<double> bank;
     const auto a = bank.add();
     const auto b = bank.add();
@@ -50,5 +50,5 @@ TEST(rollback_restores_the_last_slot_of_protected_registers) {
     *bank.at(a) = 2.0;
     *bank.at(b) = 2.0;
     bank.rollback(0);
-    CHECK(*bank.at(a) == 1.0 && *bank.at(b) == 2.0);
+    CHECK((*bank.at(a) == 1.0 && *bank.at(b) == 2.0));
 }

@@ -72,7 +72,7 @@ const rtamt_kernel ahead = rtamt::KernelOf<Ahead>::table();
 
 } // namespace
 
-TEST(a_call_is_like_any_instruction_in_chunks_of_every_size) {
+TEST_CASE("a call is like any instruction in chunks of every size") {
     oracle::Random random(7);
     for (const std::size_t size : std::initializer_list<std::size_t>{1, 3, 4, 20, 700}) {
         const Signal x = random.signal(size, 5);
@@ -97,7 +97,7 @@ TEST(a_call_is_like_any_instruction_in_chunks_of_every_size) {
     }
 }
 
-TEST(a_failed_call_tells_why_and_leaves_no_trace) {
+TEST_CASE("a failed call tells why and leaves no trace") {
     Executor executor(program(ahead));
     double value = 0;
     const auto step = [&](double x) {
@@ -105,26 +105,26 @@ TEST(a_failed_call_tells_why_and_leaves_no_trace) {
         return executor.step(row.data(), value);
     };
     for (const double x : {1.0, 2.0, 3.0, 4.0, 98.0})
-        CHECK(step(x) == rtamt::discrete::Outcome::silent || value == 5);
+        CHECK((step(x) == rtamt::discrete::Outcome::silent || value == 5));
     CHECK(step(0) == rtamt::discrete::Outcome::failed); // the delayed 98 arrives, and is 99 with 1
-    CHECK(executor.failure().fault.text() == "99" && executor.failure().instruction == 5);
+    CHECK((executor.failure().fault.text() == "99" && executor.failure().instruction == 5));
     CHECK(step(0) == rtamt::discrete::Outcome::failed);
 }
 
-TEST(bytes_alone_carry_no_call) {
+TEST_CASE("bytes alone carry no call") {
     const auto bytes = programs::bytes_of(program(ahead));
-    CHECK(check::message<std::invalid_argument>([&] { (void)Program::parse(bytes); }) ==
+    CHECK(thrown<std::invalid_argument>([&] { (void)Program::parse(bytes); }) ==
           "This is not a program that can be run: instruction 5 (call) runs code of its own, which "
           "bytes cannot carry.");
     CHECK(Program::parse(bytes, rtamt::Domain::discrete, program(ahead).calls).calls.size() == 1);
 }
 
-TEST(a_call_that_cannot_work_is_refused) {
+TEST_CASE("a call that cannot work is refused") {
     const auto bytes = programs::bytes_of(program(ahead));
     const auto refusal = [&](auto&& spoil) {
         auto calls = program(ahead).calls;
         spoil(calls);
-        return check::message<std::invalid_argument>(
+        return thrown<std::invalid_argument>(
             [&] { (void)Program::parse(bytes, rtamt::Domain::discrete, calls); });
     };
     const std::string start = "This is not a program that can be run: instruction 5 (call) ";

@@ -11,27 +11,27 @@ using rtamt::discrete::Clock;
 static constexpr double inf = std::numeric_limits<double>::infinity();
 static constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
-TEST(time_must_be_finite_and_grow) {
+TEST_CASE("time must be finite and grow") {
     Clock clock(1.0, inf, true, 1);
     CHECK(!clock.stamps().last());
-    CHECK(!clock.accepts(not_a_number) && !clock.accepts(inf) && !clock.accepts(-inf));
+    CHECK((!clock.accepts(not_a_number) && !clock.accepts(inf) && !clock.accepts(-inf)));
     CHECK(clock.accepts(-7.5));
     clock.advance(-7.5);
     CHECK(clock.stamps().last() == -7.5);
-    CHECK(!clock.accepts(-7.5) && !clock.accepts(-8.0) && !clock.accepts(not_a_number));
-    CHECK(clock.accepts(-7.0) && clock.accepts(1e9));
+    CHECK((!clock.accepts(-7.5) && !clock.accepts(-8.0) && !clock.accepts(not_a_number)));
+    CHECK((clock.accepts(-7.0) && clock.accepts(1e9)));
 }
 
-TEST(strict_clock_refuses_a_gap_out_of_tolerance) {
+TEST_CASE("strict clock refuses a gap out of tolerance") {
     Clock clock(2.0, 0.25, true, 1);
     clock.advance(10.0);
     CHECK(!clock.accepts(11.25));
-    CHECK(clock.accepts(11.5) && clock.accepts(12.0) && clock.accepts(12.5));
+    CHECK((clock.accepts(11.5) && clock.accepts(12.0) && clock.accepts(12.5)));
     CHECK(!clock.accepts(12.75));
     CHECK(clock.violations() == 0);
 }
 
-TEST(lenient_clock_counts_a_gap_out_of_tolerance) {
+TEST_CASE("lenient clock counts a gap out of tolerance") {
     Clock clock(2.0, 0.25, false, 1);
     for (const double time : {10.0, 12.0, 17.0, 17.5, 19.5}) {
         CHECK(clock.accepts(time));
@@ -39,23 +39,23 @@ TEST(lenient_clock_counts_a_gap_out_of_tolerance) {
     }
     CHECK(clock.violations() == 2);
     clock.reset();
-    CHECK(clock.violations() == 0 && !clock.stamps().last());
+    CHECK((clock.violations() == 0 && !clock.stamps().last()));
     CHECK(clock.accepts(0.0));
 }
 
-TEST(lenient_clock_takes_the_same_time_again_and_counts_it) {
+TEST_CASE("lenient clock takes the same time again and counts it") {
     Clock clock(2.0, 0.25, false, 2);
     clock.advance(10.0);
-    CHECK(clock.accepts(10.0) && !clock.accepts(9.5));
+    CHECK((clock.accepts(10.0) && !clock.accepts(9.5)));
     clock.advance(10.0);
     CHECK(clock.violations() == 1);
-    CHECK(clock.stamps().count() == 2 && clock.stamps().last() == 10.0);
+    CHECK((clock.stamps().count() == 2 && clock.stamps().last() == 10.0));
     Clock strict(2.0, 2.0, true, 1);
     strict.advance(10.0);
     CHECK(!strict.accepts(10.0));
 }
 
-TEST(ticks_start_at_zero_and_do_not_drift) {
+TEST_CASE("ticks start at zero and do not drift") {
     Clock clock(0.1, 0.5, true, 1);
     clock.tick(1);
     CHECK(clock.stamps().last() == 0.0);
@@ -69,15 +69,15 @@ TEST(ticks_start_at_zero_and_do_not_drift) {
     CHECK(clock.stamps().last() == 10000.13 + 5 * 0.1);
 }
 
-TEST(ticks_after_regular_times_go_on_from_the_first_of_them) {
+TEST_CASE("ticks after regular times go on from the first of them") {
     Clock clock(0.1, 0.5, true, 1);
     for (int i = 0; i < 7; ++i)
         clock.advance(3.0 + i * 0.1);
     clock.tick(3);
-    CHECK(clock.stamps().last() == 3.0 + 9 * 0.1 && clock.stamps().regular());
+    CHECK((clock.stamps().last() == 3.0 + 9 * 0.1 && clock.stamps().regular()));
 }
 
-TEST(a_copy_tells_the_same_times_and_goes_on_alike) {
+TEST_CASE("a copy tells the same times and goes on alike") {
     for (const std::size_t irregular : {std::size_t{0}, std::size_t{3}, std::size_t{9}}) {
         Clock clock(1.0, 0.1, false, 4);
         for (std::size_t i = 0; i < 9; ++i)
@@ -94,11 +94,11 @@ TEST(a_copy_tells_the_same_times_and_goes_on_alike) {
         std::vector<double> others(4);
         clock.stamps().copy(4, times.data());
         twin.stamps().copy(4, others.data());
-        CHECK(times == others && twin.violations() == clock.violations());
+        CHECK((times == others && twin.violations() == clock.violations()));
     }
 }
 
-TEST(ticks_of_many_samples_are_as_many_ticks) {
+TEST_CASE("ticks of many samples are as many ticks") {
     Clock clock(0.5, 0.5, true, 4);
     clock.tick(4);
     std::vector<double> times(4);

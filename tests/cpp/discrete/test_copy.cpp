@@ -4,7 +4,7 @@
 
 #include <array>
 
-TEST(exactly_the_given_number_of_cells_is_written) {
+TEST_CASE("exactly the given number of cells is written") {
     const std::array<double, 4> source{1, 2, 3, 4};
     for (std::size_t count = 0; count <= 4; ++count) {
         std::array<double, 4> copied{-1, -1, -1, -1};

@@ -58,7 +58,7 @@ std::pair<std::int64_t, std::uint32_t> order(const Program& program, const Failu
 
 } // namespace
 
-TEST(eight_lanes_are_eight_traces) {
+TEST_CASE("eight lanes are eight traces") {
     using Eight = Lanes<8>;
     Random random(1);
     int failed = 0;
@@ -80,19 +80,20 @@ TEST(eight_lanes_are_eight_traces) {
             if (failure) continue;
             for (std::size_t output = 0; output < outputs.size(); ++output) {
                 for (std::size_t i = 0; i < count; ++i)
-                    CHECK_NOTE(outputs[output][i].lane[lane] == expected[output][i], note);
+                    CHECK_MESSAGE(outputs[output][i].lane[lane] == expected[output][i], note);
             }
         }
-        CHECK_NOTE(failure.has_value() == first.has_value(), note);
-        if (failure && first) CHECK_NOTE(order(program, *failure) == order(program, *first), note);
+        CHECK_MESSAGE(failure.has_value() == first.has_value(), note);
+        if (failure && first)
+            CHECK_MESSAGE(order(program, *failure) == order(program, *first), note);
         failed += failure ? 1 : 0;
         check_online<Eight>(program, samples, count, 40, random, failure ? nullptr : &outputs,
                             note);
     }
-    CHECK(failed > 50 && failed < 350); // both kinds were tried
+    CHECK((failed > 50 && failed < 350)); // both kinds were tried
 }
 
-TEST(bounds_are_two_runs_at_the_corners) {
+TEST_CASE("bounds are two runs at the corners") {
     Random random(2);
     int compared = 0;
     for (int round = 0; round < 8000 && compared < 400; ++round) {
@@ -114,11 +115,11 @@ TEST(bounds_are_two_runs_at_the_corners) {
         if (offline<Real>(corners(program), ends, count, expected)) continue; // inf - inf
         ++compared;
         std::vector<Values<Interval>> outputs;
-        CHECK_NOTE(!offline<Interval>(program, samples, count, outputs), note);
+        CHECK_MESSAGE(!offline<Interval>(program, samples, count, outputs), note);
         for (std::size_t output = 0; output < outputs.size(); ++output) {
             for (std::size_t i = 0; i < count; ++i) {
-                CHECK_NOTE(outputs[output][i].lower == expected[2 * output][i], note);
-                CHECK_NOTE(outputs[output][i].upper == expected[2 * output + 1][i], note);
+                CHECK_MESSAGE(outputs[output][i].lower == expected[2 * output][i], note);
+                CHECK_MESSAGE(outputs[output][i].upper == expected[2 * output + 1][i], note);
             }
         }
         check_online<Interval>(program, samples, count, 200, random, &outputs, note);
@@ -126,7 +127,7 @@ TEST(bounds_are_two_runs_at_the_corners) {
     CHECK(compared == 400);
 }
 
-TEST(bounds_hold_the_robustness_of_every_trace_within_them) {
+TEST_CASE("bounds hold the robustness of every trace within them") {
     Random random(3);
     int compared = 0;
     for (int round = 0; round < 1200; ++round) {
@@ -144,22 +145,22 @@ TEST(bounds_hold_the_robustness_of_every_trace_within_them) {
         });
         std::vector<Values<Real>> robustness;
         const bool undefined = offline<Real>(program, trace, count, robustness).has_value();
-        if (failure) CHECK_NOTE(undefined, note); // undefined for every trace
+        if (failure) CHECK_MESSAGE(undefined, note); // undefined for every trace
         check_online<Interval>(program, samples, count, 30, random, failure ? nullptr : &outputs,
                                note);
         if (undefined) continue;
         ++compared;
         for (std::size_t output = 0; output < outputs.size(); ++output) {
             for (std::size_t i = 0; i < count; ++i) {
-                CHECK_NOTE(outputs[output][i].lower <= robustness[output][i], note);
-                CHECK_NOTE(outputs[output][i].upper >= robustness[output][i], note);
+                CHECK_MESSAGE(outputs[output][i].lower <= robustness[output][i], note);
+                CHECK_MESSAGE(outputs[output][i].upper >= robustness[output][i], note);
             }
         }
     }
     CHECK(compared > 300);
 }
 
-TEST(bounds_of_samples_that_are_known_are_the_robustness) {
+TEST_CASE("bounds of samples that are known are the robustness") {
     Random random(4);
     for (int round = 0; round < 300; ++round) {
         const std::string note = "round " + std::to_string(round);
@@ -176,19 +177,19 @@ TEST(bounds_of_samples_that_are_known_are_the_robustness) {
         std::vector<Values<Real>> robustness;
         const auto failure = offline<Interval>(program, samples, count, outputs);
         const auto expected = offline<Real>(program, trace, count, robustness);
-        CHECK_NOTE(failure.has_value() == expected.has_value(), note);
+        CHECK_MESSAGE(failure.has_value() == expected.has_value(), note);
         if (failure && expected) {
-            CHECK_NOTE(order(program, *failure) == order(program, *expected), note);
+            CHECK_MESSAGE(order(program, *failure) == order(program, *expected), note);
             continue;
         }
         for (std::size_t output = 0; output < outputs.size(); ++output) {
             for (std::size_t i = 0; i < count; ++i)
-                CHECK_NOTE(outputs[output][i] == Interval::of(robustness[output][i]), note);
+                CHECK_MESSAGE(outputs[output][i] == Interval::of(robustness[output][i]), note);
         }
     }
 }
 
-TEST(sixty_four_truth_values_are_the_signs_of_sixty_four_robustnesses) {
+TEST_CASE("sixty four truth values are the signs of sixty four robustnesses") {
     Random random(5);
     int crossed = 0;
     for (int round = 0; round < 120; ++round) {
@@ -203,15 +204,15 @@ TEST(sixty_four_truth_values_are_the_signs_of_sixty_four_robustnesses) {
             samples[0].formulas.push_back(Truth::formula(samples[0].numbers[i]));
         }
         std::vector<Values<Truth>> outputs;
-        CHECK_NOTE(!offline<Truth>(program, samples, count, outputs), note);
+        CHECK_MESSAGE(!offline<Truth>(program, samples, count, outputs), note);
         for (std::size_t k = 0; k < Truth::traces; ++k) {
             const auto trace = component(samples, [&](const auto& v) { return v.lane[k]; });
             std::vector<Values<Real>> robustness;
-            CHECK_NOTE(!offline<Real>(program, trace, count, robustness), note);
+            CHECK_MESSAGE(!offline<Real>(program, trace, count, robustness), note);
             for (std::size_t output = 0; output < outputs.size(); ++output) {
                 for (std::size_t i = 0; i < count; ++i) {
                     const bool holds = ((outputs[output][i] >> k) & 1U) != 0;
-                    CHECK_NOTE(holds == (robustness[output][i] > 0), note);
+                    CHECK_MESSAGE(holds == (robustness[output][i] > 0), note);
                 }
             }
         }
@@ -222,11 +223,11 @@ TEST(sixty_four_truth_values_are_the_signs_of_sixty_four_robustnesses) {
     CHECK(crossed > 50);
 }
 
-TEST(a_program_with_code_of_its_own_is_for_reals) {
+TEST_CASE("a program with code of its own is for reals") {
     const rtamt_kernel kernel{};
     Builder builder;
     builder.output(builder.call(kernel, {}, {builder.input()}, 0));
-    CHECK(check::message<std::invalid_argument>([&] {
+    CHECK(thrown<std::invalid_argument>([&] {
               const rtamt::discrete::BasicExecutor<Interval> executor(builder.program());
           }) == "This program runs code of its own, which computes with real numbers only.");
 }

@@ -41,7 +41,7 @@ Signal appended(Signal signal, const Signal& more, std::size_t begin, std::size_
 
 } // namespace
 
-TEST(random_programs_offline_are_their_definition) {
+TEST_CASE("random programs offline are their definition") {
     Random random(10);
     int failed = 0;
     for (int round = 0; round < 1500; ++round) {
@@ -52,21 +52,21 @@ TEST(random_programs_offline_are_their_definition) {
         std::vector<Signal> outputs;
         const auto failure = ways::offline(program, columns, count, outputs);
         const std::string note = "round " + std::to_string(round);
-        CHECK_NOTE(failure.has_value() == expected.undefined.has_value(), note);
+        CHECK_MESSAGE(failure.has_value() == expected.undefined.has_value(), note);
         if (failure && expected.undefined) {
             ++failed;
-            CHECK_NOTE(failure->instruction == expected.undefined->first, note);
-            CHECK_NOTE(failure->sample == expected.undefined->second, note);
+            CHECK_MESSAGE(failure->instruction == expected.undefined->first, note);
+            CHECK_MESSAGE(failure->sample == expected.undefined->second, note);
         } else {
-            CHECK_NOTE(outputs == expected.outputs, note);
+            CHECK_MESSAGE(outputs == expected.outputs, note);
         }
     }
-    CHECK(failed > 100 && failed < 1400); // both kinds were tried
+    CHECK((failed > 100 && failed < 1400)); // both kinds were tried
 }
 
 // Online in random chunks, where a chunk that fails is taken back and left out: what comes out is
 // the definition of the samples that were accepted, and each failure is the definition's first.
-TEST(random_programs_online_are_their_definition_and_failures_leave_no_trace) {
+TEST_CASE("random programs online are their definition and failures leave no trace") {
     Random random(11);
     int failed = 0;
     int finish_failed = 0;
@@ -87,12 +87,12 @@ TEST(random_programs_online_are_their_definition_and_failures_leave_no_trace) {
                                             appended(accepted[1], columns[1], begin, chunk)};
             if (const auto failure = ways::push(executor, columns, begin, chunk, outputs)) {
                 ++failed;
-                CHECK_NOTE(same(registers(executor), before), note);
+                CHECK_MESSAGE(same(registers(executor), before), note);
                 if (!large) {
                     const auto expected = oracle::answer(program, tried, tried[0].size());
-                    CHECK_NOTE(expected.undefined ==
-                                   std::pair(failure->instruction, failure->sample),
-                               note);
+                    CHECK_MESSAGE(expected.undefined ==
+                                      std::pair(failure->instruction, failure->sample),
+                                  note);
                 }
             } else {
                 accepted = tried;
@@ -104,21 +104,21 @@ TEST(random_programs_online_are_their_definition_and_failures_leave_no_trace) {
         const auto expected = oracle::answer(program, accepted, accepted[0].size());
         if (const auto failure = ways::finish(executor, outputs)) {
             ++finish_failed;
-            CHECK_NOTE(expected.undefined == std::pair(failure->instruction, failure->sample),
-                       note);
+            CHECK_MESSAGE(expected.undefined == std::pair(failure->instruction, failure->sample),
+                          note);
             CHECK(!executor.finished());
             const auto again = ways::finish(executor, outputs);
-            CHECK_NOTE(again && again->instruction == failure->instruction, note);
+            CHECK_MESSAGE((again && again->instruction == failure->instruction), note);
         } else {
-            CHECK_NOTE(!expected.undefined, note);
-            CHECK_NOTE(outputs == expected.outputs, note);
+            CHECK_MESSAGE(!expected.undefined, note);
+            CHECK_MESSAGE(outputs == expected.outputs, note);
         }
     }
     CHECK(failed > 500);
     CHECK(finish_failed > 10);
 }
 
-TEST(one_sample_steps_are_chunks_of_one) {
+TEST_CASE("one sample steps are chunks of one") {
     Random random(12);
     for (int round = 0; round < 300; ++round) {
         const Program program = random_program(random, static_cast<int>(random.between(1, 12)));
@@ -145,7 +145,7 @@ TEST(one_sample_steps_are_chunks_of_one) {
     }
 }
 
-TEST(steps_and_chunks_can_be_mixed_and_reset_forgets_everything) {
+TEST_CASE("steps and chunks can be mixed and reset forgets everything") {
     Random random(13);
     Builder builder;
     const auto a = builder.input();
@@ -175,11 +175,11 @@ TEST(steps_and_chunks_can_be_mixed_and_reset_forgets_everything) {
         CHECK(!ways::finish(executor, outputs));
         CHECK(outputs == expected.outputs);
         executor.reset();
-        CHECK(executor.samples() == 0 && !executor.finished() && !executor.last(a));
+        CHECK((executor.samples() == 0 && !executor.finished() && !executor.last(a)));
     }
 }
 
-TEST(after_finish_a_sample_is_refused_until_reset) {
+TEST_CASE("after finish a sample is refused until reset") {
     Builder builder;
     builder.output(builder.unary(Opcode::slide_max, builder.input(), 3, 2));
     Executor executor(builder.program());
@@ -188,11 +188,10 @@ TEST(after_finish_a_sample_is_refused_until_reset) {
     CHECK(executor.remaining(0) == 2);
     CHECK(!ways::finish(executor, outputs));
     CHECK((outputs[0] == Signal{3, 3, 3}));
-    CHECK(executor.samples() == 3 && executor.remaining(0) == 0);
-    CHECK(!ways::finish(executor, outputs) && outputs[0].size() == 3);
-    CHECK(check::message<std::logic_error>([&] {
-              (void)ways::push(executor, {{1}}, 0, 1, outputs);
-          }) == "The trace has ended: reset the monitor before the next sample.");
+    CHECK((executor.samples() == 3 && executor.remaining(0) == 0));
+    CHECK((!ways::finish(executor, outputs) && outputs[0].size() == 3));
+    CHECK(thrown<std::logic_error>([&] { (void)ways::push(executor, {{1}}, 0, 1, outputs); }) ==
+          "The trace has ended: reset the monitor before the next sample.");
     executor.reset();
     CHECK(!ways::push(executor, {{7, 8, 9}}, 0, 3, outputs));
     CHECK((outputs[0] == Signal{3, 3, 3, 9}));
@@ -208,14 +207,14 @@ Program late(std::int64_t lag) {
     return builder.output(builder.unary(Opcode::slide_min, delay, 2, 2 * lag)).program();
 }
 
-TEST(the_end_of_a_short_trace_with_a_lag_of_years_comes_at_once) {
+TEST_CASE("the end of a short trace with a lag of years comes at once") {
     const std::vector<Signal> columns{{5, 2, 4, -1, 6}};
     const std::size_t count = columns[0].size();
     std::vector<Signal> expected(3);
     Executor near(late(300));
     CHECK(!ways::push(near, columns, 0, count, expected));
     CHECK(!ways::finish(near, expected));
-    CHECK(expected[0] == Signal(5, -inf) && expected[2] == Signal(5, inf));
+    CHECK((expected[0] == Signal(5, -inf) && expected[2] == Signal(5, inf)));
     constexpr std::int64_t far = 140'737'488'355'328; // 2^47
     for (const std::size_t samples : {std::size_t{0}, count}) {
         Executor executor(late(far));
@@ -232,7 +231,7 @@ TEST(the_end_of_a_short_trace_with_a_lag_of_years_comes_at_once) {
     CHECK(whole == expected);
 }
 
-TEST(an_empty_trace_has_no_values) {
+TEST_CASE("an empty trace has no values") {
     Builder builder;
     const auto a = builder.input();
     builder.output(builder.unary(Opcode::slide_max, a, 3, 2)).output(a).output(builder.constant(1));
@@ -240,20 +239,20 @@ TEST(an_empty_trace_has_no_values) {
     std::vector<Signal> outputs(3);
     CHECK(!ways::push(executor, {{}}, 0, 0, outputs));
     CHECK(!ways::finish(executor, outputs));
-    CHECK(outputs[0].empty() && outputs[1].empty() && outputs[2].empty());
+    CHECK((outputs[0].empty() && outputs[1].empty() && outputs[2].empty()));
 }
 
-TEST(a_program_without_inputs_counts_samples) {
+TEST_CASE("a program without inputs counts samples") {
     Builder builder;
     const auto one = builder.constant(1);
     builder.output(builder.pointwise(Opcode::sub, one, one)).output(one);
     Executor executor(builder.program());
     std::vector<Signal> outputs(2);
     CHECK(!ways::push(executor, {}, 0, 300, outputs));
-    CHECK(outputs[0] == Signal(300, 0.0) && outputs[1] == Signal(300, 1.0));
+    CHECK((outputs[0] == Signal(300, 0.0) && outputs[1] == Signal(300, 1.0)));
 }
 
-TEST(memory_is_the_state_of_a_new_executor) {
+TEST_CASE("memory is the state of a new executor") {
     Random random(14);
     for (int round = 0; round < 100; ++round) {
         const Program program = random_program(random, 10);
@@ -266,20 +265,19 @@ TEST(memory_is_the_state_of_a_new_executor) {
           8 * (static_cast<std::size_t>(rtamt::longest) + 2));
 }
 
-TEST(a_program_larger_than_the_address_space_is_refused) {
+TEST_CASE("a program larger than the address space is refused") {
     Builder builder;
     auto a = builder.input();
     for (int i = 0; i < 8200; ++i) {
         a = builder.unary(Opcode::slide_max, a, rtamt::longest, 0);
     }
     builder.output(a);
-    CHECK(
-        check::message<std::invalid_argument>([&] { (void)Executor::memory(builder.program()); }) ==
-        "This program needs more memory than can be addressed: make its time bounds smaller or "
-        "its period longer.");
+    CHECK(thrown<std::invalid_argument>([&] { (void)Executor::memory(builder.program()); }) ==
+          "This program needs more memory than can be addressed: make its time bounds smaller or "
+          "its period longer.");
 }
 
-TEST(first_update_that_fails_leaves_a_new_monitor) {
+TEST_CASE("first update that fails leaves a new monitor") {
     Builder builder;
     const auto a = builder.input();
     const auto b = builder.input();
@@ -290,11 +288,11 @@ TEST(first_update_that_fails_leaves_a_new_monitor) {
     const std::vector<double> good{4.0, 1.0};
     double value = 0;
     CHECK(executor.step(bad.data(), value) == Outcome::failed);
-    CHECK(executor.failure().instruction == 3 && executor.failure().sample == 0);
-    CHECK(!executor.last(a) && executor.samples() == 0);
+    CHECK((executor.failure().instruction == 3 && executor.failure().sample == 0));
+    CHECK((!executor.last(a) && executor.samples() == 0));
     CHECK(executor.step(good.data(), value) == Outcome::known);
     CHECK(value == 3.0);
     CHECK(executor.step(bad.data(), value) == Outcome::failed);
-    CHECK(executor.last(a) == 4.0 && executor.last(b) == 1.0 && executor.last(most) == 1.0);
-    CHECK(executor.step(good.data(), value) == Outcome::known && value == 3.0);
+    CHECK((executor.last(a) == 4.0 && executor.last(b) == 1.0 && executor.last(most) == 1.0));
+    CHECK((executor.step(good.data(), value) == Outcome::known && value == 3.0));
 }

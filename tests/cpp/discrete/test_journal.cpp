@@ -4,7 +4,7 @@
 
 #include <array>
 
-TEST(restores_exactly_the_saved_cells) {
+TEST_CASE("restores exactly the saved cells") {
     std::array<double, 6> ring{0, 1, 2, 3, 4, 5};
     std::array<double, 6> store{};
     rtamt::discrete::Journal journal(store.data());
@@ -14,7 +14,7 @@ TEST(restores_exactly_the_saved_cells) {
     CHECK((ring == std::array<double, 6>{10, 11, 2, 3, 4, 15}));
 }
 
-TEST(saving_nothing_restores_nothing) {
+TEST_CASE("saving nothing restores nothing") {
     std::array<double, 2> ring{1, 2};
     rtamt::discrete::Journal<double> journal(nullptr);
     journal.save(ring.data(), 2, 0);

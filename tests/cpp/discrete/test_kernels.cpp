@@ -33,14 +33,14 @@ void check_opcodes() {
 
 } // namespace
 
-TEST(every_opcode_that_computes_has_a_kernel_in_every_domain) {
+TEST_CASE("every opcode that computes has a kernel in every domain") {
     check_opcodes<Real>();
     check_opcodes<Interval>();
     check_opcodes<Lanes<8>>();
     check_opcodes<Truth>();
 }
 
-TEST(only_windows_and_shifts_keep_samples) {
+TEST_CASE("only windows and shifts keep samples") {
     for (std::size_t code = 0; code < rtamt::opcodes.size(); ++code) {
         Instruction instruction;
         instruction.opcode = static_cast<Opcode>(code);

@@ -29,7 +29,7 @@ static Signal tame(Random& random, std::size_t count) {
     return signal;
 }
 
-TEST(every_operation_is_its_definition_at_every_lag_and_in_any_chunks) {
+TEST_CASE("every operation is its definition at every lag and in any chunks") {
     Random random(3);
     for (const std::size_t count : std::initializer_list<std::size_t>{0, 1, 3, 700}) {
         const std::vector<Signal> columns{tame(random, count), tame(random, count)};
@@ -55,7 +55,7 @@ TEST(every_operation_is_its_definition_at_every_lag_and_in_any_chunks) {
     }
 }
 
-TEST(comparisons_differ_at_equality_only) {
+TEST_CASE("comparisons differ at equality only") {
     Builder builder;
     const auto a = builder.input();
     const auto zero = builder.constant(0.0);
@@ -69,7 +69,7 @@ TEST(comparisons_differ_at_equality_only) {
     CHECK((outputs[2] == Signal{-inf, inf, inf, -inf}));
 }
 
-TEST(dividing_by_a_zero_of_either_sign_is_the_same_however_the_zero_came_about) {
+TEST_CASE("dividing by a zero of either sign is the same however the zero came about") {
     const std::vector<Signal> columns{{0.0, -0.0, 0.0, -0.0, -1.0}, {-0.0, 0.0, 0.0, -0.0, 0.0}};
     for (const bool swapped : {false, true}) {
         Builder builder;
@@ -87,7 +87,7 @@ TEST(dividing_by_a_zero_of_either_sign_is_the_same_however_the_zero_came_about) 
     }
 }
 
-TEST(every_partial_operation_reports_the_sample_where_it_makes_nan) {
+TEST_CASE("every partial operation reports the sample where it makes nan") {
     struct Case {
         Opcode opcode;
         double a;
@@ -109,17 +109,18 @@ TEST(every_partial_operation_reports_the_sample_where_it_makes_nan) {
             std::vector<Signal> outputs;
             const auto failure = ways::offline(builder.program(), columns, 600, outputs);
             const std::string name(rtamt::info(example.opcode).name);
-            CHECK_NOTE(failure && failure->instruction == 2 && std::cmp_equal(failure->sample, bad),
-                       name);
+            CHECK_MESSAGE(
+                (failure && failure->instruction == 2 && std::cmp_equal(failure->sample, bad)),
+                name);
             Executor executor(builder.program());
             const auto online = ways::push(executor, columns, 0, 600, outputs);
-            CHECK_NOTE(online && online->instruction == 2 && std::cmp_equal(online->sample, bad),
-                       name);
+            CHECK_MESSAGE(
+                (online && online->instruction == 2 && std::cmp_equal(online->sample, bad)), name);
         }
     }
 }
 
-TEST(infinite_values_are_legal) {
+TEST_CASE("infinite values are legal") {
     Builder builder;
     const auto a = builder.input();
     builder.output(builder.pointwise(Opcode::add, a, a));
@@ -140,7 +141,7 @@ static bool makes_nan(double constant, bool first) {
     return seen;
 }
 
-TEST(an_operation_with_a_constant_can_fail_if_some_sample_makes_nan) {
+TEST_CASE("an operation with a constant can fail if some sample makes nan") {
     namespace functions = rtamt::functions;
     struct Case {
         Opcode opcode;

@@ -8,7 +8,7 @@ using rtamt::Opcode;
 using ways::Random;
 using ways::Signal;
 
-TEST(running_extremum_is_its_definition_at_any_lag_and_in_any_chunks) {
+TEST_CASE("running extremum is its definition at any lag and in any chunks") {
     Random random(6);
     for (const std::size_t count : std::initializer_list<std::size_t>{0, 1, 2, 300, 600}) {
         const std::vector<Signal> columns{random.signal(count)};

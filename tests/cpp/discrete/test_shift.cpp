@@ -9,7 +9,7 @@ using rtamt::Opcode;
 using ways::Random;
 using ways::Signal;
 
-TEST(shift_is_its_definition_for_any_distance_lag_and_chunks) {
+TEST_CASE("shift is its definition for any distance lag and chunks") {
     Random random(4);
     for (const std::size_t count :
          std::initializer_list<std::size_t>{0, 1, 2, 10, 255, 256, 257, 1000}) {
@@ -29,7 +29,7 @@ TEST(shift_is_its_definition_for_any_distance_lag_and_chunks) {
     }
 }
 
-TEST(next_yields_the_given_value_after_the_last_sample) {
+TEST_CASE("next yields the given value after the last sample") {
     Builder builder;
     builder.output(builder.unary(Opcode::shift, builder.input(), 0, 1, inf)); // next
     builder.output(builder.unary(Opcode::shift, 0, 1, 0, -inf));              // s_prev

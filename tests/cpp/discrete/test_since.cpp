@@ -9,7 +9,7 @@ using rtamt::Opcode;
 using ways::Random;
 using ways::Signal;
 
-TEST(since_is_its_definition_at_any_lag_and_in_any_chunks) {
+TEST_CASE("since is its definition at any lag and in any chunks") {
     Random random(7);
     for (const std::size_t count : std::initializer_list<std::size_t>{0, 1, 2, 150, 300}) {
         const std::vector<Signal> columns{random.signal(count), random.signal(count)};
@@ -30,7 +30,7 @@ TEST(since_is_its_definition_at_any_lag_and_in_any_chunks) {
     }
 }
 
-TEST(phi_is_not_required_at_the_instant_of_psi) {
+TEST_CASE("phi is not required at the instant of psi") {
     Builder builder;
     const auto phi = builder.input();
     const auto psi = builder.input();

@@ -17,7 +17,7 @@ static std::vector<double> last(const Stamps& stamps, std::size_t count) {
 static void check_all(Stamps& stamps, const std::vector<double>& times, std::size_t size) {
     for (std::size_t i = 0; i < times.size(); ++i) {
         stamps.add(times[i]);
-        CHECK(stamps.count() == i + 1 && stamps.last() == times[i]);
+        CHECK((stamps.count() == i + 1 && stamps.last() == times[i]));
         CHECK(stamps.available() == std::min(i + 1, size));
         for (std::size_t count = 0; count <= stamps.available(); ++count) {
             const auto end = times.begin() + static_cast<std::ptrdiff_t>(i + 1);
@@ -27,7 +27,7 @@ static void check_all(Stamps& stamps, const std::vector<double>& times, std::siz
     }
 }
 
-TEST(the_last_times_come_back_oldest_first_wherever_they_stop_being_regular) {
+TEST_CASE("the last times come back oldest first wherever they stop being regular") {
     for (std::size_t size = 1; size <= 7; ++size) {
         Stamps stamps(0.1, size);
         for (std::size_t irregular = 1; irregular <= 20; ++irregular) {
@@ -40,20 +40,20 @@ TEST(the_last_times_come_back_oldest_first_wherever_they_stop_being_regular) {
             CHECK(stamps.regular() == (irregular == 20));
             CHECK(stamps.bytes() == (stamps.regular() ? 0 : 8 * size));
             stamps.reset();
-            CHECK(stamps.count() == 0 && stamps.available() == 0 && !stamps.last());
+            CHECK((stamps.count() == 0 && stamps.available() == 0 && !stamps.last()));
         }
     }
 }
 
-TEST(regular_times_are_exactly_those_that_were_given) {
+TEST_CASE("regular times are exactly those that were given") {
     Stamps stamps(0.1, 3);
     for (int i = 0; i < 1000; ++i)
         stamps.add(i * 0.1);
-    CHECK(stamps.regular() && stamps.regular_at(1000) == 1000 * 0.1);
+    CHECK((stamps.regular() && stamps.regular_at(1000) == 1000 * 0.1));
     CHECK((last(stamps, 3) == std::vector<double>{997 * 0.1, 998 * 0.1, 999 * 0.1}));
 }
 
-TEST(times_that_were_summed_up_drift_and_are_kept_as_they_are) {
+TEST_CASE("times that were summed up drift and are kept as they are") {
     Stamps stamps(0.1, 4);
     std::vector<double> times{0.0};
     for (int i = 0; i < 50; ++i)

@@ -58,8 +58,8 @@ void check_windows(const char* name) {
                 i += part;
             }
             stack.expire(results.data() + count, width);
-            CHECK_NOTE(results == (definition<M>(a, b, width)),
-                       std::string(name) + ", width " + std::to_string(width));
+            CHECK_MESSAGE(results == (definition<M>(a, b, width)),
+                          (std::string(name) + ", width " + std::to_string(width)));
         }
     }
 }
@@ -73,7 +73,7 @@ void check_domain(const char* name) {
 
 } // namespace
 
-TEST(windows_are_their_definition_in_every_domain_also_after_a_rollback) {
+TEST_CASE("windows are their definition in every domain also after a rollback") {
     check_domain<Real>("real");
     check_domain<Interval>("interval");
     check_domain<Lanes<8>>("lanes");
@@ -81,7 +81,7 @@ TEST(windows_are_their_definition_in_every_domain_also_after_a_rollback) {
 }
 
 // The loops that window.hpp unrolls, and those of every other monoid.
-TEST(the_unrolled_window_gives_what_the_general_one_gives) {
+TEST_CASE("the unrolled window gives what the general one gives") {
     using Lane = Lanes<1>;
     oracle::Random random(2);
     for (const std::size_t width : {1U, 3U, 4U, 9U, 64U}) {

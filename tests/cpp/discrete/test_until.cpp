@@ -8,7 +8,7 @@ using rtamt::Opcode;
 using ways::Random;
 using ways::Signal;
 
-TEST(until_is_its_definition_for_any_width_lag_and_chunks) {
+TEST_CASE("until is its definition for any width lag and chunks") {
     Random random(8);
     for (const std::size_t count : std::initializer_list<std::size_t>{0, 1, 2, 10, 257, 400}) {
         const std::vector<Signal> columns{random.signal(count), random.signal(count)};
@@ -33,7 +33,7 @@ TEST(until_is_its_definition_for_any_width_lag_and_chunks) {
     }
 }
 
-TEST(phi_is_not_required_where_psi_holds) {
+TEST_CASE("phi is not required where psi holds") {
     // x until[0,2] y with x = -1 and y = 3: 3 everywhere.
     Builder builder;
     const auto phi = builder.input();
@@ -44,7 +44,7 @@ TEST(phi_is_not_required_where_psi_holds) {
     CHECK((outputs[0] == Signal(5, 3.0)));
 }
 
-TEST(a_wide_until_costs_two_doubles_a_sample_of_it) {
+TEST_CASE("a wide until costs two doubles a sample of it") {
     Builder builder;
     const auto phi = builder.input();
     builder.output(builder.binary(Opcode::until, phi, phi, 1000000, 0));

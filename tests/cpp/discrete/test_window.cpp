@@ -10,7 +10,7 @@ using ways::Executor;
 using ways::Random;
 using ways::Signal;
 
-TEST(extremum_is_its_definition_for_any_width_lag_and_chunks) {
+TEST_CASE("extremum is its definition for any width lag and chunks") {
     Random random(5);
     for (const std::size_t count : std::initializer_list<std::size_t>{0, 1, 2, 10, 257, 700}) {
         const std::vector<Signal> columns{random.signal(count)};
@@ -32,7 +32,7 @@ TEST(extremum_is_its_definition_for_any_width_lag_and_chunks) {
     }
 }
 
-TEST(window_of_a_constant_is_cut_at_the_ends_of_the_trace) {
+TEST_CASE("window of a constant is cut at the ends of the trace") {
     Builder builder;
     const auto three = builder.constant(3.0);
     builder.input();
@@ -42,7 +42,7 @@ TEST(window_of_a_constant_is_cut_at_the_ends_of_the_trace) {
     CHECK((outputs[0] == Signal{3, 3, 3, -inf, -inf}));
 }
 
-TEST(historically_eventually_reads_nothing_from_before_the_horizon) {
+TEST_CASE("historically eventually reads nothing from before the horizon") {
     // historically(eventually[0,2] x) on 0,0,5,5,5,5,5 is 5 everywhere.
     Builder builder;
     const auto eventually = builder.unary(Opcode::slide_max, builder.input(), 3, 2);
@@ -52,7 +52,7 @@ TEST(historically_eventually_reads_nothing_from_before_the_horizon) {
     CHECK((outputs[0] == Signal(7, 5.0)));
 }
 
-TEST(a_wide_window_costs_one_double_a_sample_of_it) {
+TEST_CASE("a wide window costs one double a sample of it") {
     Builder builder;
     builder.output(builder.unary(Opcode::slide_max, builder.input(), 1000000, 0));
     Executor executor(builder.program());

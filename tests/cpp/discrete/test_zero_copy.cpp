@@ -10,7 +10,7 @@ using ways::Signal;
 
 // Whoever reads an input or writes an output: kernels alone, an output that is an input, one that
 // is read by others, one that is told twice, one that is late.
-TEST(offline_gives_the_same_whoever_reads_inputs_and_outputs) {
+TEST_CASE("offline gives the same whoever reads inputs and outputs") {
     Random random(11);
     for (const std::size_t count : std::initializer_list<std::size_t>{0, 1, 3, 256, 257, 1100}) {
         const std::vector<Signal> columns{random.signal(count), random.signal(count)};

@@ -94,8 +94,8 @@ void check_online(const Program& program, const std::vector<Samples<D>>& samples
         const auto chunk = std::min<std::size_t>(
             count - begin, static_cast<std::size_t>(random.between(1, largest)));
         const bool taken = advance<D>(executor, samples, begin, chunk, outputs);
-        CHECK_NOTE(taken || expected == nullptr, note);
-        if (taken) CHECK_NOTE(advance<D>(*twin, samples, begin, chunk, others), note);
+        CHECK_MESSAGE((taken || expected == nullptr), note);
+        if (taken) CHECK_MESSAGE(advance<D>(*twin, samples, begin, chunk, others), note);
         if (random.chance(20)) {
             rtamt::Snapshot written;
             twin->transfer(written);
@@ -107,9 +107,9 @@ void check_online(const Program& program, const std::vector<Samples<D>>& samples
         begin += chunk;
     }
     const bool finished = advance<D>(executor, samples, 0, std::nullopt, outputs);
-    CHECK_NOTE(finished == advance<D>(*twin, samples, 0, std::nullopt, others), note);
-    CHECK_NOTE(outputs == others, note);
-    if (expected != nullptr) CHECK_NOTE(finished && outputs == *expected, note);
+    CHECK_MESSAGE(finished == advance<D>(*twin, samples, 0, std::nullopt, others), note);
+    CHECK_MESSAGE(outputs == others, note);
+    if (expected != nullptr) CHECK_MESSAGE((finished && outputs == *expected), note);
 }
 
 } // namespace value_ways

@@ -119,9 +119,9 @@ inline void check_copy(const Program& program, const std::vector<Signal>& column
     CHECK(!finish(original, others));
     CHECK(!push(twin, columns, seen, count - seen, outputs));
     CHECK(!finish(twin, outputs));
-    CHECK_NOTE(outputs == expected, note + ", copied at " + std::to_string(seen));
+    CHECK_MESSAGE(outputs == expected, (note + ", copied at " + std::to_string(seen)));
     copy(twin, original);
-    CHECK(original.finished() && original.samples() == static_cast<std::int64_t>(count));
+    CHECK((original.finished() && original.samples() == static_cast<std::int64_t>(count)));
 }
 
 // The one thing to check of a program that cannot fail: offline, online in any chunks, copied, and
@@ -129,14 +129,14 @@ inline void check_copy(const Program& program, const std::vector<Signal>& column
 inline void check_all_ways(const Program& program, const std::vector<Signal>& columns,
                            std::size_t count, Random& random, const std::string& note) {
     const auto expected = oracle::answer(program, columns, count);
-    CHECK_NOTE(!expected.undefined, note);
+    CHECK_MESSAGE(!expected.undefined, note);
     std::vector<Signal> outputs;
-    CHECK_NOTE(!offline(program, columns, count, outputs), note);
-    CHECK_NOTE(outputs == expected.outputs, note);
+    CHECK_MESSAGE(!offline(program, columns, count, outputs), note);
+    CHECK_MESSAGE(outputs == expected.outputs, note);
     Executor executor(program);
     for (const std::int64_t largest : {1, 7, 300, 2000}) {
-        CHECK_NOTE(online(executor, columns, count, random, largest) == expected.outputs,
-                   note + ", chunks up to " + std::to_string(largest));
+        CHECK_MESSAGE(online(executor, columns, count, random, largest) == expected.outputs,
+                      (note + ", chunks up to " + std::to_string(largest)));
         CHECK(executor.finished());
         executor.reset();
     }

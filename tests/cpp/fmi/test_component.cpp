@@ -61,12 +61,12 @@ std::string refusal(Component& component, double from, double length) {
     (void)error_boundary(
         &component, [&] { component.advance(from, length); },
         [&](Outcome, const char* sentence) { said = sentence; });
-    CHECK(component.save() == before || said == "done");
+    CHECK((component.save() == before || said == "done"));
     return said;
 }
 } // namespace
 
-TEST(a_uri_becomes_a_path) {
+TEST_CASE("a uri becomes a path") {
     CHECK(rtamt::fmi::path_of("file:///tmp/a%20b/c") == "/tmp/a b/c");
     CHECK(rtamt::fmi::path_of("file:/tmp/%zz%4") == "/tmp/%zz%4");
     CHECK(rtamt::fmi::path_of("file://localhost/x%2Fy") == "/x/y");
@@ -74,7 +74,7 @@ TEST(a_uri_becomes_a_path) {
     CHECK(rtamt::fmi::path_of("/already/a/path") == "/already/a/path");
 }
 
-TEST(a_step_takes_the_samples_in_it) {
+TEST_CASE("a step takes the samples in it") {
     const Folder folder(Domain::discrete);
     Component component = folder.component();
     component.begin(2.0);
@@ -83,20 +83,20 @@ TEST(a_step_takes_the_samples_in_it) {
     component.settle();
     set(component, 6.0, 2.0);
     component.advance(2.0, 0.3);
-    CHECK(!component.boolean(known) && component.integer(verdict) == 0);
-    CHECK(component.real(robustness) == 0.0 && component.real(now) == 2.3);
+    CHECK((!component.boolean(known) && component.integer(verdict) == 0));
+    CHECK((component.real(robustness) == 0.0 && component.real(now) == 2.3));
     set(component, 8.0, 2.0);
     component.advance(2.3, 0.0); // nothing passes
     component.advance(2.3, 0.1);
-    CHECK(component.boolean(known) && component.real(robustness) == 2.0);
-    CHECK(component.integer(verdict) == 1 && component.real(since) == 2.0);
+    CHECK((component.boolean(known) && component.real(robustness) == 2.0));
+    CHECK((component.integer(verdict) == 1 && component.real(since) == 2.0));
     component.advance(2.4, 0.5);
-    CHECK(component.real(robustness) == 3.0 && component.reached() == 2.4 + 0.5);
+    CHECK((component.real(robustness) == 3.0 && component.reached() == 2.4 + 0.5));
     component.reset();
-    CHECK(!component.boolean(known) && component.real(limit) == 1.5 && component.real(a) == 0.0);
+    CHECK((!component.boolean(known) && component.real(limit) == 1.5 && component.real(a) == 0.0));
 }
 
-TEST(what_cannot_be_a_step_is_refused_and_nothing_has_changed) {
+TEST_CASE("what cannot be a step is refused and nothing has changed") {
     const Folder folder(Domain::discrete);
     Component component = folder.component();
     CHECK(refusal(component, 0.0, 0.1) == "There is no step before the end of the initialisation, "
@@ -119,19 +119,19 @@ TEST(what_cannot_be_a_step_is_refused_and_nothing_has_changed) {
     CHECK(refusal(component, 0.1, 0.5).starts_with("'a / b' has no value at sample 1, time 0.1 s"));
     set(component, 3.0, 1.0);
     CHECK(refusal(component, 0.1, 0.1) == "done");
-    CHECK(check::message<std::invalid_argument>([&] { component.set_real(limit, 2.0); }) ==
+    CHECK(thrown<std::invalid_argument>([&] { component.set_real(limit, 2.0); }) ==
           "The parameter 'limit' can only be set before the end of the initialisation.");
-    CHECK(check::message<std::invalid_argument>([&] { component.set_real(known, 2.0); }) ==
+    CHECK(thrown<std::invalid_argument>([&] { component.set_real(known, 2.0); }) ==
           "The variable with the reference 4 cannot be set.");
-    CHECK(check::message<std::invalid_argument>([&] { (void)component.real(99); }) ==
+    CHECK(thrown<std::invalid_argument>([&] { (void)component.real(99); }) ==
           "There is no real variable with the reference 99.");
-    CHECK(check::message<std::invalid_argument>([&] { (void)component.integer(a); }) ==
+    CHECK(thrown<std::invalid_argument>([&] { (void)component.integer(a); }) ==
           "There is no integer variable with the reference 0.");
-    CHECK(check::message<std::invalid_argument>([&] { (void)component.boolean(a); }) ==
+    CHECK(thrown<std::invalid_argument>([&] { (void)component.boolean(a); }) ==
           "There is no Boolean variable with the reference 0.");
 }
 
-TEST(in_dense_time_communication_points_are_samples) {
+TEST_CASE("in dense time communication points are samples") {
     const Folder folder(Domain::dense);
     Component component = folder.component();
     component.begin(0.0);
@@ -142,13 +142,13 @@ TEST(in_dense_time_communication_points_are_samples) {
     set(component, 9.0, 1.0);
     component.advance(0.25, 0.35);
     component.advance(0.6, 0.1);
-    CHECK(component.boolean(known) && component.real(robustness) == 7.5);
-    CHECK(component.real(since) == 0.3 && component.integer(verdict) == 1);
+    CHECK((component.boolean(known) && component.real(robustness) == 7.5));
+    CHECK((component.real(since) == 0.3 && component.integer(verdict) == 1));
     CHECK(refusal(component, 0.2, 0.1) ==
           "The step begins at 0.2 s, but the last one ended at 0.7 s.");
 }
 
-TEST(a_state_goes_to_another_unit_and_a_damaged_one_nowhere) {
+TEST_CASE("a state goes to another unit and a damaged one nowhere") {
     for (const Domain domain : {Domain::discrete, Domain::dense}) {
         const Folder folder(domain);
         Component component = folder.component();
@@ -162,28 +162,26 @@ TEST(a_state_goes_to_another_unit_and_a_damaged_one_nowhere) {
         const auto state = component.save();
         Component other = folder.component();
         other.restore(state);
-        CHECK(other.save() == state && other.real(limit) == 0.5 && other.boolean(known));
+        CHECK((other.save() == state && other.real(limit) == 0.5 && other.boolean(known)));
         set(component, 1.0, 1.0);
         set(other, 1.0, 1.0);
         component.advance(0.7, 0.1);
         other.advance(0.7, 0.1);
         CHECK(other.real(robustness) == component.real(robustness));
-        CHECK(other.real(since) == component.real(since) && other.reached() == 0.7 + 0.1);
+        CHECK((other.real(since) == component.real(since) && other.reached() == 0.7 + 0.1));
         const auto before = other.save();
         for (std::size_t place = 0; place < state.size(); ++place) {
             auto damaged = state;
             damaged[place] ^= 0x10U;
-            CHECK(check::message<std::invalid_argument>([&] { other.restore(damaged); }) !=
-                  "no exception");
+            CHECK(thrown<std::invalid_argument>([&] { other.restore(damaged); }) != "no exception");
             damaged.resize(place);
-            CHECK(check::message<std::invalid_argument>([&] { other.restore(damaged); }) !=
-                  "no exception");
+            CHECK(thrown<std::invalid_argument>([&] { other.restore(damaged); }) != "no exception");
         }
         CHECK(other.save() == before);
     }
 }
 
-TEST(a_forged_state_with_a_right_checksum_is_refused_or_does_no_harm) {
+TEST_CASE("a forged state with a right checksum is refused or does no harm") {
     for (const Domain domain : {Domain::discrete, Domain::dense}) {
         const Folder folder(domain);
         Component component = folder.component();
@@ -203,8 +201,7 @@ TEST(a_forged_state_with_a_right_checksum_is_refused_or_does_no_harm) {
         forged::each(head, [&](std::vector<std::uint8_t> forgery) {
             forgery.insert(forgery.end(), outside, state.end());
             const auto before = victim.save();
-            if (check::message<std::invalid_argument>([&] { victim.restore(forgery); }) !=
-                "no exception") {
+            if (thrown<std::invalid_argument>([&] { victim.restore(forgery); }) != "no exception") {
                 ++refused;
                 CHECK(victim.save() == before);
                 return;
@@ -214,14 +211,14 @@ TEST(a_forged_state_with_a_right_checksum_is_refused_or_does_no_harm) {
             (void)refusal(victim, -1e300, 0.1);
             (void)victim.integer(verdict);
         });
-        CHECK(refused > 50 && taken > 50);
+        CHECK((refused > 50 && taken > 50));
     }
 }
 
-TEST(the_wrong_program_is_refused) {
+TEST_CASE("the wrong program is refused") {
     const Folder folder(Domain::discrete);
     const auto refused = [](const std::string& path, const std::string& token) {
-        return check::message<std::invalid_argument>([&] { const Component made(path, token); });
+        return thrown<std::invalid_argument>([&] { const Component made(path, token); });
     };
     CHECK(refused(folder.path.string(), "rtamt-00000000") ==
           "The model description is for the program 'rtamt-00000000', but the unit carries '" +

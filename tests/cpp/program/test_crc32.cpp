@@ -9,14 +9,14 @@ static std::uint32_t of(std::string_view text) {
     return rtamt::crc32({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
 }
 
-TEST(agrees_with_published_check_values) {
+TEST_CASE("agrees with published check values") {
     CHECK(of("123456789") == 0xCBF43926U);
     CHECK(of("The quick brown fox jumps over the lazy dog") == 0x414FA339U);
     CHECK(of("a") == 0xE8B7BE43U);
     CHECK(of("") == 0U);
 }
 
-TEST(notices_every_single_bit) {
+TEST_CASE("notices every single bit") {
     std::array<std::uint8_t, 16> bytes{};
     const std::uint32_t before = rtamt::crc32(bytes);
     for (std::size_t bit = 0; bit < 128; ++bit) {

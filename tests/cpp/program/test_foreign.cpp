@@ -44,15 +44,15 @@ RTAMT_KERNEL(rtamt_test_count, Count)
 
 } // namespace
 
-TEST(a_class_becomes_a_kernel) {
+TEST_CASE("a class becomes a kernel") {
     One one(*rtamt_test_count());
-    CHECK(one.take(2) == "2" && one.take(3) == "5");
+    CHECK((one.take(2) == "2" && one.take(3) == "5"));
     one.foreign.reset();
     CHECK(one.take(1) == "1");
-    CHECK(rtamt_test_count()->advance == nullptr && rtamt_test_count()->version == 1);
+    CHECK((rtamt_test_count()->advance == nullptr && rtamt_test_count()->version == 1));
 }
 
-TEST(what_it_throws_is_told_and_taken_back) {
+TEST_CASE("what it throws is told and taken back") {
     One one(*rtamt_test_count());
     CHECK(one.take(2) == "2");
     one.foreign.checkpoint();
@@ -65,8 +65,8 @@ TEST(what_it_throws_is_told_and_taken_back) {
     CHECK(one.take(1) == "4");
 }
 
-TEST(a_kernel_that_cannot_be_made_says_why) {
-    CHECK(check::message<std::runtime_error>([] {
+TEST_CASE("a kernel that cannot be made says why") {
+    CHECK(thrown<std::runtime_error>([] {
               const Foreign foreign(*rtamt_test_count(), {-2, -1, 1.0, 1});
           }) == "no such interval");
 }
@@ -93,7 +93,7 @@ class Own {
 
 } // namespace
 
-TEST(a_checkpoint_of_its_own_goes_before_a_copy) {
+TEST_CASE("a checkpoint of its own goes before a copy") {
     const rtamt_kernel kernel = rtamt::KernelOf<Own>::table();
     One one(kernel);
     CHECK(one.take(0) == "1");

@@ -9,7 +9,7 @@ using rtamt::Metadata;
 using rtamt::Program;
 
 static std::string refusal(const Program& program) {
-    return check::message<std::invalid_argument>([&] { (void)Metadata::parse(program); });
+    return thrown<std::invalid_argument>([&] { (void)Metadata::parse(program); });
 }
 
 static std::string refused(const std::string& reason) {
@@ -26,18 +26,18 @@ static std::string refusal_of(const Metadata& metadata) {
     return refusal(program);
 }
 
-TEST(what_was_written_is_read) {
+TEST_CASE("what was written is read") {
     const Metadata metadata = good();
-    CHECK(metadata.numerator == 1 && metadata.denominator == 10 && metadata.seconds() == 0.1);
-    CHECK(metadata.name == "ratio" && metadata.formula == "always[0:0.3](a / b >= limit)");
+    CHECK((metadata.numerator == 1 && metadata.denominator == 10 && metadata.seconds() == 0.1));
+    CHECK((metadata.name == "ratio" && metadata.formula == "always[0:0.3](a / b >= limit)"));
     CHECK(metadata.inputs == std::vector<std::string>({"a", "b"}));
     CHECK(metadata.outputs == std::vector<std::string>({"robustness", "ratio"}));
-    CHECK(metadata.parameters.size() == 1 && metadata.parameters[0].name == "limit");
+    CHECK((metadata.parameters.size() == 1 && metadata.parameters[0].name == "limit"));
     CHECK(metadata.parameters[0].instructions == std::vector<std::uint32_t>({2}));
-    CHECK(metadata.meanings.at(3) == "a / b" && metadata.meanings.at(4) == "a / b - limit");
+    CHECK((metadata.meanings.at(3) == "a / b" && metadata.meanings.at(4) == "a / b - limit"));
 }
 
-TEST(no_truncation_is_read) {
+TEST_CASE("no truncation is read") {
     Program program = programs::carried();
     const std::string note = program.note;
     program.note.clear();
@@ -51,18 +51,18 @@ TEST(no_truncation_is_read) {
     CHECK(refusal(program) == refused("its metadata is longer than it should be"));
 }
 
-TEST(lengths_that_promise_the_world_are_refused) {
+TEST_CASE("lengths that promise the world are refused") {
     const std::string note = programs::carried().note;
     for (std::size_t place = 16; place + 4 <= note.size(); ++place) {
         Program program = programs::carried();
         program.note.replace(place, 4, "\xFF\xFF\xFF\xFF");
         const std::string answer = refusal(program);
-        CHECK_NOTE(answer == "no exception" || answer.starts_with(refused("").substr(0, 43)),
-                   answer);
+        CHECK_MESSAGE((answer == "no exception" || answer.starts_with(refused("").substr(0, 43))),
+                      answer);
     }
 }
 
-TEST(what_makes_no_sense_is_refused) {
+TEST_CASE("what makes no sense is refused") {
     Metadata metadata = good();
     metadata.denominator = 0;
     CHECK(refusal_of(metadata) == refused("the length of its step is 1/0 s"));

@@ -6,29 +6,30 @@
 
 using rtamt::Opcode;
 
-TEST(codes_are_the_ones_of_the_program_format) {
+TEST_CASE("codes are the ones of the program format") {
     CHECK(rtamt::opcodes.size() == 26);
-    CHECK(rtamt::info(Opcode::input).name == "input" && static_cast<int>(Opcode::input) == 0);
-    CHECK(rtamt::info(Opcode::constant).name == "const" && static_cast<int>(Opcode::constant) == 1);
-    CHECK(rtamt::info(Opcode::ln).name == "ln" && static_cast<int>(Opcode::ln) == 6);
-    CHECK(rtamt::info(Opcode::log).name == "log" && static_cast<int>(Opcode::log) == 12);
-    CHECK(rtamt::info(Opcode::holds_eq).name == "holds_eq" &&
-          static_cast<int>(Opcode::holds_eq) == 17);
-    CHECK(rtamt::info(Opcode::shift).name == "shift" && static_cast<int>(Opcode::shift) == 18);
-    CHECK(rtamt::info(Opcode::run_min).name == "run_min" &&
-          static_cast<int>(Opcode::run_min) == 22);
-    CHECK(rtamt::info(Opcode::until).name == "until" && static_cast<int>(Opcode::until) == 24);
-    CHECK(rtamt::info(Opcode::call).name == "call" && static_cast<int>(Opcode::call) == 25);
+    CHECK((rtamt::info(Opcode::input).name == "input" && static_cast<int>(Opcode::input) == 0));
+    CHECK(
+        (rtamt::info(Opcode::constant).name == "const" && static_cast<int>(Opcode::constant) == 1));
+    CHECK((rtamt::info(Opcode::ln).name == "ln" && static_cast<int>(Opcode::ln) == 6));
+    CHECK((rtamt::info(Opcode::log).name == "log" && static_cast<int>(Opcode::log) == 12));
+    CHECK((rtamt::info(Opcode::holds_eq).name == "holds_eq" &&
+           static_cast<int>(Opcode::holds_eq) == 17));
+    CHECK((rtamt::info(Opcode::shift).name == "shift" && static_cast<int>(Opcode::shift) == 18));
+    CHECK((rtamt::info(Opcode::run_min).name == "run_min" &&
+           static_cast<int>(Opcode::run_min) == 22));
+    CHECK((rtamt::info(Opcode::until).name == "until" && static_cast<int>(Opcode::until) == 24));
+    CHECK((rtamt::info(Opcode::call).name == "call" && static_cast<int>(Opcode::call) == 25));
 }
 
-TEST(names_are_unique) {
+TEST_CASE("names are unique") {
     std::set<std::string_view> names;
     for (const auto& opcode : rtamt::opcodes)
         names.insert(opcode.name);
     CHECK(names.size() == rtamt::opcodes.size());
 }
 
-TEST(only_pointwise_operations_and_calls_are_partial) {
+TEST_CASE("only pointwise operations and calls are partial") {
     for (const auto& opcode : rtamt::opcodes)
-        CHECK(opcode.pointwise || opcode.name == "call" || !opcode.partial);
+        CHECK((opcode.pointwise || opcode.name == "call" || !opcode.partial));
 }

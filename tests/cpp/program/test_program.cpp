@@ -31,7 +31,7 @@ static Program example() {
 }
 
 static std::string refusal(const Bytes& bytes) {
-    return check::message<std::invalid_argument>([&] { (void)Program::parse(bytes); });
+    return thrown<std::invalid_argument>([&] { (void)Program::parse(bytes); });
 }
 
 static std::string refusal_of(const std::function<void(Program&)>& spoil) {
@@ -44,22 +44,22 @@ static std::string refused(const std::string& reason) {
     return "This is not a program that can be run: " + reason + ".";
 }
 
-TEST(what_was_written_is_read) {
+TEST_CASE("what was written is read") {
     const Program program = example();
     const Program read = Program::parse(bytes_of(program));
-    CHECK(read.inputs == 2 && read.note == program.note && read.outputs == program.outputs);
+    CHECK((read.inputs == 2 && read.note == program.note && read.outputs == program.outputs));
     CHECK(read.instructions.size() == program.instructions.size());
     for (std::size_t i = 0; i < read.instructions.size(); ++i) {
         const auto& got = read.instructions[i];
         const auto& expected = program.instructions[i];
-        CHECK(got.opcode == expected.opcode && got.a == expected.a && got.b == expected.b);
-        CHECK(got.n == expected.n && got.x == expected.x && got.lag == expected.lag);
+        CHECK((got.opcode == expected.opcode && got.a == expected.a && got.b == expected.b));
+        CHECK((got.n == expected.n && got.x == expected.x && got.lag == expected.lag));
     }
     CHECK(read.latest() == 3);
     CHECK(read.operand_lag(read.instructions[5]) == 0);
 }
 
-TEST(lag_of_operands_ignores_constants) {
+TEST_CASE("lag of operands ignores constants") {
     Builder builder;
     const auto late = builder.later(builder.input(), 9);
     const auto one = builder.constant(1.0);
@@ -69,7 +69,7 @@ TEST(lag_of_operands_ignores_constants) {
     CHECK(Program::parse(bytes_of(builder.program())).latest() == 9);
 }
 
-TEST(no_truncation_is_read) {
+TEST_CASE("no truncation is read") {
     const Bytes bytes = bytes_of(example());
     for (std::size_t size = 0; size < bytes.size(); ++size) {
         const Bytes part(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size));
@@ -87,7 +87,7 @@ TEST(no_truncation_is_read) {
                   " bytes where its header promises " + std::to_string(bytes.size())));
 }
 
-TEST(no_flipped_bit_is_read) {
+TEST_CASE("no flipped bit is read") {
     const Bytes bytes = bytes_of(example());
     for (std::size_t bit = 0; bit < 8 * bytes.size(); ++bit) {
         Bytes damaged = bytes;
@@ -99,7 +99,7 @@ TEST(no_flipped_bit_is_read) {
     CHECK(refusal(damaged) == refused("its checksum does not match, so it was damaged on the way"));
 }
 
-TEST(header_is_checked) {
+TEST_CASE("header is checked") {
     const Bytes bytes = bytes_of(example());
     const auto with = [&](std::size_t place, std::uint8_t value) {
         Bytes changed = bytes;
@@ -118,7 +118,7 @@ TEST(header_is_checked) {
     CHECK(with(32, 26) == refused("instruction 0 has the unknown opcode 26"));
 }
 
-TEST(sizes_that_would_overflow_are_refused) {
+TEST_CASE("sizes that would overflow are refused") {
     Bytes bytes = bytes_of(example());
     for (const std::size_t place : std::initializer_list<std::size_t>{12, 20, 24}) {
         for (std::size_t i = 0; i < 4; ++i)
@@ -129,7 +129,7 @@ TEST(sizes_that_would_overflow_are_refused) {
                   std::to_string(36 + 48 * 0xFFFFFFFFULL - 3 * 0xFFFFFFFFULL)));
 }
 
-TEST(operands_are_checked) {
+TEST_CASE("operands are checked") {
     CHECK(refusal_of([](Program& p) { p.instructions[3].b = 3; }) ==
           refused("instruction 3 (sub) reads instruction 3, which is not before it"));
     CHECK(refusal_of([](Program& p) { p.instructions[3].a = 4; }) ==
@@ -142,7 +142,7 @@ TEST(operands_are_checked) {
           refused("instruction 1 (input) has an operand too many"));
 }
 
-TEST(numbers_are_checked) {
+TEST_CASE("numbers are checked") {
     CHECK(refusal_of([](Program& p) { p.instructions[1].n = 2; }) ==
           refused("instruction 1 (input) reads input 2 of 2"));
     CHECK(refusal_of([](Program& p) { p.instructions[1].n = -1; }) ==
@@ -160,7 +160,7 @@ TEST(numbers_are_checked) {
           }) == refused("instruction 2 (const) holds a number that is NaN"));
 }
 
-TEST(in_dense_time_windows_may_be_points_and_bounds_are_longer) {
+TEST_CASE("in dense time windows may be points and bounds are longer") {
     const auto dense = [](const std::function<void(Program&)>& change) {
         Program program = example();
         change(program);
@@ -169,7 +169,7 @@ TEST(in_dense_time_windows_may_be_points_and_bounds_are_longer) {
         return sealed(bytes);
     };
     const auto refusal_in_dense = [&](const std::function<void(Program&)>& spoil) {
-        return check::message<std::invalid_argument>(
+        return thrown<std::invalid_argument>(
             [&] { (void)Program::parse(dense(spoil), Domain::dense); });
     };
     const Program read = Program::parse(dense([](Program& p) {
@@ -177,18 +177,18 @@ TEST(in_dense_time_windows_may_be_points_and_bounds_are_longer) {
                                             p.instructions[5].lag = rtamt::longest_dense;
                                         }),
                                         Domain::dense);
-    CHECK(read.domain == Domain::dense && read.latest() == rtamt::longest_dense);
+    CHECK((read.domain == Domain::dense && read.latest() == rtamt::longest_dense));
     CHECK(Program::parse(bytes_of(example())).domain == Domain::discrete);
     CHECK(refusal_in_dense([](Program& p) { p.instructions[5].n = -1; }) ==
           refused("instruction 5 (slide_min) has the width -1, outside 0 to 2^62"));
     CHECK(refusal_in_dense([](Program& p) { p.instructions[5].lag = rtamt::longest_dense + 1; }) ==
           refused("instruction 5 (slide_min) has the lag 4611686018427387905, outside 0 to 2^62"));
-    CHECK(check::message<std::invalid_argument>([] {
+    CHECK(thrown<std::invalid_argument>([] {
               (void)Program::parse(bytes_of(example()), Domain::dense);
           }) == refused("it is for discrete time, and dense time is wanted here"));
 }
 
-TEST(lags_are_checked) {
+TEST_CASE("lags are checked") {
     CHECK(refusal_of([](Program& p) { p.instructions[5].lag = -1; }) ==
           refused("instruction 5 (slide_min) has the lag -1, outside 0 to 2^48"));
     CHECK(refusal_of([](Program& p) { p.instructions[5].lag = rtamt::longest + 1; }) ==
@@ -208,7 +208,7 @@ TEST(lags_are_checked) {
           refused("instruction 2 (since) mixes operands of lag 0 and 2"));
 }
 
-TEST(outputs_are_checked) {
+TEST_CASE("outputs are checked") {
     CHECK(refusal_of([](Program& p) { p.outputs.clear(); }) == refused("it has no output"));
     CHECK(refusal_of([](Program& p) { p.outputs[1] = 6; }) ==
           refused("output 1 is instruction 6 of 6"));

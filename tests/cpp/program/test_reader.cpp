@@ -4,7 +4,7 @@
 
 #include <array>
 
-TEST(numbers_are_little_endian_and_text_is_taken_as_it_is) {
+TEST_CASE("numbers are little endian and text is taken as it is") {
     const std::array<std::uint8_t, 9> bytes{0x01, 0x02, 0x03, 0x00, 0x00, 0x80, 'a', 'b', 0xFF};
     rtamt::Reader reader(bytes);
     CHECK(reader.left() == 9);

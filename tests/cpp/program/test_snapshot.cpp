@@ -33,23 +33,23 @@ static void read(const std::vector<std::uint8_t>& bytes, std::size_t count) {
     Snapshot snapshot(bytes);
     transfer(snapshot, number, flag, cells);
     snapshot.end();
-    CHECK(snapshot.loading() && number == 2.5 && flag);
+    CHECK((snapshot.loading() && number == 2.5 && flag));
     CHECK((cells == std::vector<double>{1.0, 2.0, 3.0}));
 }
 
-TEST(what_was_written_is_read) {
+TEST_CASE("what was written is read") {
     read(written(), 3);
 }
 
-TEST(what_is_too_short_or_too_long_is_no_state_of_this_program) {
+TEST_CASE("what is too short or too long is no state of this program") {
     for (const std::size_t count : {std::size_t{0}, std::size_t{2}, std::size_t{4}}) {
-        CHECK(check::message<std::invalid_argument>([&] { read(written(), count); }) == foreign);
+        CHECK(thrown<std::invalid_argument>([&] { read(written(), count); }) == foreign);
     }
-    CHECK(check::message<std::invalid_argument>([] { read({}, 3); }) == foreign);
+    CHECK(thrown<std::invalid_argument>([] { read({}, 3); }) == foreign);
 }
 
-TEST(a_state_of_another_layout_is_refused) {
+TEST_CASE("a state of another layout is refused") {
     auto bytes = written();
     ++bytes.front();
-    CHECK(check::message<std::invalid_argument>([&] { read(bytes, 3); }) == foreign);
+    CHECK(thrown<std::invalid_argument>([&] { read(bytes, 3); }) == foreign);
 }

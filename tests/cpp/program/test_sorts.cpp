@@ -7,7 +7,7 @@ using programs::Builder;
 using rtamt::Opcode;
 using rtamt::Sort;
 
-TEST(predicates_take_numbers_and_give_formulas) {
+TEST_CASE("predicates take numbers and give formulas") {
     Builder builder;
     const auto a = builder.input();
     const auto three = builder.constant(3);
@@ -16,13 +16,13 @@ TEST(predicates_take_numbers_and_give_formulas) {
     const auto always = builder.unary(Opcode::slide_min, holds, 5, 4);
     builder.output(always);
     const auto sorts = rtamt::sorts(builder.program());
-    CHECK(sorts[a] == Sort::number && sorts[three] == Sort::number && sorts[sum] == Sort::number);
-    CHECK(sorts[holds] == Sort::formula && sorts[always] == Sort::formula);
+    CHECK((sorts[a] == Sort::number && sorts[three] == Sort::number && sorts[sum] == Sort::number));
+    CHECK((sorts[holds] == Sort::formula && sorts[always] == Sort::formula));
     CHECK(taken(builder.program().instructions[holds], Sort::formula) == Sort::number);
     CHECK(taken(builder.program().instructions[always], Sort::formula) == Sort::formula);
 }
 
-TEST(what_works_on_either_is_a_number_where_a_number_is_wanted) {
+TEST_CASE("what works on either is a number where a number is wanted") {
     Builder builder;
     const auto a = builder.input();
     const auto b = builder.input();
@@ -30,11 +30,11 @@ TEST(what_works_on_either_is_a_number_where_a_number_is_wanted) {
     const auto difference = builder.pointwise(Opcode::sub, least, builder.constant(1));
     builder.output(difference).output(builder.unary(Opcode::run_max, b, 0, 0));
     const auto sorts = rtamt::sorts(builder.program());
-    CHECK(sorts[least] == Sort::number && sorts[a] == Sort::number && sorts[b] == Sort::number);
+    CHECK((sorts[least] == Sort::number && sorts[a] == Sort::number && sorts[b] == Sort::number));
     CHECK(sorts.back() == Sort::formula);
 }
 
-TEST(an_input_that_only_formulas_read_is_a_formula) {
+TEST_CASE("an input that only formulas read is a formula") {
     Builder builder;
     const auto p = builder.input();
     const auto q = builder.input();
@@ -43,7 +43,7 @@ TEST(an_input_that_only_formulas_read_is_a_formula) {
         CHECK(sort == Sort::formula);
 }
 
-TEST(an_input_that_two_instructions_read_has_one_sort) {
+TEST_CASE("an input that two instructions read has one sort") {
     rtamt::Program program;
     program.inputs = 1;
     const rtamt::Instruction input{Opcode::input, rtamt::no_operand, rtamt::no_operand, 0, 0, 0};
@@ -52,5 +52,5 @@ TEST(an_input_that_two_instructions_read_has_one_sort) {
     program.instructions.push_back({Opcode::neg, 1, rtamt::no_operand, 0, 0, 0});
     program.outputs = {2, 3};
     const auto sorts = rtamt::sorts(program);
-    CHECK(sorts[0] == Sort::number && sorts[1] == Sort::number && sorts[3] == Sort::formula);
+    CHECK((sorts[0] == Sort::number && sorts[1] == Sort::number && sorts[3] == Sort::formula));
 }

@@ -57,20 +57,20 @@ void check_lattice() {
         const auto a = one();
         const auto b = one();
         const auto c = one();
-        CHECK(D::join(a, a) == a && D::meet(a, a) == a);
-        CHECK(D::join(a, b) == D::join(b, a) && D::meet(a, b) == D::meet(b, a));
+        CHECK((D::join(a, a) == a && D::meet(a, a) == a));
+        CHECK((D::join(a, b) == D::join(b, a) && D::meet(a, b) == D::meet(b, a)));
         CHECK(D::join(a, D::join(b, c)) == D::join(D::join(a, b), c));
         CHECK(D::meet(a, D::meet(b, c)) == D::meet(D::meet(a, b), c));
-        CHECK(D::join(a, D::meet(a, b)) == a && D::meet(a, D::join(a, b)) == a);
+        CHECK((D::join(a, D::meet(a, b)) == a && D::meet(a, D::join(a, b)) == a));
         CHECK(D::join(a, D::meet(b, c)) == D::meet(D::join(a, b), D::join(a, c)));
-        CHECK(D::join(a, D::bottom) == a && D::meet(a, D::top) == a);
-        CHECK(D::join(a, D::top) == D::top && D::meet(a, D::bottom) == D::bottom);
+        CHECK((D::join(a, D::bottom) == a && D::meet(a, D::top) == a));
+        CHECK((D::join(a, D::top) == D::top && D::meet(a, D::bottom) == D::bottom));
         CHECK(D::neg(D::neg(a)) == a);
         CHECK(D::neg(D::join(a, b)) == D::meet(D::neg(a), D::neg(b)));
         CHECK(!D::undefined(a));
-        if (D::total) CHECK(D::join(a, b) == a || D::join(a, b) == b);
+        if (D::total) CHECK((D::join(a, b) == a || D::join(a, b) == b));
     }
-    CHECK(D::of(oracle::inf) == D::top && D::of(-oracle::inf) == D::bottom);
+    CHECK((D::of(oracle::inf) == D::top && D::of(-oracle::inf) == D::bottom));
     CHECK(D::neg(D::top) == D::bottom);
 }
 

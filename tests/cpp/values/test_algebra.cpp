@@ -8,10 +8,10 @@ using rtamt::Clamp;
 using rtamt::Max;
 using rtamt::Min;
 
-TEST(join_picks_the_extremum_and_identity_is_neutral) {
+TEST_CASE("join picks the extremum and identity is neutral") {
     for (const double a : {-inf, -1.0, 0.0, 2.0, inf}) {
-        CHECK(Max::join(a, Max::identity) == a && Max::join(Max::identity, a) == a);
-        CHECK(Min::join(a, Min::identity) == a && Min::join(Min::identity, a) == a);
+        CHECK((Max::join(a, Max::identity) == a && Max::join(Max::identity, a) == a));
+        CHECK((Min::join(a, Min::identity) == a && Min::join(Min::identity, a) == a));
         for (const double b : {-inf, -1.0, 0.0, 2.0, inf}) {
             CHECK(Max::join(a, b) == std::max(a, b));
             CHECK(Min::join(a, b) == std::min(a, b));
@@ -19,7 +19,7 @@ TEST(join_picks_the_extremum_and_identity_is_neutral) {
     }
 }
 
-TEST(composed_clamps_are_the_composition_of_maps) {
+TEST_CASE("composed clamps are the composition of maps") {
     oracle::Random random(1);
     for (int i = 0; i < 2000; ++i) {
         const Clamp f{random.number(10), random.number(10)};
@@ -28,6 +28,6 @@ TEST(composed_clamps_are_the_composition_of_maps) {
         const double x = random.number(20);
         CHECK(f.after(g).at(x) == f.at(g.at(x)));
         CHECK(f.after(g).after(h).at(x) == f.after(g.after(h)).at(x));
-        CHECK(Clamp{}.after(f).at(x) == f.at(x) && f.after(Clamp{}).at(x) == f.at(x));
+        CHECK((Clamp{}.after(f).at(x) == f.at(x) && f.after(Clamp{}).at(x) == f.at(x)));
     }
 }

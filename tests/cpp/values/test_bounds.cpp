@@ -36,9 +36,9 @@ void check_unary(const char* name) {
         const double y = Function::of(x);
         const Bounds result = Interval::apply<Function>(a);
         if (std::isnan(y)) continue; // outside the domain: cut off
-        CHECK_NOTE(result.lower <= y && y <= result.upper,
-                   std::string(name) + " of " + std::to_string(x) + " in " + text(a) + " is " +
-                       std::to_string(y) + ", not in " + text(result));
+        CHECK_MESSAGE((result.lower <= y && y <= result.upper),
+                      (std::string(name) + " of " + std::to_string(x) + " in " + text(a) + " is " +
+                       std::to_string(y) + ", not in " + text(result)));
     }
 }
 
@@ -53,16 +53,16 @@ void check_binary(const char* name) {
         const double z = Function::of(x, y);
         const Bounds result = Interval::apply<Function>(a, b);
         if (std::isnan(z)) continue;
-        CHECK_NOTE(result.lower <= z && z <= result.upper,
-                   std::string(name) + " of " + std::to_string(x) + " in " + text(a) + " and " +
+        CHECK_MESSAGE((result.lower <= z && z <= result.upper),
+                      (std::string(name) + " of " + std::to_string(x) + " in " + text(a) + " and " +
                        std::to_string(y) + " in " + text(b) + " is " + std::to_string(z) +
-                       ", not in " + text(result));
+                       ", not in " + text(result)));
     }
 }
 
 } // namespace
 
-TEST(every_result_is_within_the_bounds) {
+TEST_CASE("every result is within the bounds") {
     using namespace rtamt::functions;
     check_unary<Neg>("neg");
     check_unary<Abs>("abs");
@@ -80,7 +80,7 @@ TEST(every_result_is_within_the_bounds) {
     check_binary<HoldsEqual>("holds_eq");
 }
 
-TEST(bounds_of_arithmetic_are_attained) {
+TEST_CASE("bounds of arithmetic are attained") {
     using namespace rtamt::functions;
     CHECK((Interval::apply<Add>({1, 2}, {-3, 5}) == Bounds{-2, 7}));
     CHECK((Interval::apply<Sub>({1, 2}, {-3, 5}) == Bounds{-4, 5}));
@@ -93,14 +93,14 @@ TEST(bounds_of_arithmetic_are_attained) {
     CHECK((Interval::apply<HoldsEqual>({2, 3}, {4, 5}) == Bounds{-inf, -inf}));
 }
 
-TEST(corners_without_a_value_have_the_ends_that_the_definition_gives) {
+TEST_CASE("corners without a value have the ends that the definition gives") {
     using namespace rtamt::functions;
     CHECK((Interval::apply<Sub>({1, inf}, {2, inf}) == Bounds{-inf, inf}));
     CHECK((Interval::apply<Mul>({0, 0}, {-inf, inf}) == Bounds{0, 0}));
     CHECK((Interval::apply<Div>({1, 2}, {-1, 1}) == Bounds{-inf, inf}));
 }
 
-TEST(operands_wholly_outside_the_domain_are_undefined) {
+TEST_CASE("operands wholly outside the domain are undefined") {
     using namespace rtamt::functions;
     CHECK(Interval::undefined(Interval::apply<Sqrt>({-3, -1})));
     CHECK(Interval::undefined(Interval::apply<Ln>({-3, -1})));

@@ -17,13 +17,13 @@ struct NoMeet : Real {
 
 } // namespace
 
-TEST(a_domain_has_every_operation) {
+TEST_CASE("a domain has every operation") {
     CHECK((ValueDomain<Real> && ValueDomain<Interval> && ValueDomain<Lanes<8>>));
     CHECK(ValueDomain<Truth>);
-    CHECK(!ValueDomain<NoMeet> && !ValueDomain<int>);
+    CHECK((!ValueDomain<NoMeet> && !ValueDomain<int>));
 }
 
-TEST(truth_alone_has_other_values_for_numbers) {
+TEST_CASE("truth alone has other values for numbers") {
     CHECK((UniformDomain<Real> && UniformDomain<Interval> && UniformDomain<Lanes<8>>));
-    CHECK(!UniformDomain<Truth> && UniformDomain<Truth::Number>);
+    CHECK((!UniformDomain<Truth> && UniformDomain<Truth::Number>));
 }

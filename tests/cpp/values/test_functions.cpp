@@ -8,7 +8,7 @@
 using namespace rtamt::functions;
 using rtamt::Opcode;
 
-TEST(functions_are_those_of_the_opcodes) {
+TEST_CASE("functions are those of the opcodes") {
     oracle::Random random(1);
     const auto same = [](double x, double y) { return x == y || (std::isnan(x) && std::isnan(y)); };
     for (int i = 0; i < 500; ++i) {
@@ -23,7 +23,7 @@ TEST(functions_are_those_of_the_opcodes) {
     }
 }
 
-TEST(a_zero_of_either_sign_has_the_same_result) {
+TEST_CASE("a zero of either sign has the same result") {
     const auto same = [](double x, double y) { return x == y || (std::isnan(x) && std::isnan(y)); };
     const auto check = [&](auto function) {
         for (const double a : {-oracle::inf, -3.0, -1.0, -0.0, 0.0, 0.5, 2.0, oracle::inf}) {
@@ -40,10 +40,10 @@ TEST(a_zero_of_either_sign_has_the_same_result) {
     check(HoldsGreater{});
     check(HoldsGreaterEqual{});
     check(HoldsEqual{});
-    CHECK(Div::of(1.0, -0.0) == oracle::inf && Pow::of(-0.0, -1.0) == oracle::inf);
+    CHECK((Div::of(1.0, -0.0) == oracle::inf && Pow::of(-0.0, -1.0) == oracle::inf));
 }
 
-TEST(partial_functions_are_those_that_make_nan) {
-    CHECK(Sqrt::partial && std::isnan(Sqrt::of(-1)) && Sub::partial);
-    CHECK(!Exp::partial && !HoldsEqual::partial && !Abs::partial);
+TEST_CASE("partial functions are those that make nan") {
+    CHECK((Sqrt::partial && std::isnan(Sqrt::of(-1)) && Sub::partial));
+    CHECK((!Exp::partial && !HoldsEqual::partial && !Abs::partial));
 }

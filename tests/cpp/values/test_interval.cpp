@@ -5,16 +5,16 @@
 using rtamt::Bounds;
 using rtamt::Interval;
 
-TEST(intervals_are_a_lattice) {
+TEST_CASE("intervals are a lattice") {
     laws::check_lattice<Interval>();
 }
 
-TEST(an_undefined_bound_makes_a_value_undefined) {
+TEST_CASE("an undefined bound makes a value undefined") {
     CHECK(Interval::undefined(rtamt::bounds::nothing));
     CHECK(!Interval::undefined(rtamt::bounds::anything));
 }
 
-TEST(known_numbers_give_what_the_function_gives) {
+TEST_CASE("known numbers give what the function gives") {
     using namespace rtamt::functions;
     oracle::Random random(5);
     for (int i = 0; i < 1000; ++i) {

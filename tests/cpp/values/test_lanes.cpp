@@ -8,13 +8,13 @@
 using rtamt::Lanes;
 using rtamt::Real;
 
-TEST(lanes_are_a_lattice) {
+TEST_CASE("lanes are a lattice") {
     laws::check_lattice<Lanes<1>>();
     laws::check_lattice<Lanes<3>>();
     laws::check_lattice<Lanes<8>>();
 }
 
-TEST(each_lane_is_a_real) {
+TEST_CASE("each lane is a real") {
     using Eight = Lanes<8>;
     oracle::Random random(2);
     for (int i = 0; i < 500; ++i) {
@@ -32,7 +32,7 @@ TEST(each_lane_is_a_real) {
     }
 }
 
-TEST(one_undefined_lane_makes_a_value_undefined) {
+TEST_CASE("one undefined lane makes a value undefined") {
     for (std::size_t k = 0; k < 8; ++k) {
         auto value = Lanes<8>::of(1.0);
         CHECK(!Lanes<8>::undefined(value));

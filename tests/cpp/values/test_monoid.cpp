@@ -31,7 +31,7 @@ void check_monoids() {
 
 } // namespace
 
-TEST(extrema_and_until_are_monoids_over_every_domain) {
+TEST_CASE("extrema and until are monoids over every domain") {
     check_monoids<Real>();
     check_monoids<Interval>();
     check_monoids<Lanes<8>>();

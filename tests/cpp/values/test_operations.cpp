@@ -5,7 +5,7 @@
 
 using namespace rtamt;
 
-TEST(operations_are_those_of_the_domain) {
+TEST_CASE("operations are those of the domain") {
     oracle::Random random(1);
     for (int i = 0; i < 200; ++i) {
         const Bounds a = laws::Sampler<Interval>::one(random);
@@ -17,7 +17,7 @@ TEST(operations_are_those_of_the_domain) {
     }
 }
 
-TEST(a_predicate_takes_numbers_and_gives_a_formula) {
+TEST_CASE("a predicate takes numbers and gives a formula") {
     oracle::Random random(2);
     using Greater = operations::Test<Truth, functions::HoldsGreater>;
     const auto a = laws::Sampler<Lanes<64>>::one(random);
@@ -26,7 +26,7 @@ TEST(a_predicate_takes_numbers_and_gives_a_formula) {
     CHECK((operations::Test<Real, functions::HoldsGreater>::of(2, 1) == infinity));
 }
 
-TEST(only_partial_functions_are_partial_operations) {
+TEST_CASE("only partial functions are partial operations") {
     CHECK((operations::Map<Real, functions::Div>::partial));
     CHECK((!operations::Map<Real, functions::Exp>::partial));
     CHECK((!operations::Test<Truth, functions::HoldsEqual>::partial));

@@ -7,16 +7,16 @@
 
 using rtamt::Real;
 
-TEST(reals_are_a_lattice) {
+TEST_CASE("reals are a lattice") {
     laws::check_lattice<Real>();
 }
 
-TEST(nan_alone_is_undefined) {
+TEST_CASE("nan alone is undefined") {
     CHECK(Real::undefined(std::numeric_limits<double>::quiet_NaN()));
-    CHECK(!Real::undefined(Real::bottom) && !Real::undefined(Real::top));
+    CHECK((!Real::undefined(Real::bottom) && !Real::undefined(Real::top)));
 }
 
-TEST(a_function_is_applied_as_it_is) {
+TEST_CASE("a function is applied as it is") {
     CHECK(Real::apply<rtamt::functions::Sub>(5.0, 3.0) == 2.0);
     CHECK(Real::apply<rtamt::functions::Sqrt>(9.0) == 3.0);
 }

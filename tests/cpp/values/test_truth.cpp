@@ -5,11 +5,11 @@
 
 using rtamt::Truth;
 
-TEST(words_are_a_lattice) {
+TEST_CASE("words are a lattice") {
     laws::check_lattice<Truth>();
 }
 
-TEST(bit_k_is_the_truth_of_trace_k) {
+TEST_CASE("bit k is the truth of trace k") {
     oracle::Random random(3);
     for (int i = 0; i < 200; ++i) {
         const auto a = laws::Sampler<Truth::Number>::one(random);
@@ -25,13 +25,13 @@ TEST(bit_k_is_the_truth_of_trace_k) {
     }
 }
 
-TEST(a_formula_as_a_number_is_infinite_and_comes_back_unchanged) {
+TEST_CASE("a formula as a number is infinite and comes back unchanged") {
     oracle::Random random(4);
     for (int i = 0; i < 200; ++i) {
         const auto word = laws::Sampler<Truth>::one(random);
         const auto number = Truth::number(word);
         for (const double lane : number.lane)
-            CHECK(lane == oracle::inf || lane == -oracle::inf);
+            CHECK((lane == oracle::inf || lane == -oracle::inf));
         CHECK(Truth::formula(number) == word);
     }
 }

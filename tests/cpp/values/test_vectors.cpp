@@ -11,7 +11,7 @@
 using rtamt::discrete::Range;
 using Divide = rtamt::discrete::Binary<rtamt::operations::Map<rtamt::Real, rtamt::functions::Div>>;
 
-TEST(a_loop_gives_the_same_bits_and_finds_the_same_nan_however_wide) {
+TEST_CASE("a loop gives the same bits and finds the same nan however wide") {
     constexpr double inf = std::numeric_limits<double>::infinity();
     std::vector<double> a;
     std::vector<double> b;

@@ -1,4 +1,4 @@
-// Random programs over two inputs in dense time.
+// Random programs over two inputs, for either time domain.
 #pragma once
 
 #include "discrete/oracle.hpp"
@@ -11,7 +11,12 @@
 namespace programs {
 
 // A random program over two inputs: any opcode over anything so far, delays where lags differ.
-inline Program random_dense_program(oracle::Random& random, int size) {
+inline Program random_program(oracle::Random& random, int size,
+                              rtamt::Domain domain = rtamt::Domain::discrete) {
+    const bool dense = domain == rtamt::Domain::dense;
+    const std::int64_t least = dense ? 0 : 1; // width: ticks from the first to the last, or samples
+    const std::int64_t few = least + 5;
+    const std::int64_t many = dense ? 30 : 40;
     Builder builder;
     std::vector<std::uint32_t> known{builder.input(), builder.input(),
                                      builder.constant(random.number(5))};
@@ -38,11 +43,11 @@ inline Program random_dense_program(oracle::Random& random, int size) {
                 builder.pointwise(opcode, a, info.operands == 2 ? b : rtamt::no_operand));
             continue;
         }
-        const std::int64_t width = random.chance(20) ? random.between(0, 30) : random.between(0, 5);
+        const std::int64_t width = random.between(least, random.chance(20) ? many : few);
         const std::int64_t operand_lag =
             constant(a) && info.operands == 2 ? builder.lag(b) : builder.lag(a);
         const std::int64_t lag =
-            std::max<std::int64_t>(0, operand_lag + random.between(-1, width + 1));
+            std::max<std::int64_t>(0, operand_lag + random.between(-1, width + 1 - least));
         const double absent = random.number(30);
         known.push_back(info.operands == 2 ? builder.binary(opcode, a, b, width, lag)
                                            : builder.unary(opcode, a, width, lag, absent));

@@ -1,0 +1,104 @@
+// Which operation an opcode is, for the kernels of both time domains.
+//
+// A `Make` has a template for every kind of kernel: unary and binary for an operation
+// (values/operations.hpp), shift, since and until for a domain, slide and running for an algebra;
+// each returns a `Make::Pointer`, which owns the kernel.
+#pragma once
+
+#include "../values/algebra.hpp"
+#include "../values/functions.hpp"
+#include "../values/operations.hpp"
+#include "opcodes.hpp"
+
+namespace rtamt {
+
+namespace detail {
+
+// A window, an operation on values that may be numbers or formulas, or null.
+template <ValueDomain D, class Make>
+[[nodiscard]] typename Make::Pointer make_either(Opcode opcode, const Make& make) {
+    using Most = MaxOf<D>;
+    using Least = MinOf<D>;
+    switch (opcode) {
+    case Opcode::neg:
+        return make.template unary<operations::Not<D>>();
+    case Opcode::min:
+        return make.template binary<operations::Connect<Least>>();
+    case Opcode::max:
+        return make.template binary<operations::Connect<Most>>();
+    case Opcode::shift:
+        return make.template shift<D>();
+    case Opcode::slide_max:
+        return make.template slide<Most>();
+    case Opcode::slide_min:
+        return make.template slide<Least>();
+    case Opcode::run_max:
+        return make.template running<Most>();
+    case Opcode::run_min:
+        return make.template running<Least>();
+    default:
+        return nullptr;
+    }
+}
+
+template <ValueDomain N, class Make>
+[[nodiscard]] typename Make::Pointer make_number(Opcode opcode, const Make& make) {
+    using namespace functions;
+    using operations::Map;
+    switch (opcode) {
+    case Opcode::abs:
+        return make.template unary<Map<N, Abs>>();
+    case Opcode::sqrt:
+        return make.template unary<Map<N, Sqrt>>();
+    case Opcode::exp:
+        return make.template unary<Map<N, Exp>>();
+    case Opcode::ln:
+        return make.template unary<Map<N, Ln>>();
+    case Opcode::add:
+        return make.template binary<Map<N, Add>>();
+    case Opcode::sub:
+        return make.template binary<Map<N, Sub>>();
+    case Opcode::mul:
+        return make.template binary<Map<N, Mul>>();
+    case Opcode::div:
+        return make.template binary<Map<N, Div>>();
+    case Opcode::pow:
+        return make.template binary<Map<N, Pow>>();
+    case Opcode::log:
+        return make.template binary<Map<N, Log>>();
+    default:
+        return make_either<N>(opcode, make);
+    }
+}
+
+template <ValueDomain D, class Make>
+[[nodiscard]] typename Make::Pointer make_formula(Opcode opcode, const Make& make) {
+    using namespace functions;
+    using operations::Test;
+    switch (opcode) {
+    case Opcode::holds_gt:
+        return make.template binary<Test<D, HoldsGreater>>();
+    case Opcode::holds_ge:
+        return make.template binary<Test<D, HoldsGreaterEqual>>();
+    case Opcode::holds_eq:
+        return make.template binary<Test<D, HoldsEqual>>();
+    case Opcode::since:
+        return make.template since<D>();
+    case Opcode::until:
+        return make.template until<D>();
+    default:
+        return make_either<D>(opcode, make);
+    }
+}
+
+} // namespace detail
+
+// The kernel of an opcode whose value has this sort, formulas being of the domain D; null for
+// inputs, constants and calls.
+template <ValueDomain D, class Make>
+[[nodiscard]] typename Make::Pointer make_kernel(Opcode opcode, Sort sort, const Make& make) {
+    return sort == Sort::number ? detail::make_number<typename D::Number>(opcode, make)
+                                : detail::make_formula<D>(opcode, make);
+}
+
+} // namespace rtamt
