@@ -2,8 +2,8 @@
 //
 // Monitor.update, update_pairs and step, and DenseMonitor.update, are plain CPython functions of
 // the METH_FASTCALL kind and not nanobind's: they read a dict or a list of pairs in place, where
-// nanobind would first build a C++ container, and that would cost more than the sample does. Where
-// Python's own monitors have these methods, python/method.cpp calls them without a Python frame.
+// nanobind would first build a C++ container, and that would cost more than the sample does. The
+// public monitors derive from the classes in online.cpp, which call them without a Python frame.
 
 #include "../dense/executor.hpp"
 #include "../dense/scan.hpp"
@@ -18,8 +18,9 @@
 #include "dense_monitor.hpp"
 #include "early_monitor.hpp"
 #include "failures.hpp"
-#include "method.hpp"
+#include "method_table.hpp"
 #include "monitor.hpp"
+#include "online.hpp"
 
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
@@ -50,12 +51,14 @@ using rtamt::python::BoundsColumn;
 using rtamt::python::Calls;
 using rtamt::python::Column;
 using rtamt::python::DenseMonitor;
+using rtamt::python::erased;
 using rtamt::python::EventColumn;
 using rtamt::python::Exceptions;
 using rtamt::python::InDict;
 using rtamt::python::Monitor;
 using rtamt::python::Result;
 using rtamt::python::Results;
+using rtamt::python::self_of;
 
 Program parse(const nb::bytes& bytes, Domain domain = Domain::discrete,
               std::vector<CallSite> calls = {}) {
@@ -72,17 +75,6 @@ auto making(Calls& calls, Work&& work) {
         calls.rethrow();
         throw;
     }
-}
-
-// The method descriptor has checked that self is a Monitor, but not that __init__ has run.
-template <class Monitor>
-Monitor*
-self_of(PyObject* self) noexcept { // NOLINT(misc-const-correctness): CPython hands it over so
-    if (nb::inst_ready(self)) [[likely]] {
-        return nb::inst_ptr<Monitor>(self);
-    }
-    PyErr_SetString(PyExc_TypeError, "The monitor was never initialised.");
-    return nullptr;
 }
 
 PyObject* wrong_count(PyObject* self, const char* method, Py_ssize_t count) noexcept {
@@ -107,12 +99,6 @@ PyObject* update_pairs(PyObject* self, PyObject* const* args, Py_ssize_t count) 
 PyObject* step(PyObject* self, PyObject* const* args, Py_ssize_t count) noexcept {
     auto* monitor = self_of<Monitor>(self);
     return monitor != nullptr ? monitor->step({args, static_cast<std::size_t>(count)}) : nullptr;
-}
-
-// CPython stores every kind of method as a PyCFunction and calls it by its METH_ flags.
-template <class Function>
-PyCFunction erased(Function* function) noexcept {
-    return reinterpret_cast<PyCFunction>(reinterpret_cast<void (*)()>(function));
 }
 
 PyMethodDef hot_methods[] = {
@@ -419,7 +405,7 @@ NB_MODULE(_core, m) {
         .def_prop_ro("state_bytes", &DenseMonitor::state_bytes, "Bytes of state by now.");
 
     rtamt::python::add_early_monitor(m, exceptions);
-    rtamt::python::add_method_type(m);
+    rtamt::python::add_online(m);
 
     m.def("opcode_names", &opcode_names, "The names of the opcodes, in the order of their codes.");
     m.def(

@@ -1,7 +1,5 @@
 #include "dense_monitor.hpp"
 
-#include <structmember.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -54,20 +52,20 @@ constexpr double exact = 0x1p53;
     return begin + static_cast<std::int64_t>(std::nearbyint(rest * static_cast<double>(rate)));
 }
 
-// Where objects of a class keep an attribute that is one of its __slots__.
-[[nodiscard]] Py_ssize_t slot_of(const nb::type_object& type, const char* name) {
-    const nb::object member = nb::getattr(type, name);
-    if (Py_TYPE(member.ptr()) != &PyMemberDescr_Type) {
-        throw std::invalid_argument("The class of the answers has no slot '" + std::string(name) +
-                                    "'.");
+// The descriptor of an attribute that objects of a class have, so that nothing is looked up later.
+[[nodiscard]] nb::object attribute_of(const nb::type_object& type, const char* name) {
+    nb::object attribute = nb::getattr(type, name);
+    if (Py_TYPE(attribute.ptr())->tp_descr_set == nullptr) {
+        throw std::invalid_argument("The class of the answers has no attribute '" +
+                                    std::string(name) + "' that can be set.");
     }
-    return reinterpret_cast<PyMemberDescrObject*>(member.ptr())->d_member->offset;
+    return attribute;
 }
 
-// Fills an empty slot of a new object.
-void fill_slot(const nb::object& object, Py_ssize_t slot, nb::object value) noexcept {
-    char* memory = reinterpret_cast<char*>(object.ptr()) + slot;
-    *reinterpret_cast<PyObject**>(memory) = value.release().ptr();
+[[nodiscard]] bool set(const nb::object& attribute, const nb::object& object,
+                       const nb::object& value) noexcept {
+    PyObject* descriptor = attribute.ptr();
+    return Py_TYPE(descriptor)->tp_descr_set(descriptor, object.ptr(), value.ptr()) == 0;
 }
 
 // How many samples a call brings.
@@ -129,8 +127,8 @@ DenseMonitor::DenseMonitor(Program program, const std::vector<nb::str>& names,
 void DenseMonitor::tell(const nb::type_object& signal, const nb::object& scale, double rate,
                         bool whole) {
     usage_.require_idle();
-    scale_slot_ = slot_of(signal, "_scale");
-    events_slot_ = slot_of(signal, "_events");
+    scale_attribute_ = attribute_of(signal, "_scale");
+    events_attribute_ = attribute_of(signal, "_events");
     signal_ = signal;
     scale_ = scale;
     rate_ = rate;
@@ -195,13 +193,15 @@ bool DenseMonitor::read(PyObject* time, const Values& values) noexcept {
     const Places own = places();
     own.clear();
     // A time of any other kind may have run Python code.
-    if (!(PyFloat_Check(time) || PyLong_CheckExact(time)) ||
-        read_values(values, PlainNumbers{}, own) != nullptr) {
+    const bool plain = PyFloat_Check(time) || PyLong_CheckExact(time);
+    const char* wrong = plain ? read_values(values, PlainNumbers{}, own) : not_plain;
+    if (wrong != nullptr && wrong != not_plain) return usage_.refuse(wrong) != nullptr;
+    if (wrong != nullptr) {
         Row row(row_.size());
         if (!row) return PyErr_NoMemory() != nullptr;
         const Places read = row.places();
-        if (const char* wrong = read_values(values, numbers_, read)) {
-            return usage_.refuse(wrong) != nullptr;
+        if (const char* still = read_values(values, numbers_, read)) {
+            return usage_.refuse(still) != nullptr;
         }
         if (!ready()) return false;
         std::copy_n(read.values, read.size, own.values);
@@ -248,10 +248,12 @@ const char* DenseMonitor::read_values(const Values& values, const Numbers& numbe
     std::size_t guess = 0;
     return values.each([&](PyObject* name, PyObject* value) -> const char* {
         const auto index = names_.place(name, guess, Numbers::plain);
-        if (!index) return names_.ignored(name, Numbers::plain) ? nullptr : "names";
+        if (!index) {
+            return names_.ignored(name, Numbers::plain) ? nullptr : no_name(numbers, name);
+        }
         guess = *index + 1;
         places.given[*index] = true;
-        return numbers.read(value, places.values[*index]) ? nullptr : "value";
+        return numbers.read(value, places.values[*index]) ? nullptr : no_number(numbers, "value");
     });
 }
 
@@ -287,8 +289,7 @@ nb::object DenseMonitor::signal_of(const Events& events) const noexcept {
         std::memcpy(memory, events.times, times);
         std::memcpy(memory + times, events.values, values);
     }
-    fill_slot(signal, scale_slot_, scale_);
-    fill_slot(signal, events_slot_, std::move(bytes));
+    if (!set(scale_attribute_, signal, scale_) || !set(events_attribute_, signal, bytes)) return {};
     return signal;
 }
 

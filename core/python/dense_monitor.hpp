@@ -47,7 +47,7 @@ class DenseMonitor {
 
     // How update() tells time until the next reset(): in numbers of so many ticks, a whole number
     // below 2^53; `whole`: in integers alone. It answers with objects of this class, whose `_scale`
-    // is the given one and whose `_events` are bytes: the times, then the values; both are slots.
+    // is the given one and whose `_events` are bytes: the times, then the values.
     void tell(const nb::type_object& signal, const nb::object& scale, double rate, bool whole);
 
     // Any variables at one instant, by name: Named or InDict. What became known of the first
@@ -100,9 +100,9 @@ class DenseMonitor {
     std::vector<std::int64_t> counts_;               // samples of each input
     nb::object signal_;                              // the class of the answers
     nb::object scale_;
-    nb::object nothing_;        // the answer without events
-    Py_ssize_t scale_slot_ = 0; // where answers keep their attributes
-    Py_ssize_t events_slot_ = 0;
+    nb::object nothing_;         // the answer without events
+    nb::object scale_attribute_; // of the answers
+    nb::object events_attribute_;
     bool told_ = false; // whether update() knows how time is told
     double rate_ = 1.0; // ticks in 1
     bool whole_ = false;

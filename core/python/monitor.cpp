@@ -62,8 +62,8 @@ PyObject* Monitor::sample(const Read& read) noexcept {
             std::ranges::copy(previous_, row_.begin());
         }
     }
-    if (read(PlainNumbers{}, time, places) != nullptr) [[unlikely]] {
-        return sample_carefully<timed, keeps>(read);
+    if (const char* wrong = read(PlainNumbers{}, time, places)) [[unlikely]] {
+        return wrong == not_plain ? sample_carefully<timed, keeps>(read) : usage_.refuse(wrong);
     }
     if (timed && !clock_.accepts(time)) return usage_.refuse("time");
     if (keeps && first && !places.whole()) return usage_.refuse("names");
@@ -91,14 +91,16 @@ template <class Values>
 PyObject* Monitor::update(PyObject* time, const Values& values) noexcept {
     return sample<true, false>(
         [&](const auto& numbers, double& t, const Places& places) -> const char* {
-            if (!numbers.read(time, t) || std::fabs(t) >= implausible) return "time";
+            if (!numbers.read(time, t)) return no_number(numbers, "time");
+            if (std::fabs(t) >= implausible) return "time";
             if (values.count() != names_.count()) return "names";
             std::size_t guess = 0;
             return values.each([&](PyObject* name, PyObject* value) -> const char* {
                 const auto index = names_.place(name, guess++, numbers.plain);
-                if (!index) return "names";
+                if (!index) return no_name(numbers, name);
                 places.given[*index] = true;
-                return numbers.read(value, places.values[*index]) ? nullptr : "value";
+                return numbers.read(value, places.values[*index]) ? nullptr
+                                                                  : no_number(numbers, "value");
             });
         });
 }
@@ -109,7 +111,7 @@ template PyObject* Monitor::update(PyObject* time, const InDict& values) noexcep
 PyObject* Monitor::update_pairs(PyObject* time, PyObject* pairs) noexcept {
     return sample<true, true>(
         [&](const auto& numbers, double& t, const Places& places) -> const char* {
-            if (!numbers.read(time, t)) return "time";
+            if (!numbers.read(time, t)) return no_number(numbers, "time");
             constexpr bool plain = std::remove_cvref_t<decltype(numbers)>::plain;
             if (!PyList_Check(pairs) && !PyTuple_Check(pairs)) return "pairs";
             std::size_t guess = 0;
@@ -123,10 +125,12 @@ PyObject* Monitor::update_pairs(PyObject* time, PyObject* pairs) noexcept {
                 const auto value = held<plain>(PySequence_Fast_GET_ITEM(pair.ptr(), 1));
                 if (const auto index = names_.place(name.ptr(), guess, plain)) {
                     places.given[*index] = true;
-                    if (!numbers.read(value.ptr(), places.values[*index])) return "value";
+                    if (!numbers.read(value.ptr(), places.values[*index])) {
+                        return no_number(numbers, "value");
+                    }
                     guess = *index + 1;
                 } else if (!names_.ignored(name.ptr(), plain)) {
-                    return "names";
+                    return no_name(numbers, name.ptr());
                 }
             }
             return nullptr;
@@ -139,7 +143,7 @@ PyObject* Monitor::step(std::span<PyObject* const> values) noexcept {
         [&](const auto& numbers, double& /*time*/, const Places& places) -> const char* {
             for (std::size_t i = 0; i < values.size(); ++i) {
                 places.given[i] = true;
-                if (!numbers.read(values[i], places.values[i])) return "value";
+                if (!numbers.read(values[i], places.values[i])) return no_number(numbers, "value");
             }
             return nullptr;
         });

@@ -39,6 +39,21 @@ struct PlainNumbers {
     }
 };
 
+// What is wrong with a sample that reading it without Python code cannot decide.
+inline constexpr const char* not_plain = "not plain";
+
+// What is wrong with a name that is not found.
+template <class Numbers>
+[[nodiscard]] const char* no_name(const Numbers& /*numbers*/, PyObject* name) noexcept {
+    return Numbers::plain && PyUnicode_CheckExact(name) == 0 ? not_plain : "names";
+}
+
+// What is wrong with a value that is not read.
+template <class Numbers>
+[[nodiscard]] const char* no_number(const Numbers& /*numbers*/, const char* wrong) noexcept {
+    return Numbers::plain ? not_plain : wrong;
+}
+
 // What counts as a number: float and int at once; else whatever calls itself a numbers.Real, and
 // numpy's bool. Strings, decimals and arrays do not.
 class Numbers {

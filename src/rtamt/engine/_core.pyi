@@ -1,6 +1,6 @@
 """The compiled back end: runs serialised programs over samples, in discrete or dense time."""
 
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -267,12 +267,28 @@ def dense_evaluate(
 def dense_scan(kind: str, a: _Events, b: _Events | None = None) -> _Events:
     """Unbounded future over whole step functions: run_max, run_min, or until."""
 
-class Method:
-    """A function of a class that is called only where the compiled monitor in ``_backend`` refuses.
+class MonitorBase:
+    """Takes samples in discrete time: through ``_backend`` where that is a Monitor, else through Python.
 
-    ``kind`` is one of ``update`` and ``step`` of a Monitor, ``dense_update`` of a DenseMonitor, and ``early_update`` of
-    an EarlyMonitor.
+    ``_update_carefully`` and ``_step_carefully`` of the derived class receive what the back end refuses, and
+    ``_no_value`` makes the error of an ``Undefined``.
     """
 
-    def __init__(self, function: Callable[..., Any], kind: str, /) -> None: ...
-    def __call__(self, *args: Any, **kwargs: Any) -> Any: ...
+    _backend: Any
+
+    def update(self, time: float, /, **values: float) -> float | None: ...
+    def step(self, /, *values: float) -> float | None: ...
+
+class DenseMonitorBase:
+    """The same in dense time."""
+
+    _backend: Any
+
+    def update(self, time: Any, /, **values: float) -> Any: ...
+
+class EarlyMonitorBase:
+    """The same for early verdicts."""
+
+    _backend: Any
+
+    def update(self, time: Any, /, **values: Any) -> Any: ...

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import sys
-from functools import update_wrapper
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any
 
 from rtamt.engine.user_operators import SampleDriver, calls_of
 from rtamt.errors import EvaluationError, UsageError
@@ -17,6 +16,7 @@ if TYPE_CHECKING:
     from types import ModuleType
 
     from rtamt.compiler.program import Program
+    from rtamt.engine import _core
     from rtamt.language.formula import Formula
 
 
@@ -35,24 +35,31 @@ def core() -> ModuleType:
     return _core
 
 
-Function = TypeVar("Function", bound="Callable[..., Any]")
+class _TakenByPython:
+    """What monitors derive from where the core is not built; see ``MonitorBase`` in ``_core``."""
+
+    _backend: Any
+    _update_carefully: Callable[..., Any]
+    _step_carefully: Callable[..., Any]
+
+    def update(self, time: Any, /, **values: float) -> Any:
+        """Take one sample."""
+        return self._update_carefully(time, **values)
+
+    def step(self, *values: float) -> Any:
+        """Take one sample by position."""
+        return self._step_carefully(*values)
 
 
-def compiled(kind: str) -> Callable[[Function], Function]:
-    """Return a decorator of a monitor's method that the compiled monitor in ``_backend`` takes over.
-
-    The function itself is called where that one refuses what it is given, and where it is not built.
-    ``kind``: which method of it, as the core calls it.
-    """
-
-    def decorate(function: Function) -> Function:
-        try:
-            from rtamt.engine import _core
-        except ImportError:
-            return function
-        return update_wrapper(_core.Method(function, kind), function)  # type: ignore[return-value]
-
-    return decorate
+if TYPE_CHECKING:
+    MonitorBase = _core.MonitorBase
+    DenseMonitorBase = _core.DenseMonitorBase
+    EarlyMonitorBase = _core.EarlyMonitorBase
+else:
+    try:
+        from rtamt.engine._core import DenseMonitorBase, EarlyMonitorBase, MonitorBase
+    except ImportError:
+        MonitorBase = DenseMonitorBase = EarlyMonitorBase = _TakenByPython
 
 
 def core_monitor(

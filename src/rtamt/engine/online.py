@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
+from abc import abstractmethod
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
@@ -31,11 +31,14 @@ class Watched:
     text: str | None
 
 
-class OnlineMonitor(ABC):
-    """A monitor of either time domain. Not made by users."""
+class OnlineMonitor:
+    """A monitor of either time domain, beside a base of the compiled core. Not made by users."""
 
     #: What a monitor remembers by itself, beside what its back end does.
     _remembered: ClassVar[tuple[str, ...]]
+
+    #: What takes a sample, and has to be initialised.
+    _base: ClassVar[type]
 
     _backend: Any
     _session: Session
@@ -47,6 +50,7 @@ class OnlineMonitor(ABC):
         declared: Collection[str],
         factory: Callable[[], OnlineMonitor] | None,
     ) -> None:
+        self._base.__init__(self)  # type: ignore[misc]
         self.input_names: tuple[str, ...] = variables(formula)
         for watched in watch:
             for name in variables(watched.formula):
@@ -105,7 +109,8 @@ class OnlineMonitor(ABC):
         """Go on with this back end."""
 
     def __copy__(self: Self) -> Self:
-        twin = object.__new__(type(self))
+        twin = type(self).__new__(type(self))
+        twin._base.__init__(twin)  # type: ignore[misc]
         twin.__dict__.update(self.__dict__)  # nothing in it is changed in place
         twin._gate = Gate()
         twin._resume(self._state())

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
 from rtamt.compiler.early import FOREVER
 from rtamt.engine.gate import alone, in_use
-from rtamt.engine.native import compiled
 from rtamt.errors import BoundError, TraceError, UsageError, did_you_mean, shown
 from rtamt.language.units import duration, format_duration
 from rtamt.rewrite.check import unbounded_future
@@ -119,14 +118,18 @@ class IntervalMonitor(EarlyMonitor):
 
     # ---- samples ---------------------------------------------------------------------------------
 
-    @compiled("early_update")
-    def update(self, time: Any, /, **values: Any) -> None:
-        """Take what is known at one time: of a variable a number, bounds ``(lower, upper)``, or None if missing.
+    if TYPE_CHECKING:  # by the base
 
-        With a ``lateness``, samples may come in any order, variables one by one, and may be made more precise.
-        Raises :class:`TraceError` for wrong data and :class:`EvaluationError` where an operation has no
-        value; the monitor is then as it was.
-        """
+        def update(self, time: Any, /, **values: Any) -> None:
+            """Take what is known at one time: of a variable a number, bounds ``(lower, upper)``, or None if missing.
+
+            With a ``lateness``, samples may come in any order, variables one by one, and may be made more precise.
+            Raises :class:`TraceError` for wrong data and :class:`EvaluationError` where an operation has no
+            value; the monitor is then as it was.
+            """
+
+    def _update_carefully(self, time: Any, /, **values: Any) -> None:
+        """Take a sample that the core did not take, or find out what is wrong with it."""
         with self._gate:
             self._take(time, values)
 

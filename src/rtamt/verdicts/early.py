@@ -13,7 +13,7 @@ from rtamt.compiler.program import NO_OPERAND
 from rtamt.engine.backend import Session
 from rtamt.engine.discrete.early_python_backend import PythonEarlyMonitor
 from rtamt.engine.gate import alone, in_use
-from rtamt.engine.native import compiled, core
+from rtamt.engine.native import EarlyMonitorBase, core
 from rtamt.engine.online import OnlineMonitor, Watched
 from rtamt.errors import TraceError, UsageError, did_you_mean, shown
 from rtamt.language.undefined_value import at_sample, undefined
@@ -67,10 +67,11 @@ class GraphDefinition(Session):
         return self._graph.fingerprint()
 
 
-class EarlyMonitor(OnlineMonitor):
+class EarlyMonitor(EarlyMonitorBase, OnlineMonitor):
     """What both monitors of discrete time share. Not made by users."""
 
     _remembered: ClassVar[tuple[str, ...]] = ("_finished",)
+    _base = EarlyMonitorBase
     #: The class of what update() returns, None for bounds.
     _verdict: type | None
 
@@ -91,7 +92,7 @@ class EarlyMonitor(OnlineMonitor):
             domain.check(watched.formula, watched.text)
         period = domain.period
         assert period is not None
-        super().__init__(formula, watch, declared, factory)
+        OnlineMonitor.__init__(self, formula, watch, declared, factory)
         self._backend_name = backend
         self._period = period
         self._tolerance = domain.tolerance
@@ -283,15 +284,19 @@ class EagerMonitor(EarlyMonitor):
         super().__init__(formula, domain, **settings)
         self._prepare()
 
-    @compiled("early_update")
-    def update(self, time: Any, /, **values: Any) -> list[Verdict]:
-        """Take one sample, ``time`` in seconds and a number for every variable; return what became settled.
+    if TYPE_CHECKING:  # by the base
 
-        A value may also be bounds ``(lower, upper)``, or None if it is missing.
+        def update(self, time: Any, /, **values: Any) -> list[Verdict]:
+            """Take one sample, ``time`` in seconds and a number for every variable; return what became settled.
 
-        Raises :class:`TraceError` for wrong data and :class:`EvaluationError` where an operation has no
-        value; the monitor is then as it was.
-        """
+            A value may also be bounds ``(lower, upper)``, or None if it is missing.
+
+            Raises :class:`TraceError` for wrong data and :class:`EvaluationError` where an operation has no
+            value; the monitor is then as it was.
+            """
+
+    def _update_carefully(self, time: Any, /, **values: Any) -> list[Verdict]:
+        """Take a sample that the core did not take, or find out what is wrong with it."""
         with self._gate:
             flat = self._read_by_formula(values)
             if self._finished:

@@ -6,6 +6,7 @@ import gc
 import numbers
 import sys
 import threading
+import weakref
 from decimal import Decimal
 from fractions import Fraction
 from math import inf, nan
@@ -14,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pytest
 
+import rtamt
 from rtamt.compiler.program import Instruction, Program
 from rtamt.engine.native import core
 from rtamt.errors import UsageError
@@ -259,19 +261,22 @@ def test_another_monitor_goes_on_from_a_state() -> None:
         monitor().restore(m.state())
 
 
-class Watcher:
-    """As the monitors of Python are made: the method is taken over, and asked where that does not do."""
+class Watcher(_core.MonitorBase):
+    """As the monitors of Python are made: the back end takes the sample, and Python where that does not do."""
 
     def __init__(self, backend: Any) -> None:
+        super().__init__()
         self._backend = backend
         self.asked: list[Any] = []
 
-    def _ask(self, *args: Any, **values: Any) -> str:
+    def _update_carefully(self, *args: Any, **values: Any) -> str:
         self.asked.append((args, values))
         return "asked"
 
-    update = _core.Method(_ask, "update")
-    step = _core.Method(_ask, "step")
+    _step_carefully = _update_carefully
+
+    def _no_value(self, error: Exception) -> Exception:
+        return ArithmeticError(*error.args)
 
 
 def test_a_method_is_taken_over_where_the_monitor_takes_the_sample() -> None:
@@ -305,13 +310,30 @@ def test_what_the_monitor_refuses_goes_to_the_function_as_it_came(args: Any, val
 
 
 def test_without_a_compiled_monitor_the_function_is_called() -> None:
-    for backend in (None, _core.DenseMonitor, object()):
+    for backend in (_core.DenseMonitor, object()):
         watcher = Watcher(backend)
         assert (watcher.update(0.0, a=1.0, b=1.0), watcher.step(1.0)) == ("asked", "asked")
-    with pytest.raises(AttributeError, match="_backend"):
-        Watcher.update(object(), 0.0)
-    with pytest.raises(ValueError, match=r"^There is no method 'finish'\.$"):
-        _core.Method(len, "finish")
+    with pytest.raises(TypeError, match="MonitorBase"):
+        Watcher.update(object(), 0.0)  # type: ignore[arg-type]
+    with pytest.raises(TypeError, match=r"^The monitor was never initialised\.$"):
+        Watcher.__new__(Watcher).update(0.0)
+
+
+def test_python_makes_the_error_of_an_undefined_value() -> None:
+    ratio = program(A, B, Instruction("div", a=0, b=1), outputs=(2,), inputs=("a", "b"))
+    watcher = Watcher(_core.Monitor(ratio, ["a", "b"]))
+    with pytest.raises(ArithmeticError) as raised:
+        watcher.update(0.0, a=0.0, b=0.0)
+    assert (raised.value.args, watcher.asked) == ((2, 0), [])
+
+
+def test_a_monitor_that_holds_itself_is_collected() -> None:
+    watcher = Watcher(object())
+    watcher._backend = watcher
+    there = weakref.ref(watcher)
+    del watcher
+    gc.collect()
+    assert there() is None
 
 
 def test_what_a_number_raises_by_itself_is_not_asked_about() -> None:
@@ -440,3 +462,19 @@ def test_a_monitor_in_use_by_another_thread_says_so_and_goes_on_undisturbed() ->
         "back; give each thread a monitor of its own"
     }
     assert m.samples == pushes * n + answers.count(None)
+
+
+@pytest.mark.parametrize("time", ["discrete", "dense"])
+def test_a_field_is_read_once_a_sample(time: Any) -> None:
+    reads: list[float] = []
+
+    class Request:
+        @property
+        def value(self) -> float:
+            reads.append(5.0)
+            return 5.0
+
+    monitor = rtamt.parse("gnt >= req.value").monitor(time=time)
+    for t in range(3):
+        monitor.update(float(t), gnt=1.0, req=Request())
+    assert len(reads) == 3

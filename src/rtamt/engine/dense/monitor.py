@@ -9,7 +9,7 @@ import numpy as np
 from rtamt.engine.dense.backends import BACKENDS
 from rtamt.engine.dense.groups import GroupSession, own_variables
 from rtamt.engine.gate import alone, in_use
-from rtamt.engine.native import compiled
+from rtamt.engine.native import DenseMonitorBase
 from rtamt.engine.online import OnlineMonitor, Watched, depth_of
 from rtamt.errors import TraceError, UsageError
 from rtamt.language.undefined_value import undefined
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from rtamt.signals.dense_arrays import Samples
 
 
-class DenseMonitor(OnlineMonitor):
+class DenseMonitor(DenseMonitorBase, OnlineMonitor):
     """Watches one formula over signals that change at any instant.
 
     Built by ``Specification.monitor(time="dense")``. After every update it has told ρ for exactly
@@ -48,6 +48,7 @@ class DenseMonitor(OnlineMonitor):
     """
 
     _remembered = ("_finished", "_scale")
+    _base = DenseMonitorBase
 
     def __init__(
         self,
@@ -68,7 +69,7 @@ class DenseMonitor(OnlineMonitor):
         for watched in (Watched("", formula, text), *watch):
             domain.check(watched.formula, watched.text)
             check_online(watched.formula, watched.text)
-        super().__init__(formula, watch, declared, factory)
+        OnlineMonitor.__init__(self, formula, watch, declared, factory)
         domain.check_inputs(self.input_names)
         self._depth = depth_of(formula)
         self._tick = domain.resolution
@@ -86,7 +87,6 @@ class DenseMonitor(OnlineMonitor):
 
     def _connect(self, backend: Any) -> None:
         self._backend = backend
-        self._update = backend.update
         self._refused = self._session.refused
         self._undefined: Any = self._session.undefined
         if self._scale is not None:
@@ -102,19 +102,17 @@ class DenseMonitor(OnlineMonitor):
         """How many samples of any variable the monitor has taken since the start or the last reset."""
         return sum(self._backend.counts)
 
-    @compiled("dense_update")
-    def update(self, time: Any, /, **values: float) -> Signal:
-        """Take the values of any variables at one instant: seconds, numbers in ``time_unit=``, or a datetime.
+    if TYPE_CHECKING:  # by the base
 
-        Without values only the time is looked at. Returns what became known. Raises :class:`TraceError`
-        for wrong data and :class:`EvaluationError` where an operation has no value; the monitor is then as it was.
-        """
-        try:
-            return self._update(time, values)  # type: ignore[no-any-return]
-        except self._refused:
-            pass  # the long way takes it, or finds out what is wrong and says it
-        except self._undefined as error:
-            raise self._no_value(error, self._scale) from None
+        def update(self, time: Any, /, **values: float) -> Signal:
+            """Take the values of any variables at one instant: seconds, numbers in ``time_unit=``, or a datetime.
+
+            Without values only the time is looked at. Returns what became known. Raises :class:`TraceError`
+            for wrong data and :class:`EvaluationError` where an operation has no value; the monitor is then as it was.
+            """
+
+    def _update_carefully(self, time: Any, /, **values: Any) -> Signal:
+        """Take an instant that the core did not take, or find out what is wrong with it."""
         flat = self._read_by_formula(values)
         for name in flat:
             if name not in self.input_names:
@@ -241,7 +239,8 @@ class DenseMonitor(OnlineMonitor):
         except self._undefined as error:
             raise self._no_value(error, scale) from None
 
-    def _no_value(self, error: Exception, scale: TimeScale | None) -> EvaluationError:
+    def _no_value(self, error: Exception, scale: TimeScale | None = None) -> EvaluationError:
+        scale = scale or self._scale
         assert scale is not None
         return undefined(self._session.culprit(error), f"time {scale.show(error.args[1])}")
 

@@ -11,7 +11,7 @@ from rtamt.engine.discrete.backends import BACKENDS
 from rtamt.engine.discrete.caller_times import CallerTimes
 from rtamt.engine.discrete.samples import read_time, read_values
 from rtamt.engine.gate import alone, in_use
-from rtamt.engine.native import compiled
+from rtamt.engine.native import MonitorBase
 from rtamt.engine.online import OnlineMonitor, Watched, depth_of
 from rtamt.errors import TraceError, UsageError
 from rtamt.language.undefined_value import at_sample, undefined
@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from rtamt.language.formula import Formula
 
 
-class Monitor(OnlineMonitor):
+class Monitor(MonitorBase, OnlineMonitor):
     """Watches one formula over a stream of samples in discrete time.
 
     Built by ``Specification.monitor``. Feed it with one of :meth:`update` (a sample by name),
@@ -57,6 +57,7 @@ class Monitor(OnlineMonitor):
     """
 
     _remembered = ("_finished", "_news", "_times")
+    _base = MonitorBase
 
     def __init__(
         self,
@@ -77,7 +78,7 @@ class Monitor(OnlineMonitor):
         for watched in (Watched("", formula, text), *watch):
             domain.check(watched.formula, watched.text)
             check_online(watched.formula, watched.text)
-        super().__init__(formula, watch, declared, factory)
+        OnlineMonitor.__init__(self, formula, watch, declared, factory)
         self._period = period
         self._tolerance = domain.tolerance
         self._depths = [depth_of(formula, period) for formula in self._formulas]
@@ -112,20 +113,37 @@ class Monitor(OnlineMonitor):
         """How many samples the monitor has taken since the start or the last reset."""
         return int(self._backend.samples)
 
-    @compiled("update")
-    def update(self, time: float, /, **values: float) -> float | None:
-        """Take one sample: ``time`` in seconds, or in ``time_unit=``, and a number for every variable.
+    if TYPE_CHECKING:  # by the base
 
-        Returns ρ at ``time - horizon``; None until the horizon has passed. Raises
-        :class:`TraceError` for wrong data and :class:`EvaluationError` where an operation has no
-        value; the monitor is then as it was. A formula that reads ``req.value`` takes an object
-        with that field as ``req=``, or the number as ``**{"req.value": 3}``.
+        def update(self, time: float, /, **values: float) -> float | None:
+            """Take one sample: ``time`` in seconds, or in ``time_unit=``, and a number for every variable.
 
-        >>> import rtamt
-        >>> monitor = rtamt.parse("(req >= 3) -> eventually[0:1](gnt >= 3)").monitor()
-        >>> print(monitor.update(0.0, req=5, gnt=0), monitor.update(1.0, req=0, gnt=4))
-        None 1.0
-        """
+            Returns ρ at ``time - horizon``; None until the horizon has passed. Raises
+            :class:`TraceError` for wrong data and :class:`EvaluationError` where an operation has no
+            value; the monitor is then as it was. A formula that reads ``req.value`` takes an object
+            with that field as ``req=``, or the number as ``**{"req.value": 3}``.
+
+            >>> import rtamt
+            >>> monitor = rtamt.parse("(req >= 3) -> eventually[0:1](gnt >= 3)").monitor()
+            >>> print(monitor.update(0.0, req=5, gnt=0), monitor.update(1.0, req=0, gnt=4))
+            None 1.0
+            """
+
+        def step(self, *values: float) -> float | None:
+            """Take one sample by position, in the order of ``input_names``, one period after the last.
+
+            Returns and raises as :meth:`update` does; for loops in which a microsecond counts.
+
+            >>> import rtamt
+            >>> monitor = rtamt.parse("once[0:1](x >= y)").monitor(period=0.1)
+            >>> monitor.input_names
+            ('x', 'y')
+            >>> [monitor.step(5, 4), monitor.step(1, 4)]
+            [1.0, 1.0]
+            """
+
+    def _update_carefully(self, time: Any, /, **values: Any) -> float | None:
+        """Take a sample that the core did not take, or find out what is wrong with it."""
         if self._times.plain:
             return self._take(time, values)
         return self._take_told(time, values)
@@ -139,12 +157,6 @@ class Monitor(OnlineMonitor):
         return robustness
 
     def _take(self, time: Any, values: dict[str, Any]) -> float | None:
-        try:
-            return self._update(time, values)  # type: ignore[no-any-return]
-        except self._refused:
-            pass  # the long way takes it, or finds out what is wrong and says it
-        except self._undefined as error:
-            raise self._no_value(error) from None
         flat = self._read_by_formula(values)
         if self._finished:
             raise self._is_finished()
@@ -157,19 +169,8 @@ class Monitor(OnlineMonitor):
         except self._undefined as error:
             raise self._no_value(error) from None
 
-    @compiled("step")
-    def step(self, *values: float) -> float | None:
-        """Take one sample by position, in the order of ``input_names``, one period after the last.
-
-        Returns and raises as :meth:`update` does; for loops in which a microsecond counts.
-
-        >>> import rtamt
-        >>> monitor = rtamt.parse("once[0:1](x >= y)").monitor(period=0.1)
-        >>> monitor.input_names
-        ('x', 'y')
-        >>> [monitor.step(5, 4), monitor.step(1, 4)]
-        [1.0, 1.0]
-        """
+    def _step_carefully(self, *values: Any) -> float | None:
+        """Take a sample by position that the core did not take, or find out what is wrong with it."""
         if self._times.plain:
             return self._take_row(values)
         return self._take_row_told(values)
@@ -183,12 +184,6 @@ class Monitor(OnlineMonitor):
         return robustness
 
     def _take_row(self, values: tuple[float, ...]) -> float | None:
-        try:
-            return self._step(*values)  # type: ignore[no-any-return]
-        except self._refused:
-            pass
-        except self._undefined as error:
-            raise self._no_value(error) from None
         if len(values) != len(self.input_names):
             raise TraceError(
                 f"sample {self.samples} has the wrong number of values: expected {len(self.input_names)} "
