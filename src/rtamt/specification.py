@@ -264,7 +264,9 @@ class Specification(SpecificationText):
         not, also where the robustness is 0. ``watch``: names of sub-specifications, or formulas over
         the same variables, whose values ``monitor[name]`` is to tell beside the result; each is known
         at its own horizon. ``time_unit``: of times that are numbers, as in :meth:`evaluate`; what is
-        told comes in it too. Raises :class:`BoundError` for unbounded future.
+        told comes in it too. In dense time each of several requirements starts when all variables that it reads have
+        started; the result is the minimum of those that have, known once all variables have started. Raises
+        :class:`BoundError` for unbounded future.
 
         ``verdict``: what the monitor reports of each sample: ``"delayed"``, the robustness one horizon later;
         ``"eager"``, whether the formula holds, as soon as no later sample can change it; ``"interval"``, bounds
