@@ -7,7 +7,7 @@ program serves offline and online alike, and nothing needs pastification.
 
 The bytes are those of core/program/program.hpp (documented there and in ``to_bytes``): header, records of
 40 bytes, outputs, a note, CRC-32. The note is empty in programs that stay in Python; in those that
-leave it (``carry.py``) it is their metadata (``metadata.py``).
+leave it (``verdicts.standalone``) it is their metadata (``metadata.py``).
 """
 
 from __future__ import annotations

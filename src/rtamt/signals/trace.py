@@ -4,8 +4,8 @@
 
     Trace                    what users read from files and frames
       └── Channel            one signal: its times, its values, its unit
-    DiscreteTrace                one clock, a period      (signals.py)           discrete time evaluates this
-    DenseTrace           integer ticks            (engine/dense/)        dense time evaluates this
+    DiscreteTrace            one clock, a period      (discrete.py)           discrete time evaluates this
+    DenseTrace               integer ticks            (dense.py)              dense time evaluates this
 """
 
 from __future__ import annotations
