@@ -67,7 +67,7 @@ bool goes_on(PyObject* self) noexcept {
 template <class Backend, class Take>
 PyObject* sample(PyObject* self, const char* method, std::span<PyObject* const> positional,
                  const Named& named, Take&& take) noexcept {
-    auto* online = self_of<Online<Backend>>(self);
+    const auto* online = self_of<Online<Backend>>(self);
     if (online == nullptr) return nullptr;
     if (Backend* native = online->native(); native != nullptr) [[likely]] {
         const nb::object held = online->backend(); // reading a value may connect another one
@@ -78,7 +78,7 @@ PyObject* sample(PyObject* self, const char* method, std::span<PyObject* const> 
 }
 
 struct Taken {
-    bool taken; // whether the arguments are of the ordinary form
+    bool taken = false; // whether the arguments are of the ordinary form
     PyObject* result = nullptr;
 };
 
