@@ -1,9 +1,9 @@
 """Core formula to instructions: value numbering, lags, and the delays that align operands.
 
-One function for each shape of kernel in the operator table, and a call for every operator that has
-none of them; no operator is named here. Time is counted in steps: samples in discrete time, ticks in
-dense time. The two differ only in how many steps a closed window has, and in how until over [a, b] is
-put together where a > 0.
+One function per kernel shape of the operator table, and a call for every operator without a kernel; no
+operator is named here. Time is counted in steps: samples in discrete time, ticks in
+dense time. The two differ only in the number of steps of a closed window, and in how until over [a, b] is
+composed for a > 0.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ _IDENTITY = {"max": -inf, "min": inf}
 
 
 class Lowering(ABC):
-    """The instructions so far; emitting one that is there already returns the old one."""
+    """The instructions so far; emitting an existing instruction returns its index."""
 
     #: The time domain of its programs.
     domain: ClassVar[type[TimeDomain]]
@@ -50,7 +50,7 @@ class Lowering(ABC):
         self.calls: dict[CallSite, int] = {}
 
     def program(self, outputs: tuple[int, ...]) -> Program:
-        """Return the program; what no output needs stays, since it may fail and may be asked for."""
+        """Return the program; instructions that no output needs are kept, since they may fail or be queried."""
         return Program(
             tuple(self.instructions),
             self.inputs,
@@ -73,7 +73,7 @@ class Lowering(ABC):
         if isinstance(node, Const):
             return self.emit(Instruction("const", x=node.value), node)
         if isinstance(node, Var) and node.name in self.parameters:
-            # Merged with no other constant: it may get a value of its own.
+            # Never merged with another constant: its value may be changed.
             return self.append(Instruction("const", x=self.parameters[node.name]), node)
         if isinstance(node, Var):
             return self.emit(Instruction("input", n=self.inputs.index(node.name)), node)
@@ -95,28 +95,28 @@ class Lowering(ABC):
     # ---- emitting --------------------------------------------------------------------------------
 
     def emit(self, instruction: Instruction, origin: Formula) -> int:
-        """Return the index of an instruction, which is added unless it is there already."""
+        """Return the index of an instruction, adding it if necessary."""
         index = self.index_of.get(instruction)
         if index is None:
             index = self.index_of[instruction] = self.append(instruction, origin)
         return index
 
     def append(self, instruction: Instruction, origin: Formula) -> int:
-        """Return the index of a new instruction."""
+        """Add an instruction and return its index."""
         self.instructions.append(instruction)
         self.origins.append(origin)
         return len(self.instructions) - 1
 
     def lag(self, index: int) -> int:
-        """Return how many steps late an instruction is known."""
+        """Return the lag of an instruction in steps."""
         return self.instructions[index].lag
 
     def is_const(self, index: int) -> bool:
-        """Tell whether an instruction is a constant, which has no time and needs no delay."""
+        """Return whether an instruction is a constant, which needs no delay."""
         return self.instructions[index].opcode == "const"
 
     def align(self, indices: list[int]) -> list[int]:
-        """Delay operands until all have the lag of the latest; constants have none."""
+        """Delay operands until all have the largest lag; constants have no lag."""
         lag = max((self.lag(i) for i in indices), default=0)
         return [self.delayed(i, lag) for i in indices]
 
@@ -125,7 +125,7 @@ class Lowering(ABC):
         return index if self.is_const(index) else self.late(index, lag)
 
     def late(self, index: int, lag: int) -> int:
-        """Return the same value known at ``lag``, a constant's too."""
+        """Return the same value known at ``lag``, also for a constant."""
         behind = lag - self.lag(index)
         if behind == 0:
             return index
@@ -134,7 +134,7 @@ class Lowering(ABC):
         return self.emit(Instruction("shift", index, n=behind, lag=lag), origin)
 
     def moved(self, index: int, distance: int, fill: float, lag: int, origin: Formula) -> int:
-        """Return the operand ``distance`` samples behind, ``fill`` where there is none."""
+        """Return the operand ``distance`` samples ago, ``fill`` where that sample does not exist."""
         return self.emit(Instruction("shift", index, n=distance, x=fill, lag=lag), origin)
 
     def whole(self, bound: Fraction) -> int:
@@ -144,7 +144,7 @@ class Lowering(ABC):
         return count.numerator
 
     def steps(self, bound: Fraction) -> int:
-        """Return a bound in steps, cut to the length of the trace."""
+        """Return a bound in steps, clipped to the length of the trace."""
         count = self.whole(bound)
         return count if self.clip is None else min(count, self.clip)
 
@@ -154,7 +154,7 @@ class Lowering(ABC):
             return 0, None
         begin, end = node.interval.begin, node.interval.end
         first = self.steps(begin)
-        # The length is cut, not the end: precedes reads as far as the end, in a window of the length.
+        # The length is clipped, not the end: precedes reads up to the end, in a window of this length.
         return first, None if end is None else first + self.steps(end - begin)
 
     # ---- one function for each shape of kernel -----------------------------------------------------
@@ -190,17 +190,17 @@ class Lowering(ABC):
         return self.emit(Instruction(f"slide_{reduce}", x, n=width, lag=lag), origin)
 
     def slid(self, reduce: str, x: int, width: int, lag: int, origin: Formula) -> int:
-        """Return a window over an operand of since or until, delayed to their lag (a constant has its own)."""
+        """Return a window over an operand of since or until, delayed to their lag (except for constants)."""
         return self.delayed(self.slide(reduce, x, width, self.lag(x), origin), lag)
 
     def shift_by_one(self, node: Apply, kernel: Shift, x: int) -> int:
-        """Lower an operator that reads one sample away."""
+        """Lower an operator that reads the previous or next sample."""
         if node.op.tense is Tense.PAST:
             return self.moved(x, 1, kernel.fill, self.lag(x), node)
         return self.moved(x, 0, kernel.fill, self.lag(x) + 1, node)
 
     def since(self, node: Apply, hold: int, goal: int) -> int:
-        """φ since[a, b] ψ is once[a, b] ψ, φ on (t - a, t], and (φ since ψ) a ago: O(1) state besides windows."""
+        """φ since[a, b] ψ is once[a, b] ψ, φ on (t - a, t], and (φ since ψ) a ago: O(1) state apart from windows."""
         begin, end = self.bounds(node)
         lag = max(self.lag(hold), self.lag(goal))
         x = self.emit(Instruction("since", hold, goal, lag=lag), node)
@@ -222,24 +222,24 @@ class Lowering(ABC):
         return self.until_within(node, hold, goal, (begin, end), known)
 
     def call(self, node: Apply, args: list[int]) -> int:
-        """Lower an operator that the core does not know: its kernel, or else its definition, is called."""
-        if not args:  # a constant says how many values are wanted, and when
+        """Lower a custom operator to a call of its kernel, or else of its definition."""
+        if not args:  # a constant operand determines how many values are needed, and when
             args = [self.emit(Instruction("const"), node)]
         begin = 0 if node.interval is None else self.whole(node.interval.begin)
         end = self.end_of(node)
         ahead = self.ahead(node, end)
         site = CallSite(node, tuple(args), begin, end, ahead)
-        # Where the trace ends earlier than the operator reads, its value is known at the end.
+        # If the trace ends before the operator's last operand value, its result is known at the end.
         lag = max(self.lag(i) for i in args) + (ahead if self.clip is None else min(ahead, self.clip))
         number = self.calls.setdefault(site, len(self.calls))
         return self.emit(Instruction("call", n=number, lag=lag), node)
 
     def end_of(self, node: Apply) -> int | None:
-        """Return the upper bound of an operator's interval in steps, None where there is none."""
+        """Return the upper bound of an operator's interval in steps, None if unbounded."""
         return None if node.interval is None or node.interval.end is None else self.whole(node.interval.end)
 
     def ahead(self, node: Apply, end: int | None) -> int:
-        """Return how many steps ahead an operator reads, whose future is bounded."""
+        """Return how many steps ahead an operator with bounded future reads."""
         if node.op.tense is not Tense.FUTURE:
             return 0
         ahead = node.op.reach if node.op.bounds is Bounds.NONE else end
@@ -264,7 +264,7 @@ class Lowering(ABC):
 
 
 class DiscreteLowering(Lowering):
-    """Steps are samples; a closed window has one more of them than its length."""
+    """Steps are samples; a closed window contains one more than its length."""
 
     domain = Discrete
     point = 1
@@ -289,14 +289,14 @@ class DiscreteLowering(Lowering):
 
 
 class DenseLowering(Lowering):
-    """Steps are ticks; a closed window has its length."""
+    """Steps are ticks; a closed window contains as many as its length."""
 
     domain = Dense
     point = 0
 
     @staticmethod
     def until_just_before(period: Fraction) -> Fraction:
-        """Signals are right-continuous: [0, a] and [0, a) differ at lone instants only."""
+        """Signals are right-continuous: [0, a] and [0, a) differ only at isolated instants."""
         return 0 * period
 
     def until_within(self, node: Apply, hold: int, goal: int, bounds: tuple[int, int], known: int) -> int:

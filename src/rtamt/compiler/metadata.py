@@ -1,6 +1,6 @@
-"""What a program says of itself to whoever carries it: names, the period, what instructions mean.
+"""The metadata of a program: names, the sampling period, and the formulas of instructions.
 
-The bytes are those of core/program/metadata.hpp, where each field is described.
+The byte format is described field by field in core/program/metadata.hpp.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ _STEP = struct.Struct("<qq")
 class Metadata:
     """Names and texts of a program.
 
-    ``formula`` as text. ``outputs`` are their names. ``parameters`` maps a named constant to the
+    ``formula`` is its text. ``outputs`` are their names. ``parameters`` maps a named constant to the
     instructions that hold its value. ``meanings`` maps an instruction to the formula it computes.
     """
 
@@ -35,7 +35,7 @@ class Metadata:
     meanings: Mapping[int, str] = field(default_factory=lambda: MappingProxyType({}))
 
     def to_bytes(self, inputs: tuple[str, ...], period: Fraction) -> bytes:
-        """Serialise, with what the program itself knows: the names of its inputs and its period."""
+        """Serialise the metadata together with the program's inputs and period."""
         try:
             step = _STEP.pack(period.numerator, period.denominator)
         except struct.error:
@@ -51,7 +51,7 @@ class Metadata:
 
     @staticmethod
     def from_bytes(note: bytes, inputs: int, outputs: int) -> tuple[Metadata, tuple[str, ...], Fraction]:
-        """Read metadata, the names of the inputs, and the period; the counts are those of the program."""
+        """Read metadata, the names of the inputs, and the period; the counts are given by the program."""
         reader = _Reader(note)
         numerator, denominator = reader.take(_STEP)
         if numerator <= 0 or denominator <= 0:
@@ -67,7 +67,7 @@ class Metadata:
 
 
 def damaged(reason: str) -> UsageError:
-    """Return the error for bytes that are no program."""
+    """Return the error for bytes that are not a program."""
     return UsageError(f"this is not a program that can be read: {reason}")
 
 
@@ -77,7 +77,7 @@ def _text(text: str) -> bytes:
 
 
 class _Reader:
-    """Takes fields from the front; lengths may be anything."""
+    """Reads fields from the front; lengths are not trusted."""
 
     def __init__(self, note: bytes) -> None:
         self._note = note

@@ -1,7 +1,7 @@
-"""Core formulas to a program (online) or a plan of programs (offline).
+"""Compile core formulas to a program (online) or a plan of programs (offline).
 
-Where an operator needs the whole future (offline only), the formula is cut: what lies below runs
-first over the whole trace, is scanned backwards, and enters the rest as one more input.
+The formula is cut at operators that need the whole future (offline only): their operands are evaluated
+first over the whole trace and scanned backwards, and the result becomes an additional input of the rest.
 """
 
 from __future__ import annotations
@@ -24,23 +24,23 @@ if TYPE_CHECKING:
     from rtamt.signals.domain import TimeDomain
 
 
-#: A scan that the core does not know.
+#: The kind of a scan by the definition of a custom operator.
 DEFINED = "defined"
 
 
 @dataclass(frozen=True, slots=True)
 class Scan:
-    """A backward pass over outputs of a stage: its result is the input called ``name`` later on."""
+    """A backward pass over outputs of a stage: its result is the later input ``name``."""
 
     name: str
-    kind: str  # run_max, run_min or until; DEFINED: the definition of what it stands for
+    kind: str  # run_max, run_min or until; DEFINED: by the definition of ``meaning``
     outputs: tuple[int, ...]
-    meaning: Apply  # what the result stands for
+    meaning: Apply  # the formula that the result stands for
 
 
 @dataclass(frozen=True, slots=True)
 class Stage:
-    """A program to run over the whole trace, and the scans over what it gives."""
+    """A program to run over the whole trace, and the scans over its outputs."""
 
     program: Program
     scans: tuple[Scan, ...]
@@ -54,7 +54,7 @@ class Plan:
     program: Program
 
     def original(self, formula: Formula) -> Formula:
-        """Return a formula of this plan with the scans in it replaced by what they stand for: for messages."""
+        """Return a formula of this plan with scans replaced by their meaning, for messages."""
         meanings: dict[str, Formula] = {}
 
         def put_back(node: Formula, args: tuple[Formula, ...]) -> Formula:
@@ -76,13 +76,13 @@ def compile_program(
     domain: type[TimeDomain] = Discrete,
     parameters: Mapping[str, float] | None = None,
 ) -> Program:
-    """Compile core formulas (see ``desugar``) whose future is bounded into one program.
+    """Compile core formulas (see ``desugar``) with bounded future to one program.
 
     ``period`` is the sampling period, in dense time the length of a tick (seconds). ``inputs`` fixes
     the order of the inputs; by default the variables in order of appearance. ``clip`` is the number
-    of samples of a finished trace: bounds beyond it are cut to it, which
-    changes no value and saves memory. ``parameters``: variables that are constants of their own,
-    merged with no other, and the values these begin with.
+    of samples of a finished trace: longer bounds are clipped to it, which
+    changes no value and saves memory. ``parameters``: variables that become adjustable constants, never
+    merged with others, and their initial values.
 
     >>> from fractions import Fraction
     >>> from rtamt.language.parser import parse_formula
@@ -95,7 +95,7 @@ def compile_program(
         inputs = _read_by(outputs)
     lowering = LOWERINGS[domain](period, inputs, clip, parameters or {})
     indices = lowering.lower(outputs)
-    if clip is None:  # online: each output is known at its horizon, even where less would do
+    if clip is None:  # online: each output is known at its horizon, even if it could be known earlier
         depths = (horizon(formula, period) for formula in outputs)
         indices = [
             index if depth is None else lowering.late(index, int(depth / period))
@@ -113,11 +113,11 @@ def compile_plan(
 ) -> Plan:
     """Compile core formulas for an offline evaluation; arguments as for :func:`compile_program`.
 
-    ``inputs``: those that are read besides what the formulas read.
+    ``inputs``: additional inputs, besides those that the formulas read.
     """
     stages: list[Stage] = []
     formulas = tuple(outputs)
-    # Every stage reads every variable, so that all of them begin and end together.
+    # Every stage reads every variable, so that all stages begin and end together.
     names = _read_by(formulas, inputs)
     while any(isinstance(node, Apply) and reads_unbounded_future(node) for node in postorder(*formulas)):
         formulas, stage = _cut(formulas, names, period, clip, domain, len(stages))
@@ -127,7 +127,7 @@ def compile_plan(
 
 
 def _read_by(formulas: Sequence[Formula], names: tuple[str, ...] = ()) -> tuple[str, ...]:
-    """Return ``names`` and the variables of the formulas, each once."""
+    """Return ``names`` and the variables of the formulas without duplicates."""
     return tuple(dict.fromkeys((*names, *variables(*formulas))))
 
 
@@ -145,7 +145,7 @@ def _cut(
     just_before = LOWERINGS[domain].until_just_before(period)
 
     def cut(node: Formula, below: tuple[tuple[Formula, bool], ...]) -> tuple[Formula, bool]:
-        """Return the node rebuilt, and whether it or anything below it was unbounded."""
+        """Return the rebuilt node, and whether it or a node below it has unbounded future."""
         if not isinstance(node, Apply):
             return node, False
         rebuilt = replace(node, args=tuple(arg for arg, _ in below))
@@ -166,7 +166,7 @@ def _cut(
 
 
 def _kind(node: Apply) -> str:
-    """Return which pass from the end computes an operator of unbounded future."""
+    """Return the kind of backward pass that computes an operator of unbounded future."""
     kernel = node.op.kernel
     if isinstance(kernel, Window):
         return f"run_{kernel.reduce}"
@@ -174,9 +174,9 @@ def _kind(node: Apply) -> str:
 
 
 def _after_scan(node: Apply, scan: Var, just_before: Fraction) -> Formula:
-    """Return what is left of an operator over [a, inf) once its backward pass from t on is known.
+    """Return the rest of an operator over [a, inf), given its backward pass over [t, inf).
 
-    ``just_before`` is how much shorter than a the closed window is that stands for [0, a).
+    ``just_before``: how much shorter than a the closed window for [0, a) is.
     """
     begin = node.interval.begin if node.interval is not None else Fraction(0)
     if begin == 0:

@@ -1,9 +1,9 @@
-"""A compiled formula: a flat list of instructions that every carrier of the engine runs.
+"""A compiled formula: a flat list of instructions, executed by every host of the core.
 
-Slots and lags. At slot s (the s-th sample) an instruction with lag L gives its value at sample
+Slots and lags. At slot s (the s-th sample) an instruction with lag L yields its value at sample
 s - L; a future window [a, b] adds b to the lag, and operands are delayed until their lags agree.
-What lies outside the trace is *absent*: kernels skip it, which cuts windows at both ends. So one
-program serves offline and online alike, and nothing needs pastification.
+Values outside the trace are *absent*: kernels skip them, which clips windows at both ends. One
+program therefore serves both offline and online evaluation, without pastification.
 
 The bytes are those of core/program/program.hpp (documented there and in ``to_bytes``): header, records of
 40 bytes, outputs, a note, CRC-32. The note is empty in programs that stay in Python; in those that
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from rtamt.language.operators import Operator
     from rtamt.signals.domain import TimeDomain
 
-#: In the order of the core's enumeration; a test compares the two.
+#: Opcodes in the order of the core's enumeration; a test compares the two.
 OPCODES = (
     "input", "const",
     "neg", "abs", "sqrt", "exp", "ln",
@@ -47,7 +47,7 @@ _DOMAINS = tuple(DOMAINS.values())
 NO_OPERAND = 0xFFFFFFFF
 _HEADER = struct.Struct("<8sHBBIIIII")
 _RECORD = struct.Struct("<B3xIIIqdq")
-#: What every program begins with.
+#: The first bytes of every program.
 MAGIC = b"RTAMTPRG"
 _VERSION = 1
 _CHECKSUM = 4
@@ -87,11 +87,11 @@ class Instruction:
 
 @dataclass(frozen=True, slots=True)
 class CallSite:
-    """An operator that the core does not know, and the instructions that it reads.
+    """A call of a custom operator, and the instructions that it reads.
 
-    It runs a kernel of the user's, or the definition where there is none. ``begin`` and ``end`` are its
-    interval in steps (samples or ticks), ``end=None`` where there is no upper bound; ``ahead`` is how
-    many steps ahead of the present one it reads.
+    It runs a user-supplied kernel, or else the definition. ``begin`` and ``end`` are the
+    interval in steps (samples or ticks), ``end=None`` if unbounded; ``ahead`` is the number of
+    steps after the present one that it reads.
     """
 
     node: Apply
@@ -115,12 +115,12 @@ class CallSite:
 
 @dataclass(frozen=True)
 class Program:
-    """Instructions in SSA form, equal ones merged.
+    """Instructions in SSA form, without duplicates.
 
     ``period`` is the sampling period, in dense time the length of a tick (seconds). ``outputs`` are
-    indices of instructions; ``lags`` tells after how many samples or ticks each output is known.
-    ``value_of`` maps each core sub-formula to its instruction, ``origins`` the other way; what was
-    read from bytes has neither. ``metadata`` is what carriers need to know.
+    indices of instructions; ``lags`` are the samples or ticks after which each output is known.
+    ``value_of`` maps each core sub-formula to its instruction, ``origins`` the other way round; programs
+    read from bytes have neither. ``metadata`` is for programs that run outside Python.
     """
 
     instructions: tuple[Instruction, ...]
@@ -139,9 +139,9 @@ class Program:
         return tuple(self.instructions[i].lag for i in self.outputs)
 
     def to_bytes(self) -> bytes:
-        """Serialise: what every carrier of the core runs.
+        """Serialise the program for execution outside Python.
 
-        Raises :class:`UsageError` where the program calls an operator that the core does not know.
+        Raises :class:`UsageError` if the program calls a custom operator.
         """
         if self.calls:
             raise UsageError(
@@ -151,7 +151,7 @@ class Program:
         return self.code()
 
     def code(self) -> bytes:
-        """Return what the core runs in this process, together with the calls."""
+        """Return the bytes that the core runs in this process, together with the calls."""
         return self._code
 
     @cached_property
@@ -170,7 +170,7 @@ class Program:
 
     @staticmethod
     def from_bytes(code: bytes | bytearray | memoryview) -> Program:
-        """Read what ``to_bytes`` of a program with metadata wrote; raise :class:`UsageError` for anything else.
+        """Read a program with metadata written by ``to_bytes``; raise :class:`UsageError` for anything else.
 
         >>> import rtamt
         >>> program = rtamt.parse("always[0:200ms](x >= 3)").compile(period="100ms")

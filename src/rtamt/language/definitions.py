@@ -1,17 +1,17 @@
-"""What every operator means in discrete time, one pure function an operator: the judge of every engine.
+"""The discrete-time meaning of every operator: one pure function per operator, the reference for every engine.
 
-Arrays hold the value at samples 0 … n-1, float64, never NaN on the way in; every function returns a
+Arrays hold the values at samples 0 … n-1 as float64. Inputs contain no NaN; every function returns a
 new array of n values. ``x`` stands for φ (or a number), ``y`` for ψ. ``a`` and ``b`` are the bounds of
-the interval in whole samples, ``b=None`` where there is no upper one. T is the set of samples; every
-window is cut to it, and over an empty set the supremum is -inf and the infimum +inf.
+the interval in whole samples; ``b=None`` means unbounded. T is the set of samples. Every window is clipped
+to T; over an empty set the supremum is -inf and the infimum +inf.
 
-Arithmetic is IEEE double and makes inf or NaN where C does, silently: telling the user is the
-evaluator's task. Zero has no sign: -0.0 is a divisor and a base like 0.0, so that equal operands have
-equal results, and it does not matter which of two zeros a minimum is. The functions of the
-mathematical library are called one element at a time, because numpy's vectorised ones round
+Arithmetic is IEEE double precision and yields inf or NaN where C does, without a warning; reporting NaN is
+the task of the evaluator. Zero has no sign: -0.0 as a divisor or base acts like 0.0, so that equal operands
+give equal results, and it does not matter which of two zeros a minimum returns. Functions of the
+mathematical library are called one element at a time, because numpy's vectorised versions round
 differently from the C library that the core calls.
 
-Slow on purpose: each is the formula of the definition (the paper's Definition 2) and nothing more.
+Slow on purpose: each function is the formula of the definition (the paper's Definition 2) and nothing more.
 
 >>> import numpy as np
 >>> from rtamt.language.definitions import once
@@ -75,10 +75,10 @@ def _pow(x: float, y: float) -> float:
     try:
         return math.pow(x, y)
     except (OverflowError, ValueError) as error:
-        # Python refuses where C answers: with inf at a pole or an overflow, with NaN outside the domain.
+        # Python raises where C returns inf (at a pole or on overflow) or NaN (outside the domain).
         if x != 0 and isinstance(error, ValueError):
             return math.nan
-        # (An infinite exponent comes here from Python 3.10 alone, whose pow refuses 0 to the -inf.)
+        # (An infinite exponent arrives here only on Python 3.10, where pow(0, -inf) raises.)
         odd = math.isfinite(y) and math.fmod(y, 2.0) in (1.0, -1.0)
         return math.copysign(inf, x) if odd else inf
 
@@ -95,7 +95,7 @@ def sqrt(x: Array) -> Array:
 
 
 def exp(x: Array) -> Array:
-    """``exp(x)``: e to the x; +inf where that is too large."""
+    """``exp(x)``: e to the power of x; +inf on overflow."""
     return _each(_exp, x)
 
 
@@ -110,7 +110,7 @@ def log(x: Array, base: Array) -> Array:
 
 
 def pow_(x: Array, y: Array) -> Array:
-    """``pow(x, y)``: x to the y, as in C."""
+    """``pow(x, y)``: x to the power of y, as in C."""
     return _each(_pow, x, y)
 
 
@@ -320,7 +320,7 @@ def until(x: Array, y: Array, a: int, b: int | None) -> Array:
 def since(x: Array, y: Array, a: int, b: int | None) -> Array:
     """``φ since[a,b] ψ``: sup over t' ∈ [t-b, t-a] ∩ T of min(ψ(t'), inf of φ over (t', t])."""
     n, xs, ys = len(x), x.tolist(), y.tolist()
-    # The steps run from t backwards: those before t' are (t', t].
+    # The steps run backwards from t: those before t' are (t', t].
     return np.array([_reached(_behind(t, 0, b)[::-1], _behind(t, a, b), xs, ys) for t in range(n)], float)
 
 

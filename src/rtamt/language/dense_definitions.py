@@ -1,19 +1,19 @@
-"""What the operators in time mean in dense time: the value at one instant, literally by the definition.
+"""The dense-time meaning of temporal operators: the value at one instant, literally by the definition.
 
 Operands are :class:`Steps`: piecewise constant, right-continuous functions on [t₀, ∞), all from the same
-t₀; the last value holds for ever. ``x`` stands for φ, ``y`` for ψ; ``a`` and ``b`` are the bounds of the
-interval, ``b=None`` where there is no upper one; ``t`` is an instant, t ≥ t₀. Every window is cut at t₀
-and nowhere else; over an empty set the supremum is -inf and the infimum +inf. Operators of one instant
-(``and``, ``+``, …) mean in dense time what they mean in discrete time, value by value.
+t₀; the last value holds forever. ``x`` stands for φ, ``y`` for ψ; ``a`` and ``b`` are the bounds of the
+interval, and ``b=None`` means unbounded; ``t`` is an instant, t ≥ t₀. Every window is clipped at t₀
+and nowhere else; over an empty set the supremum is -inf and the infimum +inf. Pointwise operators
+(``and``, ``+``, …) have the same meaning as in discrete time, value by value.
 
-A supremum over a window is that over the finitely many values that the operands take in it: at the
-points where something changes, and on the open intervals between neighbours. So that an interval has an
-instant to be represented by, **times and bounds are whole numbers of quarters of a tick**: samples and
-bounds lie at whole ticks, results are wanted between them (at halves), and windows around those are
-looked at between *their* points (at quarters). Python's integers have no largest one, so that no sum of
-a time and a bound is too large.
+The supremum over a window is a maximum over the finitely many values that the operands take in it: at the
+points where an operand changes, and on the open intervals between them. **Times and bounds are counted in
+quarters of a tick**, so that every such interval contains an instant that represents it: samples and
+bounds lie at whole ticks, results are needed between them (at halves), and the windows around those are
+evaluated between *their* points (at quarters). Python's integers are unbounded, so that the sum of a time
+and a bound cannot overflow.
 
-:func:`lifted` makes an operand again out of the values at instants.
+:func:`lifted` turns the values at single instants into a step function, which can be an operand again.
 
 >>> from rtamt.language.dense_definitions import Steps, lifted, once
 >>> pulse = Steps((0, 8, 12), (0.0, 6.0, 0.0))  # 6 from tick 2 to tick 3
@@ -38,18 +38,18 @@ QUARTERS = 4
 
 
 class Steps(NamedTuple):
-    """A function that is constant from each of ``times`` (strictly increasing) up to the next, then for ever."""
+    """A step function: constant from each of ``times`` (strictly increasing) up to the next, and after the last."""
 
     times: tuple[int, ...]
     values: tuple[float, ...]
 
     def at(self, t: int) -> float:
-        """Return the value at an instant, ``t`` not before the first of ``times``."""
+        """Return the value at an instant ``t``, which must not precede the first of ``times``."""
         return self.values[bisect_right(self.times, t) - 1]
 
 
 def merged(times: Iterable[int], values: Iterable[float]) -> Steps:
-    """Return the function without the times at which nothing changes."""
+    """Return the same function without the times at which its value does not change."""
     kept: list[tuple[int, float]] = []
     for time, value in zip(times, values, strict=True):
         if not kept or value != kept[-1][1]:
@@ -60,8 +60,8 @@ def merged(times: Iterable[int], values: Iterable[float]) -> Steps:
 def critical(operands: Iterable[Steps], a: int, b: int | None) -> list[int]:
     """Return all instants, from t₀ on, at which an operator's value can change.
 
-    The value at t depends on how t, t ± a, t ± b and t - b + a lie among the times at which an operand
-    changes, and on nothing else. So it is constant between neighbours of this set, and after the last.
+    The value at t depends only on the position of t, t ± a, t ± b and t - b + a among the times at which an
+    operand changes. It is therefore constant between adjacent instants of this set, and after the last.
     """
     operands = tuple(operands)
     shifts = {0, a, -a} if b is None else {0, a, -a, b, -b, b - a, a - b}
@@ -73,10 +73,10 @@ def critical(operands: Iterable[Steps], a: int, b: int | None) -> list[int]:
 def lifted(at: Callable[..., float], operands: tuple[Steps, ...], a: int, b: int | None) -> Steps:
     """Return an operator's values at all instants, from ``at(t, *operands, a, b)``, its value at one.
 
-    Robustness is right-continuous: from each critical instant up to the next it is what it is strictly
-    between them. Every operator has that value at the critical instant itself, except until[a,b] and
-    precedes[a,b] with a > 0, which may have another there (φ falls exactly a later); by convention that
-    instant takes the value that follows.
+    Robustness is right-continuous: at each critical instant it has the value that it has strictly between
+    that instant and the next. The definitions give the same value at the critical instant itself, except for
+    until[a,b] and precedes[a,b] with a > 0, which may differ there (φ falls exactly a later); by convention
+    such an instant takes the value that follows.
     """
     instants = critical(operands, a, b)
     between = [(c + d) // 2 for c, d in pairwise(instants)] + [instants[-1] + QUARTERS // 2]
@@ -86,10 +86,10 @@ def lifted(at: Callable[..., float], operands: tuple[Steps, ...], a: int, b: int
 def _pieces(
     begin: int, end: int | None, operands: tuple[Steps, ...], cut: int | None = None
 ) -> list[tuple[int, bool]]:
-    """Return an instant for each piece of [begin, end] on which nothing changes, in order.
+    """Return one instant for each piece of [begin, end] on which nothing changes, in order.
 
-    The pieces are points (False) and the open intervals between neighbouring ones (True). The points are
-    both ends, the changes of the operands, and ``cut`` where it lies inside. ``end=None`` is infinity.
+    The pieces are points (False) and the open intervals between adjacent points (True). The points are
+    both ends, the changes of the operands, and ``cut`` if it lies inside. ``end=None`` is infinity.
     """
     if end is not None and end < begin:
         return []
@@ -111,7 +111,7 @@ def _pieces(
 
 
 def _ahead(t: int, x: Steps, a: int, b: int | None) -> list[float]:
-    """Return the values of φ on [t+a, t+b], which no end of the trace cuts."""
+    """Return the values of φ on [t+a, t+b], which is not clipped at the end of the trace."""
     return [x.at(u) for u, _ in _pieces(t + a, None if b is None else t + b, (x,))]
 
 
@@ -148,7 +148,7 @@ def _reached(begin: int, first: int, last: int | None, x: Steps, y: Steps) -> fl
     """Sup over t' ∈ [first, last] of min(ψ(t'), inf of φ over [begin, t')); begin ≤ first ≤ last."""
     best, held = -inf, inf
     for u, interval in _pieces(begin, last, (x, y), cut=first):
-        if interval:  # a part of it comes before each t' that lies in it
+        if interval:  # part of the interval precedes each t' inside it
             held = min(held, x.at(u))
         if u >= first:
             best = max(best, min(y.at(u), held))
@@ -174,7 +174,7 @@ def since(t: int, x: Steps, y: Steps, a: int, b: int | None) -> float:
     begin = start if b is None else max(t - b, start)
     best, held = -inf, inf
     for u, interval in reversed(_pieces(begin, t, (x, y), cut=t - a)):
-        if interval:  # a part of it comes after each t' that lies in it
+        if interval:  # part of the interval follows each t' inside it
             held = min(held, x.at(u))
         if u <= t - a:
             best = max(best, min(y.at(u), held))

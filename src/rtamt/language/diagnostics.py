@@ -1,4 +1,4 @@
-"""What to say where a formula cannot go on: one sentence and the place, for each way to be wrong."""
+"""Syntax error messages: one sentence and the position for each kind of error."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ _MEANT = {
 
 
 def no_operand(tokens: Tokens, at: int) -> Complaint:
-    """Say that something else stands where an operand must."""
+    """Return the error for a missing operand."""
     token = tokens[at]
     bad = _bad_character(token)
     if bad is not None:
@@ -60,7 +60,7 @@ def no_operand(tokens: Tokens, at: int) -> Complaint:
 
 
 def no_operator(language: Language, tokens: Tokens, at: int, expected: str = "the end") -> Complaint:
-    """Say that something else stands where an operator (or ``expected``) must."""
+    """Return the error for a missing operator (or a missing ``expected``)."""
     token, before = tokens[at], tokens[at - 1]
     bad = _bad_character(token)
     if bad is not None:
@@ -95,7 +95,7 @@ def no_operator(language: Language, tokens: Tokens, at: int, expected: str = "th
 
 
 def no_close(language: Language, tokens: Tokens, at: int, opening: Token, expected: str = "')'") -> Complaint:
-    """Say that a parenthesis is not closed: at its opening if the text ends, else at what stands there."""
+    """Return the error for an unclosed parenthesis: at its opening if the text ends, else at the next token."""
     if tokens[at].kind == "end":
         return "this '(' is never closed", opening.span
     return no_operator(language, tokens, at, expected)
@@ -132,7 +132,7 @@ def _element(tokens: Tokens, at: int) -> str:
 
 
 def _misspelled(language: Language, before: Token, token: Token) -> tuple[str, Token]:
-    """Return a guess at the operator that was meant, and where: ``x adn y``, ``alway x``."""
+    """Return the operator that was probably meant, and its position: ``x adn y``, ``alway x``."""
     infix = [s for op in language for s in op.spellings if language.infix(s) is op and len(s) > 2]
     prefix = [s for op in language for s in op.spellings if op.fixity is Fixity.PREFIX and len(s) > 2]
     for suspect, words in ((token, infix), (before, prefix)):

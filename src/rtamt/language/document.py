@@ -1,4 +1,4 @@
-"""What a specification file says, once it has been read (``specfile.py``)."""
+"""The content of a specification file, as parsed by ``specfile.py``."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
     from rtamt.language.formula import Formula, Span
 
-#: How serious a violation is, by the words of SARIF.
+#: The severity of a violation, in the terms of SARIF.
 Severity: TypeAlias = Literal["error", "warning", "note"]
 SEVERITIES: tuple[Severity, ...] = ("error", "warning", "note")
 
@@ -43,7 +43,7 @@ class Declaration:
 
 @dataclass(frozen=True, slots=True)
 class Assertion:
-    """A formula and the name it was given, if any; earlier names in it are already replaced."""
+    """A formula and its name, if any; names of earlier assertions in it are already replaced."""
 
     name: str | None
     formula: Formula
@@ -52,11 +52,11 @@ class Assertion:
 
 @dataclass(frozen=True, slots=True)
 class Requirement:
-    """A formula that must hold, and what reports call it.
+    """A formula that must hold, and its name in reports.
 
-    ``name``: the word after ``require``; else the name of the assertion; else ``requirement_2`` for the
-    second requirement of the text. ``description`` and ``severity``: as written after ``require``.
-    ``explicit``: whether it was written with ``require``.
+    ``name``: the word after ``require``; otherwise the name of the assertion; otherwise ``requirement_2`` for
+    the second requirement of the text. ``description`` and ``severity``: as written after ``require``.
+    ``explicit``: whether the requirement was written with ``require``.
     """
 
     name: str
@@ -69,11 +69,11 @@ class Requirement:
 
 @dataclass(frozen=True)
 class Document:
-    """What a specification text says."""
+    """The content of a specification text."""
 
     text: str
     assertions: tuple[Assertion, ...]
-    #: What must hold. Where no assertion is a formula, the last one, a number.
+    #: The formulas that must hold. If no assertion is a formula: the last assertion, a number.
     requirements: tuple[Requirement, ...]
     name: str | None = None
     imports: tuple[Import, ...] = ()
@@ -84,20 +84,20 @@ class Document:
     constants: Mapping[str, float] = field(default_factory=lambda: MappingProxyType({}))
     #: Every named formula: defined here, or given to :func:`parse_document`.
     definitions: Mapping[str, Formula] = field(default_factory=lambda: MappingProxyType({}))
-    #: Every variable declared, here or for :func:`parse_document`; if there is none, all names are free.
+    #: Every declared variable, here or given to :func:`parse_document`; if there are none, any name is a variable.
     variables: tuple[str, ...] = ()
-    #: The names of the assertions that others use.
+    #: The names of the assertions that other assertions use.
     used: frozenset[str] = frozenset()
-    #: The name of the assertion or requirement that :meth:`select` has chosen.
+    #: The name of the assertion or requirement selected by :meth:`select`.
     selected: str | None = None
-    #: What it was selected from, with every requirement; None if nothing was.
+    #: The document it was selected from, with every requirement; None if nothing was selected.
     origin: Document | None = field(default=None, compare=False, repr=False)
 
     def __hash__(self) -> int:
         return hash(self.text)
 
     def __getstate__(self) -> dict[str, Any]:
-        # A read-only view can be neither pickled nor copied; what is behind it can.
+        # A read-only view can be neither pickled nor copied; the mapping behind it can.
         return {k: dict(v) if isinstance(v, MappingProxyType) else v for k, v in self.__dict__.items()}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
@@ -106,11 +106,11 @@ class Document:
 
     @cached_property
     def formula(self) -> Formula:
-        """What the document requires: the conjunction of the requirements, a single one as it is."""
+        """The conjunction of the requirements; a single requirement as it is."""
         return reduce(STL["and"], (requirement.formula for requirement in self.requirements))
 
     def select(self, name: str) -> Document:
-        """Return the same document with one requirement only: the one of this name, else the assertion.
+        """Return the same document with one requirement only: the requirement of this name, or else the assertion.
 
         Raises :class:`UsageError` where there is none.
         """
@@ -120,6 +120,6 @@ class Document:
 
     @cached_property
     def _named(self) -> dict[str, Requirement]:
-        """What :meth:`select` chooses from."""
+        """The formulas from which :meth:`select` chooses."""
         named = {a.name: Requirement(a.name, a.formula, span=a.span) for a in self.assertions if a.name}
         return {**named, **{requirement.name: requirement for requirement in self.requirements}}

@@ -1,13 +1,13 @@
-"""What the operators of one instant make of operands that are known up to bounds: their interval extensions.
+"""Interval extensions of the pointwise operators: bounds of the result from bounds of the operands.
 
 An :class:`Enclosure` holds a lower and an upper bound at each of n samples. An extension encloses every value
-that the definition has for operands within their bounds. Where all operands are known exactly
-(:attr:`Enclosure.exact`) it is the definition itself (:func:`extended`); what follows is for the rest. Operations that
+of the definition for operands within their bounds. Where all operands are known exactly
+(:attr:`Enclosure.exact`), :func:`extended` uses the definition itself; the rules below cover the rest. Operations that
 IEEE 754 rounds correctly are monotone, so that their bounds are values at corners, in ordinary rounding.
-A function of the C library may be off by an unknown bit or two: its bounds are widened by four units in the
-last place. Corners that have no value although operands beside them do: inf - inf is the infinite end,
-0 * inf is 0, and so is inf / inf. Operands outside the domain of a function are cut off; where nothing is
-left, both bounds are NaN.
+A function of the C library may be off by an unknown bit or two, so its bounds are widened by four units in
+the last place. Some corners are undefined although nearby operands have values: inf - inf is then the infinite
+end, and 0 * inf and inf / inf are 0. Operands outside the domain of a function are clipped; if nothing
+remains, both bounds are NaN.
 
 Operators that take minima and maxima over time need no extension: they are monotone, and their definitions
 apply to the lower and to the upper bounds.
@@ -54,7 +54,7 @@ class Enclosure(NamedTuple):
 def extended(
     definition: Callable[..., Array], extension: Callable[..., Enclosure], operands: Sequence[Enclosure]
 ) -> Enclosure:
-    """Return what an operator makes of bounds: of operands that are known exactly its value itself."""
+    """Apply an operator to bounds; where all operands are known exactly, the result is its value."""
     exact: NDArray[np.bool_] = np.logical_and.reduce([x.exact for x in operands])
     point = definition(*(x.lower for x in operands))
     lower, upper = extension(*operands)
@@ -69,7 +69,7 @@ def _each(function: Callable[..., tuple[float, float]], *operands: Enclosure) ->
 
 
 def _otherwise(values: Array, instead: float) -> Array:
-    """Return values with ``instead`` in the place of NaN."""
+    """Return values with NaN replaced by ``instead``."""
     return np.where(np.isnan(values), instead, values)
 
 
@@ -84,7 +84,7 @@ def _not_negative(low: float, high: float) -> tuple[float, float]:
 
 
 def _hull(ends: list[float]) -> tuple[float, float]:
-    """Return the least and the greatest of numbers: of equal ones (0.0, -0.0) the first and the last."""
+    """Return the least and the greatest of some numbers; among equal ones (0.0, -0.0) the first and the last."""
     low = high = ends[0]
     for end in ends[1:]:
         low = end if end < low else low
@@ -95,7 +95,7 @@ def _hull(ends: list[float]) -> tuple[float, float]:
 def _corners(
     function: Callable[[Array, Array], Array], x: Enclosure, y: Enclosure, instead: float
 ) -> Enclosure:
-    """Return the hull of a function at the four corners, ``instead`` where it has no value there."""
+    """Return the hull of a function at the four corners; a corner without a value counts as ``instead``."""
     ends = [_otherwise(function(a, b), instead).tolist() for a in x for b in y]
     found = [_hull(list(sample)) for sample in zip(*ends, strict=True)]
     return Enclosure(np.array([low for low, _ in found], float), np.array([high for _, high in found], float))
@@ -110,25 +110,25 @@ def _one(function: Callable[..., Array], *values: float) -> float:
 
 
 def neg(x: Enclosure) -> Enclosure:
-    """``-x`` and ``not φ``: the bounds change places."""
+    """``-x`` and ``not φ``: the bounds are swapped."""
     return Enclosure(-x.upper, -x.lower)
 
 
 def abs_(x: Enclosure) -> Enclosure:
-    """``|x|``: from 0 on where the bounds hold it."""
+    """``|x|``: the lower bound is 0 where 0 lies between the bounds."""
     ends = np.abs(x.lower), np.abs(x.upper)
     across = (x.lower <= 0) & (x.upper >= 0)
     return Enclosure(np.where(across, 0.0, np.minimum(*ends)), np.maximum(*ends))
 
 
 def sqrt(x: Enclosure) -> Enclosure:
-    """``sqrt(x)``: of the part that is not negative."""
+    """``sqrt(x)``: of the nonnegative part."""
     lower = d.sqrt(np.where(x.lower < 0, 0.0, x.lower))
     return Enclosure(np.where(x.upper < 0, nan, lower), d.sqrt(x.upper))
 
 
 def exp(x: Enclosure) -> Enclosure:
-    """``exp(x)``: rising, widened, never negative."""
+    """``exp(x)``: increasing, widened, never negative."""
     return _each(lambda a: _not_negative(*_widened(_one(d.exp, a[0]), _one(d.exp, a[1]))), x)
 
 
@@ -139,7 +139,7 @@ def _ln(a: tuple[float, float]) -> tuple[float, float]:
 
 
 def ln(x: Enclosure) -> Enclosure:
-    """``ln(x)``: of the part that is not negative; rising, widened."""
+    """``ln(x)``: of the nonnegative part; increasing, widened."""
     return _each(_ln, x)
 
 
@@ -187,7 +187,7 @@ def log(x: Enclosure, base: Enclosure) -> Enclosure:
 
 
 def _power(a: tuple[float, float], n: float) -> tuple[float, float]:
-    """x^n for one whole number n, x not all positive: rising, falling, or falling and then rising."""
+    """x^n for one integer n, x not all positive: increasing, decreasing, or decreasing and then increasing."""
     low, high = a
     even = math.fmod(n, 2.0) == 0
     across = low < 0 <= high
@@ -205,7 +205,7 @@ def _power(a: tuple[float, float], n: float) -> tuple[float, float]:
 def _pow(a: tuple[float, float], b: tuple[float, float]) -> tuple[float, float]:
     if a[0] < 0:
         if b[0] != b[1]:
-            return -inf, inf  # whole exponents lie between others
+            return -inf, inf  # integer exponents lie between other exponents
         if b[0] == 0:
             return 1.0, 1.0
         if math.isinf(b[0]):
@@ -226,7 +226,7 @@ def _pow(a: tuple[float, float], b: tuple[float, float]) -> tuple[float, float]:
 
 
 def pow_(x: Enclosure, y: Enclosure) -> Enclosure:
-    """``pow(x, y)``: the corners, widened; for a base that may be negative by the kind of exponent."""
+    """``pow(x, y)``: the corners, widened; if the base may be negative, depending on the kind of exponent."""
     return _each(_pow, x, y)
 
 
@@ -264,21 +264,21 @@ def holds_eq(x: Enclosure, y: Enclosure) -> Enclosure:
 
 
 def slopes(*known: int | None) -> Callable[..., tuple[int | None, ...]]:
-    """Return what gives, from the values of constant operands, how a result moves with each operand.
+    """Return a function from the values of constant operands to the monotonicity of the result in each operand.
 
-    1: it rises, or stays; -1: it falls; 0: it does both, and the extension still is as narrow as it can be
+    1: nondecreasing; -1: nonincreasing; 0: neither, and the extension is still as narrow as possible
     if no variable occurs twice; None: the extension may be wider than that.
     """
     return lambda *_constants: known
 
 
 def of_product(x: float | None, y: float | None) -> tuple[int | None, ...]:
-    """Return how a product moves with its factors; ``None`` is for one that is not constant."""
+    """Return the monotonicity of a product in its factors; ``None`` stands for a factor that is not constant."""
     return _sign(y), _sign(x)
 
 
 def of_quotient(_x: float | None, y: float | None) -> tuple[int | None, ...]:
-    """Return how a quotient moves with dividend and divisor."""
+    """Return the monotonicity of a quotient in dividend and divisor."""
     return (_sign(y) if y else None), None
 
 

@@ -1,15 +1,15 @@
-"""Formulas: three immutable nodes, compared by what they mean and not by where they stood.
+"""Formulas: three immutable node types, compared by meaning and not by position in the text.
 
 ::
 
     Formula = Const(value) | Var(name) | Apply(op, args, interval)
 
-A node's ``span`` says where in the text it stood, so that every later error can point there; it
-takes no part in equality. Walk a formula with :func:`fold`, which uses no recursion: a conjunction
-of ten thousand terms is a formula like any other.
+A node's ``span`` is its position in the text, so that later errors can point there; equality ignores it.
+Walk a formula with :func:`fold`, which does not recurse: a conjunction of ten thousand terms is a
+valid formula.
 
-Named sub-formulas are shared, so that a formula is a graph: written out, one of sixty definitions that
-each use the previous one twice has 10¹⁸ nodes. Whatever walks a formula visits each node object once.
+Named sub-formulas are shared, so that a formula is a graph. Written out, a formula of sixty definitions that
+each use the previous one twice has 10¹⁸ nodes. Every traversal must visit each node object once.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ T = TypeVar("T")
 #: Nodes are counted up to this.
 COUNTLESS = 10**18
 
-#: Nodes of the largest formula that keeps the list of them: a file may name each of its sub-formulas.
+#: The largest formula that caches the list of its nodes: a file may name each of its sub-formulas.
 _KEPT = 5000
 
 
@@ -44,7 +44,7 @@ class Span:
 class Interval:
     """A closed interval ``[begin, end]`` of seconds, exact; ``end=None`` means unbounded.
 
-    ``begin_unit``, ``end_unit`` and ``constants`` (the named ones) only remember how the bounds were
+    ``begin_unit``, ``end_unit`` and ``constants`` (the named ones) only record how the bounds were
     written.
     """
 
@@ -57,7 +57,7 @@ class Interval:
 
 
 class Formula:
-    """Base of the three nodes; ``str(formula)`` is text that parses back to an equal formula."""
+    """Base class of the three node types; ``str(formula)`` parses back to an equal formula."""
 
     __slots__ = ()
 
@@ -75,7 +75,7 @@ class Formula:
         return self  # immutable, as all that it holds
 
     def __reduce__(self) -> tuple[Any, ...]:
-        # A flat list of the nodes: pickle would recurse as deep as the formula is.
+        # A flat list of the nodes: pickle would recurse to the depth of the formula.
         nodes = tuple(postorder(self))
         places = {id(node): i for i, node in enumerate(nodes)}
         return _restored, (tuple([_flat(node, places) for node in nodes]),)
@@ -96,7 +96,7 @@ class Formula:
 class Const(Formula):
     """A number (IEEE double; never NaN).
 
-    ``name`` only remembers that a named constant was written.
+    ``name`` only records that a named constant was written.
     """
 
     value: float
@@ -122,13 +122,13 @@ class Apply(Formula):
     span: Span | None = field(default=None, repr=False)
     _hash: int = field(init=False, repr=False, default=0)
     _size: int = field(init=False, repr=False, default=1)
-    #: Of nodes that were found equal to this one.
+    #: The class of nodes that were found equal to this one.
     _class: _Class | None = field(init=False, repr=False, default=None)
-    #: The nodes below, in postorder, once they were asked for: a formula is walked many times.
+    #: The nodes below in postorder, cached on first use: a formula is walked many times.
     _below: tuple[Formula, ...] | None = field(init=False, repr=False, default=None)
 
     def __post_init__(self) -> None:
-        # Children carry their own hash and size, so that this is O(1) a node and needs no recursion.
+        # Children carry their own hash and size, so that this takes O(1) per node and needs no recursion.
         object.__setattr__(self, "_hash", hash((self.op, self.args, self.interval)))
         object.__setattr__(self, "_size", min(1 + sum(map(size, self.args)), COUNTLESS))
 
@@ -139,7 +139,7 @@ class Apply(Formula):
         if not isinstance(other, Apply):
             return NotImplemented
         pairs: list[tuple[Formula, Formula]] = [(self, other)]
-        # Sound only if all of it turns out equal; then it is kept, so that each joint is compared once.
+        # Sound only if everything turns out equal; then it is kept, so that each shared node is compared once.
         assumed: dict[_Class, _Class] = {}
         while pairs:
             a, b = pairs.pop()
@@ -155,7 +155,7 @@ class Apply(Formula):
                     return False
                 first, second = _class_of(a, assumed), _class_of(b, assumed)
                 if first is not second:
-                    # By address: whatever threads do at the same time, no circle comes about.
+                    # Ordered by address, so that concurrent threads cannot create a cycle.
                     low, high = (first, second) if id(first) < id(second) else (second, first)
                     assumed[high] = low
                     pairs.extend(zip(a.args, b.args, strict=True))
@@ -167,9 +167,9 @@ class Apply(Formula):
 
 
 class _Class:
-    """A class of nodes that were found equal; ``joined`` to another one since, a union-find.
+    """A class of nodes that were found equal; a union-find in which ``joined`` points to the parent class.
 
-    It holds no node, so that a formula keeps none alive to which it was compared.
+    It references no node, so that a formula does not keep alive the formulas to which it was compared.
     """
 
     __slots__ = ("joined",)
@@ -179,7 +179,7 @@ class _Class:
 
 
 def _class_of(node: Apply, assumed: Mapping[_Class, _Class]) -> _Class:
-    """Return the class of a node, by what is known and by what is assumed."""
+    """Return the class of a node, by known and by assumed equalities."""
     if node._class is None:
         object.__setattr__(node, "_class", _Class())
     found = _last(node._class)
@@ -194,20 +194,20 @@ def _last(found: _Class | None) -> _Class:
     assert found is not None
     while (above := found.joined) is not None:
         if above.joined is not None:
-            found.joined = above.joined  # halves the way for the next one
+            found.joined = above.joined  # path halving
         found = above
     return found
 
 
 def _flat(node: Formula, places: dict[int, int]) -> tuple[Any, ...]:
-    """Return a node as a constructor and what it takes, with the places of its operands for them."""
+    """Return a node as a constructor and its arguments, with operands replaced by their indices."""
     if isinstance(node, Apply):
         return Apply, node.op, tuple([places[id(operand)] for operand in node.args]), node.interval, node.span
     return (type(node), *[getattr(node, each.name) for each in fields(node)])  # type: ignore[arg-type]
 
 
 def _restored(flat: tuple[tuple[Any, ...], ...]) -> Formula:
-    """Return the formula of which ``flat`` are the nodes, as :func:`_flat` wrote them."""
+    """Return the formula with the nodes ``flat``, as written by :func:`_flat`."""
     nodes: list[Formula] = []
     for kind, *values in flat:
         if kind is Apply:
@@ -217,14 +217,14 @@ def _restored(flat: tuple[tuple[Any, ...], ...]) -> Formula:
 
 
 def children(formula: Formula) -> tuple[Formula, ...]:
-    """Return the operands of a formula; numbers and variables have none."""
+    """Return the operands of a formula; numbers and variables have no operands."""
     return formula.args if isinstance(formula, Apply) else ()
 
 
 def postorder(*formulas: Formula) -> Iterator[Formula]:
     """Yield every distinct node object below and including ``formulas``, operands first.
 
-    Together, formulas that share nodes are walked in time proportional to the number of nodes.
+    Several formulas that share nodes are walked in time proportional to the number of nodes.
     """
     if len(formulas) != 1:
         yield from _distinct(formulas)
@@ -260,7 +260,7 @@ def _distinct(formulas: tuple[Formula, ...]) -> tuple[Formula, ...]:
 
 
 def outermost(formulas: Sequence[Formula]) -> list[Formula]:
-    """Return the formulas that are no part of a later one: what is looked for below them is looked for below all.
+    """Return the formulas that are not part of a later one: a search below them covers all formulas.
 
     >>> from rtamt.language.operators import STL
     >>> x = Var("x")
@@ -287,7 +287,7 @@ def fold(formula: Formula, step: Callable[[Formula, tuple[T, ...]], T]) -> T:
 
 
 def folds(formulas: Sequence[Formula], step: Callable[[Formula, tuple[T, ...]], T]) -> tuple[T, ...]:
-    """Compute a value of each of several formulas as :func:`fold` does: a node that they share counts once."""
+    """Compute a value of each of several formulas as :func:`fold` does, visiting shared nodes once."""
     values: dict[int, T] = {}
     for node in postorder(*formulas):
         below = tuple([values[id(operand)] for operand in node.args]) if isinstance(node, Apply) else ()
@@ -296,9 +296,9 @@ def folds(formulas: Sequence[Formula], step: Callable[[Formula, tuple[T, ...]], 
 
 
 def size(formula: Formula) -> int:
-    """Return how many nodes the printed formula has, at most :data:`COUNTLESS`.
+    """Return the number of nodes of the printed formula, at most :data:`COUNTLESS`.
 
-    A shared sub-formula counts wherever it stands.
+    A shared sub-formula counts at each occurrence.
 
     >>> x = Var("x")
     >>> from rtamt.language.operators import STL

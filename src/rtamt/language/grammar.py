@@ -1,4 +1,4 @@
-"""What the parser and the printer must agree on: what chains, what a sign is, how deep is too deep."""
+"""Rules that the parser and the printer share: chaining, signs and the maximum nesting depth."""
 
 from __future__ import annotations
 
@@ -11,15 +11,15 @@ if TYPE_CHECKING:
     from rtamt.language.formula import Formula
     from rtamt.language.operators import Language, Operator
 
-#: How many formulas may stand inside one another in a text. Chains such as ``a and b and c`` are flat.
+#: The maximum nesting depth of a text. Chains such as ``a and b and c`` are flat.
 MAX_DEPTH = 200
 
-#: The number that is larger than all others, where no variable has this name.
+#: The spelling of infinity, unless a variable has this name.
 INFINITY = "inf"
 
 
 def is_infix(op: Operator) -> bool:
-    """Tell whether an operator stands between its operands.
+    """Return whether an operator is written between its operands.
 
     >>> from rtamt.language.operators import STL
     >>> is_infix(STL["until"]), is_infix(STL["not"])
@@ -29,7 +29,7 @@ def is_infix(op: Operator) -> bool:
 
 
 def is_predicate(op: Operator) -> bool:
-    """Tell whether an infix operator makes a formula of numbers: such operators do not chain.
+    """Return whether an infix operator turns numbers into a formula; such operators do not chain.
 
     >>> from rtamt.language.operators import STL
     >>> is_predicate(STL["ge"]), is_predicate(STL["add"]), is_predicate(STL["and"])
@@ -39,12 +39,12 @@ def is_predicate(op: Operator) -> bool:
 
 
 def is_number(formula: Formula) -> bool:
-    """Tell whether a formula is a number by itself: a variable, a constant or arithmetic."""
+    """Return whether a formula is a number by itself: a variable, a constant or arithmetic."""
     return not isinstance(formula, Apply) or formula.op.result is Sort.NUMBER
 
 
 def passes_on(op: Operator) -> bool:
-    """Tell whether a weaker prefix operator may stand under this one: ``not always x``, never ``-always x``.
+    """Return whether a weaker prefix operator may follow this one: ``not always x`` is legal, ``-always x`` is not.
 
     >>> from rtamt.language.operators import STL
     >>> passes_on(STL["not"]), passes_on(STL["neg"])

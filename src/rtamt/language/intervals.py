@@ -1,4 +1,4 @@
-"""The interval after a temporal operator: exact bounds, their units, and all that can be wrong with them."""
+"""The interval after a temporal operator: exact bounds, their units, and errors."""
 
 from __future__ import annotations
 
@@ -25,8 +25,8 @@ if TYPE_CHECKING:
 def parse_interval(parser: FormulaParser, op: Operator, token: Token) -> Interval | None:
     """``interval = "[" , bound , ( ":" | "," ) , bound , "]"``: read one after ``op``, written ``token``.
 
-    A bound without a unit has the parser's, but a lower bound that of the upper one, as in RTAMT.
-    Returns None where there is no interval and need be none.
+    A bound without a unit has the default unit of the parser; a lower bound without a unit has that of the upper
+    bound, as in RTAMT. Returns None if there is no interval and the operator does not require one.
     """
     opening = parser.token
     if opening.text != "[":
@@ -128,6 +128,6 @@ def _constant(parser: FormulaParser, token: Token) -> Fraction | None:
         hint = did_you_mean(name, constants) or f"; a bound is a number, a constant or {INFINITY}"
         raise parser.error(f"'{name}' is not a declared constant{hint}", token.span, NameInFormulaError)
     if isinf(value):
-        # Minus infinity is as negative as any other number below zero.
+        # Minus infinity is negative, too.
         return None if value > 0 else Fraction(-1)
     return exact(str(float(value)))

@@ -1,13 +1,13 @@
-"""Text to tokens, with one regular expression made from the table of operators.
+"""Text to tokens, with one regular expression built from the operator table.
 
 =========  ===================================================================
 kind       text
 =========  ===================================================================
 number     ``3``, ``0.5``, ``.5``, ``1e-3``, ``1_000``
-name       ``req``, ``req.value``, ``always``: which of them are operators is the parser's to say
-quoted     ``"engine speed"``: always a name; ``""`` inside stands for one double quote
-symbol     the operators that are no words, longest first, and ``( ) [ ] , : ; = @ =>``
-unclosed   the opening of a comment or quoted name that has no end
+name       ``req``, ``req.value``, ``always``; the parser decides which are operators
+quoted     ``"engine speed"``: always a name; ``""`` inside denotes a double quote
+symbol     operators that are not words, longest first, and ``( ) [ ] , : ; = @ =>``
+unclosed   the opening of a comment or quoted name without an end
 unknown    any other character
 end        after the last token
 =========  ===================================================================
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
     from rtamt.language.operators import Language
 
-#: No operator, but one token: ``gap => 5`` names nothing, and what was meant by it is unknown.
+#: Not an operator, but one token, so that ``gap => 5`` gets a message of its own.
 NO_ARROW = "=>"
 
 PUNCTUATION = [*"( ) [ ] , : ; = @".split(), NO_ARROW]
@@ -39,12 +39,12 @@ _SKIP = r"\s*(?:(?://[^\n\r]*|/\*[\s\S]*?\*/)\s*)*"
 
 #: A name that needs no quotes: a word, or words joined by dots.
 NAME = re.compile(_NAME)
-#: A topic such as ``/ns/req``, which where an operand can begin is a name as well.
+#: A topic such as ``/ns/req``, which is also a name where an operand can begin.
 TOPIC = re.compile(rf"(?:/{_NAME})+")
 
 
 class Token(NamedTuple):
-    """A piece of the text: its kind, its characters, and where they stand."""
+    """A piece of the text: its kind, its characters, and their position."""
 
     kind: str
     text: str
@@ -53,7 +53,7 @@ class Token(NamedTuple):
 
     @property
     def span(self) -> Span:
-        """The characters' place in the text."""
+        """The position of the characters in the text."""
         return Span(self.start, self.end)
 
     @property
@@ -66,7 +66,7 @@ class Token(NamedTuple):
 
 
 def is_word(spelling: str) -> bool:
-    """Tell whether an operator's spelling reads like a name, so that only its place tells them apart.
+    """Return whether an operator is spelled like a name, so that only its position distinguishes them.
 
     >>> is_word("until"), is_word("->")
     (True, False)
@@ -74,11 +74,11 @@ def is_word(spelling: str) -> bool:
     return NAME.fullmatch(spelling) is not None
 
 
-@lru_cache(maxsize=32)  # by text, so that no operator of a user's is kept here
+@lru_cache(maxsize=32)  # keyed by text, so that no custom operator is kept alive
 def _pattern(spellings: tuple[str, ...]) -> re.Pattern[str]:
     symbols = {s for s in spellings if not is_word(s)}.union(PUNCTUATION)
     symbol = "|".join(re.escape(s) for s in sorted(symbols, key=lambda s: (-len(s), s)))
-    # Something always matches after the skipped part: the expression never backtracks into a comment.
+    # Some alternative always matches after the skipped part, so the expression never backtracks into a comment.
     return re.compile(
         rf"{_SKIP}(?:(?P<name>{_NAME})|(?P<number>{NUMBER})"
         rf'|(?P<quoted>"(?:[^"]|"")*")|(?P<unclosed>/\*|")'
@@ -89,9 +89,9 @@ def _pattern(spellings: tuple[str, ...]) -> re.Pattern[str]:
 def tokenize(text: str, language: Language) -> Sequence[Token]:
     r"""Split a text into tokens; the last one is of kind ``end``.
 
-    A comment that begins with ``//`` ends where its line does: at ``\n``, ``\r\n`` or ``\r``, and at no other
-    character. What is no part of the language becomes a token of kind ``unknown`` or ``unclosed``, for the
-    parser to complain about when it gets there. Raises :class:`UsageError` if ``text`` is no text.
+    A comment that begins with ``//`` ends at the end of its line: at ``\n``, ``\r\n`` or ``\r``, and at no other
+    character. Text outside the language becomes a token of kind ``unknown`` or ``unclosed``, which
+    the parser reports when it gets there. Raises :class:`UsageError` if ``text`` is not a string.
 
     >>> from rtamt.language.operators import STL
     >>> [token.text for token in tokenize("req.value >= 3 // high", STL)]
@@ -100,7 +100,7 @@ def tokenize(text: str, language: Language) -> Sequence[Token]:
     if not isinstance(text, str):
         raise UsageError(f"a formula is text, got {type(text).__name__}")
     tokens: list[Token] = []
-    new, add = tuple.__new__, tokens.append  # a token costs half of what calling Token does
+    new, add = tuple.__new__, tokens.append  # half the cost of calling Token
     for match in _pattern(language.spellings).finditer(text):
         kind, group = match.lastgroup, match.lastindex
         if kind is None or group is None or kind == "end":
@@ -108,15 +108,15 @@ def tokenize(text: str, language: Language) -> Sequence[Token]:
         start, end = match.span(group)
         add(new(Token, (kind, text[start:end], start, end)))
         if kind == "unclosed":
-            break  # nothing can be read after it; each further one would be sought an end for to the last character
-    # The end is where the last token ends: a caret under a blank line would tell nobody anything.
+            break  # nothing can follow; further openings would each be searched to the end of the text
+    # The end is placed after the last token: a caret under a blank line would not help.
     last = tokens[-1].end if tokens else 0
     tokens.append(Token("end", "", last, last))
     return tokens
 
 
 def quoted(name: str) -> str:
-    """Return a name in double quotes, whatever characters it has.
+    """Return a name in double quotes; it may contain any characters.
 
     >>> print(quoted('the "fast" one'))
     "the ""fast"" one"

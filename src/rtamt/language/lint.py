@@ -1,4 +1,4 @@
-"""What is legal in a specification and seldom meant: a table of rules, each with a code that can be silenced."""
+"""Warnings about legal but probably unintended specifications: a table of rules, each with a code to silence it."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Rule:
-    """One kind of warning: its code, what it is about, an example, and what finds it in a document."""
+    """One kind of warning: its code, its summary, an example, and the function that finds it in a document."""
 
     code: str
     about: str
@@ -31,7 +31,7 @@ class Rule:
 
 @dataclass(frozen=True, slots=True)
 class LintWarning:
-    """A place in a specification that is legal and seldom meant; ``str()`` has the line and a caret."""
+    """A legal but probably unintended part of a specification; ``str()`` shows the line and a caret."""
 
     code: str
     message: str
@@ -44,7 +44,7 @@ class LintWarning:
 
 
 def warnings_of(document: Document) -> tuple[LintWarning, ...]:
-    """Return the warnings about the text of a document, in its order, whatever is selected of it.
+    """Return the warnings about the text of a document, in the order of the text; a selection has no effect.
 
     >>> from rtamt.language.specfile import parse_document
     >>> print(*warnings_of(parse_document("x and y >= 3")))
@@ -72,7 +72,7 @@ def _nodes(document: Document) -> Iterator[Apply]:
 
 
 def _operands(document: Document, sort: Sort) -> Iterator[tuple[Formula, str]]:
-    """Yield every operand that is read as this sort, and what the text has there."""
+    """Yield every operand that is read as this sort, and the formula at its position."""
     for node in _nodes(document):
         for wanted, operand in zip(node.op.operands, node.args, strict=True):
             if wanted is sort:
@@ -107,7 +107,7 @@ def _division_by_zero(document: Document) -> Found:
 
 
 def _past_parenthesis(document: Document) -> Found:
-    """An operator is directly before a parenthesis, as a function is, but takes in what follows it, too."""
+    """An operator is written like a function, directly before a parenthesis, but also applies to what follows it."""
     text = document.text
     for node in _nodes(document):
         if node.op.fixity is not Fixity.PREFIX or node.span is None or node.args[0].span is None:
@@ -116,7 +116,7 @@ def _past_parenthesis(document: Document) -> Found:
         interval = None if node.interval is None else node.interval.span
         begin = node.span.start + len(spelled) if interval is None else interval.end
         operand = node.args[0].span
-        # The span of a whole group begins behind its parenthesis.
+        # The span of a group begins after its parenthesis.
         if operand.start == begin and text.startswith("(", begin):
             operator, whole = text[node.span.start : begin], text[operand.start : operand.end]
             yield (
@@ -144,7 +144,7 @@ def _unused_number(document: Document) -> Found:
             yield assertion.span, f"{what} is never used"
     declared = {declaration.name for declaration in document.declarations}
     names = {assertion.span: assertion.name for assertion in reversed(document.assertions)}
-    for requirement in document.requirements:  # a number where the text has nothing else
+    for requirement in document.requirements:  # a number if the text has nothing else
         name = names.get(requirement.span)
         if is_number(requirement.formula) and name is not None and name.partition(".")[0] not in declared:
             yield (

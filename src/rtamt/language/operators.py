@@ -1,14 +1,14 @@
-"""THE TABLE: every operator of the language, once.
+"""The operator table: every operator of the language, once.
 
-One frozen record (``records.py``) an operator. Lexer, parser, printer, checks, horizon, desugaring,
-pastification, compiler, command-line help, the generated reference and the test generators all read
+One frozen record (``records.py``) per operator. Lexer, parser, printer, checks, horizon, desugaring,
+pastification, compiler, command-line help, the generated reference and the test generators all derive from
 this table; there is no second list. ``STL.extend(...)`` returns a new language.
 
 The meaning of an operator is its ``definition``, a pure function on arrays (``definitions.py``). In
-dense time an operator of one instant means the same, value by value; one that reads others has its
-value at an instant as ``dense`` (``dense_definitions.py``), or means what its ``expansion`` means.
-How it is made fast is either an ``expansion`` into simpler operators or a ``kernel``: one of five
-shapes that the compiler knows, or a class of the user's (``Blocks``, ``Compiled``). Names of opcodes are
+dense time a pointwise operator has the same meaning, value by value; a temporal operator has a function
+``dense`` that gives its value at one instant (``dense_definitions.py``), or the meaning of its ``expansion``.
+The implementation is either an ``expansion`` into simpler operators or a ``kernel``: one of five
+shapes that the compiler supports, or a user-supplied class (``Blocks``, ``Compiled``). Names of opcodes are
 those of the core.
 """
 
@@ -61,7 +61,7 @@ __all__ = [
 
 
 def builtin(name: str) -> Operator:
-    """Return the operator of the table with this name: what a pickled one is again."""
+    """Return the operator of the table with this name; built-in operators unpickle to it."""
     return STL[name]
 
 
@@ -134,8 +134,8 @@ def _truth(code: str, spelling: str, definition: Any, **more: Any) -> Operator:
     return _infix(f"holds_{code}", spelling, 90, doc, example, operands=(N, N), definition=definition, **more)
 
 
-# What a predicate's truth is made of: +inf or -inf. Not in the language, though they are printed like the
-# predicates; the semantics that need a verdict instead of a distance (rewrite/semantics.py) put them in.
+# Predicates by truth: +inf or -inf. They are not part of the language, though they are printed like the
+# predicates; semantics that need a verdict instead of a distance (rewrite/semantics.py) insert them.
 _GT, _GE, _EQ = _truth("gt", ">", d.holds_gt), _truth("ge", ">=", d.holds_ge), _truth("eq", "==", d.holds_eq)
 _LE = _truth("le", "<=", d.holds_le, expansion=lambda a, b, _i: STL["not"](_GT(a, b)))
 _LT = _truth("lt", "<", d.holds_lt, expansion=lambda a, b, _i: STL["not"](_GE(a, b)))

@@ -1,4 +1,4 @@
-"""Tokens to a formula: recursive descent, with binding powers from the table of operators.
+"""Tokens to a formula: recursive descent, with binding powers from the operator table.
 
 ::
 
@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 
 
 class FormulaParser:
-    """A place in a text, and one method for each production of the grammar."""
+    """A position in a text, and one method for each production of the grammar."""
 
     def __init__(self, text: str, language: Language, unit: str, scope: Scope) -> None:
         self.text = text
@@ -45,28 +45,28 @@ class FormulaParser:
         self.scope = scope
         self.tokens = tokenize(text, language)
         self.index = 0
-        #: The names of the definitions that were read so far.
+        #: The names of the definitions that have been used so far.
         self.used: set[str] = set()
         self._depth = 0
         self._sign = sign(language)
-        self._slashes = scope.slashes  # as many as a declared name has
+        self._slashes = scope.slashes  # as many as any declared name has
 
     # ---- moving --------------------------------------------------------------------------------
 
     @property
     def token(self) -> Token:
-        """The token that comes next."""
+        """The next token."""
         return self.tokens[self.index]
 
     def next(self) -> Token:
-        """Take the next token; the end stays where it is."""
+        """Consume the next token; the end token is never consumed."""
         token = self.tokens[self.index]
         if token.kind != "end":
             self.index += 1
         return token
 
     def accept(self, symbol: str) -> bool:
-        """Take the next token if it is this symbol."""
+        """Consume the next token if it is this symbol."""
         if self.tokens[self.index].text == symbol:
             self.index += 1
             return True
@@ -81,7 +81,7 @@ class FormulaParser:
     # ---- productions ---------------------------------------------------------------------------
 
     def formula(self) -> Formula:
-        """Read an expression that stands in no other one, whatever the depth of the caller's stack."""
+        """Parse a top-level expression, whatever the depth of the caller's stack."""
         self._depth = 0
         try:
             return self.expression()
@@ -191,16 +191,16 @@ class FormulaParser:
             if value is not None:
                 return Const(-value, Span(token.start, self.tokens[self.index - 1].end))
         interval = parse_interval(self, op, token)
-        # Under `not`, whose power is higher, `always` takes in no more than `not` itself would.
+        # Under `not`, which binds tighter, `always` extends no further than `not` itself would.
         operand = self.expression(max(power, op.power), op)
         if op.power < power and not (under is not None and passes_on(under)):
             self._one_reading(op, token, under)
         return Apply(op, (operand,), interval, Span(token.start, self.tokens[self.index - 1].end))
 
     def _one_reading(self, op: Operator, token: Token, under: Operator | None) -> None:
-        """Refuse what a weaker prefix operator would take in if no stronger one stood before it.
+        """Reject an operand whose extent is ambiguous: a weaker prefix operator after a stronger operator.
 
-        ``x >= once y`` is read in one way; ``x - prev x >= 1`` could be ``(x - prev x) >= 1`` or, as RTAMT
+        ``x >= once y`` has one reading; ``x - prev x >= 1`` could mean ``(x - prev x) >= 1`` or, as RTAMT
         reads it, ``x - prev(x >= 1)``.
         """
         follows = self.language.infix(self.tokens[self.index].text)
@@ -228,7 +228,7 @@ class FormulaParser:
     # ---- names ---------------------------------------------------------------------------------
 
     def _last_of_path(self) -> int:
-        """Return the index of the last token of the name here: ``a/b`` is one only if declared so."""
+        """Return the index of the last token of the name here: ``a/b`` is a name only if it is declared."""
         first = self.index
         start = self.tokens[first].start
         topic = self.tokens[first].kind == "symbol"
@@ -246,14 +246,14 @@ class FormulaParser:
         return ends[-1] if topic else first
 
     def _after_slash(self, at: int) -> int:
-        """Return the index of the word after a slash at ``at`` if no space is around it, else 0."""
+        """Return the index of the word after a slash at ``at`` if there is no space around it, else 0."""
         slash, word = self.tokens[at], self.tokens[min(at + 1, len(self.tokens) - 1)]
         glued = at == self.index or self.tokens[at - 1].end == slash.start
         found = slash.text == "/" and glued and word.kind == "name" and word.start == slash.end
         return at + 1 if found else 0
 
     def _begins_topic(self, at: int) -> bool:
-        """Tell whether a topic such as ``/ns/req`` begins here: a slash after a space and before a word."""
+        """Return whether a topic such as ``/ns/req`` begins here: a slash after a space and before a word."""
         slash = self.tokens[at]
         if slash.text != "/" or self.tokens[at + 1].kind != "name" or self.tokens[at + 1].start != slash.end:
             return False
@@ -261,7 +261,7 @@ class FormulaParser:
         return before is None or before.kind == "symbol" or before.end < slash.start
 
     def _meaning(self, name: str, span: Span, *, plain: bool = True) -> Formula:
-        """Return what a name stands for."""
+        """Return the formula that a name stands for."""
         scope = self.scope
         if name in scope.pending:
             raise self.error(scope.pending[name], span, NameInFormulaError)
@@ -285,9 +285,9 @@ class FormulaParser:
         raise self.error(f"'{name}' is not declared{hint}", span, NameInFormulaError)
 
     def _not_an_operator(self, name: str, span: Span) -> None:
-        """Complain about a word operator where none can stand, unless it may well be a variable.
+        """Raise an error for a word operator in the wrong place, unless it may be a variable.
 
-        ``G`` may be one, and so may ``next`` in ``next >= 3``; ``next`` with nothing after it may not.
+        ``G`` may be a variable, and so may ``next`` in ``next >= 3``; ``next`` with nothing after it may not.
         """
         opening, follows = self.language.opening(name), self.token
         prefix = opening is not None and opening.fixity is Fixity.PREFIX and len(name) > 2
@@ -305,7 +305,7 @@ class FormulaParser:
     # ---- looking ahead -------------------------------------------------------------------------
 
     def _applies(self, at: int) -> bool:
-        """Tell whether the word at this token, spelled like a prefix operator, is one."""
+        """Return whether the word at this token, spelled like a prefix operator, is an operator."""
         after = self.tokens[at + 1]
         if after.text in ("[", "("):
             return True
@@ -315,10 +315,10 @@ class FormulaParser:
         return self._opens(at + 1)
 
     def _opens(self, at: int) -> bool:
-        """Tell whether an operand can begin at this token.
+        """Return whether an operand can begin at this token.
 
-        In a run of words that are infix operators, each is one if the next thing begins an operand,
-        and otherwise a name: ``G U x`` is until, ``G U >= 3`` is always.
+        In a run of words spelled like infix operators, a word is an operator if the next token begins an operand,
+        and a name otherwise: ``G U x`` is until, ``G U >= 3`` is always.
         """
         end = at
         while self._is_infix_word(end):
@@ -339,7 +339,7 @@ class FormulaParser:
         return token.kind == "name" and self.language.infix(token.text) is not None
 
     def _signed(self, op: Operator) -> float | None:
-        """Take and return the number to which the minus just read is the sign, if there is one."""
+        """Consume and return the number whose sign is the minus just read, if there is one."""
         token = self.tokens[self.index]
         if token.kind != "number" and (token.text != INFINITY or INFINITY in self.scope):
             return None
@@ -378,15 +378,15 @@ def parse_formula(
     variables: Collection[str] | None = None,
     unit: str = "s",
 ) -> Formula:
-    """Return the formula that a text writes.
+    """Parse the text of a formula.
 
-    ``language``: the operators to read. ``constants``: numbers by name, for operands and bounds.
+    ``language``: the operators. ``constants``: numbers by name, for operands and bounds.
     ``definitions``: formulas by name; their nodes are shared, not copied. ``variables``: the declared
-    names; None makes a variable of every name that is nothing else. ``unit``: that of bounds without
+    names; with None, every other name is a variable. ``unit``: the unit of bounds without
     one; a lower bound without a unit has that of the upper bound, as in RTAMT.
 
     Raises :class:`ParseError`, :class:`NameInFormulaError` or :class:`BoundError`, each with a caret
-    under the place, and :class:`UsageError` for a unit that does not exist. Source: the paper's
+    under the position, and :class:`UsageError` for an unknown unit. Source: the paper's
     section 2, and RTAMT's grammar.
 
     >>> print(parse_formula("G(req>=3 -> F[0:500ms] gnt>=3)"))

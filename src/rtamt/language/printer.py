@@ -1,9 +1,8 @@
 """Formula to text, to RTAMT's canonical text and to LaTeX: parentheses only where the parser needs them.
 
-Nothing here recurses: a formula is written from the outside in, off a stack of pieces, in time
-proportional to what is written. A formula in which sub-formulas are shared may have a text of
-astronomical length: of a text that is longer than a limit the beginning is written, and how large the
-formula is.
+Nothing here recurses: a formula is written from the outside in, from a stack of pieces, in time
+proportional to the output. The text of a formula with shared sub-formulas may be astronomically long, so
+a text beyond a limit is abbreviated: its beginning, followed by the size of the formula.
 """
 
 from __future__ import annotations
@@ -27,23 +26,23 @@ if TYPE_CHECKING:
     #: Text, or a formula that is still to be written.
     Piece = str | Formula
 
-#: Characters of the longest text that is written out where nothing else is asked for,
+#: The longest text in characters that is written in full by default,
 LONGEST = 1_000_000
-#: of the longest one in tables and reports, and in what people read,
+#: in tables and reports,
 PAGE = 10_000
-#: and of the longest one in a message; so much is shown of a longer one.
+#: and in a message; a longer text is cut to this length.
 EXCERPT = 200
 
-#: RTAMT's identifiers that are none of ours: a slash is a letter there.
+#: RTAMT identifiers that are not names here: RTAMT treats a slash as a letter.
 _RTAMT_PATH = re.compile(r"[^\W\d][\w$.]*(?:/[\w$.]+)+")
 
 
 def to_text(formula: Formula, language: Language = STL, *, limit: int = LONGEST) -> str:
     """Return text that parses back to an equal formula, with the first spelling of each operator.
 
-    ``language``: that of the formula. Variables whose names would read as something else are put
-    in parentheses or double quotes. A text of more than ``limit`` characters is abbreviated, and says
-    so: see :func:`excerpt`.
+    ``language``: that of the formula. Variables whose names would be read as something else are put
+    in parentheses or double quotes. A text of more than ``limit`` characters is abbreviated and marked:
+    see :func:`excerpt`.
 
     >>> from rtamt.language.parser import parse_formula
     >>> to_text(parse_formula("G((req>=3)->(F[0,5](gnt>=3)))"))
@@ -86,7 +85,7 @@ def to_text(formula: Formula, language: Language = STL, *, limit: int = LONGEST)
 
 
 def excerpt(formula: Formula) -> str:
-    """Return the text of a formula for a message: never more than some 200 characters of it.
+    """Return the text of a formula for a message, at most about 200 characters.
 
     >>> from rtamt.language.parser import parse_formula
     >>> excerpt(parse_formula("x >= 3"))
@@ -101,7 +100,7 @@ def excerpt(formula: Formula) -> str:
 
 
 def canonical(formula: Formula, language: Language = STL, *, limit: int = LONGEST) -> str:
-    """Return the formula as RTAMT names its nodes: ``((a)>=(2.0))and(b)``, every operand in parentheses.
+    """Return the formula in the form of RTAMT's node names: ``((a)>=(2.0))and(b)``, every operand in parentheses.
 
     ``limit``: as for :func:`to_text`. Deviations: unless is not expanded, a negative literal is one
     number, a bound has the unit in which it was read.
@@ -132,8 +131,8 @@ def canonical(formula: Formula, language: Language = STL, *, limit: int = LONGES
 def to_latex(formula: Formula) -> str:
     r"""Return the formula as LaTeX mathematics, without dollar signs, from the operators' templates.
 
-    Of a formula that would take more than :data:`LONGEST` characters it is a text that says how large
-    the formula is.
+    For a formula of more than :data:`LONGEST` characters, the result is a text that gives the size of
+    the formula.
 
     >>> from rtamt.language.parser import parse_formula
     >>> print(to_latex(parse_formula("always(req >= 3 -> eventually[0:5](gnt >= 3))")))
@@ -184,7 +183,7 @@ def number(value: float) -> str:
 
 
 def _written(formula: Formula, pieces: Callable[[Formula], Iterable[Piece]], limit: int) -> str:
-    """Write a formula; of a text longer than ``limit`` the beginning, and how large the formula is."""
+    """Write a formula; if the text is longer than ``limit``, its beginning and the size of the formula."""
     text = _write(formula, pieces, limit)
     if text is not None:
         return text
@@ -197,8 +196,8 @@ def _written(formula: Formula, pieces: Callable[[Formula], Iterable[Piece]], lim
 
 
 def _write(formula: Formula, pieces: Callable[[Formula], Iterable[Piece]], limit: int) -> str | None:
-    """Write a formula, given what one node consists of; None if that takes more than ``limit`` characters."""
-    if size(formula) > limit:  # no node is written with less than one character
+    """Write a formula, given the pieces of one node; None if the text has more than ``limit`` characters."""
+    if size(formula) > limit:  # every node takes at least one character
         return None
     out: list[str] = []
     for text in _texts(formula, pieces):
@@ -252,14 +251,14 @@ def _is_negative(formula: Formula) -> bool:
 
 
 def _needs_group(operand: Formula, op: Operator) -> bool:
-    """Tell whether the operand of a prefix operator is more than one thing (or a number under a minus)."""
+    """Return whether the operand of a prefix operator needs parentheses (also a number after a minus)."""
     if isinstance(operand, Apply):
         return operand.op.fixity not in (Fixity.FUNCTION, Fixity.ATOM)
     return isinstance(operand, Const) and (_is_negative(operand) or not passes_on(op))
 
 
 def _falls_apart(child: Formula, op: Operator, side: Fixity, minus: Operator | None) -> bool:
-    """Tell whether an infix operator's operand needs parentheses, on the side to which ``side`` chains."""
+    """Return whether an infix operator's operand needs parentheses, on the side to which ``side`` chains."""
     if _is_negative(child):
         return minus is None or minus.power <= op.power
     if not isinstance(child, Apply) or child.op.fixity in (Fixity.FUNCTION, Fixity.ATOM):
@@ -271,9 +270,9 @@ def _falls_apart(child: Formula, op: Operator, side: Fixity, minus: Operator | N
 
 
 def _reads_on(child: Formula, op: Operator, language: Language, *, left: bool = False) -> bool:
-    """Tell whether a variable such as ``G`` or ``S`` would be read as the operator of that spelling.
+    """Return whether a variable such as ``G`` or ``S`` would be read as the operator of that spelling.
 
-    It would where a symbol may follow that can also begin an operand: ``G - 3`` is always(-3).
+    This happens where a symbol may follow that can also begin an operand: ``G - 3`` is always(-3).
     """
     if not isinstance(child, Var) or _name(child.name, language) != child.name:
         return False
@@ -296,7 +295,7 @@ def _reads_on(child: Formula, op: Operator, language: Language, *, left: bool = 
 
 
 def _name(name: str, language: Language) -> str:
-    """Return a variable's name, in double quotes if it would not be read as one."""
+    """Return a variable's name, in double quotes if it would not be read as a name."""
     if NAME.fullmatch(name) is None and TOPIC.fullmatch(name) is None:
         return quoted(name)
     opening, infix = language.opening(name), language.infix(name)
@@ -311,7 +310,7 @@ def _name(name: str, language: Language) -> str:
 
 @lru_cache(maxsize=256)
 def _longest(spellings: tuple[str, ...]) -> str:
-    """Return RTAMT's spelling: the first one if it is a symbol, else the longest word."""
+    """Return RTAMT's spelling: the first spelling if it is a symbol, else the longest word."""
     if not is_word(spellings[0]):
         return spellings[0]
     return max((s for s in spellings if is_word(s)), key=len)
@@ -329,7 +328,7 @@ def _interval(
         return ""
     begin_unit, end_unit = interval.begin_unit, interval.end_unit
     if interval.end is not None and end_unit:
-        # A lower bound without a unit would be read in that of the upper one; zero is zero in any.
+        # A lower bound without a unit would be read in the unit of the upper bound; zero needs no unit.
         begin_unit = "" if interval.begin == 0 else begin_unit or "s"
     begin = form(interval.begin / UNITS[begin_unit or "s"]) + begin_unit
     end = INFINITY if interval.end is None else form(interval.end / UNITS[end_unit or "s"]) + end_unit
@@ -340,7 +339,7 @@ def _interval(
 
 
 def _latex_of(op: Operator) -> str:
-    """Return an operator's template, or one made of its first spelling."""
+    """Return an operator's template, or one built from its first spelling."""
     if op.latex:
         return op.latex
     word = op.spellings[0].replace("{", "{{").replace("}", "}}")
@@ -353,7 +352,7 @@ def _latex_of(op: Operator) -> str:
 
 @lru_cache(maxsize=256)
 def _template(template: str, timed: bool) -> tuple[tuple[str, str | None, bool], ...]:
-    """Split a template into (text, field or None, whether nothing encloses the field)."""
+    """Split a template into (text, field or None, whether the field is not enclosed)."""
     if not timed:
         template = template.replace("_{I}", "").replace("{I}", "")
     parts, before = [], ""

@@ -1,6 +1,6 @@
-"""What an operator is: one frozen record; and a language, an immutable set of them.
+"""The record of an operator, and a language: an immutable set of operators.
 
-The records themselves are in ``operators.py``, THE TABLE.
+The table of the built-in operators is in ``operators.py``.
 """
 
 from __future__ import annotations
@@ -30,14 +30,14 @@ class Fixity(Enum):
 
 
 class Sort(Enum):
-    """How an operand is read: as a number, or as a formula that holds or does not."""
+    """The type of an operand: a number, or a formula that holds or does not."""
 
     NUMBER = "number"
     FORMULA = "formula"
 
 
 class Tense(Enum):
-    """Which instants an operator reads besides the present one."""
+    """The instants that an operator reads besides the present one."""
 
     NONE = "none"
     PAST = "past"
@@ -54,7 +54,7 @@ class Bounds(Enum):
 
 @dataclass(frozen=True, slots=True)
 class Pointwise:
-    """One value from the operands' values at the same instant; ``partial`` if it can make a NaN."""
+    """One value from the operands' values at the same instant; ``partial`` if it can be undefined (NaN)."""
 
     opcode: str
     partial: bool = False
@@ -86,10 +86,10 @@ class Until:
 
 @dataclass(frozen=True, slots=True)
 class Blocks:
-    """A Python class over blocks of numpy arrays, for each time domain that it makes fast.
+    """A Python class over blocks of numpy arrays, for each time domain that it supports.
 
-    ``discrete`` and ``dense`` are called with the bounds of the interval, in samples and in ticks (with
-    nothing where the operator takes no interval), and return an object of one trace: see
+    ``discrete`` and ``dense`` are called with the bounds of the interval, in samples and in ticks (without
+    arguments if the operator takes no interval), and return an object for one trace: see
     docs/how-to/extend.md for its methods.
     """
 
@@ -99,10 +99,10 @@ class Blocks:
 
 @dataclass(frozen=True, slots=True)
 class Compiled:
-    """Kernels in a shared library that was built with ``rtamt/kernel.hpp``.
+    """Kernels in a shared library built with ``rtamt/kernel.hpp``.
 
-    ``library`` is its path; ``discrete`` and ``dense`` are the names of the kernels in it, for each time
-    domain that they make fast.
+    ``library`` is its path; ``discrete`` and ``dense`` are the names of the kernels in it, for each supported
+    time domain.
     """
 
     library: str
@@ -112,7 +112,7 @@ class Compiled:
 
 Kernel = Pointwise | Window | Shift | Since | Until | Blocks | Compiled
 
-#: What is said of the samples that an operator reads, where nothing is.
+#: The default of ``reach``: not given.
 _UNSAID = -1
 
 
@@ -120,12 +120,12 @@ _UNSAID = -1
 class Operator:
     """One operator. Two operators are equal only if they are the same record.
 
-    Its meaning is its ``definition``; or its ``expansion``, where it has no definition: then it is
-    expanded before anything else is asked of it. What it reads is said by ``tense`` and the interval;
-    where it takes no interval by ``reach``, the number of samples away, None for all of them.
-    ``power`` is the binding power (higher binds tighter). ``guards`` tells pastification how an
-    operand that was delayed by d is kept from being read before the operand meant anything:
-    ``"and"`` (the operand counts as false there), ``"implies"`` (as true), None (no need).
+    Its meaning is its ``definition``. An operator without a definition has the meaning of its ``expansion``,
+    and is expanded before it is analysed. ``tense`` and the interval determine which instants it reads;
+    without an interval, ``reach`` is the distance in samples, None for all samples.
+    ``power`` is the binding power (higher binds tighter). ``guards`` determines how pastification keeps
+    an operand that was delayed by d from being read before its first value:
+    ``"and"`` (the operand counts as false there), ``"implies"`` (as true), None (not necessary).
     ``twin`` names the past operator that a future one becomes ("" if the operand itself does).
     ``dual`` names the operator for which ``not op(x) == dual(not x)``.
     """
@@ -150,15 +150,15 @@ class Operator:
     dual: str | None = None
     twin: str | None = None
     guards: tuple[str | None, ...] = ()
-    folds: bool = False  # a function that also takes more operands: f(a, b, c) is f(f(a, b), c)
+    folds: bool = False  # a function that accepts more operands: f(a, b, c) is f(f(a, b), c)
     truth: Expansion | None = None  # of a predicate: the formula that is +inf where it holds, else -inf
-    # Of an operator of one instant, what bounds need (enclosures.py): the bounds of the result from those of
-    # the operands, and how the result moves with each operand.
+    # Interval extension of a pointwise operator (enclosures.py): the bounds of the result from those of
+    # the operands, and the monotonicity of the result in each operand.
     extension: Callable[..., Any] | None = None
     slopes: Callable[..., tuple[int | None, ...]] | None = None
 
     def check(self) -> None:
-        """Raise :class:`UsageError` where the record cannot be an operator."""
+        """Raise :class:`UsageError` if the record is not a valid operator."""
         arity = {Fixity.ATOM: 0, Fixity.PREFIX: 1, Fixity.LEFT: 2, Fixity.RIGHT: 2}.get(self.fixity)
         if arity is not None and len(self.operands) != arity:
             raise UsageError(
@@ -218,7 +218,7 @@ class Operator:
         return f"<operator {self.name}>"
 
     def __reduce__(self) -> str | tuple[Any, ...]:
-        # Records are compared by identity, so a built-in one unpickles to the one in the table.
+        # Records are compared by identity, so a built-in operator unpickles to the record in the table.
         from rtamt.language.operators import STL, builtin
 
         if STL.get(self.name) is self:
@@ -226,7 +226,7 @@ class Operator:
         return object.__reduce__(self)
 
 
-#: What separates things in the language, and spells no operator.
+#: Punctuation of the language, which cannot be the spelling of an operator.
 _PUNCTUATION = frozenset("()[],;:=@")
 
 
@@ -246,7 +246,7 @@ class Language:
 
     @classmethod
     def of(cls, operators: Iterable[Operator]) -> Language:
-        """Build a language; a name or spelling that is used twice is an error."""
+        """Build a language; duplicate names or spellings are errors."""
         table = tuple(operators)
         names: dict[str, Operator] = {}
         spellings: dict[tuple[str, bool], Operator] = {}

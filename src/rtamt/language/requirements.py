@@ -1,4 +1,4 @@
-"""Requirements in a specification text: ``require ID ["text"] [severity WORD]: formula``, and what else must hold."""
+"""Requirements in a specification text: ``require ID ["text"] [severity WORD]: formula``, or named formulas."""
 
 from __future__ import annotations
 
@@ -19,19 +19,19 @@ if TYPE_CHECKING:
     from rtamt.language.operators import Language
     from rtamt.language.scope import Scope
 
-#: The name of a requirement that needs no quotes.
+#: A requirement name that needs no quotes.
 _ID = re.compile(r"\w(?:[\w.-]*\w)?")
 
 
 class RequirementParser(FormulaParser):
-    """The productions of a requirement, above those of a formula."""
+    """The grammar productions of a requirement, in addition to those of a formula."""
 
     def __init__(self, text: str, language: Language, unit: str, scope: Scope) -> None:
         super().__init__(text, language, unit, scope)
         self._imports: dict[str, Import] = {}
         self._definitions = dict(scope.definitions)
         self._explicit: list[Requirement] = []
-        self._names: dict[str, Span] = {}  # where the name of each stands
+        self._names: dict[str, Span] = {}  # the position of each name
 
     def _requirement(self) -> None:
         """``requirement = "require" , id , [ text ] , [ "severity" , word ] , ":" , expression``."""
@@ -62,7 +62,7 @@ class RequirementParser(FormulaParser):
         self._names[name] = span
 
     def _id_span(self) -> Span:
-        """Return where the name of a requirement stands."""
+        """Return the position of the name of a requirement."""
         if self.token.kind == "quoted":
             return self.token.span
         match = _ID.match(self.text, self.token.start)
@@ -71,7 +71,7 @@ class RequirementParser(FormulaParser):
         return Span(match.start(), match.end())
 
     def _id(self) -> str:
-        """``id``: a word that may have dashes and dots, or anything in double quotes."""
+        """``id``: a word that may contain dashes and dots, or any text in double quotes."""
         if self.token.kind == "quoted":
             return unquoted(self.next().text)
         span = self._id_span()
@@ -80,7 +80,7 @@ class RequirementParser(FormulaParser):
         return self.text[span.start : span.end]
 
     def _requirements(self, assertions: tuple[Assertion, ...]) -> tuple[Requirement, ...]:
-        """Return what must hold, in the order of the text."""
+        """Return the requirements in the order of the text."""
         read = set(variables(*(assertion.formula for assertion in assertions)))
         for name, span in self._names.items():
             if name in read:
@@ -106,12 +106,12 @@ class RequirementParser(FormulaParser):
     # ---- looking ahead ---------------------------------------------------------------------------
 
     def _requires(self) -> bool:
-        """Tell whether a requirement stands here: ``require`` where a variable of this name could not."""
+        """Return whether a requirement begins here: ``require`` where it cannot be a variable."""
         if not self._word("require") or "require" in self._imports:
             return False
         if self._plain_name(1) or self._at(1).kind == "number":
-            return self._at(2).text != "="  # a declaration whose type is missing
-        # An infix operator such as S may be the name, if what follows is none of its operands.
+            return self._at(2).text != "="  # otherwise a declaration without a type
+        # An infix operator such as S may be the name, unless an operand follows.
         name = _ID.match(self.text, self._at(1).start)
         if name is None or self._at(1).kind != "name":
             return False
@@ -127,7 +127,7 @@ class RequirementParser(FormulaParser):
         return self.tokens[min(self.index + ahead, len(self.tokens) - 1)]
 
     def _plain_name(self, ahead: int) -> bool:
-        """Tell whether a name that cannot be an infix operator stands that far ahead."""
+        """Return whether the token that far ahead is a name that cannot be an infix operator."""
         token = self._at(ahead)
         return token.kind in ("name", "quoted") and self.language.infix(token.text) is None
 

@@ -1,4 +1,4 @@
-"""What the names in a formula mean: constants, named formulas, declared variables."""
+"""The names in a formula: constants, named formulas, declared variables."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Scope:
-    """What names mean: ``variables=None`` makes a variable of every name that is nothing else.
+    """The meaning of names; with ``variables=None``, every other name is a variable.
 
-    ``pending`` holds names that cannot be used here, each with the sentence that says why.
+    ``pending`` holds names that cannot be used here, each with an explanation.
     """
 
     constants: Mapping[str, float] = field(default_factory=lambda: MappingProxyType({}))
@@ -25,7 +25,7 @@ class Scope:
     pending: Mapping[str, str] = field(default_factory=lambda: MappingProxyType({}))
 
     def __contains__(self, name: str) -> bool:
-        """Tell whether a name is declared; a field (``req.value``) is when its signal is."""
+        """Return whether a name is declared; a field (``req.value``) is declared if its signal is."""
         if name in self.definitions or name in self.constants:
             return True
         declared = self.variables or ()

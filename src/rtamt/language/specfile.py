@@ -1,4 +1,4 @@
-"""Specification files (``.stl``) and texts of one or more formulas to a document.
+"""Parse specification files (``.stl``) and texts of one or more formulas to a document.
 
 ::
 
@@ -21,8 +21,8 @@
 
 None of these words is reserved: ``input >= 3`` is a formula over a variable called input.
 
-The requirements are the formulas after ``require``; in a text without any, the formulas (not numbers)
-that no other assertion reads; where there is none of these either, the last assertion.
+The requirements are the formulas after ``require``. In a text without any, they are the formulas (not numbers)
+that no other assertion uses; if there are none of these either, the last assertion.
 """
 
 from __future__ import annotations
@@ -62,11 +62,11 @@ def parse_document(
     variables: Collection[str] | None = None,
     definitions: Mapping[str, Formula] | None = None,
 ) -> Document:
-    """Return what a specification text says; a single formula is such a text too.
+    """Parse a specification text; a single formula is a specification text, too.
 
     ``language``, ``unit``, ``constants`` and ``definitions`` as in
-    :func:`~rtamt.language.parser.parse_formula`; ``variables`` are names declared elsewhere. Once a
-    variable is declared, there or in the text, a name that is not is an error.
+    :func:`~rtamt.language.parser.parse_formula`; ``variables`` are names declared elsewhere. If any
+    variable is declared, there or in the text, undeclared names are errors.
 
     Raises :class:`ParseError`, :class:`NameInFormulaError` or :class:`BoundError`. Source: listing 8
     of the paper, and RTAMT's grammar.
@@ -80,7 +80,7 @@ def parse_document(
 
 
 class _DocumentParser(RequirementParser):
-    """The productions of a document, above those of a formula."""
+    """The grammar productions of a document, in addition to those of a formula."""
 
     def __init__(self, text: str, language: Language, unit: str, scope: Scope) -> None:
         super().__init__(text, language, unit, scope)
@@ -246,7 +246,7 @@ class _DocumentParser(RequirementParser):
         return True
 
     def _topic(self) -> str:
-        """``topic``: characters without a space between them, up to the parenthesis."""
+        """``topic``: characters without spaces, up to the parenthesis."""
         first = self.token
         end = first.start
         while self.token.text not in (")", "") and self.token.start == end:
@@ -260,7 +260,7 @@ class _DocumentParser(RequirementParser):
     def _assertions(self, variables: tuple[str, ...]) -> tuple[Assertion, ...]:
         """``assertion , { separator , assertion } , [ ";" ]``."""
         pending = self._names_to_come()
-        names = dict.fromkeys(variables) or None  # of which a member is found at once
+        names = dict.fromkeys(variables) or None  # a dict for fast lookup
         self._slashes = Scope(self._constants, self._definitions, names).slashes
         found: list[Assertion] = []
         while self.token.kind != "end":
@@ -287,7 +287,7 @@ class _DocumentParser(RequirementParser):
                     del pending[name]
                     self._definitions[name] = formula
                     self._slashes = max(self._slashes, name.count("/"))
-            # A formula without a name may go on in the next line: there the semicolon must be written.
+            # A formula without a name may continue on the next line, so it needs a semicolon.
             ended = self._begins_a_line(self.index) and (name or self._requires())
             if self.token.kind != "end" and not (self.accept(";") or ended):
                 raise self._not_finished()
@@ -316,8 +316,8 @@ class _DocumentParser(RequirementParser):
         return token.name if token.kind == "quoted" else self.text[token.start : self.tokens[last].end]
 
     def _names_to_come(self) -> dict[str, str]:
-        """Return the names that later assertions define, each with what to say to an earlier use."""
-        # Elsewhere than where an assertion may begin, '=' is a comparison gone wrong: always(x = 3).
+        """Return the names that later assertions define, each with the error message for an earlier use."""
+        # Except where an assertion may begin, '=' is a mistaken comparison: always(x = 3).
         names = [
             token.name
             for at, (token, after) in enumerate(pairwise(self.tokens))
@@ -345,12 +345,12 @@ class _DocumentParser(RequirementParser):
         return token.text in TYPES or token.text in self._imports
 
     def _plain_type(self, ahead: int) -> bool:
-        """Tell whether a type and a name stand that far ahead; the name may be ``S``, the type may not."""
+        """Return whether a type and a name follow at this offset; the name may be ``S``, the type may not."""
         typed = self._is_type(self._at(ahead)) or self._plain_name(ahead)
         return typed and self._at(ahead).kind == "name" and self._at(ahead + 1).kind in ("name", "quoted")
 
     def _declares(self) -> bool:
-        """Tell whether a declaration stands here, be its type known or not."""
+        """Return whether a declaration begins here, of a known or unknown type."""
         first = self.token
         if first.kind != "name" or self._requires():
             return False
@@ -358,14 +358,14 @@ class _DocumentParser(RequirementParser):
             return True
         if self._is_type(first):
             return self._at(1).kind in ("name", "quoted")
-        # Two names in a row are a declaration of unknown type if no formula could go on after them.
+        # Two names in a row are a declaration of unknown type if no formula could continue after them.
         if self.language.opening(first.text) is not None or not (self._plain_name(0) and self._plain_name(1)):
             return False
         third = self._at(2)
         return third.text in ("@", "=") or (third.kind == "name" and self.language.infix(third.text) is None)
 
     def _with_slashes(self, token: Token) -> Token:
-        """Take what follows a name without a space, if it is a slash and a name: ``robot/speed`` is one name."""
+        """Consume a slash and a name that directly follow a name: ``robot/speed`` is one name."""
         while token.kind == "name" and self.token.text == "/" and self._at(1).kind == "name":
             slash, tail = self.token, self._at(1)
             if slash.start != token.end or tail.start != slash.end:
@@ -378,7 +378,7 @@ class _DocumentParser(RequirementParser):
     # ---- errors ----------------------------------------------------------------------------------
 
     def _taken(self, what: str, *, quotes: bool = False) -> Token:
-        """Take a name, or complain."""
+        """Consume a name, or raise an error."""
         if self.token.kind != "name" and not (quotes and self.token.kind == "quoted"):
             raise self._expected(what)
         return self.next()

@@ -1,4 +1,4 @@
-"""What is said, by both back ends alike, where an operation has no value."""
+"""The error for undefined values, shared by both back ends."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ if TYPE_CHECKING:
 
 
 def undefined(formula: Formula, where: str) -> EvaluationError:
-    """Return the error for a value that does not exist (0/0, inf - inf, …), or for a user's operator that gave NaN.
+    """Return the error for an undefined value (0/0, inf - inf, …), or for a custom operator that returned NaN.
 
-    ``formula``: what has no value, as the user wrote it. ``where``: :func:`at_sample`, or ``"time 0.5 s"``.
+    ``formula``: the formula without a value, as the user wrote it. ``where``: :func:`at_sample`, or ``"time 0.5 s"``.
 
     >>> from rtamt.language.parser import parse_formula
     >>> str(undefined(parse_formula("x / y"), at_sample(3, 0.3)))[:48]
@@ -34,11 +34,11 @@ def undefined(formula: Formula, where: str) -> EvaluationError:
 
 
 def at_sample(sample: int, seconds: float) -> str:
-    """Return where a sample is, for a message; its stamp to the last digit that a double tells apart."""
+    """Return the index and time of a sample for a message; the time with all significant digits of a double."""
     return f"sample {sample}, time {seconds:.15g} s"
 
 
 def _is_the_users(formula: Apply) -> bool:
-    """Tell whether the core does not know an operator, and calls it."""
+    """Return whether an operator is custom code that the core calls."""
     op = formula.op
     return isinstance(op.kernel, Blocks | Compiled) or (op.kernel is None and op.expansion is None)

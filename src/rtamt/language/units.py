@@ -47,7 +47,7 @@ UNITS: Mapping[str, Fraction] = MappingProxyType(
     }
 )
 
-#: Digits that people read in a duration.
+#: Durations with more digits than this are shortened in messages.
 _LONGEST = 40
 
 _DURATION = re.compile(r"\s*([^\s/A-Za-z]+(?:[eE][+-]?\d+)?)\s*(?:/\s*(\d+)\s*)?([A-Za-z]*)\s*")
@@ -61,16 +61,16 @@ _DECIMAL = re.compile(f"[+-]?{NUMBER}")
 
 @lru_cache(maxsize=1024)
 def exact(literal: str) -> Fraction:
-    """Return the number that a decimal literal writes, without rounding.
+    """Return the exact value of a decimal literal.
 
-    Raises :class:`ValueError` if it is no number, or one beyond the range of a double.
+    Raises :class:`ValueError` if it is not a number, or is beyond the range of a double.
 
     >>> exact("0.1"), exact("1e-3")
     (Fraction(1, 10), Fraction(1, 1000))
     """
     if _DECIMAL.fullmatch(literal) is None:
         raise ValueError(f"{literal} is no decimal number")
-    # A double first: 1e-999999999, or 0e-999999999, as a fraction would need a gigabyte.
+    # Check the range as a double first: 1e-999999999, or 0e-999999999, would need a gigabyte as a fraction.
     nearest = float(literal)
     if nearest == 0 and re.search("[1-9]", re.split("[eE]", literal)[0]) is None:
         return Fraction(0)
@@ -80,7 +80,7 @@ def exact(literal: str) -> Fraction:
 
 
 def check_unit(unit: str) -> str:
-    """Return ``unit`` if it is one; otherwise raise :class:`UsageError`.
+    """Return ``unit`` if it is a known unit; otherwise raise :class:`UsageError`.
 
     >>> check_unit("ms")
     'ms'
@@ -100,8 +100,8 @@ def duration(value: str | SupportsFloat, unit: str = "s") -> Fraction:
     """Return a duration in seconds, exact.
 
     ``value``: text with or without a unit (``"100ms"``, ``"0.1 s"``, ``"1/3s"``) or a number; a float
-    means the shortest decimal that prints it, so 0.1 is one tenth. ``unit``: the unit where the value
-    has none. Raises :class:`UsageError` if it is no duration, negative, or infinite.
+    means the shortest decimal that prints it, so 0.1 is one tenth. ``unit``: the unit if the value
+    has none. Raises :class:`UsageError` if it is not a duration, negative, or infinite.
 
     >>> duration("100ms"), duration(0.1), duration(5, "us")
     (Fraction(1, 10), Fraction(1, 10), Fraction(1, 200000))
@@ -121,7 +121,7 @@ def duration(value: str | SupportsFloat, unit: str = "s") -> Fraction:
         elif isinstance(value, Rational):
             number = Fraction(int(value.numerator), int(value.denominator))
         elif isinstance(value, Real):
-            # str and not repr: that of a numpy scalar names its type.
+            # str and not repr: the repr of a numpy scalar contains its type.
             number = exact(str(value))
         else:
             raise TypeError(value)
@@ -139,7 +139,7 @@ def duration(value: str | SupportsFloat, unit: str = "s") -> Fraction:
 
 
 def positive_period(period: Duration, what: str = "sampling period") -> Fraction:
-    """Return a sampling period, or ``what`` else it is, in seconds, exact; raise :class:`UsageError` for 0."""
+    """Return a sampling period (or ``what``) in exact seconds; raise :class:`UsageError` for 0."""
     exact_period = duration(period)
     if exact_period <= 0:
         raise UsageError(f"the {what} is {shown(period)}; it must be positive")
@@ -152,7 +152,7 @@ def in_seconds(numbers: NDArray[np.float64], unit: Fraction) -> NDArray[np.float
 
 
 def decimal(number: Fraction) -> str | None:
-    """Return the exact decimal text of a number, or None if it has none.
+    """Return the exact decimal text of a number, or None if it has no finite one.
 
     >>> decimal(Fraction(5, 2)), decimal(Fraction(4)), decimal(Fraction(1, 3))
     ('2.5', '4', None)
@@ -172,7 +172,7 @@ def decimal(number: Fraction) -> str | None:
 
 
 def format_duration(seconds: Fraction) -> str:
-    """Return a duration for people to read: in seconds, or in the largest smaller unit of which it is at least one.
+    """Return a readable duration: in seconds, or in the largest smaller unit of which it is at least one.
 
     >>> format_duration(Fraction(1, 10)), format_duration(Fraction(5)), format_duration(Fraction(1, 3))
     ('100 ms', '5 s', '1/3 s')
@@ -189,6 +189,6 @@ def format_duration(seconds: Fraction) -> str:
 
 
 def _short(number: Fraction) -> str:
-    """Return a decimal as it is, or six digits of one that has too many to read."""
+    """Return a decimal as it is, or rounded to six digits if it has too many."""
     text = str(decimal(number))
     return text if len(text) <= _LONGEST else f"{Decimal(number.numerator) / Decimal(number.denominator):.6g}"

@@ -1,4 +1,4 @@
-"""What a well-formed formula must also satisfy before it can be evaluated: bounds, time domain, boundedness."""
+"""Checks of well-formed formulas before evaluation: bounds, time domain, boundedness."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ from rtamt.rewrite.desugar import spelled_out
 
 @dataclass(frozen=True, slots=True)
 class BoundUnit:
-    """The step in which a time domain counts bounds: how messages name it, and how many can be counted.
+    """The unit in which a time domain counts bounds: its name in messages, and the largest count.
 
-    ``setting``: the setting that is the length of a step. ``steps``: several of them. ``longer``: the
-    setting with which fewer are needed. ``most``: the longest bound. ``farthest``: the longest sum of
+    ``setting``: the setting that gives the length of a step. ``steps``: the plural. ``longer``: the
+    setting that reduces their number. ``most``: the longest bound. ``farthest``: the longest sum of
     bounds of nested operators; None where sums of the longest bounds fit into an int64.
     """
 
@@ -30,7 +30,7 @@ class BoundUnit:
 
     @property
     def step(self) -> str:
-        """One of the steps."""
+        """The singular of ``steps``."""
         return self.steps[:-1]
 
 
@@ -43,7 +43,7 @@ TICKS = BoundUnit("resolution", "ticks", "a coarser resolution", 2**56, 2**61)
 def check_bounds(
     formula: Formula, step: Fraction, text: str | None = None, unit: BoundUnit = PERIODS
 ) -> None:
-    """Raise :class:`BoundError` unless every bound is a whole multiple of ``step`` (seconds), which ``unit`` names.
+    """Raise :class:`BoundError` unless every bound is an integer multiple of ``step`` seconds; ``unit`` names the step.
 
     >>> from fractions import Fraction
     >>> from rtamt.language.parser import parse_formula
@@ -78,12 +78,12 @@ def check_bounds(
 
 
 def _short(count: int) -> str:
-    """Return a number that may be beyond every double with three digits."""
+    """Return a number, which may exceed the range of a double, with three digits."""
     return f"{float(count):.3g}" if count < 10**300 else f"{Decimal(count):.3g}"
 
 
 def _check_sums(formula: Formula, step: Fraction, text: str | None, unit: BoundUnit, farthest: int) -> None:
-    """Raise :class:`BoundError` at an operator whose bounds, with those of its operands, reach too far."""
+    """Raise :class:`BoundError` at an operator whose bounds, added to those of its operands, are too large."""
     reach: dict[int, Fraction] = {}
     none, limit = Fraction(0), farthest * step
     for node in postorder(formula):
@@ -105,7 +105,7 @@ def _check_sums(formula: Formula, step: Fraction, text: str | None, unit: BoundU
 
 
 def check_online(formula: Formula, text: str | None = None) -> None:
-    """Raise :class:`BoundError` at the first operator whose future is unbounded: it can never be known online."""
+    """Raise :class:`BoundError` at the first operator with an unbounded future, which is never known online."""
     node = unbounded_future(formula)
     if node is not None:
         raise BoundError(
@@ -117,7 +117,7 @@ def check_online(formula: Formula, text: str | None = None) -> None:
 
 
 def check_dense(formula: Formula, text: str | None = None) -> None:
-    """Raise :class:`SpecificationError` at the first operator that only makes sense between samples."""
+    """Raise :class:`SpecificationError` at the first operator that is defined only in discrete time."""
     for node in postorder(spelled_out(formula)):
         if isinstance(node, Apply) and node.op.discrete_only:
             raise SpecificationError(
@@ -137,7 +137,7 @@ def unbounded_future(formula: Formula) -> Apply | None:
 
 
 def reads_unbounded_future(node: Apply) -> bool:
-    """Tell whether this operator itself, whatever its operands, reads an unbounded future."""
+    """Return whether this operator itself, whatever its operands, reads an unbounded future."""
     if node.op.tense is not Tense.FUTURE:
         return False
     if node.op.bounds is Bounds.NONE:
@@ -146,19 +146,19 @@ def reads_unbounded_future(node: Apply) -> bool:
 
 
 def has_future(formula: Formula) -> bool:
-    """Tell whether any operator of the formula reads the future."""
+    """Return whether any operator of the formula reads the future."""
     return any(isinstance(n, Apply) and n.op.tense is Tense.FUTURE for n in postorder(spelled_out(formula)))
 
 
 def always_has_a_value(formula: Formula) -> bool:
-    """Tell whether every trace has a value for the formula: no operation in it can make NaN, or fail."""
+    """Return whether the formula has a value on every trace: no operation in it can yield NaN or fail."""
     for node in postorder(formula):
         if not isinstance(node, Apply):
             continue
         partial = isinstance(node.op.kernel, Pointwise) and node.op.kernel.partial
         if partial or STL.get(node.op.name) is not node.op:
             return False
-        # A predicate is a difference, and inf - inf is no number.
+        # A predicate is a difference, and inf - inf is undefined.
         if node.op.truth is not None and not any(isinstance(arg, Const) for arg in node.args):
             return False
     return True

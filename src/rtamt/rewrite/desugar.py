@@ -1,4 +1,4 @@
-"""Replace every operator that has an expansion, until none is left that has a shorter way."""
+"""Expand derived operators into core operators."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ if TYPE_CHECKING:
 def desugar(formula: Formula) -> Formula:
     """Return an equivalent formula over core operators.
 
-    An operator with neither expansion nor kernel (one that was added with its definition alone)
-    stays, and is run by its definition. New nodes carry the span of the operator they explain.
+    An operator with neither expansion nor kernel (added with its definition alone) is kept, and evaluated
+    by its definition. New nodes have the span of the operator that they expand.
 
     >>> from rtamt.language.parser import parse_formula
     >>> str(desugar(parse_formula("x >= 3 -> y <= 2")))
@@ -24,9 +24,9 @@ def desugar(formula: Formula) -> Formula:
 
 
 def written(core: Formula, formulas: Iterable[Formula]) -> Formula:
-    """Return the part of ``formulas`` that a core formula stands for, so that a message can name what was written.
+    """Return the part of ``formulas`` that a core formula stands for: what a message must name.
 
-    It is the core formula itself where no part expands to it.
+    If no part expands to the core formula, it is returned itself.
 
     >>> from rtamt.language.parser import parse_formula
     >>> formula = parse_formula("always(x < 3)")
@@ -50,9 +50,9 @@ def as_written(formulas: Iterable[Formula]) -> dict[Formula, Formula]:
 
 
 def spelled_out(formula: Formula) -> Formula:
-    """Return the formula without the operators that mean what they expand to, and have no definition.
+    """Return the formula with all operators expanded that have an expansion and no definition.
 
-    Whatever asks what an operator reads or means asks this first; where there is nothing to expand, it is
+    Every analysis of what operators read or mean starts here. If there is nothing to expand, the result is
     the same object.
 
     >>> from dataclasses import replace
@@ -77,7 +77,7 @@ def spelled_out(formula: Formula) -> Formula:
 
 
 def expand(node: Formula, args: tuple[Formula, ...]) -> Formula:
-    """Expand one operator, whose operands are core formulas already."""
+    """Expand one operator whose operands are core formulas."""
     if not isinstance(node, Apply):
         return node
     if node.op.expansion is None or node.op.kernel is not None:
@@ -87,7 +87,7 @@ def expand(node: Formula, args: tuple[Formula, ...]) -> Formula:
 
 
 def desugar_below(formula: Formula, done: tuple[Formula, ...]) -> Formula:
-    """Desugar the nodes of an expansion above the operands, which are ``done``."""
+    """Desugar the nodes of an expansion above its operands; ``done`` holds the operands."""
     stop = {id(arg) for arg in done}
     return _rebuild_above(formula, stop, expand)
 

@@ -1,8 +1,8 @@
-"""What the text of a formula says about its bounds and its verdicts before the end of the trace.
+"""Static analysis of bounds and verdicts that are reported before the end of the trace.
 
-Bounds are sound for every formula. They are tight (attained by some trace that agrees with what is known) where
-every sample enters with one polarity: :func:`loose`. In discrete time the end of a trace cuts windows, so that
-a formula may end differently from what was decided while the trace went on: :func:`ends_differently`.
+Bounds are sound for every formula. They are tight (attained by some trace that agrees with all known samples) if
+every sample enters with one polarity: :func:`loose`. In discrete time the end of a trace clips windows, so that
+a verdict at the end may differ from one reported while the trace went on: :func:`ends_differently`.
 """
 
 from __future__ import annotations
@@ -21,17 +21,17 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
     from fractions import Fraction
 
-#: From the first to the last instant, in seconds from the present one, at which a sub-formula is read.
+#: The first and the last instant at which a sub-formula is read, in seconds relative to the present.
 _Span: TypeAlias = "tuple[Fraction | float, Fraction | float]"
 
 _PRESENT: _Span = (0, 0)
 
 
 class _Use(NamedTuple):
-    """One use of a variable: the formula moves with it, with or (-1) against it.
+    """One use of a variable: the formula is nondecreasing (1) or nonincreasing (-1) in it.
 
-    Of arithmetic that rises and falls with the variable, ``inside`` is that, and ``sign`` how the formula
-    moves with it.
+    If the variable occurs in arithmetic that is not monotone, ``inside`` is that arithmetic, and ``sign``
+    applies to it.
     """
 
     sign: int
@@ -39,14 +39,14 @@ class _Use(NamedTuple):
     inside: Formula | None = None
 
     def agrees(self, other: _Use, *, dense: bool) -> bool:
-        """Tell whether one value of a sample makes both as bad as they can be."""
+        """Return whether one value of a sample minimises both uses at once."""
         apart = self.span[1] < other.span[0] or other.span[1] < self.span[0]
         # In dense time one sample is read at many instants.
         return (apart and not dense) or (self.sign == other.sign and self.inside == other.inside)
 
 
 def loose(formula: Formula, period: Fraction | None) -> str | None:
-    """Return a variable that may make bounds wider than necessary; None: they are tight.
+    """Return a variable that may make bounds wider than necessary; None if bounds are tight.
 
     ``period``: seconds; None means dense time. Functions of the C library (``exp``, ``ln``) leave bounds up to
     four units in the last place wider.
@@ -59,7 +59,7 @@ def loose(formula: Formula, period: Fraction | None) -> str | None:
     """
     core = desugar(formula)
     constants = _constants(core)
-    # Parents first: by identity of a node and sign, at which instants it is read.
+    # Parents first: the instants at which a node is read, by its identity and sign.
     spans: dict[tuple[int, int], _Span] = {(id(core), 1): _PRESENT}
     uses: dict[str, list[_Use]] = {name: [] for name in variables(core)}
     for node in reversed(list(postorder(core))):
@@ -93,7 +93,7 @@ def loose(formula: Formula, period: Fraction | None) -> str | None:
 
 
 def _moves(node: Apply, constants: Mapping[int, float]) -> tuple[int | None, ...]:
-    """Return how an operator's value moves with each operand; see ``enclosures.slopes``."""
+    """Return the monotonicity of an operator in each operand; see ``enclosures.slopes``."""
     if node.op.tense is not Tense.NONE:
         return (1,) * len(node.args)
     if node.op.slopes is None:
@@ -105,7 +105,7 @@ def _moves(node: Apply, constants: Mapping[int, float]) -> tuple[int | None, ...
 
 
 def _repeats(node: Formula) -> bool:
-    """Tell whether arithmetic reads a variable twice, or a formula in time."""
+    """Return whether arithmetic reads a variable twice, or contains a temporal formula."""
     if any(isinstance(part, Apply) and part.op.tense is not Tense.NONE for part in postorder(node)):
         return True
 
@@ -118,7 +118,7 @@ def _repeats(node: Formula) -> bool:
 
 
 def _constants(formula: Formula) -> dict[int, float]:
-    """Return the values of the numbers that read no variable, by identity: those that are written as such."""
+    """Return the values of the literal numbers, by identity of the node."""
     found: dict[int, float] = {}
     for node in postorder(formula):
         if isinstance(node, Const):
@@ -134,7 +134,7 @@ def _constants(formula: Formula) -> dict[int, float]:
 
 
 def _read(node: Apply, operand: int, span: _Span, period: Fraction | None) -> _Span:
-    """Return when an operand is read, from when the node is."""
+    """Return the instants at which an operand is read, from those at which the node is read."""
     op = node.op
     if op.tense is Tense.NONE:
         return span
@@ -148,7 +148,7 @@ def _read(node: Apply, operand: int, span: _Span, period: Fraction | None) -> _S
     else:
         begin, end = node.interval.begin, inf if node.interval.end is None else node.interval.end
     if isinstance(op.kernel, Since | Until) and (operand == 0 or op.tense is Tense.PAST):
-        # φ at every instant up to ψ; of precedes, ψ may be at the present one too.
+        # φ at every instant up to ψ; for precedes, ψ may also be at the present instant.
         begin = begin if isinstance(op.kernel, Since) and operand == 1 else 0
     if op.tense is Tense.PAST:
         begin, end = -end, -begin
@@ -156,11 +156,11 @@ def _read(node: Apply, operand: int, span: _Span, period: Fraction | None) -> _S
 
 
 def ends_differently(formula: Formula, ranges: Mapping[str, tuple[float, float]]) -> Apply | None:
-    """Return an operator that may lose at the end of a discrete trace what was known while it went on.
+    """Return an operator for which bounds and verdicts may differ at the end of a discrete trace.
 
-    None: bounds and verdicts that were reported hold at the end too. Such an operator looks ahead, over an
-    operand of which something is known at instants that have no sample yet: one that reads the past, or
-    a constant, or a variable with a declared range. For verdicts, give the formula in its Boolean
+    None: reported bounds and verdicts also hold at the end. The operator returned reads the future of an
+    operand that is partly known at instants without a sample: one that reads the past, or
+    a constant, or a variable with a declared range. For verdicts, pass the formula in its Boolean
     semantics (``boolean``).
 
     >>> from rtamt.language.parser import parse_formula
@@ -168,7 +168,7 @@ def ends_differently(formula: Formula, ranges: Mapping[str, tuple[float, float]]
     >>> [ends_differently(parse_formula(text), {}) for text in formulas]
     [None, <formula eventually[1:2](once[0:5](x - 3))>]
     """
-    unseen: dict[int, Enclosure | None] = {}  # None: not the same at all these instants
+    unseen: dict[int, Enclosure | None] = {}  # None: differs among these instants
 
     def known(node: Formula) -> bool:
         found = unseen[id(node)]
@@ -185,7 +185,7 @@ def ends_differently(formula: Formula, ranges: Mapping[str, tuple[float, float]]
 def _unseen(
     node: Formula, below: list[Enclosure | None], ranges: Mapping[str, tuple[float, float]]
 ) -> Enclosure | None:
-    """Return the bounds of a sub-formula where no sample has come yet."""
+    """Return the bounds of a sub-formula at instants that have no sample yet."""
     if isinstance(node, Const | Var):
         low, high = (node.value,) * 2 if isinstance(node, Const) else ranges.get(node.name, (-inf, inf))
         return Enclosure(np.array([low]), np.array([high]))
@@ -196,6 +196,6 @@ def _unseen(
     if node.op.extension is None:
         return Enclosure(
             np.array([-inf]), np.array([inf])
-        )  # of the future, over operands that may be anything
+        )  # future operators over operands that may have any value
     assert node.op.definition is not None
     return extended(node.op.definition, node.op.extension, operands)

@@ -1,4 +1,4 @@
-"""How far ahead of t a formula's value at t can depend on the signals (the paper's Definition 3)."""
+"""The horizon of a formula: how far ahead of t its value at t depends on signals (the paper's Definition 3)."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _NONE = Fraction(0)
 def horizon(formula: Formula, period: Fraction = Fraction(1)) -> Fraction | None:
     """Return the temporal depth H(φ) in seconds, exact; None if it is unbounded.
 
-    A monitor knows ρ(φ, w, t) when its input has reached t + H(φ). ``next`` counts one ``period``
+    A monitor reports ρ(φ, w, t) when its input has reached t + H(φ). ``next`` counts one ``period``
     (seconds); past operators add nothing.
 
     >>> from rtamt.language.parser import parse_formula

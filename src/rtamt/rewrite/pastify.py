@@ -1,11 +1,11 @@
-"""Pastification Π (the paper's Definition 4): bounded future to past, exact for every mixed formula.
+"""Pastification Π (the paper's Definition 4): bounded future to past, exact for all mixed formulas.
 
 The theorem: ρ(φ, w, t) = ρ(Π(φ), w, t + H(φ)) for every t at which t + H(φ) lies in the trace.
-Two things make it hold where formulas mix past and future:
+Two rules make it hold for formulas that mix past and future:
 
 - a sub-formula without future operators is delayed as a whole, ``once[d,d](φ)``;
-- a past operator over an operand that was delayed by d must read nothing from before the operand
-  meant anything, so the operand is guarded by ``once[d,d](true)`` (false before d, true from d on).
+- a past operator over an operand that was delayed by d must not read the operand before its first
+  value, so the operand is guarded by ``once[d,d](true)`` (false before d, true from d on).
 """
 
 from __future__ import annotations
@@ -20,17 +20,17 @@ from rtamt.rewrite.check import unbounded_future
 from rtamt.rewrite.desugar import spelled_out
 from rtamt.rewrite.horizon import horizon
 
-#: Different sub-formulas of the largest pastified formula: one that is shared may be needed at 2ⁿ delays.
+#: The largest number of distinct sub-formulas of a result: a shared one may be needed at 2ⁿ delays.
 MOST = 100_000
 
 
 def pastify(
     formula: Formula, period: Fraction = Fraction(1), text: str | None = None, unit: str = "s"
 ) -> Formula:
-    """Return Π(φ): only past operators, the same value H(φ) later.
+    """Return Π(φ): only past operators, and the same value H(φ) later.
 
-    ``period`` (seconds) is what ``next`` counts. ``unit``: that of bounds without one, in the text from
-    which φ was read and in which Π(φ) is to be read again. Raises :class:`BoundError` at an operator whose
+    ``period`` (seconds) is the step of ``next``. ``unit``: the unit of bounds without one, both in the text
+    of φ and in the text of Π(φ). Raises :class:`BoundError` at an operator whose
     future is unbounded, and :class:`SpecificationError` where the result has more than :data:`MOST` nodes.
 
     >>> from rtamt.language.parser import parse_formula
@@ -52,7 +52,7 @@ def pastify(
 def expand_future_shorthand(formula: Formula) -> Formula:
     """Expand derived temporal operators (rise, unless, …) where the future is involved.
 
-    Their pastification is that of their meaning. Expansions may hold others, which are expanded too.
+    They are pastified by their meaning. Expansions may contain further such operators, which are expanded, too.
     """
 
     def step(node: Formula, below: tuple[tuple[Formula, bool], ...]) -> tuple[Formula, bool]:
@@ -68,7 +68,7 @@ def expand_future_shorthand(formula: Formula) -> Formula:
 
 
 class _Pastifier:
-    """One pastification: what is known of each node, and the results so far (shared nodes once)."""
+    """One pastification: the properties of each node, and the results so far (shared nodes once)."""
 
     def __init__(self, formula: Formula, period: Fraction, text: str | None, unit: str) -> None:
         self.period = period
@@ -83,7 +83,7 @@ class _Pastifier:
         """Return P with ρ(formula, w, t) = ρ(P, w, t + delay); ``delay`` is at least the horizon."""
         results: dict[tuple[int, Fraction], Formula] = {}
         stack = [(formula, delay)]
-        while stack:  # a stack of our own, because formulas may be deeper than Python's
+        while stack:  # an explicit stack, because formulas may be deeper than Python's recursion limit
             node, d = stack[-1]
             wanted = [(arg, self._operand_delay(node, d)) for arg in self._open_operands(node)]
             missing = [(arg, e) for arg, e in wanted if (id(arg), e) not in results]
@@ -142,7 +142,7 @@ class _Pastifier:
 
 
 def _unit(formula: Formula) -> str:
-    """Return the unit in which the formula's own bounds are written, so that delays read like them."""
+    """Return the unit in which the bounds of the formula are written, so that delays look the same."""
     intervals = (node.interval for node in postorder(formula) if isinstance(node, Apply))
     units = (unit for i in intervals if i is not None for unit in (i.end_unit, i.begin_unit))
     return next(filter(None, units), "")
@@ -150,7 +150,7 @@ def _unit(formula: Formula) -> str:
 
 def _past_twin(node: Apply, args: tuple[Formula, ...], text: str | None) -> Formula:
     if node.op.twin == "":
-        return args[0]  # next: the delay of its operand is all
+        return args[0]  # next: only its operand is delayed
     twin = STL.get(node.op.twin) if node.op.twin is not None else None
     if twin is None:
         raise _no_rule(node, "past twin", text)

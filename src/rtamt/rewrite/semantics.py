@@ -1,13 +1,13 @@
-"""Semantics other than robustness, as a lowering of predicates: everything else stays as it is.
+"""Semantics other than robustness, implemented as a replacement of predicates.
 
-A semantics is one function: it is shown a predicate and the roles of the variables, and returns the
-formula whose robustness stands in the predicate's place. :data:`SEMANTICS` is the table of those that
-have a name; :func:`lower` applies any of them, the user's own too. What comes out is a formula like any
-other, so that every engine, online or offline, gives each semantics without knowing of it.
+A semantics is one function: it receives a predicate and the roles of the variables, and returns the
+formula whose robustness replaces that of the predicate. :data:`SEMANTICS` is the table of named
+semantics; :func:`apply_semantics` applies any of them, or a custom one. The result is an ordinary formula,
+so that every engine, online or offline, supports every semantics.
 
-A predicate is a comparison, or a number used as a formula, which holds where it is positive. What it is
-made of is one thing: in ``(x >= 3) + y >= 2`` the formula ``x >= 3`` is read as a number, its robustness
-under every semantics, and the predicate's variables are x and y. ``true`` and ``false`` are no
+A predicate is a comparison, or a number used as a formula, which holds where it is positive. Everything inside
+a predicate belongs to it: in ``(x >= 3) + y >= 2`` the formula ``x >= 3`` is read as a number, its robustness
+under every semantics, and the predicate's variables are x and y. ``true`` and ``false`` are not
 predicates.
 """
 
@@ -26,10 +26,10 @@ from rtamt.language.operators import STL, Sort, holds
 from rtamt.language.printer import excerpt
 from rtamt.rewrite.desugar import rebuilt, spelled_out
 
-#: From a variable to its side of the interface: ``"input"`` or ``"output"``.
+#: The role of each variable: ``"input"`` or ``"output"``.
 Roles: TypeAlias = Mapping[str, str]
 
-#: What judges predicates: from a predicate and the roles of its variables to what stands in its place.
+#: A function from a predicate and the roles of its variables to the formula that replaces it.
 PredicateSemantics: TypeAlias = Callable[[Formula, Roles], Formula]
 
 ROLES = ("input", "output")
@@ -50,10 +50,10 @@ def truth(predicate: Formula) -> Formula:
 
 
 def standard(predicate: Formula, _roles: Roles) -> Formula:
-    """PredicateSemantics by robustness: a predicate is worth its ordinary value.
+    """Standard robustness: a predicate has its ordinary value.
 
-    To the letter of relative robustness a predicate without variables (3 >= 2) would be infinite here
-    too, because no variables are a subset of none that are fixed; but this one is the definition itself.
+    By the letter of relative robustness, a predicate without variables (3 >= 2) would be infinite here,
+    too, because the empty set is a subset of the fixed variables; standard robustness is the definition itself.
     """
     return predicate
 
@@ -63,16 +63,16 @@ class Relative:
     """U-robustness relative to V (the paper's section 2.3).
 
     ``measured`` (U) and ``fixed`` (V) are the roles of the variables whose change is measured, and of
-    those that cannot change. A predicate that reads any others is worth 0: the least change may
-    overturn it. One that reads no variable but fixed ones (or none at all) is worth its truth, +inf or
-    -inf. The rest have their ordinary value.
+    those that cannot change. A predicate that reads any other variable has robustness 0: the smallest change may
+    overturn it. A predicate that reads only fixed variables (or none at all) evaluates to its truth, +inf or
+    -inf. All others have their ordinary value.
     """
 
     measured: frozenset[str] = frozenset()
     fixed: frozenset[str] = frozenset()
 
     def __call__(self, predicate: Formula, roles: Roles) -> Formula:
-        """Return what stands in the place of a predicate."""
+        """Return the formula that replaces a predicate."""
         read = {roles[name] for name in variables(predicate)}
         if not read <= self.measured | self.fixed:
             return Const(0.0)
@@ -81,7 +81,7 @@ class Relative:
 
 _INPUTS, _OUTPUTS = (frozenset({role}) for role in ROLES)
 
-#: Every semantics that has a name.
+#: The named semantics.
 SEMANTICS: Mapping[str, PredicateSemantics] = MappingProxyType(
     {
         "standard": standard,
@@ -95,9 +95,9 @@ SEMANTICS: Mapping[str, PredicateSemantics] = MappingProxyType(
 
 
 def semantics_of(semantics: object) -> str | PredicateSemantics:
-    """Return the name in :data:`SEMANTICS` of a semantics, or the function that it is.
+    """Return the key of a semantics in :data:`SEMANTICS`, or a custom semantics as it is.
 
-    Dashes are as good as underscores, and a member of an enumeration as good as its text.
+    Dashes are accepted for underscores, and members of an enumeration for their text.
 
     >>> semantics_of("output-robustness")
     'output_robustness'
@@ -117,12 +117,12 @@ def apply_semantics(formula: Formula, semantics: str | PredicateSemantics, roles
     """Return the formula whose robustness is the value of ``formula`` under a semantics.
 
     ``semantics``: a name in :data:`SEMANTICS`, or a function that is called as
-    ``semantics(predicate, roles)`` for every predicate. ``roles``: those that are known; a variable without
-    one is an output, and a field has the role of its variable. The result reads the same variables in
-    the same order, and computes the operands of every predicate, so that an operation on numbers that
-    has no value (0/0) is an error under every semantics.
+    ``semantics(predicate, roles)`` for every predicate. ``roles``: the known roles; a variable without
+    a role is an output, and a field has the role of its variable. The result reads the same variables in
+    the same order, and computes the operands of every predicate, so that an undefined operation on numbers
+    (0/0) is an error under every semantics.
 
-    Raises :class:`UsageError` where the function returns something else than a formula over the
+    Raises :class:`UsageError` if the function returns anything but a formula over the
     predicate's variables.
 
     >>> from rtamt.language.parser import parse_formula
@@ -133,7 +133,7 @@ def apply_semantics(formula: Formula, semantics: str | PredicateSemantics, roles
     semantics = SEMANTICS[semantics] if isinstance(semantics, str) else semantics
     if semantics is standard:
         return formula
-    formula = spelled_out(formula)  # what an operator of the user's stands for may hold predicates
+    formula = spelled_out(formula)  # the expansion of a custom operator may contain predicates
     all_roles = MappingProxyType({name: role_of(name, roles) for name in variables(formula)})
     predicates = _predicates(formula)
 
@@ -163,12 +163,12 @@ def boolean(formula: Formula) -> Formula:
 
 
 def no_verdict(error: EvaluationError) -> EvaluationError:
-    """Return the error for a formula that has robustness but no truth: an operator may make NaN of infinities."""
+    """Return the error for a formula with robustness but without truth: an operator may yield NaN for infinities."""
     return EvaluationError(f"there is no verdict, for which true counts as +inf and false as -inf: {error}")
 
 
 def is_predicate(formula: Formula) -> bool:
-    """Tell whether a formula, where a formula is expected, is a predicate: a comparison, or a number."""
+    """Return whether a formula, where a formula is expected, is a predicate: a comparison or a number."""
     if not isinstance(formula, Apply) or is_number(formula) or formula.op.truth is not None:
         return True
     sorts = formula.op.operands
@@ -176,7 +176,7 @@ def is_predicate(formula: Formula) -> bool:
 
 
 def role_of(name: str, roles: Roles) -> str:
-    """Return the role of a variable, or of the field of one; without one it is an output.
+    """Return the role of a variable or of one of its fields; the default is output.
 
     >>> role_of("req.value", {"req": "input"}), role_of("gnt", {"req": "input"})
     ('input', 'output')
@@ -185,7 +185,7 @@ def role_of(name: str, roles: Roles) -> str:
 
 
 def _predicates(formula: Formula) -> set[int]:
-    """Return the identities of the predicates: where a formula is expected, and not below another predicate."""
+    """Return the identities of the predicates: those where a formula is expected, outside other predicates."""
     found: set[int] = set()
     seen: set[int] = set()
     stack = [formula]
@@ -203,7 +203,7 @@ def _predicates(formula: Formula) -> set[int]:
 
 
 def _apply_to_predicate(predicate: Formula, semantics: PredicateSemantics, roles: Roles) -> Formula:
-    """Return what a semantics puts in the place of a predicate, which still reads what the predicate reads."""
+    """Return the replacement of a predicate under a semantics; it reads the same variables."""
     try:
         applied = semantics(predicate, roles)
     except StlError:
@@ -231,7 +231,7 @@ def _apply_to_predicate(predicate: Formula, semantics: PredicateSemantics, roles
                 f"the semantics {_name(semantics)} returned '{excerpt(applied)}' for the predicate "
                 f"'{excerpt(predicate)}', which does not read '{name}'; use the predicate's own variables"
             )
-    # min(inf, v) is v; the truth, +inf or -inf, is computed for its operands.
+    # min(inf, v) is v; the truth, +inf or -inf, is added only so that its operands are computed.
     return STL["and"](STL["or"](holding, STL["true"]()), applied)
 
 

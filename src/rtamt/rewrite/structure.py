@@ -1,9 +1,9 @@
-"""What of a formula can be explained: predicates, and the minimum and maximum, in time too, over them.
+"""The structure of a formula for explanations: predicates under minimum and maximum, also over time.
 
-A formula is read as its *predicates* (leaves, in the user's words) under operators whose value is
-always that of one of their operands at some instant, or its negation: after desugaring, the kernels
-min, max, neg, windows, one sample away, since and until. No operator is named here. One that is not
-made of these (added with a definition alone, or with arithmetic over formulas) is a leaf as a whole.
+A formula is split into *predicates* (leaves, as the user wrote them) under operators whose value is
+always that of one of their operands at some instant, or its negation. After desugaring these are the kernels
+min, max, neg, windows, shifts, since and until. No operator is named here. An operator not composed of these
+(added with a definition alone, or with arithmetic over formulas) is a leaf as a whole.
 """
 
 from __future__ import annotations
@@ -20,11 +20,11 @@ from rtamt.rewrite.desugar import desugar
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-#: Later than every cell (a sample, in dense time a tick), and so small that a few of them still add up
+#: Later than every cell (a sample, in dense time a tick), and small enough that a few of them still add up
 #: within 64 bits.
 NEVER = 2**60
 
-#: Opcodes of the instructions that choose one of their operands.
+#: Opcodes of the instructions that select one of their operands.
 CHOOSING = ("min", "max")
 NEGATION = "neg"
 
@@ -34,7 +34,7 @@ Place = tuple[Formula, int]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Leaf:
-    """A predicate of the user's formula; ``fixed`` where it reads no variable."""
+    """A predicate of the user's formula; ``fixed`` if it reads no variable."""
 
     name: str
     formula: Formula
@@ -43,12 +43,12 @@ class Leaf:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Structure:
-    """A core formula over variables that stand for predicates, and those predicates.
+    """A core formula over variables that stand for predicates, and these predicates.
 
-    ``core`` is written in cells (see :func:`in_cells`); ``order`` holds its distinct sub-formulas,
-    operands first; ``polar`` the formula of each place in which every predicate is two variables, one
-    for its places under an even number of negations and one for the others: it can only grow with
-    the first and shrink with the second.
+    ``core`` is expressed in cells (see :func:`in_cells`); ``order`` holds its distinct sub-formulas,
+    operands first. ``polar`` is the formula at each place with every predicate split into two variables, one
+    for its occurrences under an even number of negations and one for the others: it is nondecreasing in
+    the first and nonincreasing in the second.
     """
 
     core: Formula
@@ -58,7 +58,7 @@ class Structure:
 
     @classmethod
     def of(cls, formula: Formula, tick: Fraction | None) -> Structure:
-        """Take a formula apart; ``tick`` is the length of a tick in dense time, None in discrete time."""
+        """Analyse a formula; ``tick`` is the length of a tick in dense time, None in discrete time."""
         skeleton, leaves = _over_leaves(formula)
         core = desugar(skeleton)
         if tick is not None:
@@ -73,7 +73,7 @@ def literal(name: str, sign: int) -> str:
 
 
 def opcode(node: Formula) -> str | None:
-    """Return what a node of a core formula does with values at one instant; None where it reads others."""
+    """Return the opcode of a pointwise node of a core formula; None if it reads other instants."""
     kernel = node.op.kernel if isinstance(node, Apply) else None
     return kernel.opcode if isinstance(kernel, Pointwise) else None
 
@@ -82,7 +82,7 @@ def opcode(node: Formula) -> str | None:
 
 
 def _over_leaves(formula: Formula) -> tuple[Formula, dict[str, Leaf]]:
-    """Return the formula with a variable for each distinct predicate, and the predicates."""
+    """Return the formula with each distinct predicate replaced by a variable, and the predicates."""
     names: dict[Formula, str] = {}
     rebuilt: dict[int, Formula] = {}
     stack: list[tuple[Formula, bool]] = [(formula, False)]
@@ -105,7 +105,7 @@ def _over_leaves(formula: Formula) -> tuple[Formula, dict[str, Leaf]]:
 
 
 def _is_connective(node: Formula) -> TypeGuard[Apply]:
-    """Tell whether a node's value is always that of one of its operands somewhere, or its negation."""
+    """Return whether a node's value is always that of one of its operands at some instant, or its negation."""
     if not isinstance(node, Apply) or node.op.result is Sort.NUMBER or node.op.truth is not None:
         return False
     if any(sort is not Sort.FORMULA for sort in node.op.operands):
@@ -141,10 +141,10 @@ def _polar(order: tuple[Formula, ...], leaves: Mapping[str, Leaf]) -> dict[Place
 
 
 def in_cells(formula: Formula) -> Formula:
-    """Return a core formula of dense time that means the same when its ticks are read as samples.
+    """Convert a dense-time core formula to one with the same meaning when its ticks are read as samples.
 
-    Windows of right-continuous signals do as they stand. ``φ since ψ`` needs φ on the rest of the
-    tick at which ψ held, unless that is the present one; ``φ until[a,b] ψ`` with a > 0 needs it up to
+    Windows of right-continuous signals need no change. ``φ since ψ`` requires φ on the rest of the
+    tick at which ψ held, unless that is the present one; ``φ until[a,b] ψ`` with a > 0 requires it up to
     and including the tick that is a ahead.
     """
 
@@ -184,7 +184,7 @@ def bounds_of(node: Apply) -> tuple[Fraction, Fraction | None]:
 
 
 def window_of(node: Apply, period: Fraction) -> tuple[int, int]:
-    """Return the bounds of an operator in cells of ``period`` seconds; ``NEVER`` where there is no end."""
+    """Return the bounds of an operator in cells of ``period`` seconds; ``NEVER`` if unbounded."""
     begin, end = bounds_of(node)
     return min(int(begin / period), NEVER), NEVER if end is None else min(int(end / period), NEVER)
 
