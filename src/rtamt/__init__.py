@@ -136,7 +136,7 @@ __all__ = [
     "scan",
 ]
 
-#: What a program that only parses and monitors does not need, and where it is; the rest is the paper's API.
+#: Names that are imported on first use, with their modules; all others are the paper's API.
 _LATER = {
     "Channel": "rtamt.signals.trace",
     "StreamResult": "rtamt.verdicts.streaming",

@@ -1,4 +1,4 @@
-"""``python -m rtamt``: the command line, where the command ``rtamt`` is not on the path."""
+"""``python -m rtamt``: the command line if the command ``rtamt`` is not on the path."""
 
 import sys
 

@@ -1,4 +1,4 @@
-"""One requirement over many recordings, on all cores; many requirements over one, in one program."""
+"""Evaluate one requirement on many traces in parallel, or many requirements on one trace in one program."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from rtamt.specification import Specification
 
 
-#: Samples from which on the engine lets other threads run: `many` in core/python/arrays.hpp.
+#: The number of samples from which the core releases the GIL: `many` in core/python/arrays.hpp.
 LONG = 4096
 
 # ---- many recordings -----------------------------------------------------------------------------
@@ -40,16 +40,16 @@ def evaluate_batch(
     tolerance: float | None = None,
     **reading: Unpack[EvaluationSettings],
 ) -> list[Result]:
-    """Evaluate one requirement over many finished recordings, in threads; results in their order.
+    """Evaluate one requirement on many complete traces, in threads; return the results in the same order.
 
-    ``traces``: each what :meth:`Specification.evaluate` takes, and so are the other arguments
-    (``time=``, ``period=``, ...). It is compiled once. The compiled core runs without the interpreter's
-    lock, so that long recordings keep every core of the machine busy; short ones cost what their checks
-    in Python cost. An iterator is read one recording at a time, as threads become free.
-    ``workers``: threads; by default one for each core as soon as a recording is long enough for the engine to
-    let other threads run.
+    ``traces``: each as for :meth:`Specification.evaluate`; so are the other arguments
+    (``time=``, ``period=``, ...). The requirement is compiled once. The compiled core releases the GIL,
+    so that long traces use all cores of the machine; for short traces the checks
+    in Python dominate. An iterator is read one trace at a time, as threads become free.
+    ``workers``: the number of threads; by default one per core as soon as a trace is long enough for the core to
+    release the GIL.
 
-    Raises what ``evaluate`` raises at the first recording that is wrong, its number (from 0) in front.
+    Raises the error of ``evaluate`` for the first invalid trace, prefixed with its index (from 0).
 
     >>> import rtamt
     >>> spec = rtamt.parse("always(x >= 3)")
@@ -81,7 +81,7 @@ def evaluate_batch(
 
 
 class _Work:
-    """Recordings that any number of threads take one after the other until none is left or one is wrong."""
+    """A queue of recordings that threads process until it is empty or a recording is invalid."""
 
     def __init__(self, evaluate: Callable[[Any], Result], traces: Iterable[Any]) -> None:
         self._evaluate = evaluate
@@ -91,7 +91,7 @@ class _Work:
         self._errors: dict[int, Exception] = {}
 
     def run(self, *, alone: bool = False) -> None:
-        """Evaluate until there is nothing left to do; for one thread, ``alone`` until it is worth more."""
+        """Evaluate until the queue is empty; with ``alone``, return when more threads would pay off."""
         while True:
             with self._lock:
                 item = None if self._errors else next(self._traces, None)
@@ -107,12 +107,12 @@ class _Work:
                 return
 
     def stop(self) -> None:
-        """Let no thread take another recording."""
+        """Stop all threads after their current recording."""
         with self._lock:
             self._traces = iter(())
 
     def results(self) -> list[Result]:
-        """Return the results in order, or raise what went wrong first."""
+        """Return the results in order, or raise the first error."""
         for number in sorted(self._errors):
             error = self._errors[number]
             raise placed(error, f"trace {number}") if isinstance(error, StlError) else error
@@ -129,15 +129,15 @@ def evaluate_all(
     tolerance: float | None = None,
     **reading: Unpack[EvaluationSettings],
 ) -> list[Result]:
-    """Evaluate many requirements over one finished recording, in one program; results in their order.
+    """Evaluate many requirements on one complete trace, in one program; return the results in the same order.
 
     ``data`` and the other arguments (``time=``, ``period=``, ...) are those of
-    :meth:`Specification.evaluate`; ``data`` has the variables of all. They are checked once, and what
-    the formulas have in common is computed once. Each result is the one that ``evaluate`` gives; in
-    dense time all signals must have an instant in common.
+    :meth:`Specification.evaluate`; ``data`` contains the variables of all requirements. Data are checked once,
+    and common sub-formulas are computed once. Each result equals that of ``evaluate``; in
+    dense time all signals must have a common instant.
 
-    Raises what ``evaluate`` raises; the number (from 0) of the requirement is in front of an error in
-    its bounds.
+    Raises the errors of ``evaluate``; errors in bounds are prefixed with the index (from 0) of the
+    requirement.
 
     >>> import rtamt
     >>> specs = [rtamt.parse(text) for text in ("always(x >= 3)", "always(x >= 3 or y >= 1)")]
@@ -148,7 +148,7 @@ def evaluate_all(
     for number, spec in enumerate(specs):
         with _place(number):
             queries.append(spec.query(tolerance=tolerance, **reading))
-    # One program serves all that read the recording alike.
+    # One program serves all queries that read the recording in the same way.
     alike: dict[Hashable, list[int]] = {}
     for number, (spec, query) in enumerate(zip(specs, queries, strict=True)):
         alike.setdefault((query.domain, query.unit, spec.backend), []).append(number)
@@ -163,16 +163,16 @@ _Asked = dict[int, tuple["Specification", "Query"]]
 
 
 def _evaluate_alike(asked: _Asked, data: Any) -> Iterator[tuple[int, Result]]:
-    """Yield numbers and results of queries that read the recording by the same clock."""
+    """Yield indices and results of queries in the same time domain."""
     names = tuple(dict.fromkeys(name for spec, _ in asked.values() for name in spec.input_names))
     spec, query = next(iter(asked.values()))
     whole = query.record(data, names)
     for number, (_, query) in asked.items():
-        if query.domain.step is None:  # else checked without the recording
+        if query.domain.step is None:  # otherwise checked without the recording
             with _place(number):
                 whole.check(query.formula, query.text)
     for number, (spec, query) in list(asked.items()):
-        if len(spec.requirements) > 1 and query.domain.continuous:  # each may start at a time of its own
+        if len(spec.requirements) > 1 and query.domain.continuous:  # each may start at a different time
             yield number, spec.result(query, whole.select(spec.input_names))
             del asked[number]
     if not asked:
@@ -190,9 +190,9 @@ def _evaluate_alike(asked: _Asked, data: Any) -> Iterator[tuple[int, Result]]:
 
 
 def _with_one_extent(asked: _Asked, whole: DomainTrace) -> Iterator[tuple[DomainTrace, list[int]]]:
-    """Yield the parts of a recording that one program can run over, and whose queries each answers.
+    """Yield the parts of a recording that share a start and end, each with the queries that it answers.
 
-    A recording begins and ends with the signals that a formula reads.
+    The extent of a recording depends on the signals that a formula reads.
     """
     extents: dict[Hashable, list[int]] = {}
     for number, (spec, _) in asked.items():

@@ -1,20 +1,20 @@
-"""Every exception that the library raises on purpose, and nothing else.
+"""The exceptions that the library raises.
 
 ::
 
     StlError                     base of all
     ├── SpecificationError       the text of a requirement is wrong: .text, .span
-    │   ├── ParseError           it cannot be read
-    │   ├── NameInFormulaError   it uses a name nobody declared
-    │   └── BoundError           an interval cannot be used as it stands
+    │   ├── ParseError           a syntax error
+    │   ├── NameInFormulaError   an undeclared name
+    │   └── BoundError           an invalid interval
     ├── TraceError               the data is wrong: .variable, .index, .time
     ├── EvaluationError          the data makes a sub-formula undefined (0/0, sqrt(-1), inf - inf)
-    ├── UsageError               a call, option or setting that does not exist or does not fit
+    ├── UsageError               an invalid call, option or setting
     └── RTAMTException           raised by the paper's API; str() begins "RTAMT Exception: "
         └── STLParseException    the same, for text
 
-A message is one sentence: what is wrong, where, how to mend it. Errors about text also carry
-the line and a caret under the place.
+A message is one sentence: what is wrong, where, and how to fix it. Errors about text also show
+the line with a caret under the position.
 """
 
 from __future__ import annotations
@@ -30,13 +30,13 @@ if TYPE_CHECKING:
 
     from rtamt.language.formula import Span
 
-#: Characters of a long line that are shown on each side of a place.
+#: The number of characters of a long line shown on each side of a position.
 _SHOWN = 60
 
-#: Names that a message lists.
+#: The largest number of names that a message lists.
 _LISTED = 16
 
-#: A word that is longer than any path or name should be.
+#: A word longer than any reasonable path or name.
 _PAGES = re.compile(r"\S{600,}")
 
 
@@ -46,9 +46,9 @@ def _abbreviated(word: re.Match[str]) -> str:
 
 
 class StlError(Exception):
-    """Base of every exception raised on purpose by this library.
+    """Base class of all exceptions of this library.
 
-    A word of the message that has pages, such as a number of a million digits, is abbreviated.
+    Very long words of a message, such as a number of a million digits, are abbreviated.
     """
 
     def __init__(self, message: object = "", *more: object) -> None:
@@ -56,9 +56,9 @@ class StlError(Exception):
 
 
 class SpecificationError(StlError):
-    """A requirement's text is wrong.
+    """The text of a requirement is invalid.
 
-    ``message`` is the sentence alone; ``str()`` adds line, column and a caret where the text is known.
+    ``message`` is the sentence alone; ``str()`` adds line, column and a caret if the text is known.
     """
 
     def __init__(self, message: str, text: str | None = None, span: Span | None = None) -> None:
@@ -78,15 +78,15 @@ class ParseError(SpecificationError):
 
 
 class NameInFormulaError(SpecificationError):
-    """A name in the text was never declared."""
+    """A name in the text is not declared."""
 
 
 class BoundError(SpecificationError):
-    """An interval is reversed, negative, no multiple of the period, or unbounded where it may not be."""
+    """An interval is reversed, negative, not a multiple of the period, or unbounded where this is not allowed."""
 
 
 class TraceError(StlError):
-    """The data cannot be used: the message names the variable, the index and the time."""
+    """The data is invalid; the message names the variable, the index and the time."""
 
     def __init__(
         self,
@@ -103,11 +103,11 @@ class TraceError(StlError):
 
 
 class EvaluationError(StlError):
-    """A sub-formula has no value at an instant: the message names both."""
+    """A sub-formula has no value at an instant; the message names both."""
 
 
 class UsageError(StlError):
-    """A call or setting that does not exist or does not fit."""
+    """A call, option or setting is invalid."""
 
 
 class RTAMTException(StlError):  # noqa: N818 - the name is the paper's API
@@ -118,7 +118,7 @@ class RTAMTException(StlError):  # noqa: N818 - the name is the paper's API
 
 
 class STLParseException(RTAMTException):
-    """Raised by the paper's API for text that cannot be read."""
+    """Raised by the paper's API for text that cannot be parsed."""
 
 
 def caret(text: str, span: Span) -> str:
@@ -137,20 +137,20 @@ def caret(text: str, span: Span) -> str:
     ends = [end for end in (text.find("\n", start), text.find("\r", start)) if end >= 0]
     line_end = min(ends, default=len(text))
     number = 1 + sum(text.count(end, 0, line_start) for end in "\r\n") - text.count("\r\n", 0, line_start)
-    # A machine may have written a line of a million characters: show what lies around the place.
+    # Generated lines may have a million characters: show only the surroundings of the position.
     shown_from = max(line_start, start - _SHOWN) if start - line_start > _SHOWN + 10 else line_start
     shown_to = min(line_end, start + _SHOWN) if line_end - start > _SHOWN + 10 else line_end
     before = "... " if shown_from > line_start else ""
     after = " ..." if shown_to < line_end else ""
     line = before + text[shown_from:shown_to] + after
-    # Tabs keep their width, so that the caret stands under the character it means.
+    # Tabs are kept, so that the caret is aligned with its character.
     pad = "".join("\t" if c == "\t" else " " for c in before + text[shown_from:start])
     width = max(1, min(span.end, shown_to) - start)
     return f"  line {number}, column {start - line_start + 1}:\n    {line}\n    {pad}{'^' * width}"
 
 
 def placed(error: StlError, where: str) -> StlError:
-    """Return the same error whose message begins with where it arose, one of many of its kind.
+    """Return the same error with a message prefixed by its origin, such as the index of a trace.
 
     >>> raise placed(TraceError("'x' has no samples: give at least one", variable="x"), "trace 7")
     Traceback (most recent call last):
@@ -165,7 +165,7 @@ def placed(error: StlError, where: str) -> StlError:
 
 
 def shown(value: object) -> str:
-    """Return a value as a message shows it: as Python writes it, and never pages of it.
+    """Return a value for a message: its repr, abbreviated if long.
 
     >>> shown("abc"), len(shown(10**400)), shown(10**10_000)
     ("'abc'", 40, '<an int of about 10001 digits>')
@@ -176,7 +176,7 @@ def shown(value: object) -> str:
 class _Repr(reprlib.Repr):
     def repr_int(self, x: int, level: int) -> str:
         digits = int(x.bit_length() * 0.30103) + 1
-        if digits > 4000:  # Python itself writes none with more than 4300
+        if digits > 4000:  # Python does not convert integers of more than 4300 digits
             return f"<an int of about {digits} digits>"
         return super().repr_int(x, level)
 
@@ -185,7 +185,7 @@ _AS_SHOWN = _Repr()
 
 
 def with_article(noun: str) -> str:
-    """Return a noun with its article; most names of types that begin with a u are read "you".
+    """Return a noun with its indefinite article; most type names beginning with "u" are pronounced "you".
 
     >>> with_article("int"), with_article("Odometry"), with_article("UInt8"), with_article("str")
     ('an int', 'an Odometry', 'a UInt8', 'a str')
@@ -204,7 +204,7 @@ def did_you_mean(name: object, known: Iterable[str]) -> str:
 
 
 def choices(name: object, known: Iterable[str], noun: str) -> str:
-    """Return the nearest known name, then all of them, the nearest first, and of a long list the beginning.
+    """Return the nearest known name, then the known names with the nearest first; a long list is cut.
 
     >>> choices("gmt", ["req", "gnt"], "columns")
     "; did you mean 'gnt'? (columns: gnt, req)"
@@ -220,10 +220,10 @@ def choices(name: object, known: Iterable[str], noun: str) -> str:
 
 
 def escaped(text: str) -> str:
-    r"""Return a text with its control characters written out: what a file is called must not drive a terminal.
+    r"""Return a text with control characters escaped, so that file names cannot control a terminal.
 
-    Line ends and tabs stay. Also written out: what turns the direction of writing, and the bytes of file names that are
-    not UTF-8 (Python's surrogate escapes).
+    Line ends and tabs are kept. Bidirectional marks, and bytes of file names that are
+    not UTF-8 (Python's surrogate escapes), are escaped, too.
 
     >>> print(escaped("log\x1b[2J\x07.csv"), escaped("a\u202eb"), escaped("caf\udce9.csv"))
     log\x1b[2J\x07.csv a\u202eb caf\xe9.csv
@@ -231,14 +231,14 @@ def escaped(text: str) -> str:
     return _UNPRINTABLE.sub(lambda match: _written(ord(match[0])), text)
 
 
-#: Control characters (C0, DEL, C1), line separators, marks of direction, and surrogates.
+#: Control characters (C0, DEL, C1), line separators, bidirectional marks, and surrogates.
 _UNPRINTABLE = re.compile(
     "[\x00-\x08\x0b-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069\ud800-\udfff]"
 )
 
 
 def readable(text: str) -> str:
-    r"""Return a text that can be encoded: bytes of file names that are not UTF-8 are written out.
+    r"""Return a text that can be encoded: bytes of file names that are not UTF-8 are escaped.
 
     >>> print(readable("caf\udce9.csv"))
     caf\xe9.csv

@@ -1,7 +1,7 @@
-"""What it takes to add to the language: the records, the formulas they build, and the header for C++.
+"""Extend the language with custom operators: the records, formula constructors, and the C++ header.
 
-``docs/how-to/extend.md`` shows it on worked examples. A new operator is one record; ``STL.extend(...)``
-is the language with it, for ``language=`` of :func:`rtamt.parse` and ``--language`` on the command line.
+See ``docs/how-to/extend.md`` for worked examples. A new operator is one record; ``STL.extend(...)``
+returns a language with it, for ``language=`` of :func:`rtamt.parse` and ``--language`` on the command line.
 
 >>> from rtamt.extend import STL, Fixity, Operator, Sort
 >>> import rtamt
@@ -59,5 +59,5 @@ def get_cmake_dir() -> str:
 
 
 def _installed(folder: str) -> Path:
-    # Beside the compiled core, which an editable install keeps elsewhere than the Python files.
+    # Next to the compiled core, which an editable install keeps apart from the Python files.
     return Path(str(core().__file__)).parents[1] / folder

@@ -1,13 +1,13 @@
-"""What need not be installed: libraries that only some programs need, and the message classes a text names.
+"""Optional imports: the libraries of extras, and the message classes that a specification names.
 
-A specification is text, which somebody else may have written, so that it imports very little:
+A specification may come from an untrusted author, so its imports are restricted:
 
-- only from modules called ``<package>.msg``, as the messages of ROS are;
-- only from packages that lie on the module path by choice: one that is found in the current directory, where
-  Python looks by itself, is refused unless Python code has imported it already;
-- only from packages that have a module ``msg``: no other package is imported to find out;
+- only from modules called ``<package>.msg``, like ROS messages;
+- only from packages that are on the module path deliberately: a package in the current directory, which
+  Python searches by default, is rejected unless Python code has already imported it;
+- only from packages with a module ``msg``: no other package is imported to find out;
 - only message classes: those of ROS 1 (``genpy.Message``) and of ROS 2, which have
-  ``get_fields_and_field_types``. Nothing else of a module is called.
+  ``get_fields_and_field_types``. Nothing else in a module is called.
 """
 
 from __future__ import annotations
@@ -26,9 +26,9 @@ _MESSAGE_CLASS = re.compile(r"[A-Za-z]\w*", re.ASCII)
 
 
 def library(module: str, what: str, extra: str) -> Any:
-    """Import a library that an extra of ours installs; raise :class:`UsageError` where it is not there.
+    """Import a library of one of the extras; raise :class:`UsageError` if it is not installed.
 
-    ``what``: what needs it, the beginning of the sentence.
+    ``what``: the feature that needs it, the beginning of the message.
     """
     try:
         return importlib.import_module(module)
@@ -79,7 +79,7 @@ def message_package(module: str, name: str) -> str:
 
 
 def _is_in_current_directory(package: str) -> bool:
-    spec = PathFinder.find_spec(package)  # finds a package without running it
+    spec = PathFinder.find_spec(package)  # finds a package without executing it
     if spec is None:
         return False
     places = list(spec.submodule_search_locations or ()) or [spec.origin or ""]
@@ -88,8 +88,8 @@ def _is_in_current_directory(package: str) -> bool:
 
 
 def _has_no_messages(package: str, module: str) -> bool:
-    """Tell whether a package lies on the module path and has no messages, without running it."""
-    # A package of several folders, such as a workspace over another one, joins them when it is run.
+    """Return whether a package is on the module path and has no messages, without executing it."""
+    # A package may span several folders, such as ROS overlays, which it joins when it is executed.
     specs = [spec for entry in sys.path if (spec := PathFinder.find_spec(package, [entry])) is not None]
     places = [place for spec in specs for place in spec.submodule_search_locations or ()]
     return bool(specs) and PathFinder.find_spec(module, places) is None
@@ -98,7 +98,7 @@ def _has_no_messages(package: str, module: str) -> bool:
 def _is_message(found: object) -> bool:
     if not isinstance(found, type):
         return False
-    genpy = sys.modules.get("genpy")  # which every module of messages for ROS 1 imports
+    genpy = sys.modules.get("genpy")  # imported by every ROS 1 message module
     return hasattr(found, "get_fields_and_field_types") or (
         genpy is not None and issubclass(found, genpy.Message)
     )

@@ -1,4 +1,4 @@
-"""Output files that are there as a whole or not at all."""
+"""Write output files completely or not at all."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def nearest_file(path: str) -> str:
-    """Return ``"; did you mean 'log.csv'?"`` for the file of the nearest name in the same folder, else nothing."""
+    """Return ``"; did you mean 'log.csv'?"`` for the nearest name in the same folder, else an empty string."""
     folder, name = os.path.split(path)
     try:
         names = os.listdir(folder or ".")
@@ -28,10 +28,10 @@ def nearest_file(path: str) -> str:
 
 @contextmanager
 def replacing(path: str | os.PathLike[str]) -> Iterator[str]:
-    """Give a new file to write in the folder of ``path``; it takes the place of ``path`` when all has gone well.
+    """Yield a temporary file in the folder of ``path``, which replaces ``path`` on success.
 
-    Its permissions are those of the file that it replaces, and a link goes on pointing to where it did.
-    What is no file (a pipe, a terminal, ``/dev/stdout``) is written directly. Raises :class:`OSError`.
+    It keeps the permissions of the file that it replaces; symbolic links are followed.
+    Anything but a regular file (a pipe, a terminal, ``/dev/stdout``) is written directly. Raises :class:`OSError`.
     """
     given = os.fspath(path)
     known = _status(given)
@@ -40,7 +40,7 @@ def replacing(path: str | os.PathLike[str]) -> Iterator[str]:
         return
     target = os.path.realpath(given)
     folder, name = os.path.split(target)
-    stem, suffix = os.path.splitext(name)  # what draws pictures goes by the suffix
+    stem, suffix = os.path.splitext(name)  # plotting libraries choose the format by the extension
     new = os.path.join(folder, f".{stem[:100]}.{secrets.token_hex(4)}{suffix}")
     if known is not None and not os.access(target, os.W_OK):
         raise PermissionError(13, "Permission denied", given)
@@ -75,7 +75,7 @@ def _status(path: str) -> os.stat_result | None:
 
 
 def _is_plain(known: os.stat_result) -> bool:
-    """Tell whether a path is a file, and not one that a standard stream of this process writes to."""
+    """Return whether a path is a regular file that no standard stream of this process writes to."""
     return stat.S_ISREG(known.st_mode) and not any(
         os.path.samestat(known, stream) for stream in _standard_streams()
     )

@@ -1,6 +1,6 @@
-"""Colours for formulas and ``.stl`` files: the kinds of words, from the table of operators, and a lexer for Pygments.
+"""Syntax highlighting for formulas and ``.stl`` files: keyword classes from the operator table, and a Pygments lexer.
 
-Pygments finds the lexer by its entry point under the names ``stl`` and ``rtamt``, and by the suffix ``.stl``.
+Pygments finds the lexer by its entry point under the names ``stl`` and ``rtamt``, and by the extension ``.stl``.
 """
 
 from __future__ import annotations
@@ -22,12 +22,12 @@ if TYPE_CHECKING:
 
 __all__ = ["DECLARING", "StlLexer", "functions", "logical", "symbols", "temporal"]
 
-#: The words of specification files that are no operators.
+#: The keywords of specification files that are not operators.
 DECLARING = ("specification", "from", "import", "input", "output", "const", "topic", "require", "severity")
 
 
 def temporal() -> list[str]:
-    """Return the words that speak of other instants.
+    """Return the keywords of temporal operators.
 
     >>> "always" in temporal() and "G" in temporal() and "and" not in temporal()
     True
@@ -45,7 +45,7 @@ def functions() -> list[str]:
 
 
 def logical() -> list[str]:
-    """Return the other words: connectives and truth values.
+    """Return the other keywords: connectives and truth values.
 
     >>> logical()
     ['and', 'false', 'iff', 'implies', 'not', 'or', 'true', 'xor']
@@ -54,7 +54,7 @@ def logical() -> list[str]:
 
 
 def symbols() -> list[str]:
-    """Return the operators that are no words, the longest first.
+    """Return the operators that are symbols, the longest first.
 
     >>> symbols()[:2]
     ['!==', '<->']
@@ -72,7 +72,7 @@ _LETTERS = tuple(word for word in temporal() if len(word) <= 2)
 
 
 class StlLexer(RegexLexer):
-    """Signal Temporal Logic, as rtamt reads it.
+    """A lexer for Signal Temporal Logic in the syntax of rtamt.
 
     Single letters such as ``G`` are operators only before an interval or a parenthesis: elsewhere
     they may be variables.

@@ -1,4 +1,4 @@
-"""What an evaluation gives: numbers and a verdict at the first instant, and signals on demand."""
+"""The result of an evaluation: robustness and verdict at the first instant, and signals on demand."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Result:
-    """What an evaluation gives: numbers and a verdict at the first instant, and the whole signal.
+    """The result of an evaluation: robustness and verdict at the first instant, and the whole signal.
 
     >>> import rtamt
     >>> rtamt.parse("always(x >= 3)").evaluate({"x": [5, 4, 2]})
@@ -41,9 +41,9 @@ class Result:
 
     specification: Specification
     trace: DomainTrace
-    #: ρ at every sample, in dense time at every change and at the end: ``.times`` and ``.values``.
+    #: ρ at every sample; in dense time at every change and at the end: ``.times`` and ``.values``.
     signal: Signal
-    #: What predicates were worth: a name, or the function that was given.
+    #: The semantics of predicates: a name, or the given function.
     semantics: str | PredicateSemantics = "standard"
     #: What is known already: of a requirement what its program has found, of several with different starts each.
     known: Judged | Mapping[str, Result] | None = None
@@ -67,10 +67,10 @@ class Result:
 
     @cached_property
     def requirements(self) -> Mapping[str, Result]:
-        """What the evaluation gives for each requirement, by name, in the order of the text.
+        """The results of the requirements by name, in the order of the text.
 
-        The robustness of the result is the minimum of theirs, and it is satisfied where all of them are. In dense
-        time each has a trace of its own, which starts when all variables that it reads have started.
+        The robustness of this result is their minimum, and it is satisfied if all of them are. In dense
+        time each requirement has its own trace, which starts when all of its variables have started.
 
         >>> import rtamt
         >>> spec = rtamt.parse("require low: always(x <= 3); require high: always(x >= 1)")
@@ -100,9 +100,9 @@ class Result:
 
     @property
     def interval(self) -> Interval:
-        """Bounds of the robustness at the first instant: of every trace that agrees with the samples.
+        """Bounds of the robustness at the first instant, over all traces that agree with the samples.
 
-        Of samples that are all known exactly both are the robustness.
+        If all samples are known exactly, both bounds are the robustness.
 
         >>> import rtamt
         >>> spec = rtamt.parse("eventually[0:2](x >= 3)")
@@ -132,7 +132,7 @@ class Result:
     def satisfied(self) -> bool:
         """Whether the formula holds at the first instant: Boolean semantics, evaluated on its own.
 
-        The same under every semantics. Where the robustness is 0, only this has a verdict.
+        It is the same under every semantics, and defined even if the robustness is 0.
 
         >>> import rtamt
         >>> [rtamt.parse(text).evaluate({"x": [3]}).satisfied for text in ("x >= 3", "x > 3")]
@@ -144,7 +144,7 @@ class Result:
 
     @property
     def _decided(self) -> bool:
-        """The verdict at the first instant of samples that are known in part, if these decide it."""
+        """The verdict at the first instant from partly known samples, if they decide it."""
         spec = self.specification
         truth = spec.signal_of(spec.outputs().truth, self.trace)
         assert isinstance(truth, BoundedSignal)
@@ -166,11 +166,11 @@ class Result:
         return verdicts.first_violation(spec.outputs().truth, self.trace, spec.signals_of)
 
     def explain(self, at: Any = None) -> Explanation:
-        """Tell why the formula is satisfied or violated: which instants of which signals are responsible.
+        """Explain why the formula is satisfied or violated: which signals are responsible, and when.
 
-        ``at``: a time of the recording, as its times are told; by default the first instant. What is
-        explained is the robustness under the semantics of the evaluation, and the verdict, which is the
-        same under each. Raises :class:`UsageError` where the recording has no such time.
+        ``at``: a time of the trace, in the form in which times were given; by default the first instant. The
+        explanation covers the robustness under the semantics of the evaluation, and the verdict, which is the
+        same under every semantics. Raises :class:`UsageError` if the trace has no such time.
 
         >>> import rtamt
         >>> spec = rtamt.parse("always(req >= 3 -> eventually[0:2](gnt >= 3))")
@@ -208,14 +208,15 @@ class Result:
         zoom: str | None = None,
         figure: Figure | None = None,
     ) -> Figure:
-        """Draw signals, robustness over time and the explanation; needs ``pip install 'rtamt[plot]'``.
+        """Plot the signals, the robustness over time and the explanation; needs ``pip install 'rtamt[plot]'``.
 
-        Signals that a predicate compares share a panel. Below them the robustness of the formula and of at
-        most ``rows - 1`` of its sub-formulas: named ones, those that the explanation speaks of, and those
-        next to the top. Shaded is where each does not hold (Boolean semantics), yellow the implicant, a
-        diamond the critical point; infinities are drawn at the edge. ``at``: what is explained, as in
-        :meth:`explain`. ``start`` and ``end``: the times that are seen; ``zoom="violation"``: those around the
-        first violation. ``figure``: one of matplotlib to draw into, by default a new one of pyplot.
+        Signals that a predicate compares share a panel. Below them are the robustness of the formula and of at
+        most ``rows - 1`` sub-formulas: named ones, those that the explanation mentions, and those
+        next to the top. Intervals in which a formula does not hold are shaded (Boolean semantics), the sufficient
+        cause is yellow, and a diamond marks the critical point; infinities are drawn at the edge. ``at``: the
+        instant to explain, as in :meth:`explain`. ``start`` and ``end``: the visible time range;
+        ``zoom="violation"``: the range around the first violation. ``figure``: the matplotlib figure to draw
+        into, by default a new one of pyplot.
 
         >>> import rtamt
         >>> from matplotlib.figure import Figure
@@ -235,7 +236,7 @@ class Result:
         return canvas
 
     def plot_tree(self, at: Any = None, *, figure: Figure | None = None) -> Figure:
-        """Draw the formula as a tree, each sub-formula with its robustness and verdict at an instant.
+        """Plot the formula as a tree, each sub-formula with its robustness and verdict at an instant.
 
         ``at`` and ``figure`` as for :meth:`plot`. The predicate of the critical point has a thick frame.
 
@@ -257,7 +258,7 @@ class Result:
     def __getitem__(self, name: str) -> Signal:
         """Return the signal of a named sub-specification, or of any formula over the same variables.
 
-        Under the semantics of the evaluation; numbers (``x + 1``) are what they are under each.
+        The semantics is that of the evaluation; numbers (``x + 1``) are the same under every semantics.
 
         >>> import rtamt
         >>> result = rtamt.parse("low = x <= 3; always(low)").evaluate({"time": [0, 1], "x": [1, 2]})
@@ -282,7 +283,7 @@ class Result:
         return self.specification.signal_of(formula, self.trace)
 
     def _require_one_start(self, what: str) -> None:
-        """Raise :class:`UsageError` where requirements have traces that start at different times, or bounds alone."""
+        """Raise :class:`UsageError` if requirements have traces that start at different times, or only bounds."""
         if self.trace.bounds:
             raise UsageError(
                 f"cannot {what} a result of missing or uncertain samples; read result.interval, or evaluate samples "
@@ -311,10 +312,10 @@ def requirements_of(
 
 
 def first_violation(result: Result) -> Any:
-    """Return when a requirement is first violated, in the times of the recording; None where it holds.
+    """Return the time at which a requirement is first violated, in the times of the trace; None if it holds.
 
-    For ``always φ`` the earliest instant of its window at which φ does not hold, for a conjunction the
-    earliest of its parts, for any other formula the first instant of the recording. Boolean semantics.
+    For ``always φ`` it is the earliest instant of its window at which φ does not hold, for a conjunction the
+    earliest of its parts, and for any other formula the first instant of the trace (Boolean semantics).
 
     >>> import rtamt
     >>> rtamt.first_violation(rtamt.parse("always(x >= 3)").evaluate({"time": [0, 1, 2], "x": [5, 1, 0]}))

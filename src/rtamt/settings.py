@@ -1,4 +1,4 @@
-"""What :func:`rtamt.parse` takes besides the text: one list, and what is said of a wrong setting."""
+"""The keyword arguments of :func:`rtamt.parse`, defined once, and the errors for invalid values."""
 
 from __future__ import annotations
 
@@ -49,13 +49,13 @@ class EvaluationSettings(TypedDict, total=False):
 
 
 def check_language(language: Language) -> None:
-    """Raise :class:`UsageError` unless this is a language."""
+    """Raise :class:`UsageError` unless the value is a language."""
     if not isinstance(language, Language):
         raise UsageError(f"language is {shown(language)}, expected a Language: STL or STL.extend(...)")
 
 
 def check_backend(backend: str) -> None:
-    """Raise :class:`UsageError` unless there is such a back end."""
+    """Raise :class:`UsageError` unless the back end exists."""
     if backend not in BACKENDS:
         raise UsageError(f"unknown backend {shown(backend)}{choices(backend, BACKENDS, 'back ends')}")
 
@@ -76,9 +76,9 @@ def _check_mapping(what: str, given: object, example: str) -> None:
 
 
 def roles_of(document: Document, given: Mapping[str, str]) -> Mapping[str, str]:
-    """Return the roles that a document declares, and before them those that are given.
+    """Return the roles that a document declares, overridden by those that are given.
 
-    Raises :class:`UsageError` for a name that the document does not know, and for what is no role.
+    Raises :class:`UsageError` for a name that the document does not define, and for an invalid role.
     """
     _check_mapping("roles", given, "{'req': 'input'}")
     declared = {d.name: d.role for d in document.declarations if d.role is not None}
@@ -96,7 +96,7 @@ def roles_of(document: Document, given: Mapping[str, str]) -> Mapping[str, str]:
 
 
 def names_of(watch: str | Iterable[str]) -> tuple[str, ...]:
-    """Return what a monitor is to watch, each once; raise :class:`UsageError` for what is no list of texts."""
+    """Return the watched formulas without duplicates; raise :class:`UsageError` unless given a list of texts."""
     names = [watch] if isinstance(watch, str) else watch
     try:
         return tuple(dict.fromkeys(names))

@@ -1,4 +1,4 @@
-"""From texts and files to requirements: what ``import rtamt`` offers first."""
+"""``parse``, ``load`` and ``robustness``."""
 
 from __future__ import annotations
 
@@ -45,21 +45,21 @@ def parse(
     semantics: Semantics = "standard",
     roles: Mapping[str, str] | None = None,
 ) -> Specification:
-    """Read a requirement: a formula, or the whole text of a specification file.
+    """Parse a requirement: a formula, or the whole text of a specification file.
 
-    ``period``: the sampling period, seconds or text such as ``"100ms"``; if it is given, every bound
-    must be a multiple of it. ``unit``: of bounds without one. ``backend``: ``"cpp"`` or ``"python"``.
-    ``constants``: named numbers. ``time``: ``"discrete"``, or ``"dense"`` with ticks of ``resolution``
-    seconds, for evaluations and monitors that say nothing else; or a time domain with its settings,
+    ``period``: the sampling period, in seconds or as text such as ``"100ms"``; if it is given, every bound
+    must be a multiple of it. ``unit``: the unit of bounds without a unit. ``backend``: ``"cpp"`` or ``"python"``.
+    ``constants``: named numbers. ``time``: the default time domain of evaluations and monitors:
+    ``"discrete"``, ``"dense"`` with ticks of ``resolution`` seconds, or a time domain with its settings,
     ``rtamt.Discrete(...)`` or ``rtamt.Dense(...)``. Raises :class:`SpecificationError`
-    with the place in the text.
+    with the position in the text.
 
-    ``semantics``: what a predicate is worth. By name: ``"standard"``, its robustness; ``"boolean"``,
-    +inf or -inf by its truth; and, relative to the interface (the paper's section 2.3),
+    ``semantics``: the semantics of predicates. By name: ``"standard"``, the robustness; ``"boolean"``,
+    +inf or -inf by truth; and, relative to the interface (the paper's section 2.3),
     ``"output_robustness"``, ``"input_vacuity"``, ``"input_robustness"``, ``"output_vacuity"``. Or a
-    function of a predicate and roles that returns the formula to put in its place. ``roles``: from a
-    variable to ``"input"`` or ``"output"``, before what the text declares; without a role it is an
-    output.
+    function of a predicate and roles that returns the formula to replace it. ``roles``: from a
+    variable to ``"input"`` or ``"output"``, overriding the declarations of the text; without a role, a
+    variable is an output.
 
     >>> import rtamt
     >>> spec = rtamt.parse("always((req >= 3) -> eventually[0:5](gnt >= 3))", roles={"req": "input"})
@@ -93,7 +93,7 @@ def parse(
 
 
 def load(path: str | os.PathLike[str], **settings: Unpack[Settings]) -> Specification:
-    """Read a specification file (``.stl``); settings and errors as for :func:`parse`.
+    """Load a specification file (``.stl``); settings and errors are those of :func:`parse`.
 
     >>> import pathlib, tempfile
     >>> import rtamt
@@ -117,9 +117,9 @@ def load(path: str | os.PathLike[str], **settings: Unpack[Settings]) -> Specific
 
 
 def robustness(text: str, data: Any, *, time_unit: str | None = None, **settings: Unpack[Settings]) -> float:
-    """Return the robustness of a recording at its first instant; settings and errors as for :func:`parse`.
+    """Return the robustness of a trace at its first instant; settings and errors are those of :func:`parse`.
 
-    ``time_unit``: of times that are numbers, by default seconds; see :meth:`Specification.evaluate`.
+    ``time_unit``: the unit of numeric times, by default seconds; see :meth:`Specification.evaluate`.
 
     >>> import rtamt
     >>> rtamt.robustness("eventually(x >= 3)", {"x": [1, 2, 5]})

@@ -1,4 +1,4 @@
-"""Bags: which column of a bag a variable is, and a bag written anew with what was found out about it."""
+"""Bags: map variables to columns, and write a copy of a bag with results."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ _HEADER = "std_msgs/msg/Header"
 
 
 def columns_of(spec: Specification) -> dict[str, str]:
-    """Return the column of a bag for every number that a specification reads of a message.
+    """Return the column of a bag for every message field that a specification reads.
 
     >>> import rtamt
     >>> columns_of(rtamt.parse('''
@@ -50,7 +50,7 @@ def columns_of(spec: Specification) -> dict[str, str]:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Finding:
-    """What was found out about a requirement: its robustness signal, and the signal of its truth."""
+    """The result for a requirement: its robustness signal, and the signal of its truth."""
 
     name: str
     topic: str
@@ -59,11 +59,11 @@ class Finding:
 
 
 def write_mcap(source: str, path: str, findings: Iterable[Finding], recover: bool = False) -> None:
-    """Write a bag as one MCAP file for ROS 2, with a topic of robustness and one of verdicts for each finding.
+    """Copy a bag to one MCAP file for ROS 2, with a robustness topic and a verdict topic for each finding.
 
-    ``source``: any bag; messages of ROS 1 are converted. A topic that is there already gets
-    ``/offline`` after its name; ``recover``: as for :func:`rtamt.read`. The file is complete or
-    not there. Raises :class:`TraceError`, :class:`UsageError`.
+    ``source``: any bag; ROS 1 messages are converted. If a topic already exists, ``/offline`` is appended
+    to the new name. ``recover``: as for :func:`rtamt.read`. The file is written completely or
+    not at all. Raises :class:`TraceError`, :class:`UsageError`.
     """
     if Path(path).exists() and Path(path).samefile(source):
         raise UsageError(f"'{path}' is the recording itself; write to another file")
@@ -85,7 +85,7 @@ def write_mcap(source: str, path: str, findings: Iterable[Finding], recover: boo
 
 
 def _types(reader: Any) -> Any:
-    """Return the types of a bag as ROS 2 has them, and those of ours."""
+    """Return the types of a bag in their ROS 2 form, and those of ``rtamt_msgs``."""
     typesys = library("rosbags.typesys", "reading ROS bags", "ros")
     ros2 = typesys.get_typestore(typesys.Stores.ROS2_HUMBLE)
     store = typesys.get_typestore(typesys.Stores.EMPTY)

@@ -1,4 +1,4 @@
-"""From the annotations of a specification to topics, types and fields: what a node subscribes and publishes."""
+"""Map the annotations of a specification to topics, types and fields that a node subscribes to and publishes."""
 
 from __future__ import annotations
 
@@ -29,21 +29,21 @@ class MessageType:
 
     @property
     def ros(self) -> str:
-        """What ROS calls it: ``rtamt_msgs/FloatStamped``."""
+        """The name in ROS: ``rtamt_msgs/FloatStamped``."""
         return f"{self.module.split('.')[0]}/{self.name}"
 
     def load(self) -> type:
-        """Import the class; raise :class:`UsageError` where it is none of a message."""
+        """Import the class; raise :class:`UsageError` if it is not a message class."""
         return message_class(self.module, self.name)
 
 
-#: The message of a requirement that names none.
+#: The default message type of a requirement.
 NUMBER = MessageType("rtamt_msgs.msg", "FloatStamped")
 
 
 @dataclass(frozen=True, slots=True)
 class Input:
-    """A variable that messages fill: ``fields`` are the numbers that formulas read of it, by full name."""
+    """A variable whose values are messages: ``fields`` are the numbers that formulas read, by full name."""
 
     variable: str
     topic: str
@@ -65,32 +65,32 @@ class Output:
 
     @property
     def variable(self) -> str:
-        """What holds the message."""
+        """The variable that holds the message."""
         return self.field.split(".", maxsplit=1)[0]
 
     @property
     def path(self) -> Path:
-        """What leads to the number in the message."""
+        """The path to the number in the message."""
         return path_of(self.field)
 
     @property
     def verdicts(self) -> str:
-        """The topic of its verdicts."""
+        """The topic on which its verdicts are published."""
         return f"{self.topic}/verdict"
 
 
 @dataclass(frozen=True, slots=True)
 class Binding:
-    """What a specification asks of ROS."""
+    """The topics, types and fields that a specification uses."""
 
     name: str
     inputs: tuple[Input, ...]
     outputs: tuple[Output, ...]
 
     def check(self, load: Callable[[MessageType], Any] = MessageType.load) -> Mapping[MessageType, Any]:
-        """Load every type of message and make sure that it has the fields; return the classes.
+        """Load every message type and check its fields; return the classes.
 
-        ``load``: how a type becomes a class that can be called without arguments. Raises
+        ``load``: a function from a type to a class that can be called without arguments. Raises
         :class:`UsageError`.
         """
         kinds = [*(known.type for known in self.inputs), *(output.type for output in self.outputs)]
@@ -107,10 +107,10 @@ def bind(spec: Specification) -> Binding:
     """Return the topics, types and fields that a specification names.
 
     Every assertion whose name is a field of a declared variable is published on that variable's topic. A
-    variable without an annotation is on ``rtamt/<name>``, and so is a requirement of any other name: as
+    variable without an annotation uses the topic ``rtamt/<name>``; so does a requirement with any other name, as
     ``rtamt_msgs/FloatStamped``. Other assertions are sub-formulas. Source: the paper's listing 8.
 
-    Raises :class:`UsageError` where a variable is no message, or nothing is to be published.
+    Raises :class:`UsageError` if a variable is not a message, or there is nothing to publish.
 
     >>> import rtamt
     >>> binding = bind(rtamt.parse('''
@@ -164,7 +164,7 @@ def _outputs(spec: Specification, types: Mapping[str, MessageType]) -> list[Outp
 
 
 def topic_of(requirement: str) -> str:
-    """Return the topic of a requirement that is no field of a declared message.
+    """Return the topic of a requirement that is not a field of a declared message.
 
     >>> topic_of("REQ-12.a"), topic_of("2nd")
     ('rtamt/REQ_12_a', 'rtamt/_2nd')
@@ -203,7 +203,7 @@ def _topic(document: Document, variable: str) -> str:
 
 
 def _check_topics(inputs: tuple[Input, ...], outputs: tuple[Output, ...]) -> None:
-    """Raise where a topic would carry two things."""
+    """Raise where a topic would have two uses."""
     read: dict[str, Input] = {}
     for known in inputs:
         other = read.setdefault(known.topic, known)

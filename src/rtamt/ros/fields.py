@@ -1,4 +1,4 @@
-"""A number in a message, by the path that a formula writes; and a message's time stamp."""
+"""Read a number in a message by its path in a formula; read a message's timestamp."""
 
 from __future__ import annotations
 
@@ -11,18 +11,18 @@ from rtamt.signals.arrays import is_number
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-#: Fields of messages begin with a letter; what begins with an underscore is Python's own.
+#: Fields of messages begin with a letter; names with a leading underscore are Python's own.
 _STEP = re.compile(r"([A-Za-z]\w*)((?:\[\d+\])*)")
 _INDEX = re.compile(r"\[(\d+)\]")
 
-#: How a field is reached: names of attributes, and places in arrays.
+#: The path to a field: attribute names and array indices.
 Path = tuple["str | int", ...]
 
 
 def path_of(name: str) -> Path:
-    """Return the steps from a variable to the number that a name means; the variable is left out.
+    """Return the path from a variable to a number, without the variable itself.
 
-    Raises :class:`UsageError` for a name that is no path.
+    Raises :class:`UsageError` for a name that is not a path.
 
     >>> path_of("scan.ranges[3]"), path_of("odom.pose.pose.position.x")
     (('ranges', 3), ('pose', 'pose', 'position', 'x'))
@@ -38,17 +38,17 @@ def path_of(name: str) -> Path:
 
 
 def follow(message: Any, path: Path) -> Any:
-    """Return what a path leads to; raise AttributeError, IndexError or TypeError where it leads nowhere."""
+    """Return the value at a path; raise AttributeError, IndexError or TypeError if there is none."""
     for step in path:
         message = message[step] if isinstance(step, int) else getattr(message, step)
     return message
 
 
 def reader(name: str) -> Callable[[Any], float]:
-    """Return a function that reads a number out of a message.
+    """Return a function that reads a number from a message.
 
-    ``name``: as a formula writes it, the variable first. The function raises :class:`TraceError` where
-    a message has no such number: arrays differ from message to message.
+    ``name``: as written in a formula, the variable first. The function raises :class:`TraceError` if
+    a message has no such number: array lengths differ from message to message.
 
     >>> from types import SimpleNamespace
     >>> reader("scan.ranges[1]")(SimpleNamespace(ranges=[0.5, 0.75]))
@@ -73,7 +73,7 @@ def reader(name: str) -> Callable[[Any], float]:
 def check_path(name: str, sample: Any, kind: str) -> None:
     """Raise :class:`UsageError` unless messages like ``sample`` may have a number called ``name``.
 
-    ``kind``: what the type of message is called. An empty array says nothing of what will be in it.
+    ``kind``: the name of the message type. The elements of an empty array cannot be checked.
     """
     at, done = sample, name.split(".", maxsplit=1)[0]
     for step in path_of(name):
@@ -101,7 +101,7 @@ def check_path(name: str, sample: Any, kind: str) -> None:
 
 
 def fields_of(message: Any) -> tuple[str, ...]:
-    """Return the names of a message's fields, whatever made its class (rospy, rclpy, a dataclass).
+    """Return the field names of a message of any origin (rospy, rclpy, a dataclass).
 
     >>> from dataclasses import make_dataclass
     >>> fields_of(make_dataclass("Point", ["x", "y"])(1, 2)), fields_of(3.5)
@@ -116,7 +116,7 @@ def fields_of(message: Any) -> tuple[str, ...]:
 
 
 def stamp_of(message: Any) -> int | None:
-    """Return the time in a message's header, in nanoseconds; None where it has none, or was left at 0.
+    """Return the timestamp in a message's header in nanoseconds; None if it has none, or it is 0.
 
     >>> from types import SimpleNamespace as Some
     >>> stamp_of(Some(header=Some(stamp=Some(sec=1, nanosec=5)))), stamp_of(Some(value=3))

@@ -1,4 +1,4 @@
-"""The definitions of ``rtamt_msgs``, for programs that read and write messages without ROS."""
+"""The message definitions of ``rtamt_msgs``, for programs without ROS."""
 
 from __future__ import annotations
 
@@ -7,10 +7,10 @@ from types import MappingProxyType
 FLOAT_STAMPED = "rtamt_msgs/msg/FloatStamped"
 VERDICT = "rtamt_msgs/msg/Verdict"
 
-#: What ``Verdict.verdict`` holds.
+#: The values of ``Verdict.verdict``.
 UNKNOWN, SATISFIED, VIOLATED = 0, 1, 2
 
-#: From a type to its text, the same as that of the files in ``ros/rtamt_msgs/msg``.
+#: From a type to its definition, equal to the files in ``ros/rtamt_msgs/msg``.
 DEFINITIONS = MappingProxyType(
     {
         FLOAT_STAMPED: """\

@@ -1,4 +1,4 @@
-"""Messages and ticks in; robustness, verdicts and conditions out. Knows no ROS: nodes carry messages to it."""
+"""The monitor of a node: messages and ticks in; robustness, verdicts and conditions out. It does not need ROS."""
 
 from __future__ import annotations
 
@@ -19,41 +19,41 @@ if TYPE_CHECKING:
     from rtamt.ros.binding import Binding
     from rtamt.ros.output_group import Record, Standing, Watch
 
-#: After how many silent periods a topic is stale, unless a time is set; in dense time, seconds.
+#: The default number of silent periods after which a topic is stale; in dense time, seconds.
 STALE_PERIODS = 10
 STALE_DENSE = Fraction(5)
-#: Periods of which none is left out when the clock is looked at late, unless a topic is stale before that.
+#: The largest number of missed periods that is caught up, unless a topic becomes stale first.
 CATCH_UP = 10_000
-#: Nanoseconds that a stamp may be ahead of the clock, and behind it whatever is stale.
+#: How far a timestamp may be ahead of the clock in nanoseconds; also the least distance allowed behind it.
 SKEW = 10**9
-#: Seconds between two looks at the clock, at most: how soon silence and the end are noticed.
+#: The longest pause between two reads of the clock in seconds; bounds the delay until silence is noticed.
 PAUSE = 0.1
 _NO_CLOCK = "simulated time has not begun: nobody publishes /clock"
 
 
 class RosMonitor:
-    """Watches the requirements of a specification over messages.
+    """Monitors the requirements of a specification over messages.
 
     ``binding``: from :func:`~rtamt.ros.binding.bind`. ``time``: ``"discrete"``, where the latest message
     of each topic is sampled every ``period`` (seconds, or text such as ``"100ms"``), or ``"dense"``, where
-    every message is a sample, each topic on its own clock. ``stale``: after how long without a message a
-    topic is stale; 0 for never, by default ten periods, in dense time 5 s. All times are integers of
-    nanoseconds; 0 is a simulated clock that nobody has set yet.
+    every message is a sample, each topic on its own time base. ``stale``: the time without a message after
+    which a topic is stale; 0 for never, by default ten periods, in dense time 5 s. All times are integer
+    nanoseconds; 0 means a simulated clock that is not set yet.
 
-    The instant of a message is the stamp in its header, or its arrival where there is none. The first sample
-    of discrete time lies where the last of an output's topics has its first message. A sample is taken as
-    soon as every topic has a message at its instant or later, and at the latest when :meth:`tick` comes to it;
-    a message that is delivered after that is part of the next sample. So whoever delivers every message, and
-    calls :meth:`tick` no sooner than the messages up to that instant are delivered, gets the numbers
-    that ``rtamt check --period`` finds in a bag with these messages.
+    The time of a message is the timestamp in its header, or else its arrival. In discrete time, the first sample
+    is taken when the last of an output's topics has its first message. A sample is taken as
+    soon as every topic has a message at its instant or later, and at the latest when :meth:`tick` reaches it;
+    a message that is delivered later is part of the next sample. If every message is delivered, and
+    :meth:`tick` is not called before the messages up to that instant are delivered, the results equal those
+    of ``rtamt check --period`` on a bag with these messages.
 
-    Bounded future is pastified (the paper's Definition 4): robustness comes from the first sample on,
-    and speaks of the instant one horizon ago; verdicts are unknown until the horizon has passed.
+    Bounded future is pastified (the paper's Definition 4): robustness is reported from the first sample on
+    and refers to the instant one horizon ago; verdicts are unknown until the horizon has passed.
 
-    Nothing is told of samples that are not there. An output is silent until each of its topics has had
-    a message, and while one is stale. It begins anew when stamps go back, when a stale topic speaks
-    again, after a number that is none, and when the clock leaps by more than the stale time or, in discrete
-    time, :data:`CATCH_UP` periods; each is said once, in :meth:`notices`.
+    Samples are never invented. An output is silent until each of its topics has had
+    a message, and while one is stale. It restarts when timestamps go back, when a stale topic resumes,
+    after an invalid number, and when the clock jumps by more than the stale time or, in discrete
+    time, :data:`CATCH_UP` periods; each event is reported once, by :meth:`notices`.
 
     >>> from types import SimpleNamespace as Message
     >>> import rtamt
@@ -84,7 +84,7 @@ class RosMonitor:
         self.time = self._domain.name
         self.period = self._period(period)
         self._stale = self._stale_after(stale)
-        # How far the clock may go from one look at it to the next; 0 for any distance.
+        # The largest step of the clock between two reads; 0 for any step.
         self._leap = self._stale
         if self.period is not None:
             most = int(self.period * 10**9) * CATCH_UP
@@ -102,22 +102,22 @@ class RosMonitor:
             self._discrete = [
                 DiscreteWatch(outputs, topic_of, self.period) for outputs in group_outputs(binding.outputs)
             ]
-        #: Topics for which records are made, such as those that somebody listens to; None: all.
+        #: Topics for which records are created, such as those with subscribers; None: all.
         self.wanted: Container[str] | None = None
         self._values: dict[str, float] = {}
-        self._heard: dict[str, int] = {}  # when a topic last spoke
-        self._stamps: dict[str, int] = {}  # of its last message
+        self._heard: dict[str, int] = {}  # the arrival of a topic's last message
+        self._stamps: dict[str, int] = {}  # the timestamp of its last message
         self._last: int | None = None  # the latest tick or arrival
         self._silent: set[str] = set()
         self._notices: list[Notice] = []
-        self._faults: dict[str, str] = {}  # of topics whose last message could not be used
-        self._repeated: set[str] = set()  # topics whose last message had the stamp of the one before
-        self._foreign: set[str] = set()  # topics whose stamps are those of another clock
-        self._timeless = False  # it was said that messages come before the simulated clock is set
+        self._faults: dict[str, str] = {}  # topics whose last message was unusable, and why
+        self._repeated: set[str] = set()  # topics whose last message repeated a timestamp
+        self._foreign: set[str] = set()  # topics whose timestamps are from another clock
+        self._timeless = False  # whether messages before the simulated clock is set have been reported
 
     @property
     def watches(self) -> Sequence[DiscreteWatch | DenseWatch]:
-        """The outputs, those in one watch that read the same numbers."""
+        """The outputs, grouped by the numbers that they read."""
         return self._dense or self._discrete
 
     def _period(self, period: Duration | None) -> Fraction | None:
@@ -150,7 +150,7 @@ class RosMonitor:
     # ---- what comes in ---------------------------------------------------------------------------
 
     def message(self, topic: str, message: Any, now: int) -> list[Record]:
-        """Take a message that arrived at ``now``; return what became known."""
+        """Take a message that arrived at ``now``; return the new records."""
         self._advance(now)
         records = self._look_for_silence(now)
         if now == 0 and not self._timeless:
@@ -163,7 +163,7 @@ class RosMonitor:
             return records
         stamp = stamp_of(message) or now
         last = self._stamps.get(topic)
-        # Before the simulated clock is set, messages without a stamp have no order but that of arrival.
+        # Before the simulated clock is set, messages without a timestamp are ordered by arrival only.
         if last is not None and stamp <= last and (stamp or self._dense):
             if stamp == last:
                 self._repeat(topic)
@@ -190,9 +190,9 @@ class RosMonitor:
         return records
 
     def tick(self, now: int) -> list[Record]:
-        """Look at the clock: sample what is due by ``now`` (discrete time), and see who has gone silent.
+        """Advance the clock: take the samples due by ``now`` (discrete time), and detect silent topics.
 
-        Ticks that come late are made up for: every period has its sample. Returns what became known.
+        Missed ticks are caught up: every period has its sample. Returns the new records.
         """
         self._advance(now)
         records = self._look_for_silence(now)
@@ -201,7 +201,7 @@ class RosMonitor:
         return records
 
     def _sample(self, watch: DiscreteWatch, until: int) -> list[Record]:
-        """Take the samples that are due up to an instant, unless a topic is silent."""
+        """Take the samples due up to an instant, unless a topic is silent."""
         records: list[Record] = []
         if self._all_speak(watch):
             while (sample := watch.sample(until)) is not None:
@@ -209,9 +209,9 @@ class RosMonitor:
         return records
 
     def _is_foreign(self, topic: str, stamp: int, now: int) -> bool:
-        """Tell whether a stamp is of another clock, such as that of a bag that is played without its clock.
+        """Return whether a timestamp is from another clock, such as that of a bag played without its clock.
 
-        The message is of its arrival then, which is said once.
+        The time of such a message is its arrival, which is reported once.
         """
         foreign = now != 0 and not -max(self._leap, SKEW) <= stamp - now <= SKEW
         if foreign and topic not in self._foreign:
@@ -234,7 +234,7 @@ class RosMonitor:
     def _tell(
         self, watch: DiscreteWatch | DenseWatch, stamp: int, values: Mapping[str, float]
     ) -> list[Record]:
-        """Give a watch its sample; one that is refused leaves a hole, so that the watch begins anew."""
+        """Feed a sample to a group; a rejected sample leaves a gap, so that the group restarts."""
         try:
             records = watch.take(stamp, values, self.wanted)
         except StlError as error:
@@ -251,7 +251,7 @@ class RosMonitor:
     def _advance(self, now: int) -> None:
         if self._last is not None and now < self._last:
             self._begin_anew(f"the clock went back by {_seconds(self._last - now)}")
-        elif self._last == 0 and now:  # the clock starts: what came before came just now, and is not stale
+        elif self._last == 0 and now:  # the clock starts: earlier messages arrive now, and are not stale
             self._heard = dict.fromkeys(self._heard, now)
             for watch in self._discrete:
                 watch.clock_begins(now)
@@ -260,7 +260,7 @@ class RosMonitor:
         self._last = now
 
     def _skip_ahead(self, now: int, by: int) -> None:
-        """The clock leapt: samples of all that time would be invented, and might never end."""
+        """Handle a jump of the clock: samples of the time between would be invented, and might be endless."""
         for topic in [
             topic for topic, heard in self._heard.items() if self._stale and now - heard > self._stale
         ]:
@@ -281,14 +281,14 @@ class RosMonitor:
         self._say(Level.WARN, f"{why}: all monitors begin anew")
 
     def _broken(self, topic: str, problem: str) -> None:
-        """A message without the number that is read: what the topic said before is no value of now."""
+        """Handle a message without a valid number: the previous value is no longer current."""
         if topic not in self._faults:
             self._say(Level.ERROR, f"a message on {topic} cannot be used: {problem}")
         self._faults[topic] = problem
         self._forget(topic)
 
     def _repeat(self, topic: str) -> None:
-        """A message with the stamp of the one before it: a signal has one value at an instant, the first."""
+        """Handle a repeated timestamp: a signal has one value at an instant, the first."""
         if topic not in self._repeated:
             self._say(Level.WARN, f"messages on {topic} with the stamp of the one before them are left out")
         self._repeated.add(topic)
@@ -300,7 +300,7 @@ class RosMonitor:
                 watch.drop(topic)
 
     def _look_for_silence(self, now: int) -> list[Record]:
-        """See which topics are stale by now; return what they were part of before that."""
+        """Find the topics that have become stale; return the records due before that."""
         records: list[Record] = []
         if not self._stale:
             return records
@@ -331,15 +331,15 @@ class RosMonitor:
     def _say(self, level: Level, message: str) -> None:
         self._notices.append(Notice(level, message))
 
-    # ---- what is said of it ----------------------------------------------------------------------
+    # ---- notices and conditions ---------------------------------------------------------------------
 
     def notices(self) -> list[Notice]:
-        """Return what happened since the last call; each is said once."""
+        """Return the events since the last call; each is reported once."""
         said, self._notices = self._notices, []
         return said
 
     def conditions(self, now: int) -> list[Condition]:
-        """Return how every output is, for ``/diagnostics``."""
+        """Return the condition of every output, for ``/diagnostics``."""
         for watch in self.watches:
             watch.look()
         told = {

@@ -1,4 +1,4 @@
-"""The arguments that every node takes, on ROS 1, on ROS 2 and on DDS alone; and their parameters."""
+"""The command-line arguments and parameters of all nodes: on ROS 1, on ROS 2 and on DDS alone."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ from rtamt.texts import load
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-#: Names of parameters, and what holds where nothing is said.
+#: The names of parameters, and their defaults.
 DEFAULTS: Mapping[str, str] = {"spec": "", "period": "", "unit": "s", "time": DEFAULT, "stale": ""}
 
 
 @dataclass(frozen=True, slots=True)
 class Options:
-    """What a node is told; texts as the user wrote them, "" for what was left out."""
+    """The options of a node: texts as the user wrote them, "" if left out."""
 
     spec: str
     period: str
@@ -31,7 +31,7 @@ class Options:
     stale: str
 
     def monitor(self) -> RosMonitor:
-        """Read the specification and make its monitor; raise :class:`StlError` where that cannot be."""
+        """Load the specification and create its monitor; raise :class:`StlError` on failure."""
         if not self.spec:
             raise UsageError("no specification was given: name a file, or set the parameter spec")
         dense = time_domain(self.time).continuous
@@ -50,7 +50,7 @@ class Options:
     def _duration(self, text: str) -> str:
         """Return a duration with its unit: ``--unit`` is that of a plain number, as in the paper's listing 5.
 
-        Bounds in the specification are not its business: they are seconds, or have units of their own.
+        It does not apply to bounds in the specification, which are in seconds or have their own units.
         """
         try:
             float(text)
@@ -65,7 +65,7 @@ class _Parser(argparse.ArgumentParser):
 
 
 def parser(prog: str) -> argparse.ArgumentParser:
-    """Return a parser of the arguments that every node takes."""
+    """Return a parser of the arguments of all nodes."""
     made = _Parser(
         prog=prog,
         description="Watch a specification over topics, and publish its robustness and verdict.",
@@ -76,7 +76,7 @@ def parser(prog: str) -> argparse.ArgumentParser:
 
 
 def add_options(made: argparse.ArgumentParser) -> None:
-    """Add the arguments that every node takes."""
+    """Add the arguments of all nodes."""
     made.add_argument(
         "spec", metavar="SPEC", nargs="?", help="a specification file (.stl) with topics and types"
     )
@@ -101,7 +101,7 @@ def add_options(made: argparse.ArgumentParser) -> None:
 
 
 def options(arguments: argparse.Namespace, parameters: Mapping[str, Any]) -> Options:
-    """Return what holds: an argument before a parameter before the default."""
+    """Return the effective options: an argument, else a parameter, else the default."""
     chosen = {}
     for name, default in DEFAULTS.items():
         argument = getattr(arguments, name)

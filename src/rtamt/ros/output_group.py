@@ -1,4 +1,4 @@
-"""Outputs that are watched together: their pastified formulas, robustness and truth, over either kind of time."""
+"""Outputs that are monitored together: their pastified formulas, robustness and truth, in either time domain."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 class Robustness(NamedTuple):
-    """How robust an output's pastified formula was at ``stamp`` (nanoseconds)."""
+    """The robustness of an output's pastified formula at ``stamp`` (nanoseconds)."""
 
     output: Output
     stamp: int
@@ -44,7 +44,7 @@ class Verdict(NamedTuple):
     satisfied: bool | None
 
 
-#: Messages that are kept while another topic is silent.
+#: The number of messages kept while another topic is silent.
 HELD = 1000
 
 Record: TypeAlias = Robustness | Verdict
@@ -69,18 +69,18 @@ class Standing:
         self.forget()
 
     def forget(self) -> None:
-        """Be as before the first sample."""
+        """Return to the state before the first sample."""
         self.latest: float | None = None
         self.satisfied: bool | None = None
-        #: Of dense time: the truth that became known last; whether the first verdict is still to come.
+        #: In dense time: the latest known truth; whether the first verdict is still to come.
         self.truth = 0.0
         self.undecided = True
 
 
 class Watch:
-    """Outputs that read the same numbers, of either kind of time: one program, and each sub-formula once in it.
+    """Outputs that read the same numbers, in either time domain: one program with shared sub-formulas.
 
-    ``outputs``: as :func:`together` puts them. ``topic_of``: from the name of a number to its topic.
+    ``outputs``: as grouped by :func:`group_outputs`. ``topic_of``: from the name of a number to its topic.
     """
 
     _monitor: Monitor | DenseMonitor
@@ -92,12 +92,12 @@ class Watch:
         self.topics = frozenset(topic_of[name] for name in self.names)
         self.formulas = tuple(_watched(output, period) for output in outputs)
         self.standings = tuple(Standing(output, period) for output in outputs)
-        #: Why the last sample could not be used.
+        #: Why the last sample was rejected.
         self.fault: str | None = None
 
     @property
     def samples(self) -> int:
-        """How many samples, in dense time numbers, were taken since the beginning or the last reset."""
+        """The number of samples (in dense time, of numbers) since the beginning or the last reset."""
         return self._monitor.samples
 
     def reset(self) -> None:
@@ -108,10 +108,10 @@ class Watch:
 
 
 def group_outputs(outputs: Sequence[Output]) -> list[list[Output]]:
-    """Return the outputs in groups that one program may watch.
+    """Return the outputs in groups that one program can monitor.
 
-    Those of a group read the same numbers, so that they begin and end together. An output with a sample
-    that may have no value, such as the logarithm of -1, is alone: the others are to go on.
+    The outputs of a group read the same numbers, so that they begin and end together. An output that may
+    be undefined at a sample, such as the logarithm of -1, is a group by itself: it must not stop the others.
     """
     groups: dict[object, list[Output]] = {}
     for output in outputs:
@@ -122,7 +122,7 @@ def group_outputs(outputs: Sequence[Output]) -> list[list[Output]]:
 
 
 def _watched(output: Output, period: Fraction | None) -> tuple[Watched, Watched]:
-    """Return robustness and truth by formulas of past operators alone, equal one horizon later."""
+    """Return robustness and truth as formulas with past operators only, with equal values one horizon later."""
     spec = output.specification
     try:
         past = spec.pastified(period)
@@ -136,11 +136,11 @@ def _watched(output: Output, period: Fraction | None) -> tuple[Watched, Watched]
 
 
 class DiscreteWatch(Watch):
-    """Samples one period apart, each of the latest message of every topic at its instant.
+    """Samples one period apart, each with the latest message of every topic at its instant.
 
-    The first sample lies where the last of the topics has its first message; ``due`` is the instant of the
-    next one, None before that. Messages wait until the sample at their instant has been taken, so that none
-    is newer than the sample that it is in: what ``Trace.resample`` does to a bag.
+    The first sample is at the first message of the topic that starts last; ``due`` is the instant of the
+    next sample, None before the first. Messages wait until the sample at their instant has been taken, so that
+    no sample uses a newer message, as ``Trace.resample`` does for a bag.
     """
 
     def __init__(self, outputs: Sequence[Output], topic_of: Mapping[str, str], period: Fraction) -> None:
@@ -153,7 +153,7 @@ class DiscreteWatch(Watch):
         self._step = int(period / NANOSECOND)
         self.due: int | None = None
         self._channels = {topic: _Channel() for topic in self.topics}
-        self._earliest = 0  # no sample lies before that
+        self._earliest = 0  # no sample is earlier
 
     def hold(self, topic: str, instant: int, values: Mapping[str, float]) -> None:
         """Keep a message until the sample at its instant is due."""
@@ -172,13 +172,13 @@ class DiscreteWatch(Watch):
             channel.trim()
 
     def complete(self) -> int | None:
-        """Return the instant up to which every topic has spoken; None before each has."""
+        """Return the instant up to which every topic has messages; None before that."""
         latest = [channel.latest for channel in self._channels.values()]
         known = [instant for instant in latest if instant is not None]
         return min(known) if len(known) == len(latest) else None
 
     def sample(self, until: int) -> tuple[int, Mapping[str, float]] | None:
-        """Return the instant and the values of the next sample; None where it lies after ``until``."""
+        """Return the instant and the values of the next sample; None if it is later than ``until``."""
         if self.due is None or self.due > until:
             return None
         due, self.due = self.due, self.due + self._step
@@ -188,21 +188,21 @@ class DiscreteWatch(Watch):
         return due, values
 
     def drop(self, topic: str) -> None:
-        """Begin anew when a topic speaks again, whose messages are no values of now."""
+        """Restart when a stale topic resumes, since its old messages are no current values."""
         self._channels[topic] = _Channel()
         self._earliest = self.due or self._earliest
         self.due = None
         self.reset()
 
     def leap(self, now: int) -> None:
-        """Begin anew at ``now``, with the messages that are there."""
+        """Restart at ``now``, with the existing messages."""
         self._earliest, self.due = now, None
         self.reset()
         self._begin()
 
     def clock_begins(self, now: int) -> None:
-        """Let messages that came before the simulated clock was set have come ``now``."""
-        if self.due:  # somebody took samples at 0, so that it was an instant
+        """Treat messages before the simulated clock was set as arriving ``now``."""
+        if self.due:  # samples were taken at 0, so that it was a valid instant
             return
         for channel in self._channels.values():
             channel.move(now)
@@ -249,7 +249,7 @@ class DiscreteWatch(Watch):
 
 
 class _Channel:
-    """What a topic told one watch: the message that holds, and those that wait for their sample."""
+    """The messages of a topic for one group: the current one, and those that wait for their sample."""
 
     __slots__ = ("_held", "_since", "_waiting", "latest")
 
@@ -257,7 +257,7 @@ class _Channel:
         self._since: int | None = None
         self._held: Mapping[str, float] = {}
         self._waiting: deque[tuple[int, Mapping[str, float]]] = deque()
-        #: The instant of the last message.
+        #: The time of the last message.
         self.latest: int | None = None
 
     @property
@@ -266,23 +266,23 @@ class _Channel:
         return self._waiting[0][0] if self._since is None and self._waiting else self._since
 
     def hold(self, instant: int, values: Mapping[str, float]) -> None:
-        """Keep a message; instants never go back, also where stamps and arrivals are mixed."""
+        """Keep a message; times never decrease, even if timestamps and arrivals are mixed."""
         self.latest = instant if self.latest is None else max(self.latest, instant)
         self._waiting.append((self.latest, values))
 
     def at(self, instant: int) -> Mapping[str, float]:
-        """Return what holds at an instant, later than any before."""
+        """Return the value at an instant; instants must increase from call to call."""
         while self._waiting and self._waiting[0][0] <= instant:
             self._since, self._held = self._waiting.popleft()
         return self._held
 
     def trim(self) -> None:
-        """Keep so many messages while another topic is silent."""
+        """Drop all but so many messages while another topic is silent."""
         while len(self._waiting) > HELD:
             self._since, self._held = self._waiting.popleft()
 
     def move(self, now: int) -> None:
-        """Let all that came have come ``now``."""
+        """Treat all messages as arriving ``now``."""
         while self._waiting:
             self._since, self._held = self._waiting.popleft()
         if self._since is not None:
@@ -290,23 +290,23 @@ class _Channel:
 
 
 class DenseWatch(Watch):
-    """Samples at the times in the messages' headers, each topic on its own clock."""
+    """Samples at the times in the messages' headers, each topic on its own time base."""
 
     def __init__(self, outputs: Sequence[Output], topic_of: Mapping[str, str]) -> None:
         super().__init__(outputs, topic_of, None)
         first, *_ = every = [watched for pair in self.formulas for watched in pair]
         backend = outputs[0].specification.backend
-        # Stamps are integers of nanoseconds, and so are ticks: what comes out needs no conversion.
+        # Timestamps and ticks are both integer nanoseconds: results need no conversion.
         self._monitor: DenseMonitor = DenseMonitor(
             first.formula, Dense(NANOSECOND), text=first.text, backend=backend, watch=every, unit="ns"
         )
         self._start: int | None = None
         self._held: deque[tuple[int, dict[str, float]]] = deque(maxlen=HELD)
-        #: What became known last, of the result and then of each watched formula.
+        #: The latest points of the result, and then of each watched formula.
         self._points: list[list[tuple[int, float]]] = []
 
     def hold(self, stamp: int, values: Mapping[str, float]) -> None:
-        """Keep a message while another topic has nothing to say, of many the latest: the trace begins when all do."""
+        """Keep the latest messages until every topic has one, which starts the trace."""
         self._held.append((stamp, self._mine(values)))
 
     def take(
@@ -331,7 +331,7 @@ class DenseWatch(Watch):
             return []
         self._points = points = self._monitor.points()
         if self._start is None:
-            self._start = points[1][0][0]  # the first place is of what update() returned
+            self._start = points[1][0][0]  # the first entry belongs to the result of update()
         records: list[Record] = []
         for standing, told, truths in zip(self.standings, points[1::2], points[2::2], strict=True):
             output = standing.output
@@ -351,7 +351,7 @@ class DenseWatch(Watch):
         for at, truth in truths:
             if standing.undecided and at >= begin:
                 standing.undecided = False
-                if at > begin:  # what was so before still is
+                if at > begin:  # the previous verdict still holds
                     records.append(Verdict(standing.output, begin, standing.horizon, standing.truth > 0))
             standing.truth = truth
             records.append(Verdict(standing.output, at, standing.horizon, self._judge(standing, at, truth)))
@@ -370,7 +370,7 @@ class DenseWatch(Watch):
             standing.satisfied = self._judge(standing, *truths[-1])
 
     def drop(self, topic: str) -> None:  # noqa: ARG002 - in dense time messages are samples
-        """Begin anew when a topic speaks again."""
+        """Restart when a stale topic resumes."""
         self.reset()
 
     def forget(self) -> None:

@@ -1,4 +1,4 @@
-"""Records and conditions to messages, whatever made the classes: rospy, rclpy, or the definitions alone."""
+"""Convert records and conditions to messages of any origin: rospy, rclpy, or the definitions alone."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ _VERDICTS = {None: UNKNOWN, True: SATISFIED, False: VIOLATED}
 
 
 class Publisher:
-    """Makes the messages that a node publishes.
+    """Creates the messages that a node publishes.
 
     ``load``: from a type to its class, which can be called without arguments. ``stamp``: from
-    nanoseconds to what a header's stamp is. ``level``: what a status has for a level.
+    nanoseconds to the stamp of a header. ``level``: from a level to the level of a status message.
     """
 
     def __init__(
@@ -40,7 +40,7 @@ class Publisher:
         self._stamp = stamp
         self._level = level
         self._load = load
-        #: From every topic of robustness and verdicts to its class.
+        #: From every robustness and verdict topic to its class.
         self.topics: Mapping[str, Any] = {
             topic: cls
             for output in binding.outputs
@@ -51,11 +51,11 @@ class Publisher:
         }
 
     def topic(self, record: Record) -> str:
-        """Return the topic that a record goes to."""
+        """Return the topic of a record."""
         return record.output.topic if isinstance(record, Robustness) else record.output.verdicts
 
     def message(self, record: Record) -> Any:
-        """Return the message of a record, its header stamped."""
+        """Return the message of a record, with its timestamp in the header."""
         if isinstance(record, Robustness):
             message = self.classes[record.output.type]()
             write(message, record.output.path, record.value)

@@ -1,4 +1,4 @@
-"""What a monitor has to say besides numbers: its condition, in the words of ROS's diagnostics, and notices."""
+"""The conditions of a monitor, in terms of ROS diagnostics, and its notices."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ class Level(IntEnum):
 
 @dataclass(frozen=True, slots=True)
 class Condition:
-    """How one output is: a row of ``/diagnostics``. ``values`` are shown beside the message."""
+    """The condition of one output: a row of ``/diagnostics``. ``values`` are shown next to the message."""
 
     name: str
     level: Level
@@ -27,7 +27,7 @@ class Condition:
 
 @dataclass(frozen=True, slots=True)
 class Notice:
-    """Something that happened and is said once."""
+    """An event, which is reported once."""
 
     level: Level
     message: str

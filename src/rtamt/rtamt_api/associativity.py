@@ -1,7 +1,7 @@
-"""The warning for a formula that RTAMT would have read in another way: chains such as ``a -> b -> c``.
+"""The warning for formulas that RTAMT parses differently: chains such as ``a -> b -> c``.
 
-Every infix operator of RTAMT associates to the left; those that the operator table marks as
-associating to the right do not. Reading the text once more in RTAMT's way shows whether it matters.
+In RTAMT every infix operator is left-associative; here some are right-associative, as marked in the operator
+table. Parsing the text a second time with RTAMT's rules shows whether the difference matters.
 """
 
 from __future__ import annotations
@@ -22,9 +22,9 @@ if TYPE_CHECKING:
 
 
 def warn_of_chains(document: Document, read: Callable[[str, Language], Document], stacklevel: int) -> None:
-    """Warn where ``document`` has an assertion that RTAMT would have read differently.
+    """Warn of each assertion of ``document`` that RTAMT would have parsed differently.
 
-    ``read`` reads a text in a language; ``stacklevel`` is that of :func:`warnings.warn`.
+    ``read`` parses a text in a language; ``stacklevel`` is that of :func:`warnings.warn`.
     """
     if not _may_differ(*(assertion.formula for assertion in document.assertions)):
         return
@@ -45,7 +45,7 @@ def _left_to_right() -> Language:
 
 
 def _may_differ(*formulas: Formula) -> bool:
-    """Tell whether an operator that associates to the right has an operand of the same kind."""
+    """Return whether a right-associative operator has an operand with the same operator."""
     return any(
         _to_the_right(node) and any(map(_to_the_right, node.args))
         for node in postorder(*formulas)

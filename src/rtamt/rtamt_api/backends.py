@@ -1,4 +1,4 @@
-"""What runs the paper's classes: the compiled core, or the definition where there is none."""
+"""The back end of the paper's classes: the compiled core, or the definition if the core is not built."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 
 def is_compiled() -> bool:
-    """Tell whether the compiled core can be loaded."""
+    """Return whether the compiled core can be loaded."""
     try:
         core()
     except UsageError:
@@ -34,7 +34,7 @@ def is_compiled() -> bool:
 
 
 def require_core(what: str, instead: str) -> None:
-    """Raise :class:`UsageError` for ``what`` where the core cannot be loaded, naming what to use ``instead``."""
+    """Raise :class:`UsageError` for ``what`` if the core cannot be loaded; suggest ``instead``."""
     try:
         core()
     except UsageError as reason:
@@ -45,7 +45,7 @@ def require_core(what: str, instead: str) -> None:
 
 
 def check_language(language: Language) -> None:
-    """Raise :class:`UsageError` for a language that the combined classes cannot be made with."""
+    """Raise :class:`UsageError` for a language that the combined classes do not support."""
     if not isinstance(language, Language):
         raise UsageError(f"the language is {language!r}; choose Language.PYTHON or Language.CPP")
     if language is Language.CPP:
@@ -65,9 +65,9 @@ def signal(formula: Formula, recording: DomainTrace) -> Signal:
 class Stream:
     """A stream of samples that has not begun.
 
-    ``formulas``: past formulas, that of the result first. ``inputs``: what they read. ``period``:
-    seconds from sample to sample. ``unit``: that of the time stamps. ``tolerance``: the fraction of the
-    period by which a gap may miss it before it is counted. ``ignored``: what a sample may hold besides.
+    ``formulas``: past formulas, the formula of the result first. ``inputs``: their variables. ``period``:
+    the sampling period in seconds. ``unit``: that of the timestamps. ``tolerance``: the allowed deviation of a
+    gap, as a fraction of the period, before it is counted. ``ignored``: other names that a sample may hold.
     """
 
     def __init__(
@@ -84,9 +84,9 @@ class Stream:
         self._session = discrete.BACKENDS[backend()].session(
             formulas, inputs, Discrete(period, tolerance), ignored, strict=False, unit=UNITS[unit]
         )
-        #: Counts samples and gaps, and forgets them.
+        #: The monitor, which counts samples and gaps.
         self.monitor: Any = self._session.open()
-        #: Raised by :meth:`take` for a sample that cannot be taken.
+        #: Raised by :meth:`take` for a rejected sample.
         self.refused = self._session.refused
         self._undefined: Any = self._session.undefined
         #: What an update from pairs raises where :meth:`take` has to find out what is wrong.
@@ -100,8 +100,8 @@ class Stream:
     def take(self, timestamp: Any, numbers: Mapping[str, Any]) -> float:
         """Take a sample and return the robustness.
 
-        Raises :attr:`refused`, or :class:`EvaluationError` where an operation has no value; nothing
-        has changed then.
+        Raises :attr:`refused`, or :class:`EvaluationError` where an operation has no value; the stream is
+        then unchanged.
         """
         try:
             robustness: float = self.monitor.update_pairs(timestamp, list(numbers.items()))

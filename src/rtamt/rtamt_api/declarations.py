@@ -1,4 +1,4 @@
-"""What every class of the paper's API shares: names, types, topics, modules and the text."""
+"""The base of all classes of the paper's API: names, types, topics, modules and the text."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from rtamt.language.document import Document
     from rtamt.language.formula import Formula
 
-#: The types of variables that need no import, and their classes; ``long`` was Python 2's second int.
+#: The types of variables that need no import, and their classes; ``long`` is from Python 2.
 SCALARS: dict[str, type] = {name: getattr(builtins, name, int) for name in TYPES}
 
 #: The name of the result of an assertion without one.
@@ -40,9 +40,9 @@ UNNAMED = "out"
 
 
 class Declarations(ABC):
-    """A specification in the making: declare, set :attr:`spec`, then :meth:`parse`.
+    """A specification under construction: declare, set :attr:`spec`, then :meth:`parse`.
 
-    Not made by users; the classes for discrete and dense time derive from it.
+    Not instantiated by users; the classes for discrete and dense time derive from it.
     """
 
     def __init__(self) -> None:
@@ -50,13 +50,13 @@ class Declarations(ABC):
         self.name = "STL specification"
         #: The text of the requirement.
         self.spec: str | None = None
-        #: From the name of an imported class to the module it came from.
+        #: From the name of an imported class to its module.
         self.modules: dict[str, ModuleType] = {}
         #: From the name of a variable to its ROS topic.
         self.var_topic_dict: dict[str, str] = {}
-        #: From the name of a declared variable to its side of the interface, ``'input'`` or ``'output'``.
+        #: From the name of a declared variable to its role, ``'input'`` or ``'output'``.
         self.var_io_dict: dict[str, str] = {}
-        #: What code imported, which its text may therefore import as well: (module, name).
+        #: Imports made by code, which the text may therefore use, too: (module, name).
         self._trusted: set[tuple[str, str]] = set()
         self._unit = "s"
         self._sub_specs: list[str] = []
@@ -68,7 +68,7 @@ class Declarations(ABC):
     # ---- copies ----------------------------------------------------------------------------------
 
     def __copy__(self) -> Self:
-        """Return a specification in the same state that goes its own way, as ``copy.deepcopy`` does."""
+        """Return an independent specification in the same state, as ``copy.deepcopy`` does."""
         return copy.deepcopy(self)
 
     def __getstate__(self) -> dict[str, Any]:
@@ -116,7 +116,7 @@ class Declarations(ABC):
 
     @raises_rtamt
     def set_var_io_type(self, var_name: str, var_iotype: str) -> None:
-        """Say on which side of the interface a declared variable is: ``'input'`` or ``'output'`` (the default)."""
+        """Set the role of a declared variable: ``'input'`` or ``'output'`` (the default)."""
         self._require_declared(var_name)
         if var_iotype not in ("input", "output"):
             raise UsageError(f"the io type of '{var_name}' is {var_iotype!r}; choose 'input' or 'output'")
@@ -126,7 +126,7 @@ class Declarations(ABC):
 
     @raises_rtamt
     def set_var_topic(self, var_name: str, var_topic: str) -> None:
-        """Say on which ROS topic a declared variable comes or goes."""
+        """Set the ROS topic of a declared variable."""
         self._require_declared(var_name)
         self.var_topic_dict[var_name] = var_topic
 
@@ -134,8 +134,8 @@ class Declarations(ABC):
     def import_module(self, from_name: str, module_name: str) -> None:
         """Import a class for variables: as Python's ``from from_name import module_name`` does.
 
-        Imports in :attr:`spec` are text, which somebody else may have written: they import classes of message
-        packages (``std_msgs.msg``) only, and what this method has imported before.
+        Imports in :attr:`spec` come from text by a possibly different author: they are limited to classes of message
+        packages (``std_msgs.msg``) and to classes that this method has imported before.
         """
         try:
             module = importlib.import_module(from_name)
@@ -168,7 +168,7 @@ class Declarations(ABC):
 
     @property
     def unit(self) -> str:
-        """The unit of time stamps and of bounds without one: h, min, s, ms, us or ns."""
+        """The unit of timestamps and of bounds without a unit: h, min, s, ms, us or ns."""
         return self._unit
 
     @unit.setter
@@ -185,9 +185,9 @@ class Declarations(ABC):
 
     @raises_rtamt
     def parse(self) -> None:
-        """Read the sub-specifications and :attr:`spec`.
+        """Parse the sub-specifications and :attr:`spec`.
 
-        Raises :class:`STLParseException`, with a caret under the place, for text that is wrong.
+        Raises :class:`STLParseException`, with a caret under the position, for invalid text.
         """
         if not isinstance(self.spec, str):
             raise UsageError(f"spec is {self.spec!r}; set it to the text of the requirement first")
@@ -208,7 +208,7 @@ class Declarations(ABC):
 
     @property
     def out_var(self) -> str | None:
-        """The variable that holds the result: ``out`` where the text names none; None before ``parse``."""
+        """The variable that holds the result: ``out`` if the text names none; None before ``parse``."""
         return None if self._document is None else self._out_name[0]
 
     @property
@@ -218,7 +218,7 @@ class Declarations(ABC):
 
     @property
     def free_vars(self) -> set[str]:
-        """The variables that are declared or read and not computed: what an update is given."""
+        """The declared or read variables that are not computed: the inputs of an update."""
         if self._document is None:
             return set(self._types)
         computed = {head_of(name) for name in self._assertions(self._document)}
@@ -226,7 +226,7 @@ class Declarations(ABC):
         return (set(self._types) | read) - computed
 
     def _settings_changed(self) -> None:
-        """Do what a setting that changed after ``parse`` asks for; overridden by classes with more state."""
+        """Apply a setting that changed after ``parse``; overridden by classes with more state."""
         if self._document is not None:
             document = self._read_as(self._document.text, STL)
             self._parsed(document)
@@ -234,7 +234,7 @@ class Declarations(ABC):
 
     @abstractmethod
     def _parsed(self, document: Document) -> None:
-        """Take over a document that has been read: each time domain has its own checks."""
+        """Accept a parsed document; each time domain adds its own checks."""
 
     @property
     def _parsed_document(self) -> Document:
@@ -262,7 +262,7 @@ class Declarations(ABC):
         )
 
     def _read_formula(self, text: str) -> Formula:
-        """Read a formula with the names of the specification."""
+        """Parse a formula with the names of the specification."""
         document = self._parsed_document
         return parse_formula(
             text,
@@ -273,7 +273,7 @@ class Declarations(ABC):
         )
 
     def _adopt(self, document: Document) -> None:
-        """Declare what the text itself declares."""
+        """Declare the variables and constants that the text declares."""
         if document.name is not None:
             self.name = document.name
         for imported in document.imports:
@@ -286,7 +286,7 @@ class Declarations(ABC):
             self.set_var_topic(name, topic)
 
     def _import_as_text(self, module: str, name: str) -> None:
-        """Import what the text names, if it is a message class or code has imported it before."""
+        """Execute the imports of the text: message classes, or classes that code has imported before."""
         if (module, name) in self._trusted:
             return
         try:
@@ -298,7 +298,7 @@ class Declarations(ABC):
         self.modules[name] = sys.modules[module]
 
     def _check_objects(self, document: Document) -> None:
-        """Make sure that the numbers that are read of declared objects, and written into one, are there."""
+        """Check that declared objects have the numeric fields that are read and written."""
         for node in postorder(*self._assertions(document).values()):
             if isinstance(node, Var) and head_of(node.name) in self._objects:
                 message = self._lacks(node.name)
@@ -316,7 +316,7 @@ class Declarations(ABC):
                 raise UsageError(message)
 
     def _lacks(self, name: str) -> str:
-        """Return what is wrong with a number called ``name`` in a declared object, or nothing."""
+        """Return why a declared object has no number called ``name``, or an empty string."""
         head, *path = name.split(".")
         held, kind = self._objects[head], self._types.get(head, "number")
         try:
@@ -365,7 +365,7 @@ class Declarations(ABC):
 
 
 def head_of(name: str) -> str:
-    """Return the variable to which a name belongs: of a field, what stands before the first dot."""
+    """Return the variable to which a name belongs: for a field, the part before the first dot."""
     return name.partition(".")[0]
 
 

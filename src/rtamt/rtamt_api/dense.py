@@ -39,24 +39,24 @@ if TYPE_CHECKING:
 
 
 class DenseTimeSpecification(Formulas):
-    """What the classes for dense time share: how signals come in and go out. Not made by users."""
+    """The base of the classes for dense time: input and output of signals. Not instantiated by users."""
 
     @raises_rtamt
     def set_sampling_period(
         self, sampling_period: float = 1, unit: str = "s", tolerance: float = TOLERANCE
     ) -> None:
-        """Change nothing: dense time has no sampling period. Programs for RTAMT set one all the same.
+        """Accept a sampling period without effect: dense time has none, but programs for RTAMT set one.
 
-        Arguments and errors as in discrete time.
+        Arguments and errors are those of discrete time.
         """
         sampling(sampling_period, unit, tolerance)
 
     def _check(self, formula: Formula, text: str) -> None:
-        # Operators that dense time does not have are read, as by RTAMT: only their values do not exist.
+        # Operators that are undefined in dense time are parsed, as in RTAMT; only their values do not exist.
         check_bounds(formula, NANOSECOND, text, TICKS)
         for node in postorder(formula):
             if isinstance(node, Var) and node.name == arrays.TIME:
-                # The engine's recordings keep their stamps under this name.
+                # The engine's recordings keep their timestamps under this name.
                 raise NameInFormulaError(
                     f"'{arrays.TIME}' means the time stamps; give the variable another name", text, node.span
                 )
@@ -66,7 +66,7 @@ class DenseTimeSpecification(Formulas):
         return TimeScale(NANOSECOND, "units", UNITS[self._unit])
 
     def _columns(self, given: dict[str, Samples], names: Sequence[str]) -> dict[str, Samples]:
-        """Return times, as given, and values for those of ``names`` that are given."""
+        """Return the times as given, and the values, of all ``names`` in the data."""
         columns: dict[str, Samples] = {}
         for name in names:
             head, *path = (name,) if name in given else name.split(".")
@@ -80,7 +80,7 @@ class DenseTimeSpecification(Formulas):
 
 
 def _is_watchable(node: Formula, reads: Collection[str]) -> bool:
-    """Tell whether a node by itself is past, and reads nothing but ``reads``."""
+    """Return whether a node by itself is past, and reads nothing but ``reads``."""
     if isinstance(node, Apply):
         op = node.op
         past = op.tense is not Tense.FUTURE and (op.definition is not None or not has_future(node))
@@ -97,7 +97,7 @@ def _points(signal: Signal, whole: bool) -> list[list[float]]:
 
 
 class StlDenseTimeOfflineSpecification(ExplainedSpecification, DenseTimeSpecification):
-    """Evaluates finished signals, each on its own clock.
+    """Evaluates complete signals, each on its own time base.
 
     >>> import rtamt
     >>> spec = rtamt.StlDenseTimeOfflineSpecification()
@@ -120,7 +120,7 @@ class StlDenseTimeOfflineSpecification(ExplainedSpecification, DenseTimeSpecific
         """
         formula = self._result
         given = _by_name(dataset)
-        # Only what the result reads: variables of other assertions would move the start and the end.
+        # Only the variables of the result: those of other assertions would move the start and the end.
         names = variables(formula)
         for name in names:
             if name not in given and head_of(name) not in given:
@@ -137,7 +137,7 @@ class StlDenseTimeOfflineSpecification(ExplainedSpecification, DenseTimeSpecific
     def _evaluation(
         self, part: Formula, columns: dict[str, Samples], scale: TimeScale
     ) -> tuple[DenseTrace, list[list[float]]]:
-        """Return what a part of the specification is evaluated over, and its points."""
+        """Return the recording over which a part of the specification is evaluated, and its points."""
         check_dense(part, self._parsed_document.text)
         read = tuple(dict.fromkeys((*variables(self._result), *variables(part))))
         held = {name: columns[name] for name in read if name in columns}
@@ -147,7 +147,7 @@ class StlDenseTimeOfflineSpecification(ExplainedSpecification, DenseTimeSpecific
 
 
 class StlDenseTimeOnlineSpecification(OnlineSpecification, DenseTimeSpecification):
-    """Watches signals, each on its own clock.
+    """Monitors signals, each on its own time base.
 
     A formula with future operators must be rewritten by :meth:`pastify`; its robustness then comes
     one horizon late.
@@ -174,7 +174,7 @@ class StlDenseTimeOnlineSpecification(OnlineSpecification, DenseTimeSpecificatio
     def pastify(self) -> None:
         """Rewrite the formulas into past operators; see :class:`OnlineSpecification`.
 
-        Raises :class:`RTAMTException` also where a formula has an operator that dense time does not have.
+        Also raises :class:`RTAMTException` for an operator that is undefined in dense time.
         """
         for formula in outermost([*self._formulas.values()]):
             check_dense(formula, self._parsed_document.text)
@@ -187,8 +187,8 @@ class StlDenseTimeOnlineSpecification(OnlineSpecification, DenseTimeSpecificatio
 
         ``dataset``: as for ``evaluate``; a variable may have no samples (``[]``) or be left out. The
         robustness is known up to the earliest last time of the variables: a point for every change
-        since the update before, and one at that time. Raises :class:`RTAMTException` for wrong data,
-        and the monitor is then as it was.
+        since the previous update, and one at that time. Raises :class:`RTAMTException` for wrong data;
+        the monitor is then unchanged.
         """
         return self._updated(dataset)
 
@@ -211,11 +211,11 @@ class StlDenseTimeOnlineSpecification(OnlineSpecification, DenseTimeSpecificatio
     @raises_rtamt
     @alone
     def final_update(self, *dataset: Sequence[Any]) -> list[list[float]]:
-        """Take the last samples, as :meth:`update` does, and return all that was not told before.
+        """Take the last samples, as :meth:`update` does, and return the rest of the robustness.
 
-        Every signal holds its last value to the end, the latest of all times. Then only :meth:`reset` goes on.
-        Raises :class:`RTAMTException` for wrong data, and where a variable never had a sample; the monitor is then
-        as it was.
+        Every signal holds its last value to the end, the latest of all times. Afterwards only :meth:`reset` is
+        possible. Raises :class:`RTAMTException` for wrong data, and if a variable never had a sample; the monitor is
+        then unchanged.
 
         >>> import rtamt
         >>> spec = rtamt.StlDenseTimeOnlineSpecification()
@@ -232,7 +232,7 @@ class StlDenseTimeOnlineSpecification(OnlineSpecification, DenseTimeSpecificatio
         told = self._updated(dataset)
         try:
             signal = self._require_monitor().finish()
-        except StlError:  # the last samples are not taken either
+        except StlError:  # the last samples are rejected as well
             self.__setstate__(before.__getstate__())
             raise
         if len(signal):
@@ -242,7 +242,7 @@ class StlDenseTimeOnlineSpecification(OnlineSpecification, DenseTimeSpecificatio
             del rest[0]
         points = told + rest
         last = len(points) - 1
-        # Where the update ended nothing need have changed.
+        # Nothing need have changed at the end of the update.
         return [point for i, point in enumerate(points) if i in {0, last} or point[1] != points[i - 1][1]]
 
     @raises_rtamt
@@ -255,7 +255,7 @@ class StlDenseTimeOnlineSpecification(OnlineSpecification, DenseTimeSpecificatio
             self._monitor.reset()
 
     def _told(self, part: Formula) -> list[list[float]]:
-        """Return what the latest update made known of a part, or gave of a variable (as RTAMT does)."""
+        """Return what the latest update made known of a part, or the samples it gave of a variable (as RTAMT does)."""
         if isinstance(part, Var):
             times, values = self._given.get(part.name, ((), ()))
             told = int if self._whole else float
@@ -277,7 +277,7 @@ class StlDenseTimeOnlineSpecification(OnlineSpecification, DenseTimeSpecificatio
             formula, text = self._result, self._parsed_document.text
             check_dense(formula, text)
             require_past(formula, text)
-            # Of variables that the result does not read, samples need not come.
+            # Variables that the result does not read need no samples.
             reads = set(variables(formula))
             named = tuple(self._formulas.values())
             watchable = folds(named, lambda node, below: all(below) and _is_watchable(node, reads))
@@ -299,7 +299,7 @@ class StlDenseTimeOnlineSpecification(OnlineSpecification, DenseTimeSpecificatio
 
 
 class StlDenseTimeSpecification(StlDenseTimeOfflineSpecification, StlDenseTimeOnlineSpecification):
-    """Evaluates finished signals and watches streams.
+    """Evaluates complete signals and monitors streams.
 
     ``semantics`` and ``language`` as for :class:`StlDiscreteTimeSpecification`.
 

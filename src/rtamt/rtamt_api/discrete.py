@@ -1,4 +1,4 @@
-"""The paper's API in discrete time: what its classes share, and the offline one."""
+"""The paper's API in discrete time: the base class and the offline class."""
 
 from __future__ import annotations
 
@@ -29,9 +29,9 @@ if TYPE_CHECKING:
 
 
 class DiscreteTimeSpecification(Formulas):
-    """What the classes for discrete time share: the sampling period.
+    """The base of the classes for discrete time: the sampling period.
 
-    Not made by users.
+    Not instantiated by users.
     """
 
     def __init__(self) -> None:
@@ -48,8 +48,8 @@ class DiscreteTimeSpecification(Formulas):
     ) -> None:
         """Set the time between samples.
 
-        ``sampling_period`` in ``unit`` (h, min, s, ms, us, ns); ``tolerance``, from 0 to 1, is the fraction of
-        the period by which a gap may miss it before :attr:`sampling_violation_counter` counts it.
+        ``sampling_period`` in ``unit`` (h, min, s, ms, us, ns); ``tolerance``, from 0 to 1, is the allowed
+        deviation of a gap, as a fraction of the period, before :attr:`sampling_violation_counter` counts it.
         """
         before = self._period, self._tolerance
         self._period, self._tolerance = sampling(sampling_period, unit, tolerance)
@@ -60,17 +60,17 @@ class DiscreteTimeSpecification(Formulas):
             raise
 
     def get_sampling_frequency(self) -> float:
-        """Return the samples per second."""
+        """Return the number of samples per second."""
         return float(1 / self._period)
 
     @property
     def sampling_tolerance(self) -> float:
-        """The fraction of the period by which a gap between samples may miss it."""
+        """The allowed deviation of gaps between samples, as a fraction of the period."""
         return self._tolerance
 
     @property
     def sampling_violation_counter(self) -> int:
-        """How many gaps between samples missed the period by more than the tolerance."""
+        """The number of gaps between samples that deviate from the period by more than the tolerance."""
         return self._violations
 
     @property
@@ -103,10 +103,10 @@ class StlDiscreteTimeOfflineSpecification(ExplainedSpecification, DiscreteTimeSp
     def evaluate(self, dataset: Mapping[str, Any]) -> list[list[float]]:
         """Return the robustness at every sample, ``[[time, value], ...]``.
 
-        ``dataset``: from ``"time"`` to n time stamps in :attr:`unit`, and from every variable to n
+        ``dataset``: from ``"time"`` to n timestamps in :attr:`unit`, and from every variable to n
         numbers (or objects, where the specification reads fields). Other keys are ignored, and
-        nothing is changed. Gaps between samples that miss the sampling period are counted in
-        :attr:`sampling_violation_counter`; the evaluation goes by samples all the same. Raises
+        nothing is changed. Gaps between samples that deviate from the sampling period are counted in
+        :attr:`sampling_violation_counter`; the evaluation still counts in samples. Raises
         :class:`RTAMTException` for wrong data.
         """
         formula = self._result
@@ -125,13 +125,13 @@ class StlDiscreteTimeOfflineSpecification(ExplainedSpecification, DiscreteTimeSp
         return values
 
     def _trace(self, dataset: Any) -> tuple[arrays.FloatArray, DiscreteTrace]:
-        """Return the stamps as given, and the trace in seconds, whatever the gaps between its samples."""
+        """Return the timestamps as given, and the trace in seconds, regardless of the gaps between samples."""
         keys = dataset if isinstance(dataset, Mapping) else getattr(dataset, "columns", ())
         columns = {key: dataset[key] for key in keys}
         stamps = arrays.array(columns[TIME], TIME) if TIME in columns else None
         if stamps is not None:
             columns[TIME] = stamps * float(UNITS[self._unit])
-        unit = "s" if columns else None  # said by the specification: also where the numbers are large
+        unit = "s" if columns else None  # given by the specification, so that large numbers are valid seconds
         trace = record_discrete(columns or dataset, self._inputs, self._period, inf, unit)
         if stamps is None:
             raise arrays.missing_variable(TIME, tuple(columns))

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 class StlDiscreteTimeOnlineSpecification(OnlineSpecification, DiscreteTimeSpecification):
-    """Watches a stream of samples.
+    """Monitors a stream of samples.
 
     A formula with future operators must be rewritten by :meth:`pastify`; its robustness then comes
     one horizon late.
@@ -42,17 +42,17 @@ class StlDiscreteTimeOnlineSpecification(OnlineSpecification, DiscreteTimeSpecif
         self._stream: Stream | None = None  # made by the first update
         self._refusals: tuple[type[Exception], ...] = ()
         self._take: Callable[[Any, Any], Any] = self._begin
-        self._shared = False  # whether var_object_dict was handed out: values may come through it
-        self._seen: dict[str, Any] = {}  # what was in it after the latest update
+        self._shared = False  # whether var_object_dict was exposed: the caller may assign values through it
+        self._seen: dict[str, Any] = {}  # its content after the latest update
 
     def update(self, timestamp: float, dataset: Iterable[tuple[str, Any]]) -> Any:
         """Take one sample and return the robustness.
 
-        ``timestamp`` in :attr:`unit`, no earlier than the one before: the same one again is a further
+        ``timestamp`` in :attr:`unit`, no earlier than the previous one: an equal timestamp is another
         sample, whose gap counts in :attr:`sampling_violation_counter`. ``dataset``: pairs of a name and a
         number (or an object, where the specification reads fields). A variable that is left out keeps its
         value. Returns a float, or the object of :attr:`out_var` with the robustness in its field.
-        Raises :class:`RTAMTException` for wrong data, and the monitor is then as it was.
+        Raises :class:`RTAMTException` for wrong data; the monitor is then unchanged.
         """
         try:
             return self._take(timestamp, dataset)
@@ -77,7 +77,7 @@ class StlDiscreteTimeOnlineSpecification(OnlineSpecification, DiscreteTimeSpecif
 
     @property
     def var_object_dict(self) -> dict[str, Any]:
-        """From each variable to its current value; what is assigned to an entry counts in the next update."""
+        """From each variable to its current value; a value assigned to an entry is used by the next update."""
         if not self._shared:
             self._shared = True
             if self._stream is not None and self._stream.monitor.samples:
@@ -89,7 +89,7 @@ class StlDiscreteTimeOnlineSpecification(OnlineSpecification, DiscreteTimeSpecif
     # ---- starting --------------------------------------------------------------------------------
 
     def __getstate__(self) -> dict[str, Any]:
-        return {**super().__getstate__(), "_take": self._begin}  # the quick way leads to this one's stream
+        return {**super().__getstate__(), "_take": self._begin}  # the fast path is bound to one stream
 
     def _start_over(self, formulas: dict[str, Formula]) -> None:
         super()._start_over(formulas)
@@ -97,7 +97,7 @@ class StlDiscreteTimeOnlineSpecification(OnlineSpecification, DiscreteTimeSpecif
         self._take = self._begin
 
     def _begin(self, timestamp: Any, dataset: Any) -> Any:
-        """Take a sample before which something has to be set up."""
+        """Take a sample after setting up the stream."""
         stream = self._opened_stream()
         objects = self.out_var_field or any(name != head_of(name) for name in self._inputs)
         quick = None if self._shared or objects else stream.quick
@@ -174,11 +174,11 @@ class StlDiscreteTimeOnlineSpecification(OnlineSpecification, DiscreteTimeSpecif
         return numbers | {name: given[name] for name in self._inputs if name in given}
 
     def _came_from_outside(self, head: str) -> bool:
-        """Tell whether a variable's entry in var_object_dict has to be read: objects change in place."""
+        """Return whether a variable's entry in var_object_dict has to be read: objects change in place."""
         return not isinstance(self._objects[head], Real) or self._changed(head)
 
     def _refusal(self, timestamp: Any, numbers: dict[str, Any], monitor: Any) -> Exception:
-        """Find out why the monitor took no sample, and say it."""
+        """Return the error for a sample that the monitor rejected."""
         index = monitor.samples
         last = self._seconds(monitor.last_time) if index else None
         time = read_time(self._seconds(timestamp), index, last, again=True)
@@ -191,7 +191,7 @@ class StlDiscreteTimeOnlineSpecification(OnlineSpecification, DiscreteTimeSpecif
                     index=0,
                 )
         read_values(numbers, tuple(numbers), index, time)
-        return in_use()  # what was wrong is so no more
+        return in_use()  # the cause has disappeared meanwhile
 
     def _seconds(self, timestamp: Any) -> Any:
         return timestamp * float(UNITS[self._unit]) if isinstance(timestamp, Real) else timestamp
@@ -199,19 +199,19 @@ class StlDiscreteTimeOnlineSpecification(OnlineSpecification, DiscreteTimeSpecif
     # ---- values ----------------------------------------------------------------------------------
 
     def _holds(self, name: str) -> bool:
-        # Once var_object_dict is handed out, every update writes into it.
+        # Once var_object_dict is exposed, every update writes into it.
         written = self._shared and self._value_of == self._latest
         return written or self._changed(name) or super()._holds(name)
 
     def _changed(self, name: str) -> bool:
-        """Tell whether someone has assigned to a variable's entry in var_object_dict."""
+        """Return whether the caller has assigned to a variable's entry in var_object_dict."""
         return self._shared and self._objects[name] is not self._seen.get(name)
 
     def _latest(self, part: Formula) -> float:
         return self._require_stream().latest(self._worth(part))
 
     def _collect(self) -> None:
-        """Bring var_object_dict up to date with the updates that went past it."""
+        """Bring var_object_dict up to date with the updates on the fast path."""
         for name, formula in [*((name, Var(name)) for name in self._inputs), *self._formulas.items()]:
             if isinstance(self._objects.get(name), Real):
                 self._objects[name] = self._latest(formula)
@@ -227,10 +227,10 @@ class StlDiscreteTimeOnlineSpecificationCpp(StlDiscreteTimeOnlineSpecification):
 
 
 class StlDiscreteTimeSpecification(StlDiscreteTimeOfflineSpecification, StlDiscreteTimeOnlineSpecification):
-    """Evaluates finished traces and watches streams.
+    """Evaluates complete traces and monitors streams.
 
-    ``semantics``: how predicates have the semantics applied. ``language``: which back end RTAMT would run. Here both
-    names mean the compiled core; where it cannot be loaded, ``Language.PYTHON`` runs the definition in
+    ``semantics``: the semantics of predicates. ``language``: the back end that RTAMT would run. Here both
+    values select the compiled core; if it cannot be loaded, ``Language.PYTHON`` runs the definition in
     Python, with equal results, and ``Language.CPP`` raises :class:`RTAMTException`.
 
     >>> import rtamt
@@ -256,7 +256,7 @@ class StlDiscreteTimeSpecification(StlDiscreteTimeOfflineSpecification, StlDiscr
     def evaluate(self, dataset: Mapping[str, Any]) -> list[list[float]]:
         """Evaluate a finished trace; see :class:`StlDiscreteTimeOfflineSpecification`."""
         result = super().evaluate(dataset)
-        self._take = self._begin  # so that values come from the stream again after the next update
+        self._take = self._begin  # values come from the stream again after the next update
         return result
 
 

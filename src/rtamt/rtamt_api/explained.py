@@ -1,4 +1,4 @@
-"""What the offline classes of both time domains share: explanations and plots."""
+"""Explanations and plots, shared by the offline classes of both time domains."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 
 class Explainer:
-    """What RTAMT keeps of an explanation; ours is what ``explain`` returns."""
+    """RTAMT's record of an explanation; the explanation of this library is returned by ``explain``."""
 
     def __init__(self) -> None:
         #: From the canonical text of the formula, of its predicates and of their variables to where they make it
@@ -37,7 +37,7 @@ class Explainer:
 
 
 class ExplainedSpecification(Formulas):
-    """A specification whose evaluations can be explained. Not made by users."""
+    """A specification whose evaluations can be explained. Not instantiated by users."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -50,14 +50,14 @@ class ExplainedSpecification(Formulas):
         self.explainer = Explainer()
 
     def _remember(self, formula: Formula, recording: DomainTrace) -> None:
-        """Keep what was evaluated, and under which semantics, until it is to be explained."""
+        """Keep the evaluated recording and its semantics for a later explanation."""
         self._evaluated = formula, recording, semantics_of(self._semantics)
 
     @raises_rtamt
     def explain(self, at: Any = None) -> Explanation:
-        """Tell why the latest ``evaluate`` found the specification satisfied or violated.
+        """Explain why the latest ``evaluate`` found the specification satisfied or violated.
 
-        ``at``: an instant; by default the first. The answer prints as sentences and is data:
+        ``at``: an instant; by default the first. The explanation prints as text and has data attributes:
         ``.critical``, ``.implicant``, ``.to_dict()``. Times are seconds in discrete time, and in
         :attr:`unit` in dense time. ``explainer.explanations`` is set as well, as by RTAMT. Raises
         :class:`RTAMTException` before the first ``evaluate``.
@@ -96,7 +96,7 @@ class ExplainedSpecification(Formulas):
     def plot(self, at: Any = None, *, figure: Figure | None = None) -> Figure:
         """Draw the signals of the latest ``evaluate``, the robustness over time and the explanation.
 
-        ``at`` as for :meth:`explain`; ``figure``: one of matplotlib to draw into, by default a new one of
+        ``at`` as for :meth:`explain`; ``figure``: the matplotlib figure to draw into, by default a new one of
         pyplot, which ``matplotlib.pyplot.show()`` displays. Needs ``pip install 'rtamt[plot]'``. Raises
         :class:`RTAMTException` before the first ``evaluate``.
         """
@@ -112,7 +112,7 @@ class ExplainedSpecification(Formulas):
 
 
 def _places(formula: Formula, recording: DomainTrace, explanation: Explanation) -> dict[str, list[list[Any]]]:
-    """Return where the predicates and variables of an implicant make a formula fail, by canonical text."""
+    """Return the places where predicates and variables of an implicant make a formula fail, by canonical text."""
 
     def place(time: Any) -> Any:
         return time if recording.domain.continuous else recording.position(time)

@@ -1,4 +1,4 @@
-"""Every error of the library leaves the paper's API as an RTAMTException, with its sentence and its caret."""
+"""Convert every error of the library to an RTAMTException, with its message and caret."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ R = TypeVar("R")
 
 
 def raises_rtamt(method: Callable[P, R]) -> Callable[P, R]:
-    """Make a method raise :class:`STLParseException` for text that is wrong, else :class:`RTAMTException`.
+    """Make a method raise :class:`STLParseException` for invalid text, else :class:`RTAMTException`.
 
-    The original error stays reachable as ``__cause__``.
+    The original error is the ``__cause__``.
     """
 
     @wraps(method)

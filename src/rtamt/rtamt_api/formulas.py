@@ -1,4 +1,4 @@
-"""The formulas of a specification that has been read: their text, and the values of their parts."""
+"""The formulas of a parsed specification: their text, and the values of their parts."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 class Formulas(Declarations):
-    """What the classes of both time domains share once the text has been read. Not made by users."""
+    """A parsed specification, shared by the classes of both time domains. Not instantiated by users."""
 
     _semantics: Semantics | str | PredicateSemantics = Semantics.STANDARD
 
@@ -43,7 +43,7 @@ class Formulas(Declarations):
 
     @property
     def semantics(self) -> Semantics | str | PredicateSemantics:
-        """What a predicate is worth: a :class:`Semantics`, or what ``semantics`` of :func:`rtamt.parse` takes."""
+        """The semantics of predicates: a :class:`Semantics`, or a value that :func:`rtamt.parse` accepts."""
         return self._semantics
 
     @semantics.setter
@@ -85,7 +85,7 @@ class Formulas(Declarations):
     def _worth(self, part: Formula) -> Formula:
         """Return the formula whose robustness is the value of a part of the specification.
 
-        What is read as a number has its ordinary value under every semantics.
+        Numbers have their ordinary value under every semantics.
         """
         if part is not self._result and is_number(part):
             return part
@@ -97,13 +97,13 @@ class Formulas(Declarations):
 
     @raises_rtamt
     def get_value(self, var_name: str) -> Any:
-        """Return what a variable, an assertion or a sub-formula is worth now.
+        """Return the current value of a variable, an assertion or a sub-formula.
 
         ``var_name``: the name of a variable or assertion, or the text of a formula, such as its
-        canonical text ``'(a)>=(2.0)'``. After ``evaluate`` the value is a list: one number a sample,
-        in dense time ``[[time, value], ...]``. After ``update`` it is the latest number, in dense time
-        again a list: what the update made known, and of a variable the samples that it gave. Before
-        both it is what was declared. A variable of a message class gives its object.
+        canonical text ``'(a)>=(2.0)'``. After ``evaluate`` the value is a list: one number per sample,
+        in dense time ``[[time, value], ...]``. After ``update`` it is the latest number; in dense time it is
+        again a list: the values that the update made known, or for a variable the samples that it gave. Before
+        both it is the declared value. A variable of a message class returns its object.
         """
         if var_name in self._objects and (self._value_of is None or self._holds(var_name)):
             return self._objects[var_name]
@@ -113,7 +113,7 @@ class Formulas(Declarations):
         return self._value_of(self._formula_named(var_name))
 
     def _holds(self, name: str) -> bool:
-        """Tell whether what is held for a variable is its value: objects are kept, numbers need not be."""
+        """Return whether the stored entry of a variable is its value: objects are kept, numbers need not be."""
         return not isinstance(self._objects[name], Real)
 
     def _formula_named(self, text: str) -> Formula:

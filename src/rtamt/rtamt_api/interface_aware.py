@@ -1,7 +1,7 @@
-"""The paper's classes for interface-aware STL: those for STL, with another semantics to begin with.
+"""The paper's classes for interface-aware STL: the STL classes with another default semantics.
 
-Which variables are inputs is declared with ``set_var_io_type``, or with ``input`` and ``output`` in the
-text; what is neither is an output.
+Inputs are declared with ``set_var_io_type``, or with ``input`` and ``output`` in the
+text; undeclared variables are outputs.
 """
 
 from __future__ import annotations
@@ -14,25 +14,25 @@ from rtamt.rtamt_api.options import Semantics
 
 
 class OutputRobustness(Formulas):
-    """Measures what changes of outputs it takes, inputs being what they are."""
+    """Measures the change of outputs that would change the verdict, with fixed inputs."""
 
     _semantics = Semantics.OUTPUT_ROBUSTNESS
 
 
 class InputVacuity(Formulas):
-    """Measures what changes of inputs it takes, whatever outputs may do."""
+    """Measures the change of inputs that would change the verdict, for arbitrary outputs."""
 
     _semantics = Semantics.INPUT_VACUITY
 
 
 class InputRobustness(Formulas):
-    """Measures what changes of inputs it takes, outputs being what they are."""
+    """Measures the change of inputs that would change the verdict, with fixed outputs."""
 
     _semantics = Semantics.INPUT_ROBUSTNESS
 
 
 class OutputVacuity(Formulas):
-    """Measures what changes of outputs it takes, whatever inputs may do."""
+    """Measures the change of outputs that would change the verdict, for arbitrary inputs."""
 
     _semantics = Semantics.OUTPUT_VACUITY
 

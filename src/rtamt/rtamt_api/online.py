@@ -1,4 +1,4 @@
-"""What the online classes of both time domains share: pastification, and where the result goes."""
+"""Pastification and output of the result, shared by the online classes of both time domains."""
 
 from __future__ import annotations
 
@@ -20,23 +20,23 @@ if TYPE_CHECKING:
 
 
 class OnlineSpecification(Formulas):
-    """A specification that is watched while samples come. Not made by users."""
+    """A specification that is monitored while samples arrive. Not instantiated by users."""
 
-    #: Seconds, what ``next`` counts; dense time has no ``next``.
+    #: The step of ``next`` in seconds; dense time has no ``next``.
     _period = Fraction(1)
 
     def __init__(self) -> None:
         super().__init__()
         self._pastified = False
         self._gate = Gate()  # what takes more than one step is done alone
-        # From a variable to what formulas read of it: itself, or its fields by full name.
+        # From a variable to the names that formulas read: the variable itself, or its fields by full name.
         self._reads: dict[str, list[str]] = {}
 
     @raises_rtamt
     def pastify(self) -> None:
-        """Rewrite the formulas into past operators, equal one horizon later (the paper's Definition 4).
+        """Rewrite the formulas into past operators, with equal values one horizon later (the paper's Definition 4).
 
-        Raises :class:`RTAMTException` at an operator whose future is unbounded.
+        Raises :class:`RTAMTException` at an operator with unbounded future.
         """
         text = self._parsed_document.text
         formulas = {
@@ -60,12 +60,12 @@ class OnlineSpecification(Formulas):
             self.pastify()
 
     def _start_over(self, formulas: dict[str, Formula]) -> None:
-        """Watch other formulas from now on, from the first sample."""
+        """Monitor other formulas from now on, beginning with a new first sample."""
         self._formulas = formulas
         self._value_of = None
 
     def _publish(self, robustness: float) -> Any:
-        """Write the result where the specification says, and return it."""
+        """Write the result to the output variable of the specification, and return it."""
         head, field = self._out_name
         if not field:
             self._objects[head] = robustness
@@ -76,7 +76,7 @@ class OnlineSpecification(Formulas):
 
 
 def require_past(formula: Formula, text: str) -> None:
-    """Raise at the outermost operator that reads the future: an online monitor cannot."""
+    """Raise at the outermost operator that reads the future, which an online monitor cannot do."""
     future = [n for n in postorder(formula) if isinstance(n, Apply) and n.op.tense is Tense.FUTURE]
     if future:
         name = future[-1].op.name

@@ -1,4 +1,4 @@
-"""The words that the paper's API uses for choices, whose values and ``str()`` are RTAMT's; how time is sampled."""
+"""The options of the paper's API as enumerations with RTAMT's values and ``str()``; the sampling period."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 class Semantics(Enum):
-    """How a predicate is applied (the paper's interface-aware semantics)."""
+    """The semantics of predicates (the paper's interface-aware semantics)."""
 
     STANDARD = "standard"
     OUTPUT_ROBUSTNESS = "output-robustness"
@@ -27,7 +27,7 @@ class Semantics(Enum):
 
 
 class Language(Enum):
-    """Which back end RTAMT ran; here both run the compiled core, and PYTHON can do without it."""
+    """The back end in RTAMT; here both run the compiled core, and PYTHON also works without it."""
 
     PYTHON = "python"
     CPP = "C++"
@@ -37,7 +37,7 @@ class Language(Enum):
 
 
 class TimeInterpretation(Enum):
-    """Whether a signal exists at its samples only or holds between them."""
+    """Whether a signal is defined only at its samples or also between them."""
 
     DISCRETE = "discrete_time"
     DENSE = "dense-time"
@@ -47,7 +47,7 @@ class TimeInterpretation(Enum):
 
 
 class StlIOType(Enum):
-    """Which side of the interface a variable is on."""
+    """The role of a variable: input or output."""
 
     IN = 0
     OUT = 1
@@ -55,7 +55,7 @@ class StlIOType(Enum):
 
 
 def sampling(period: float, unit: str, tolerance: float) -> tuple[Fraction, float]:
-    """Return a sampling period in seconds, and the fraction of it by which a gap may miss it."""
+    """Return a sampling period in seconds, and the tolerance as a fraction of it."""
     seconds = duration(period, unit)
     if seconds == 0:
         raise UsageError(f"the sampling period is {period} {unit}; it must be positive")

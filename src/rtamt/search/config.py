@@ -1,4 +1,4 @@
-"""A search written down in a TOML file: the requirement, the plant, its inputs, and how to search.
+"""Problem files (TOML): the requirement, the plant, its inputs, and the search settings.
 
 ::
 
@@ -40,7 +40,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Mapping
     from types import ModuleType
 
-#: What ``kind`` may be.
+#: The values of ``kind``.
 KINDS: Mapping[str, Any] = MappingProxyType({
     "range": Range,
     "piecewise_constant": PiecewiseConstant,
@@ -57,14 +57,14 @@ _SEARCH = ("optimizer", "budget", "seed", "workers", "record", "stop")
 
 @dataclass(frozen=True, slots=True)
 class Search:
-    """What a file says: the problem, and the settings of ``falsify``."""
+    """The content of a problem file: the problem, and the settings of ``falsify``."""
 
     problem: Problem
     settings: Mapping[str, Any]
 
 
 def load_search(path: str | os.PathLike[str]) -> Search:
-    """Read a search from a TOML file; raises :class:`UsageError` that names the file and the key."""
+    """Read a problem file; raise :class:`UsageError` with the file and the key."""
     place = Path(path)
     try:
         data = _toml().loads(place.read_text(encoding="utf-8"))
@@ -135,7 +135,7 @@ def _plant(data: dict[str, Any], folder: Path) -> Callable[..., Any]:
 
 
 def _module(name: str, folder: Path) -> ModuleType:
-    """Import a module, first of all from the folder, also where another one of that name was imported before."""
+    """Import a module, preferably from the folder, even if another one of that name was imported before."""
     beside = folder / f"{name}.py"
     before = sys.modules.get(name)
     if beside.exists() and before is not None and getattr(before, "__file__", None) != str(beside):

@@ -1,4 +1,4 @@
-"""Simulations by the batch: on one core or several, recorded, counted, and stopped where enough is known."""
+"""Run simulations in batches, in one or several processes; record and count them, and stop the search."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ if TYPE_CHECKING:
     from rtamt.search.problem import Problem
 
 
-class Enough(Exception):  # noqa: N818 - no error: what ends an optimizer that would go on
-    """The budget is used up, or a violation is found."""
+class Enough(Exception):  # noqa: N818 - not an error: it ends the optimizer
+    """The budget is exhausted, or a violation is found."""
 
 
 class Runs(AbstractContextManager["Runs"]):
-    """Runs a problem at one point after another; ``made`` holds the evaluations in order.
+    """Runs a problem at a sequence of points; ``made`` holds the evaluations in order.
 
-    ``stop``: enough is known at the first violation. ``whole``: no simulation is cut short.
+    ``stop``: end at the first violation. ``whole``: run every simulation to its end.
     """
 
     def __init__(
@@ -58,7 +58,7 @@ class Runs(AbstractContextManager["Runs"]):
             self._pool.shutdown(cancel_futures=True)
 
     def batch(self, points: Sequence[Mapping[str, float]]) -> list[Evaluation]:
-        """Evaluate at these points, in order; raise :class:`Enough` where that is the end."""
+        """Evaluate at these points, in order; raise :class:`Enough` at the end of the search."""
         first = len(self.made)
         points = points[: self._budget - first]
         known = [self._record.recorded(first + k, point) for k, point in enumerate(points)]
@@ -98,6 +98,6 @@ def _pickled(problem: Problem) -> bytes:
 
 
 def count(what: str, number: object) -> None:
-    """Raise :class:`UsageError` where a number of things is none."""
+    """Raise :class:`UsageError` unless a value is a valid count."""
     if not isinstance(number, int) or number < 1:
         raise UsageError(f"{what} is {shown(number)}; give a whole number, 1 or more")

@@ -1,4 +1,4 @@
-"""Falsification: the search for inputs that violate a requirement, with the robustness as the number to make small."""
+"""Falsification: search for inputs that violate a requirement by minimising the robustness."""
 
 from __future__ import annotations
 
@@ -20,20 +20,20 @@ if TYPE_CHECKING:
 
     from rtamt.search.problem import Problem
 
-#: What optimizers get for an infinite robustness: they calculate with what they are given.
+#: The value that optimizers get for infinite robustness, since they need finite numbers.
 HUGE = 1e12
 
 
 @dataclass(frozen=True, eq=False)
 class Falsification:
-    """What a search found: every evaluation in order."""
+    """The result of a search: every evaluation in order."""
 
     problem: Problem
     evaluations: tuple[Evaluation, ...]
 
     @property
     def best(self) -> Evaluation:
-        """The evaluation of least robustness; where one violates the requirement, the first such one."""
+        """The first evaluation that violates the requirement, or else the one with the least robustness."""
         for evaluation in self.evaluations:
             if not evaluation.satisfied:
                 return evaluation
@@ -45,7 +45,7 @@ class Falsification:
         return not self.best.satisfied
 
     def plot(self, axes: Any = None) -> Any:
-        """Draw the robustness over the simulations, as the paper's Fig. 12b does; returns the matplotlib axes."""
+        """Plot the robustness over the simulations, as in the paper's Fig. 12b; return the matplotlib axes."""
         from rtamt.search.plot import descent
 
         return descent(self, axes)
@@ -75,11 +75,11 @@ def falsify(
 ) -> Falsification:
     """Search for a violation.
 
-    ``optimizer``: cma, differential_evolution, dual_annealing, optuna, sobol or random. ``budget``: how
-    many simulations at most. ``workers``: processes that simulate at the same time. ``record``: a file
-    in which every evaluation is kept; the same call with the same file goes on where it was
-    interrupted. ``stop``: end at the first violation. ``progress`` is called after each simulation.
-    The same seed and number of workers give the same search.
+    ``optimizer``: cma, differential_evolution, dual_annealing, optuna, sobol or random. ``budget``: the
+    maximum number of simulations. ``workers``: the number of parallel processes. ``record``: a log file
+    of every evaluation; the same call with the same file resumes an interrupted
+    search. ``stop``: end at the first violation. ``progress`` is called after each simulation.
+    The search is deterministic for a given seed and number of workers.
 
     >>> import rtamt
     >>> from rtamt.search import Problem, Range, falsify
@@ -111,7 +111,7 @@ def falsify(
             return np.clip([found.robustness for found in runs.batch(batch)], -HUGE, HUGE)
 
         try:
-            while True:  # an optimizer that has converged starts anew, from another seed
+            while True:  # restart a converged optimizer with another seed
                 search(evaluate, len(names), seed + len(runs.made), workers)
         except Enough:
             return Falsification(problem, tuple(runs.made))

@@ -1,4 +1,4 @@
-"""A functional mock-up unit (FMI 2.0 or 3.0, co-simulation) as a plant: stepped, so that it can be stopped."""
+"""An FMU (FMI 2.0 or 3.0, co-simulation) as a plant, simulated step by step so that it can be stopped."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class FmuPlant:
-    """Simulates an FMU: called with its inputs and parameters by name, yields samples at every step.
+    """Simulates an FMU: called with its inputs and parameters by name, it yields a sample at every step.
 
-    ``duration`` is seconds; ``step`` too, by default that of the FMU's default experiment. Numbers
-    are set once, before the simulation; functions of time are set at every step. A sample has the FMU's real
+    ``duration`` and ``step`` are in seconds; the default step is that of the FMU's default experiment. Numbers
+    are set once, before the simulation; functions of time are set at every step. A sample holds the FMU's real
     outputs at that time, and the inputs given as functions (a requirement may read both); the first is at 0.
     """
 
@@ -37,7 +37,7 @@ class FmuPlant:
             raise UsageError(f"there is no unit '{self.path}'")
         try:
             description = fmpy.read_model_description(str(self.path))
-        except Exception as error:  # fmpy lets out what zip and XML readers say
+        except Exception as error:  # fmpy passes on errors of zip and XML readers
             raise UsageError(f"'{self.path}' cannot be read as an FMU: {error}") from error
         if description.coSimulation is None:
             raise UsageError(f"'{self.path}' is no unit for co-simulation")
@@ -76,7 +76,7 @@ class FmuPlant:
             modelIdentifier=description.coSimulation.modelIdentifier,
             instanceName="plant",
         )
-        # Without a logger of ours fmpy would print what the unit says among the results.
+        # Without this logger, fmpy would print messages of the FMU among the results.
         if third:
             unit.instantiate(logMessage=lambda _env, status, _kind, text: _note(said, status, text))
         else:
@@ -85,7 +85,7 @@ class FmuPlant:
 
 
 def _callbacks(module: Any, said: list[str]) -> Any:
-    """Return what FMI 2.0 wants of a host: a logger, which fmpy's proxy hands whole sentences, and memory."""
+    """Return the callbacks of FMI 2.0: a logger, which receives formatted messages from fmpy's proxy, and memory."""
     callbacks = module.fmi2CallbackFunctions()
     callbacks.logger = module.fmi2CallbackLoggerTYPE(
         lambda _env, _name, status, _kind, text: _note(said, status, text)
@@ -97,7 +97,7 @@ def _callbacks(module: Any, said: list[str]) -> Any:
 
 
 def _note(said: list[str], status: int, text: bytes) -> None:
-    """Keep what a unit says that is more than a warning (status 2 or higher)."""
+    """Keep the FMU's messages above the warning level (status 2 or higher)."""
     if status > 1:
         said.append(text.decode("utf-8", "replace"))
 
@@ -136,5 +136,5 @@ def _simulate(
             if moving:
                 write(places, list(now.values()))
         unit.terminate()
-    finally:  # may be done at any time, also where the simulation was stopped or has failed
+    finally:  # allowed at any time, also after a stopped or failed simulation
         unit.freeInstance()

@@ -1,4 +1,4 @@
-"""What a search varies: numbers in a range, and input signals made from such numbers.
+"""The inputs that a search varies: numbers in a range, and input signals built from them.
 
 ::
 
@@ -9,8 +9,8 @@
     Pulse(amplitude=Range(1, 1.75), frequency=0.2) a square wave
     Sine(amplitude=1, frequency=Range(0.2, 1))     a sine
 
-Wherever a signal takes a number it takes a :class:`Range` too; that number is then searched for, under
-the name of the input and its own: ``pc.frequency``, ``throttle.0``.
+Every number of a signal may also be a :class:`Range`. It is then a search parameter, named after
+the input and the number: ``pc.frequency``, ``throttle.0``.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ class Range:
             )
 
     def at(self, fraction: float) -> float:
-        """Return the number that far between the ends: ``low`` at 0, ``high`` at 1."""
+        """Return the number at a fraction of the range: ``low`` at 0, ``high`` at 1."""
         return min(self.high, self.low + fraction * (self.high - self.low))
 
 
@@ -57,10 +57,10 @@ Number: TypeAlias = float | Range
 
 
 class Input(Protocol):
-    """A signal made from numbers; those given as a :class:`Range` are its parameters."""
+    """A signal built from numbers; those given as a :class:`Range` are its parameters."""
 
     def parameters(self) -> dict[str, Range]:
-        """Return the ranges of what is searched for, by name."""
+        """Return the ranges of the parameters by name."""
 
     def signal(self, values: Mapping[str, float], duration: float) -> Function:
         """Return the signal for a value of every parameter: a function of time in seconds."""
@@ -68,7 +68,7 @@ class Input(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class Waypoints:
-    """A function of time through points: held until the next one, or straight between them."""
+    """A function of time through points: piecewise constant or piecewise linear."""
 
     times: tuple[float, ...]
     values: tuple[float, ...]
@@ -76,7 +76,7 @@ class Waypoints:
 
     def __call__(self, time: Any) -> Any:
         """Return the value at a time, or at each of an array of times (seconds)."""
-        if not self.linear and isinstance(time, float):  # plants in Python ask at every step
+        if not self.linear and isinstance(time, float):  # Python plants call this at every step
             return self.values[max(0, bisect_right(self.times, time) - 1)]
         if self.linear:
             return _like(time, np.interp(time, self.times, self.values))
@@ -147,7 +147,7 @@ class PiecewiseLinear(_Points):
 
 
 class _Shape(ABC):
-    """A signal of a formula's shape; those of its fields that are ranges are its parameters."""
+    """A signal given by an expression; fields that are ranges are its parameters."""
 
     __slots__ = ()
 
@@ -165,7 +165,7 @@ class _Shape(ABC):
         """Return the ranges among the numbers of this signal."""
         return {name: value for name, value in self._given().items() if isinstance(value, Range)}
 
-    def signal(self, values: Mapping[str, float], duration: float) -> Function:  # noqa: ARG002 - an Input's
+    def signal(self, values: Mapping[str, float], duration: float) -> Function:  # noqa: ARG002 - the interface of Input
         """Return the signal: a function of time in seconds."""
         return type(self)(**{**self._given(), **values})
 

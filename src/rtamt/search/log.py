@@ -1,8 +1,8 @@
-"""Every evaluation of a search, kept in a file of JSON lines, so that a run can be looked at and resumed.
+"""The log of a search: a JSON Lines file of evaluations, for inspection and for resuming the search.
 
-The first line says what was searched; each further line is one evaluation. A resumed run asks its
-optimizer anew from the same seed and takes what is recorded instead of simulating again: it goes on
-exactly as it would have.
+The first line describes the search; each further line is one evaluation. A resumed search restarts its
+optimizer with the same seed and reads recorded results instead of simulating again, so that it continues
+exactly like an uninterrupted one.
 """
 
 from __future__ import annotations
@@ -23,18 +23,18 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Evaluation:
-    """One simulation: the point it was run at, and what came of it."""
+    """One simulation: its point and its result."""
 
     number: int  # from 0
     point: Mapping[str, float]
     robustness: float
     satisfied: bool
-    #: Seconds of simulated time at which the verdict was settled and the simulation stopped; None: it ran to its end.
-    #: The robustness is then that of what was seen, if the rest goes as well as it can.
+    #: The simulated time in seconds at which the verdict was final and the simulation stopped; None: it ran to its end.
+    #: The robustness is then that of the best possible continuation.
     stopped: float | None = None
 
     def to_json(self) -> str:
-        """Return one line; JSON has no infinities, so they are text."""
+        """Return one line; infinities are written as text, since JSON has none."""
         data = asdict(self)
         if not isfinite(self.robustness):
             data["robustness"] = str(self.robustness)
@@ -42,7 +42,7 @@ class Evaluation:
 
     @classmethod
     def from_json(cls, data: dict[str, Any]) -> Evaluation:
-        """Read what :meth:`to_json` wrote."""
+        """Read a line written by :meth:`to_json`."""
         return cls(**{**data, "robustness": float(data["robustness"])})
 
 
@@ -60,7 +60,7 @@ class Record:
             self._append(json.dumps({"search": about}))
 
     def recorded(self, number: int, point: Mapping[str, float]) -> Evaluation | None:
-        """Return the evaluation of that number, None if it is still to be made."""
+        """Return the evaluation with this number; None if it is not recorded yet."""
         if number >= len(self._known):
             return None
         found = self._known[number]
@@ -72,7 +72,7 @@ class Record:
         return found
 
     def add(self, evaluation: Evaluation) -> None:
-        """Keep a new evaluation."""
+        """Add a new evaluation."""
         if self._path is not None and evaluation.number >= len(self._known):
             self._append(evaluation.to_json())
 

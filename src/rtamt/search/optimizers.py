@@ -1,8 +1,8 @@
-"""Optimizers of well-kept libraries, told the same way: points of the unit cube in, robustness out.
+"""Optimizers of established libraries behind one interface: points of the unit cube in, robustness out.
 
-Each is one function ``(evaluate, dimensions, seed, batch)`` that asks for batches of points, an array of
-shape (k, dimensions), and gets k numbers to make small. It returns when it has converged and is
-then started anew; the budget ends it by an exception out of ``evaluate``.
+Each is one function ``(evaluate, dimensions, seed, batch)``. It calls ``evaluate`` with batches of points, an
+array of shape (k, dimensions), and receives k numbers to minimise. It returns when it has converged and is
+then restarted; at the end of the budget, ``evaluate`` raises an exception that ends it.
 """
 
 from __future__ import annotations
@@ -25,19 +25,19 @@ if TYPE_CHECKING:
     Optimizer: TypeAlias = Callable[[Evaluate, int, int, int], None]
 
 
-#: How far beyond the unit cube CMA-ES searches on each side: points there are points of the boundary.
+#: The margin around the unit cube that CMA-ES searches; points in it are projected to the boundary.
 MARGIN = 0.5
 
 
 def random(evaluate: Evaluate, dimensions: int, seed: int, batch: int) -> None:
-    """Points drawn evenly, independent of each other: what every optimizer must beat."""
+    """Independent, uniformly distributed points: the baseline for every optimizer."""
     draw = np.random.default_rng(seed)
     while True:
         evaluate(draw.random((batch, dimensions)))
 
 
 def sobol(evaluate: Evaluate, dimensions: int, seed: int, batch: int) -> None:
-    """A Sobol sequence (scipy.stats.qmc): points that fill the space evenly."""
+    """A Sobol sequence (scipy.stats.qmc): points that cover the space evenly."""
     sequence = library("scipy.stats.qmc", "this optimizer", "falsify").Sobol(dimensions, seed=seed)
     block = 2 ** int(np.ceil(np.log2(max(2, batch))))
     while True:
@@ -49,14 +49,14 @@ def sobol(evaluate: Evaluate, dimensions: int, seed: int, batch: int) -> None:
 def cma_es(evaluate: Evaluate, dimensions: int, seed: int, batch: int) -> None:
     """CMA-ES (package cma), the evolution strategy that adapts its covariance, in the unit cube.
 
-    Violations like to lie in its corners (full throttle, no brake, all the time). So the search has a cube
-    that is larger by :data:`MARGIN`, and what lies outside is moved to the boundary. As long as there are too
-    few simulations for a whole matrix, its diagonal is adapted alone (R. Ros, N. Hansen, "A simple modification in
+    Violations are often in the corners of the cube (full throttle, no brake, all the time). The search cube is
+    therefore larger by :data:`MARGIN`, and points outside are projected to the boundary. While there are too
+    few simulations for a full matrix, only its diagonal is adapted (R. Ros, N. Hansen, "A simple modification in
     CMA-ES achieving linear time and space complexity", 2008), for as long as the package suggests.
     """
     cma = library("cma", "this optimizer", "falsify")
     start = np.random.default_rng(seed).random(dimensions)
-    # The package adapts a covariance matrix; one number alone has none, so it gets a companion without effect.
+    # The package needs at least two dimensions, so a single number gets a second one without effect.
     idle = 1 if dimensions == 1 else 0
     options = {
         "bounds": [-MARGIN, 1 + MARGIN],
@@ -73,7 +73,7 @@ def cma_es(evaluate: Evaluate, dimensions: int, seed: int, batch: int) -> None:
 
 
 def differential_evolution(evaluate: Evaluate, dimensions: int, seed: int, batch: int) -> None:  # noqa: ARG001
-    """Differential evolution (scipy), one generation a batch."""
+    """Differential evolution (scipy), one generation per batch."""
     optimize = library("scipy.optimize", "this optimizer", "falsify")
     optimize.differential_evolution(
         lambda points: evaluate(np.clip(np.atleast_2d(points.T), 0, 1)),
@@ -116,7 +116,7 @@ OPTIMIZERS: Mapping[str, Optimizer] = MappingProxyType({
 
 
 def optimizer(name: str) -> Optimizer:
-    """Return the optimizer of that name; raise :class:`UsageError` for any other."""
+    """Return the optimizer of this name; raise :class:`UsageError` if there is none."""
     found = OPTIMIZERS.get(name)
     if found is None:
         raise UsageError(f"there is no optimizer '{name}'{choices(name, OPTIMIZERS, 'optimizers')}")

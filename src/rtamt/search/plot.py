@@ -1,4 +1,4 @@
-"""Pictures of a search: the robustness over its simulations, and over its parameters (matplotlib)."""
+"""Plots of a search: the robustness over its simulations, and over its parameters (matplotlib)."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def descent(found: Falsification, axes: Any = None) -> Any:
-    """Draw the robustness of each simulation, and the least so far."""
+    """Plot the robustness of each simulation, and the minimum so far."""
     axes = _axes(axes)
     values = np.array([evaluation.robustness for evaluation in found.evaluations])
     number = np.arange(1, len(values) + 1)
@@ -33,13 +33,11 @@ def descent(found: Falsification, axes: Any = None) -> Any:
 
 
 def landscape(found: Sensitivity, axes: Any = None) -> Any:
-    """Draw the robustness over one parameter (a line) or two (a heat map of a grid, else coloured points)."""
+    """Plot the robustness over one parameter (a line) or two (a heat map of a grid, else colored points)."""
     axes = _axes(axes)
     names = tuple(found.axes or found.problem.space)
     if len(names) > 2:
-        raise UsageError(
-            f"there are {len(names)} parameters ({', '.join(names)}); a picture has room for two"
-        )
+        raise UsageError(f"there are {len(names)} parameters ({', '.join(names)}); a plot has room for two")
     values = found.robustness
     points = {name: np.array([e.point[name] for e in found.evaluations]) for name in names}
     if len(names) == 1:
@@ -69,13 +67,13 @@ def landscape(found: Sensitivity, axes: Any = None) -> Any:
 
 
 def _colors() -> Any:
-    """Return the colours of robustness: that of violations below 0, that of satisfaction above."""
-    colors = library("matplotlib.colors", "a picture", "plot")
+    """Return the colors of robustness values: one for violations (below 0), one for satisfaction."""
+    colors = library("matplotlib.colors", "a plot", "plot")
     return colors.LinearSegmentedColormap.from_list("robustness", (style.FAILS, "#f6f6f6", style.HOLDS))
 
 
 def _styled(axes: Any) -> Any:
-    """Give axes the frame that all pictures have."""
+    """Apply the common style of all plots to axes."""
     for side in ("top", "right"):
         axes.spines[side].set_visible(False)
     for side in ("left", "bottom"):
@@ -88,7 +86,7 @@ def _styled(axes: Any) -> Any:
 
 def _axes(axes: Any) -> Any:
     return (
-        library("matplotlib.pyplot", "a picture", "plot").subplots(layout="constrained")[1]
+        library("matplotlib.pyplot", "a plot", "plot").subplots(layout="constrained")[1]
         if axes is None
         else axes
     )

@@ -1,4 +1,4 @@
-"""What is searched: a requirement, a plant, and what of the plant's inputs may vary."""
+"""The search problem: a requirement, a plant, and the inputs that vary."""
 
 from __future__ import annotations
 
@@ -21,19 +21,19 @@ if TYPE_CHECKING:
     from rtamt.search.inputs import Input
     from rtamt.specification import Specification
 
-#: The verdict is looked at this many times in a simulation.
+#: The number of times that the verdict is checked during a simulation.
 LOOKS = 100
 
 
 @dataclass(frozen=True)
 class Problem:
-    """A requirement, a plant, and the inputs that a search may choose.
+    """A requirement, a plant, and the inputs that a search may vary.
 
     ``plant`` is any callable: it is called with one keyword argument for each of ``inputs``, a number
     for a :class:`Range` (or a plain number), a function of time in seconds for an input signal. It
-    returns a recording as ``Specification.evaluate`` takes it, or yields samples
-    ``(time, {variable: value})``; a plant that yields is stopped as soon as its verdict cannot change.
-    ``duration``: seconds of simulated time; it may be left out where no input is a signal and the
+    returns a trace in any form that ``Specification.evaluate`` accepts, or yields samples
+    ``(time, {variable: value})``; a plant that yields is stopped as soon as its verdict is final.
+    ``duration``: the simulated time in seconds; optional if no input is a signal and the
     requirement's horizon is bounded.
 
     >>> import rtamt
@@ -76,7 +76,7 @@ class Problem:
         object.__setattr__(self, "space", space)
 
     def arguments(self, point: Mapping[str, float]) -> dict[str, Any]:
-        """Return what the plant is called with at a point (a value for each parameter)."""
+        """Return the plant's arguments at a point (a value for each parameter)."""
         for name in point:
             if name not in self.space:
                 raise UsageError(f"there is no parameter '{name}'{did_you_mean(name, tuple(self.space))}")
@@ -97,11 +97,11 @@ class Problem:
     def run(self, point: Mapping[str, float], number: int = 0, *, whole: bool = False) -> Evaluation:
         """Simulate at a point and evaluate the requirement.
 
-        ``whole``: to the end, also where the verdict is settled before; only then is the robustness of a
-        plant that yields always the exact one. ``number`` is told in the evaluation and in messages.
+        ``whole``: run to the end, even if the verdict is final earlier; otherwise the robustness of a
+        plant that yields may be inexact. ``number`` appears in the evaluation and in messages.
 
-        Raises :class:`UsageError` where the plant fails, and what ``evaluate`` raises where its
-        signals are wrong, with the point in the sentence.
+        Raises :class:`UsageError` if the plant fails, and the errors of ``evaluate`` for wrong
+        signals, with the point in the message.
         """
         arguments = self.arguments(point)
         try:
@@ -120,9 +120,9 @@ class Problem:
             ) from error
 
     def _whole(self, data: Any, point: Mapping[str, float], number: int) -> Evaluation:
-        told = data if isinstance(data, Mapping) else getattr(data, "columns", ())
-        if all(name in told for name in self.spec.input_names):  # a plant may tell more than is asked
-            data = {name: data[name] for name in (TIME, *self.spec.input_names) if name in told}
+        provided = data if isinstance(data, Mapping) else getattr(data, "columns", ())
+        if all(name in provided for name in self.spec.input_names):  # a plant may return additional signals
+            data = {name: data[name] for name in (TIME, *self.spec.input_names) if name in provided}
         results = self.spec.judge(data).values()
         robustness = min(result.robustness for result in results)
         return Evaluation(number, dict(point), robustness, all(result.satisfied for result in results))
@@ -133,7 +133,7 @@ class Problem:
         total = self._total()
         outlook = self._outlook(total)
         watched = not whole and outlook.able and (total is not None or self.spec.domain.continuous)
-        # In dense time nobody knows how many samples will come: look again after a hundredth more.
+        # In dense time the number of samples is unknown: check again after one percent more.
         look = max(1, (total or LOOKS) // LOOKS)
         names = self.spec.input_names
         times: list[float] = []
@@ -172,7 +172,7 @@ class Problem:
         )
 
     def _total(self) -> int | None:
-        """Return how many samples a simulation has in discrete time, None if nothing says so."""
+        """Return the number of samples of a simulation in discrete time; None if unknown."""
         period = self.spec.domain.period
         if period is None:
             return None
@@ -181,7 +181,7 @@ class Problem:
 
 
 def _sample(given: Any) -> tuple[float, Mapping[str, float]]:
-    """Return the time and the values of what a plant yielded."""
+    """Return the time and the values of a sample that the plant yielded."""
     if isinstance(given, tuple | list) and len(given) == 2:
         time, values = given
         if is_number(time) and isinstance(values, Mapping):

@@ -1,4 +1,4 @@
-"""Sensitivity analysis: the robustness at many points of the inputs, on a grid or spread evenly."""
+"""Sensitivity analysis: the robustness at many points of the inputs, on a grid or quasi-random."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class Sensitivity:
-    """The robustness over the inputs; ``axes`` holds the values of each parameter of a grid, else it is empty."""
+    """The robustness over the inputs; ``axes`` holds the values of each parameter of a grid, and is empty otherwise."""
 
     problem: Problem
     evaluations: tuple[Evaluation, ...]
@@ -34,17 +34,17 @@ class Sensitivity:
 
     @property
     def robustness(self) -> NDArray[np.float64]:
-        """The robustness: of a grid one dimension for each of ``axes``, else one number for each point."""
+        """The robustness: for a grid, an array with one dimension per axis; otherwise one number per point."""
         values = np.array([evaluation.robustness for evaluation in self.evaluations])
         return values.reshape([len(axis) for axis in self.axes.values()]) if self.axes else values
 
     @property
     def best(self) -> Evaluation:
-        """The evaluation of least robustness."""
+        """The evaluation with the least robustness."""
         return min(self.evaluations, key=lambda evaluation: evaluation.robustness)
 
     def plot(self, axes: Any = None) -> Any:
-        """Draw the robustness over two parameters (a heat map) or one; returns the matplotlib axes."""
+        """Plot the robustness over two parameters (a heat map) or one; return the matplotlib axes."""
         from rtamt.search.plot import landscape
 
         return landscape(self, axes)
@@ -62,8 +62,8 @@ def sensitivity(
 ) -> Sensitivity:
     """Evaluate the requirement at many points, each simulation run to its end.
 
-    Either ``grid``: for every parameter how many values, spread evenly over its range with both ends, or
-    the values themselves; or ``samples``: how many points of a Sobol sequence (drawn with ``seed``).
+    Either ``grid``: for every parameter the number of values, spread evenly over its range including both ends,
+    or the values themselves; or ``samples``: the number of points of a Sobol sequence (drawn with ``seed``).
     ``workers``, ``record`` and ``progress`` as for :func:`falsify`.
 
     >>> import rtamt
@@ -110,7 +110,7 @@ def _axes(problem: Problem, grid: Mapping[str, int | Sequence[float]]) -> dict[s
                 f"the grid says nothing of the parameter '{name}': how many values shall it take?"
             )
     axes = {}
-    for name, given in grid.items():  # in the order in which they were given: so the picture is laid out
+    for name, given in grid.items():  # in the given order, which determines the axes of the plot
         if isinstance(given, int):
             if given < 2:
                 raise UsageError(

@@ -19,7 +19,7 @@ strategies  random formulas, traces and chunkings
 from __future__ import annotations
 
 try:
-    import hypothesis  # noqa: F401 - asked for here, so that the sentence is this one
+    import hypothesis  # noqa: F401 - imported first, for this error message
 except ImportError as error:
     raise ImportError(
         "rtamt.testing needs hypothesis, which is not installed; pip install 'rtamt[testing]'"

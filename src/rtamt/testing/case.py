@@ -1,4 +1,4 @@
-"""What a law is told of the operator that it holds to account, and how a law that is broken is told."""
+"""The operator under test, and the report of a broken law."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ _HOLE = "hole"
 
 @dataclass(frozen=True)
 class Case:
-    """An operator in its language, and how exactly it must obey."""
+    """An operator in its language, and the tolerance of the laws."""
 
     operator: Operator
     language: Language
@@ -35,7 +35,7 @@ class Case:
     tolerance: float
 
     def formula(self, draw: Callable[[Any], Any], *, dense: bool = False, unbounded: bool = False) -> Formula:
-        """Draw a formula in which the operator stands, its operands and surroundings drawn, too."""
+        """Draw a formula that contains the operator, with random operands and context."""
         simple: dict[str, Any] = {
             "arithmetic": False,
             "discrete": not dense,
@@ -50,7 +50,7 @@ class Case:
         return fold(around, lambda n, args: _filled(n, args, node))
 
     def interval(self, draw: Callable[[Any], Any], *, unbounded: bool) -> Interval | None:
-        """Draw an interval for the operator, None where it takes none or may do without."""
+        """Draw an interval for the operator; None if it takes no interval, or sometimes if the interval is optional."""
         op = self.operator
         open_end = op.bounds is Bounds.OPTIONAL and (unbounded or op.tense is Tense.PAST)
         if op.bounds is Bounds.NONE or (open_end and draw(st.integers(0, 3)) == 0):
@@ -60,7 +60,7 @@ class Case:
         return Interval(Fraction(begin), None if end is None else Fraction(end))
 
     def equal(self, got: Any, expected: Any) -> bool:
-        """Tell whether two lists of values agree; None is one that could not be computed."""
+        """Return whether two lists of values agree; None is a list that could not be computed."""
         if got is None or expected is None:
             return got is None and expected is None
         if len(got) != len(expected):
@@ -77,7 +77,7 @@ class Case:
 
 
 def hold(law: Callable[[Case, Any], None], case: Case, examples: int) -> None:
-    """Try a law on as many examples, always the same ones; raise what it raises on the smallest."""
+    """Test a law on so many examples, always the same; raise its error on the smallest counterexample."""
 
     @settings(
         max_examples=examples,
@@ -109,6 +109,6 @@ def _listed(values: Any) -> str:
 
 
 def check_own_code(error: EvaluationError) -> None:
-    """Let an operator that has no value pass; one whose own code fails is told."""
+    """Pass for an operator without a value; raise if the operator's own code fails."""
     if error.__cause__ is not None:
         raise error

@@ -1,4 +1,4 @@
-"""The laws of :mod:`rtamt.testing.laws` that are about dense time."""
+"""The dense-time laws of :mod:`rtamt.testing.laws`."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 
 def has_dense_meaning(op: Operator) -> bool:
-    """Tell whether an operator means something in dense time, too."""
+    """Return whether an operator is also defined in dense time."""
     return op.dense is not None or op.expansion is not None or op.tense is Tense.NONE
 
 
@@ -35,7 +35,7 @@ def _trace(case: Case, draw: Callable[[Any], Any], formula: Formula) -> dict[str
 
 
 def _stepped(times: Any, values: Any) -> tuple[list[int], list[float]]:
-    """Return a step function as its changes alone."""
+    """Return the changes of a step function."""
     changes: list[tuple[int, float]] = []
     for time, value in zip(times, values, strict=True):
         if not changes or changes[-1][1] != value:
@@ -55,7 +55,7 @@ def _densely_defined(formula: Formula, trace: dict[str, Any]) -> tuple[list[int]
 def _same_steps(case: Case, got: Any, expected: Any) -> bool:
     if got is None or expected is None:
         return got is expected
-    # Values that differ by less than the tolerance may be merged in one and not in the other.
+    # Values that differ by less than the tolerance may be merged in one result and not in the other.
     instants = sorted({*got[0], *expected[0]})
     return case.equal(_at(got, instants), _at(expected, instants))
 
@@ -82,7 +82,7 @@ def _fast_is_the_dense_definition(case: Case, draw: Callable[[Any], Any]) -> Non
     except EvaluationError as error:
         check_own_code(error)
         got = None
-    # What has no value after the end, and is read by nothing, may pass unnoticed in one of them.
+    # A value that is undefined after the end and never read may go unnoticed in one of them.
     assume(expected is not None and got is not None)
     if not _same_steps(case, got, expected):
         raise case.broken("fast is the definition, in dense time", formula, trace, expected, got)
@@ -97,7 +97,7 @@ def _dense_online_is_offline(case: Case, draw: Callable[[Any], Any]) -> None:
     updates = draw(dense_chunkings(trace))
     for backend in ("cpp", "python"):
         monitor = DenseMonitor(formula, Dense(ONE), backend=backend)
-        for _ in range(2):  # a reset monitor is a new one
+        for _ in range(2):  # a reset monitor acts like a new one
             times: list[int] = []
             values: list[float] = []
             try:
@@ -115,5 +115,5 @@ def _dense_online_is_offline(case: Case, draw: Callable[[Any], Any]) -> None:
             monitor.reset()
 
 
-#: Each is a function of a case and of what draws for it.
+#: Each law is a function of a case and of hypothesis' draw function.
 DENSE_LAWS = (_fast_is_the_dense_definition, _dense_online_is_offline)

@@ -1,7 +1,7 @@
-"""The laws that every operator obeys, over random formulas in which it stands beside others.
+"""The laws that every operator obeys, over random formulas that combine it with others.
 
-Each law is a function of a case and of what hypothesis draws for it; it raises AssertionError with the
-formula, the signals, and what was expected. Hypothesis shrinks them to the smallest that break the law.
+Each law is a function of a case and of hypothesis' draw function; it raises AssertionError with the
+formula, the signals, and the expected value. Hypothesis shrinks them to a minimal counterexample.
 """
 
 from __future__ import annotations
@@ -43,17 +43,17 @@ def check_operator(
     tolerance: float = 0.0,
     examples: int = 50,
 ) -> None:
-    """Hold an operator to the generic laws; raise :class:`AssertionError` with the smallest counterexample.
+    """Check that an operator obeys the generic laws; raise :class:`AssertionError` with a minimal counterexample.
 
-    In each time domain in which the operator has a meaning: what is fast gives what the definition says;
-    online plus ``finish()`` is offline, in any chunks, and no value comes late; what is printed parses
-    back; the pastified formula gives the same later, or is refused; the dual is the dual. The operator
-    stands in random formulas beside those of ``language``, in both back ends.
+    In each time domain in which the operator is defined: the kernel computes the values of the definition;
+    online results plus ``finish()`` equal the offline results, for any chunks, and no value is late; printed
+    formulas parse back; the pastified formula has the same value later, or is rejected; the dual operator is
+    dual. The operator is tested in random formulas with those of ``language``, in both back ends.
 
-    ``infinite``: whether signals hold ±inf, too. ``tolerance``: the relative error that a fast kernel may
-    make, because it adds up in another order than the definition. ``examples``: how many a law.
+    ``infinite``: whether signals also contain ±inf. ``tolerance``: the allowed relative error of a kernel,
+    for example because it adds in a different order than the definition. ``examples``: the number per law.
 
-    Raises :class:`UsageError` where the record cannot be an operator.
+    Raises :class:`UsageError` if the record is not a valid operator.
 
     >>> from rtamt.extend import STL
     >>> from rtamt.testing import check_operator
@@ -141,7 +141,7 @@ def _online_is_offline(case: Case, draw: Callable[[Any], Any]) -> None:
     assert depth is not None
     for backend in ("cpp", "python"):
         monitor = Monitor(formula, backend=backend)
-        for _ in range(2):  # a reset monitor is a new one
+        for _ in range(2):  # a reset monitor acts like a new one
             got: list[float] = []
             at = 0
             for size in sizes:

@@ -1,4 +1,4 @@
-"""Formulas, from the table of operators, and traces and chunkings of both kinds, for property tests."""
+"""Hypothesis strategies: formulas from the operator table, traces and chunkings in both time domains."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     Array = NDArray[np.float64]
-    # Of each variable, its times in ticks and its values.
+    # For each variable, its times in ticks and its values.
     DenseTrace = dict[str, tuple[NDArray[np.int64], Array]]
 
-# Every combination of these values of the variables is one sample of the trace on which arithmetic is tried.
+# Every combination of these values is one sample of the trace that probes arithmetic.
 _PROBE = (-2.0, 0.0, 1.0, 3.0)
 
 # Samples: halves, and both zeros.
@@ -34,7 +34,7 @@ _NUMBERS = st.integers(-9, 8).map(lambda k: -0.0 if k == -9 else k / 2)
 
 @dataclass(frozen=True)
 class _Drawn:
-    """A formula, how it can be read, its values on the probe, and how many operators deep it is."""
+    """A formula, its sort, its values on the probe, and its depth in operators."""
 
     formula: Formula
     sort: Sort
@@ -61,13 +61,13 @@ def formulas(
 ) -> Formula:
     """Draw a formula at most ``max_depth`` operators deep, sub-formulas sometimes repeated.
 
-    ``past``, ``future``, ``discrete`` (operators that mean one sample away) and ``select`` say which
-    operators of ``language`` take part. Without ``arithmetic``, operands read as numbers are variables
-    and numbers only, and no number is infinite unless the trace is. ``infinite`` lets infinite numbers
-    stand where formulas may. Bounds are whole multiples of ``period``.
+    ``past``, ``future``, ``discrete`` (operators that read the neighbouring sample) and ``select`` choose the
+    operators of ``language``. Without ``arithmetic``, numeric operands are variables
+    and literals only, and no number is infinite unless the trace is. ``infinite`` also allows infinite numbers
+    in the place of formulas. Bounds are integer multiples of ``period``.
 
-    Arithmetic that has no value on a few small numbers (the root of -2, 0/0) is drawn again with
-    harmless operands, most of the time: the laws that use this must still expect EvaluationError.
+    Arithmetic that is undefined for a few small numbers (the root of -2, 0/0) is usually drawn again with
+    harmless operands; laws must still expect EvaluationError.
     """
     operators = [
         op
@@ -124,7 +124,7 @@ def formulas(
         reusable = [d for d in pool if d.depth <= depth and (d.sort is sort or sort is Sort.FORMULA)]
         if reusable and chance(4):
             return draw(st.sampled_from(reusable))
-        # Seldom a number where a formula is expected or the reverse: both are legal.
+        # Sometimes a number where a formula is expected, or the reverse: both are legal.
         odd = arithmetic and chance(8)
         candidates = by_sort[sort] if not odd else operators
         if depth == 0 or not candidates or chance(10):
@@ -139,7 +139,7 @@ def formulas(
             operands[kept:] = [number(anywhere=False) for _ in operands[kept:]]
             drawn = apply(op, operands, window)
         if np.isnan(drawn.probe).any():
-            # What is built on it has no value to be tried on: begin again from something that has.
+            # A formula on top of it would have no value to probe: start again from one that has.
             return drawn if chance(20) else leaf(sort)
         pool.append(drawn)
         return drawn
@@ -148,7 +148,7 @@ def formulas(
 
 
 def _meaning(op: Operator, window: Interval | None) -> Callable[..., Array]:
-    """Return an operator's definition, or one made of its expansion."""
+    """Return an operator's definition, or one derived from its expansion."""
     if op.definition is not None:
         return op.definition
 
@@ -173,7 +173,7 @@ def traces(
     *,
     infinite: bool = False,
 ) -> dict[str, Array]:
-    """Draw columns of equal length: few distinct small values each, so that ties and repeats occur."""
+    """Draw columns of equal length with few distinct small values, so that ties and repeats occur."""
     n = draw(st.integers(min_size, max_size))
     values = _NUMBERS
     if infinite:
@@ -200,7 +200,7 @@ def dense_traces(
     infinite: bool = False,
     origin: int = 0,
 ) -> DenseTrace:
-    """Draw a signal a variable, each with times of its own, in ticks from ``origin`` on.
+    """Draw one signal per variable, each with its own times, in ticks from ``origin`` on.
 
     Starts and ends differ, jumps coincide often, segments of one tick and repeated values occur, and
     some signals have a single sample or end before another one begins.
@@ -221,7 +221,7 @@ def dense_traces(
 
 @st.composite
 def dense_chunkings(draw: DrawFn, trace: DenseTrace) -> list[DenseTrace]:
-    """Draw a way to hand over a dense trace: updates, each with some samples of some variables.
+    """Draw a split of a dense trace into updates, each with some samples of some variables.
 
     A variable may be absent from an update, present without samples, far ahead of the others or far
     behind; sometimes every update is one sample of one variable.

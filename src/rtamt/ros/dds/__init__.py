@@ -1,10 +1,10 @@
-"""ROS 2 without ROS: the same wire, spoken by Cyclone DDS alone.
+"""ROS 2 nodes without a ROS installation: the ROS 2 wire protocol on Cyclone DDS alone.
 
 ===========  ===========================================================================
-module       what it holds
+module       purpose
 ===========  ===========================================================================
-types        message definitions to classes that Cyclone DDS can send
-participant  topics under ROS 2's names, quality of service, the graph that ROS 2 shows
+types        message definitions to classes for Cyclone DDS
+participant  topics under ROS 2's names, quality of service, the ROS 2 graph
 node         the monitor's node
 ===========  ===========================================================================
 """

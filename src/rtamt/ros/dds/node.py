@@ -1,4 +1,4 @@
-"""The monitor as a node of ROS 2, on Cyclone DDS alone."""
+"""The monitor as a ROS 2 node on Cyclone DDS alone."""
 
 from __future__ import annotations
 
@@ -17,15 +17,15 @@ if TYPE_CHECKING:
     from rtamt.ros.dds.types import Types
     from rtamt.ros.monitor import RosMonitor
 
-#: Seconds from one message on /diagnostics to the next.
+#: The period of messages on /diagnostics in seconds.
 _DIAGNOSTICS_EVERY = 1.0
 _CLOCK = "/clock"
 
 
 class Node:
-    """Carries messages to a monitor, and what comes out to topics, until it is stopped.
+    """Passes messages to a monitor and publishes its output, until it is stopped.
 
-    ``simulated``: the time is what is published on ``/clock``.
+    ``simulated``: time is taken from ``/clock``.
     """
 
     def __init__(
@@ -52,16 +52,16 @@ class Node:
         self._stopped = False
 
     def stop(self, *_: object) -> None:
-        """End :meth:`run` soon."""
+        """Make :meth:`run` return soon."""
         self._stopped = True
 
     def run(self) -> None:
-        """Watch until :meth:`stop`, or a signal to end."""
+        """Run until :meth:`stop` or a termination signal."""
         for ending in (signal.SIGINT, signal.SIGTERM):
             signal.signal(ending, self.stop)
         while not self._stopped:
             now = self._time()
-            if now:  # simulated time is 0 until somebody publishes it
+            if now:  # simulated time is 0 until it is published
                 self._publish(self._monitor.tick(now))
             self._tell(now)
             self._participant.wait(self._monitor.pause(self._time()))
@@ -73,7 +73,7 @@ class Node:
 
     def _take(self) -> None:
         for topic, message in self._participant.take():
-            if self._stopped:  # each of many clocks may ask for many samples
+            if self._stopped:  # each clock message may require many samples
                 return
             self._receive(topic, message)
 

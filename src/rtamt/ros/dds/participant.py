@@ -1,4 +1,4 @@
-"""A node of ROS 2 on DDS: topics under its names, quality of service, and its place in the graph."""
+"""A ROS 2 node on DDS: topics under ROS 2's names, quality of service, and the ROS 2 graph."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ if TYPE_CHECKING:
 
 RELIABILITY = ("reliable", "best_effort")
 DURABILITY = ("volatile", "transient_local")
-#: The DDS standard's numbers of the qualities in which a publisher may offer too little.
+#: The DDS policy IDs of the quality-of-service settings in which a publisher may offer too little.
 _POLICIES = {2: "durability", 11: "reliability"}
-#: Of each, what every publisher offers.
+#: The weakest value of each, which every publisher offers.
 LEAST = {"durability": "volatile", "reliability": "best_effort"}
-#: The last domain whose ports exist.
+#: The largest domain number with valid ports.
 LAST_DOMAIN = 232
-#: Messages that are taken at a time.
+#: The number of messages taken at a time.
 _AT_ONCE = 1000
 
 
@@ -44,9 +44,9 @@ class Quality:
 
 
 class Participant:
-    """One node: subscribes, publishes, and tells the graph. Close it at the end.
+    """One node: subscribes, publishes, and registers in the graph. Close it at the end.
 
-    ``quality``: what is asked of publishers; what the node itself publishes is always reliable.
+    ``quality``: the quality of service requested of publishers; the node itself always publishes reliably.
     """
 
     def __init__(self, name: str, types: Types, quality: Quality) -> None:
@@ -58,7 +58,7 @@ class Participant:
         }
         self._participant = self._join()
         self._quality = self._qos(quality)
-        # Who asks for less hears a reliable publisher, too; not the other way round.
+        # A best-effort reader also receives from a reliable publisher, but not the other way round.
         self._offered = self._qos(replace(quality, reliability="reliable"))
         self._wake = self._cyclone["core"].WaitSet(self._participant)
         self._conditions: list[Any] = []
@@ -69,7 +69,7 @@ class Participant:
         self._graph = self._writer("ros_discovery_info", self._info, self._qos(latest))
 
     def _join(self) -> Any:
-        """Return the participant of the domain; what is wrong is mostly a setting of the environment."""
+        """Return the participant of the domain; errors are mostly due to environment settings."""
         domain = _domain()
         try:
             return self._cyclone["domain"].DomainParticipant(domain)
@@ -93,7 +93,7 @@ class Participant:
             if quality.durability == "transient_local"
             else policy.Durability.Volatile,
             policy.History.KeepLast(quality.depth),
-            # What ROS 2 speaks: the first encoding.
+            # ROS 2 uses the first encoding (XCDR1).
             policy.DataRepresentation(use_cdrv0_representation=True, use_xcdrv2_representation=False),
         )
 
@@ -104,7 +104,7 @@ class Participant:
     # ---- topics ----------------------------------------------------------------------------------
 
     def subscribe(self, topic: str, cls: Any) -> None:
-        """Take messages of a topic from now on; see :meth:`take`."""
+        """Subscribe to a topic; see :meth:`take`."""
         channel = self._cyclone["topic"].Topic(self._participant, _on_wire(topic), cls, qos=self._quality)
         reader = self._cyclone["sub"].DataReader(self._participant, channel, qos=self._quality)
         core = self._cyclone["core"]
@@ -125,15 +125,15 @@ class Participant:
         self._writers[topic].write(message)
 
     def peers(self, topic: str) -> int:
-        """Return how many are at the other end of a topic, listening or publishing."""
+        """Return the number of matched subscribers or publishers of a topic."""
         if topic in self._writers:
             return len(self._writers[topic].get_matched_subscriptions())
         return len(self._readers[topic].get_matched_publications())
 
     def refused(self) -> list[tuple[str, str]]:
-        """Return topics of which a publisher is not heard since the last call, with the quality that it lacks.
+        """Return topics with incompatible publishers since the last call, and the quality that they lack.
 
-        That is reliability or durability: a publisher that offers less than is asked for stays unheard.
+        That is reliability or durability: a publisher that offers less than requested is not connected.
         """
         found = []
         for topic, reader in self._readers.items():
@@ -143,11 +143,11 @@ class Participant:
         return found
 
     def wait(self, seconds: float) -> None:
-        """Wait until a message is there, at most so long."""
+        """Wait until a message arrives, or until the timeout."""
         self._wake.wait(self._cyclone["util"].duration(seconds=seconds))
 
     def take(self) -> Iterator[tuple[str, Any]]:
-        """Yield the messages that came, with their topics."""
+        """Yield the received messages with their topics."""
         for topic, reader in self._readers.items():
             for sample in reader.take(_AT_ONCE):
                 if not isinstance(sample, self._cyclone["sub"].InvalidSample):  # a publisher that left
@@ -156,7 +156,7 @@ class Participant:
     # ---- the graph -------------------------------------------------------------------------------
 
     def _tell(self) -> None:
-        """Tell the graph what belongs to this node: ``ros2 node list`` reads it."""
+        """Publish the entities of this node to the graph, for ``ros2 node list``."""
         gid = self._types.named("rmw_dds_common/msg/Gid")
         node = self._types.named("rmw_dds_common/msg/NodeEntitiesInfo")
 
@@ -192,5 +192,5 @@ def _domain() -> int:
 
 
 def _on_wire(topic: str) -> str:
-    """Return the name that ROS 2 gives a topic on DDS."""
+    """Return the DDS name of a ROS 2 topic."""
     return f"rt/{topic.lstrip('/')}"

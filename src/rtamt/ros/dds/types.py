@@ -1,4 +1,4 @@
-"""Message definitions to classes that Cyclone DDS can send: those of ROS 2, ours, and the user's own."""
+"""Convert message definitions to classes for Cyclone DDS: those of ROS 2, ``rtamt_msgs``, and custom ones."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ if TYPE_CHECKING:
 
     from rtamt.ros.binding import MessageType
 
-#: The distribution whose messages are spoken, unless ``ROS_DISTRO`` says which.
+#: The default ROS 2 distribution, unless ``ROS_DISTRO`` is set.
 DISTRO = "jazzy"
-#: Variables of the environment that list where packages are; in the former below ``share``.
+#: Environment variables with package folders; for the first one below ``share``.
 _PATHS = (("AMENT_PREFIX_PATH", "share"), ("ROS_PACKAGE_PATH", ""))
 
 
@@ -58,7 +58,7 @@ class Types:
         return self._classes[name]
 
     def _find(self, name: str) -> None:
-        """Make sure that a definition and those that it needs are known."""
+        """Register a definition and all definitions that it needs."""
         if name not in self._store.fielddefs:
             package, _, short = name.split("/")
             paths = [folder / package / "msg" / f"{short}.msg" for folder in self._folders]
@@ -85,7 +85,7 @@ class Types:
     def _make(self, name: str) -> Any:
         package, _, short = name.split("/")
         fields = {field: self._type(desc) for field, desc in self._store.fielddefs[name][1]}
-        # A message without fields still has one byte on the wire.
+        # A message without fields still takes one byte on the wire.
         shapes = {field: shape for field, (shape, _) in fields.items()} or {
             "structure_needs_at_least_one_member": self._idl.types.uint8
         }
@@ -94,7 +94,7 @@ class Types:
         return _with_zeros(made, zeros)
 
     def _type(self, field: Any) -> tuple[Any, Callable[[], Any]]:
-        """Return the IDL type of a field, and what makes its zero."""
+        """Return the IDL type of a field, and a factory of its zero value."""
         node, what = field
         types, kinds = self._idl.types, self._typesys.base.Nodetype
         if node == kinds.NAME:
@@ -133,7 +133,7 @@ def _folders() -> list[Path]:
 
 
 def _with_zeros(made: Any, zeros: dict[str, Callable[[], Any]]) -> Any:
-    """Let a class be called without all of its fields, as ROS's own classes can be."""
+    """Give all fields of a class default values, as in ROS's own classes."""
     original = made.__init__
 
     def start(self: Any, **given: Any) -> None:
