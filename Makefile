@@ -80,6 +80,7 @@ field: $(VENV)/.core $(VENV)/.extras ## read, profile, plot and report every log
 costs: $(VENV)/.core $(VENV)/.extras ## what a sample costs us, beside the figures to reach; memory of dense time and of streams
 	$(RUN) benchmarks/costs.py
 	$(RUN) benchmarks/dense_memory.py
+	$(RUN) benchmarks/early.py
 	$(RUN) benchmarks/stream.py
 
 peers: $(VENV)/.made ## install the tools that we are compared with, each into an environment of its own

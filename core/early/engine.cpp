@@ -3,6 +3,8 @@
 #include "../program/snapshot.hpp"
 
 #include <algorithm>
+#include <ranges>
+#include <type_traits>
 #include <utility>
 
 namespace rtamt::early {
@@ -48,8 +50,8 @@ void Engine::clear() noexcept {
 // Takes everything back if something failed.
 std::optional<Engine::Failure> Engine::attempt(std::optional<Failure> failure) {
     if (failure) {
-        for (auto undo = journal_.rbegin(); undo != journal_.rend(); ++undo)
-            undo->runs->set(undo->l, undo->r, undo->old);
+        for (const Undo& undo : std::views::reverse(journal_))
+            undo.runs->set(undo.l, undo.r, undo.old);
         clear();
     }
     return failure;

@@ -140,6 +140,7 @@ void Origin::fold(const Engine& engine, std::size_t index, Tick end) noexcept {
 
 Bounds Origin::ended(const Engine& engine, Tick end) const {
     std::vector<std::uint32_t> refs;
+    refs.reserve(items_.size());
     for (const Item& item : items_)
         refs.push_back(item.kind == Item::Kind::both || item.kind == Item::Kind::either ? 0
                                                                                         : item.a);

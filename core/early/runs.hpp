@@ -110,8 +110,8 @@ class Runs {
     struct Chunk {
         int begin = 0; // runs [begin, end) are in use
         int end = 0;
-        Tick start[capacity];
-        double value[capacity];
+        Tick start[capacity] = {};
+        double value[capacity] = {};
     };
     struct Entry {
         Tick first = 0;
@@ -206,9 +206,8 @@ std::optional<Run> Runs::first(Tick l, Tick r, double value) const noexcept {
             if (Search::holds(chunk.value[p.index], value)) return cut(p);
         }
         for (;;) { // to the next chunk that may hold one
-            if (++p.chunk == directory_.size() || directory_[p.chunk].first > r) {
-                return std::nullopt;
-            }
+            ++p.chunk;
+            if (p.chunk == directory_.size() || directory_[p.chunk].first > r) return std::nullopt;
             const Entry& next = directory_[p.chunk];
             if (!next.summed) sum(next);
             if (Search::possible(next.least, next.most, value)) break;

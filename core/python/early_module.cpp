@@ -29,6 +29,7 @@ early::Graph graph_of(const std::vector<EarlyNode>& nodes, std::uint32_t inputs)
 
 std::vector<early::Item> items_of(const std::vector<EarlyItem>& items) {
     std::vector<early::Item> result;
+    result.reserve(items.size());
     for (const auto& [kind, negated, a, b, c, tick] : items)
         result.push_back({static_cast<early::Item::Kind>(kind), negated, a, b, c, tick});
     return result;
@@ -36,7 +37,7 @@ std::vector<early::Item> items_of(const std::vector<EarlyItem>& items) {
 
 } // namespace
 
-void add_early_monitor(nb::module_& module, const Exceptions& exceptions) {
+void add_early_monitor(const nb::module_& module, const Exceptions& exceptions) {
     nb::class_<EarlyMonitor>(module, "EarlyMonitor",
                              "Verdicts or bounds before the horizon, in discrete time.")
         .def(
@@ -48,6 +49,7 @@ void add_early_monitor(nb::module_& module, const Exceptions& exceptions) {
                          double period, double tolerance, std::optional<Tick> lateness,
                          const nb::object& verdict, bool replays) {
                 std::vector<Bounds> known;
+                known.reserve(ranges.size());
                 for (const auto& [lower, upper] : ranges)
                     known.push_back({lower, upper});
                 EarlySettings settings{

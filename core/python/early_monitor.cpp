@@ -18,7 +18,7 @@ using early::Tick;
 namespace {
 
 // How many samples come between two looks at what is not needed any more.
-constexpr std::int64_t pause = 16;
+constexpr std::int64_t pause = 64;
 
 [[nodiscard]] std::optional<early::Origin> origin_of(std::vector<early::Item> items,
                                                      const early::Engine& engine) {
@@ -28,7 +28,7 @@ constexpr std::int64_t pause = 16;
 
 } // namespace
 
-EarlyMonitor::EarlyMonitor(early::Graph graph, std::vector<std::uint32_t> outputs,
+EarlyMonitor::EarlyMonitor(const early::Graph& graph, std::vector<std::uint32_t> outputs,
                            std::vector<early::Item> origin, std::vector<Bounds> ranges,
                            const std::vector<nb::str>& names, const nb::object& ignored,
                            EarlySettings settings, Exceptions exceptions)
@@ -82,9 +82,9 @@ PyObject* EarlyMonitor::update(PyObject* time, const Named& values) noexcept {
             const Bounds known = *index < 0
                                      ? ranges_[*input]
                                      : engine_.known(static_cast<std::uint32_t>(*input), *index);
-            if (!(known.lower <= x && x <= known.upper)) return "contradiction";
+            if (known.lower > x || x > known.upper) return "contradiction";
             lessons_.push_back({static_cast<std::uint32_t>(*input), *index, *index, {x, x}});
-        } else if (!(ranges_[*input].lower <= x && x <= ranges_[*input].upper)) {
+        } else if (ranges_[*input].lower > x || x > ranges_[*input].upper) {
             return "range";
         }
         return nullptr;
@@ -119,6 +119,7 @@ nb::object EarlyMonitor::take(double time, const std::vector<double>& lower,
         return checked(guard_.refuse("order"));
     }
     std::vector<Bounds> row;
+    row.reserve(lower.size());
     for (std::size_t i = 0; i < lower.size(); ++i)
         row.push_back({lower[i], upper[i]});
     const auto failure = engine_.row(*index, std::span<const Bounds>(row));

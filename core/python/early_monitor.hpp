@@ -61,7 +61,7 @@ struct EarlySettings {
 
 class EarlyMonitor {
   public:
-    EarlyMonitor(early::Graph graph, std::vector<std::uint32_t> outputs,
+    EarlyMonitor(const early::Graph& graph, std::vector<std::uint32_t> outputs,
                  std::vector<early::Item> origin, std::vector<Bounds> ranges,
                  const std::vector<nb::str>& names, const nb::object& ignored,
                  EarlySettings settings, Exceptions exceptions);
@@ -142,6 +142,6 @@ class EarlyMonitor {
 };
 
 // Adds the class to the module.
-void add_early_monitor(nb::module_& module, const Exceptions& exceptions);
+void add_early_monitor(const nb::module_& module, const Exceptions& exceptions);
 
 } // namespace rtamt::python

@@ -93,7 +93,7 @@ class IntervalMonitor(EarlyMonitor):
                 settings.get("text"),
                 open_ended.span,
             )
-        super().__init__(formula, domain, start=True, **settings)
+        super().__init__(formula, domain, start=True, every=at == "every", **settings)
         self.at = at
         self._lateness = Fraction(0) if lateness is None else duration(lateness)
         if self._lateness < 0:

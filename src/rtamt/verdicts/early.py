@@ -9,7 +9,6 @@ from math import inf, isfinite, isnan
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from rtamt.compiler.early import compile_graph
-from rtamt.compiler.program import NO_OPERAND
 from rtamt.engine.backend import Session
 from rtamt.engine.discrete.early_python_backend import PythonEarlyMonitor
 from rtamt.engine.gate import alone, in_use
@@ -87,6 +86,7 @@ class EarlyMonitor(EarlyMonitorBase, OnlineMonitor):
         factory: Callable[[], OnlineMonitor] | None = None,
         ranges: Mapping[str, Any] | None = None,
         start: bool = False,
+        every: bool = True,
     ) -> None:
         for watched in (Watched("", formula, text), *watch):
             domain.check(watched.formula, watched.text)
@@ -99,9 +99,9 @@ class EarlyMonitor(EarlyMonitorBase, OnlineMonitor):
         self._ranges = self._read_ranges(ranges or {})
         cores = [desugar(each) for each in self._formulas]
         self._graph = compile_graph(cores, period, self.input_names, start=start)
-        # A formula of unbounded future that is asked for at the start alone is no output.
-        self._outputs = [ref for ref in self._graph.outputs if ref != NO_OPERAND]
-        self._hidden = len(self._graph.outputs) - len(self._outputs)
+        # A formula that is asked for at the start alone is no output.
+        self._hidden = 0 if every else 1
+        self._outputs = self._graph.outputs[self._hidden :]
 
     def _prepare(self) -> None:
         """Open the first monitor of the back end."""
