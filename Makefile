@@ -47,6 +47,7 @@ lint: $(VENV)/.core $(VENV)/.group-test $(VENV)/.group-lint ## ruff, mypy, impor
 	$(RUN) -m ruff check
 	$(RUN) -m ruff format --check
 	$(RUN) -m mypy
+	$(RUN) -m mypy tests/unit/typed_program.py
 	$(VENV)/bin/lint-imports
 	$(CXX_FILES) '*.[ch]pp' | xargs $(VENV)/bin/clang-format --dry-run --Werror
 	$(WITH_VENV) cmake --preset tidy --log-level=WARNING

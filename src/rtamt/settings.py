@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, TypeAlias, TypedDict
 
 from rtamt.engine.backend import BACKENDS
 from rtamt.errors import UsageError, choices, did_you_mean, shown
-from rtamt.language.formula import variables
+from rtamt.language.formula import Formula, variables
 from rtamt.language.operators import Language
 from rtamt.rewrite.semantics import ROLES, PredicateSemantics
 from rtamt.signals.arrays import is_number
@@ -22,6 +22,9 @@ if TYPE_CHECKING:
 
 #: A name, a member of an enumeration whose text is a name, or a function of a predicate and roles.
 Semantics: TypeAlias = str | Enum | PredicateSemantics
+
+#: Formulas that a monitor evaluates beside its own: names or texts, or formulas.
+Watch: TypeAlias = str | Formula | Iterable[str | Formula]
 
 
 class Settings(TypedDict, total=False):
@@ -95,10 +98,13 @@ def roles_of(document: Document, given: Mapping[str, str]) -> Mapping[str, str]:
     return MappingProxyType({**declared, **given})
 
 
-def names_of(watch: str | Iterable[str]) -> tuple[str, ...]:
-    """Return the watched formulas without duplicates; raise :class:`UsageError` unless given a list of texts."""
-    names = [watch] if isinstance(watch, str) else watch
+def watched_of(watch: Watch) -> tuple[str | Formula, ...]:
+    """Return the watched formulas without duplicates; raise :class:`UsageError` unless given texts or formulas."""
+    wrong = UsageError(f"watch is {shown(watch)}, expected names or formulas, such as ['x >= 3']")
     try:
-        return tuple(dict.fromkeys(names))
+        given = (watch,) if isinstance(watch, str | Formula) else tuple(watch)
     except TypeError:
-        raise UsageError(f"watch is {shown(watch)}, expected names or formulas, such as ['x >= 3']") from None
+        raise wrong from None
+    if not all(isinstance(each, str | Formula) for each in given):
+        raise wrong
+    return tuple(dict.fromkeys(given))

@@ -14,7 +14,7 @@ from rtamt.language.printer import excerpt
 from rtamt.language.specfile import parse_document
 from rtamt.language.units import check_unit
 from rtamt.results import Result, requirements_of
-from rtamt.settings import names_of
+from rtamt.settings import watched_of
 from rtamt.signals.inexact import Uncertainty, fill_gaps
 from rtamt.specification_text import SpecificationText
 from rtamt.verdicts.modes import DELAYED, clock_of, mode_of, semantics_in
@@ -22,7 +22,7 @@ from rtamt.verdicts.offline import by_start, judge, judge_apart
 from rtamt.verdicts.standalone import carried_program
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Mapping
 
     from rtamt.compiler.program import Program
     from rtamt.engine.dense.monitor import DenseMonitor
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from rtamt.engine.online import OnlineMonitor
     from rtamt.language.formula import Formula
     from rtamt.language.units import Duration
-    from rtamt.settings import Semantics
+    from rtamt.settings import Semantics, Watch
     from rtamt.signals.dense import Dense
     from rtamt.signals.discrete import Discrete
     from rtamt.signals.domain import DomainTrace, TimeDomain
@@ -193,7 +193,7 @@ class Specification(SpecificationText):
         period: Duration | None = None,
         tolerance: float | None = None,
         semantics: Semantics | None = None,
-        watch: str | Iterable[str] = (),
+        watch: Watch = (),
         time_unit: str | None = None,
         verdict: Literal["delayed"] = "delayed",
     ) -> Monitor: ...
@@ -205,7 +205,7 @@ class Specification(SpecificationText):
         time: Literal["dense"] | Dense,
         resolution: Duration | None = None,
         semantics: Semantics | None = None,
-        watch: str | Iterable[str] = (),
+        watch: Watch = (),
         time_unit: str | None = None,
         verdict: Literal["delayed"] = "delayed",
     ) -> DenseMonitor: ...
@@ -218,7 +218,7 @@ class Specification(SpecificationText):
         period: Duration | None = None,
         tolerance: float | None = None,
         semantics: Semantics | None = None,
-        watch: str | Iterable[str] = (),
+        watch: Watch = (),
         time_unit: str | None = None,
         verdict: Literal["eager"],
     ) -> EagerMonitor: ...
@@ -231,7 +231,7 @@ class Specification(SpecificationText):
         period: Duration | None = None,
         tolerance: float | None = None,
         semantics: Semantics | None = None,
-        watch: str | Iterable[str] = (),
+        watch: Watch = (),
         time_unit: str | None = None,
         verdict: Literal["interval"],
         at: str | None = None,
@@ -248,7 +248,7 @@ class Specification(SpecificationText):
         tolerance: float | None = None,
         resolution: Duration | None = None,
         semantics: Semantics | None = None,
-        watch: str | Iterable[str] = (),
+        watch: Watch = (),
         time_unit: str | None = None,
         verdict: str = DELAYED,
         at: str | None = None,
@@ -262,10 +262,10 @@ class Specification(SpecificationText):
         by which a gap between samples may miss it. ``semantics``: as for :func:`parse`; under
         ``"boolean"`` the monitor gives verdicts, +inf where the formula holds and -inf where it does
         not, also where the robustness is 0. ``watch``: names of sub-specifications, or formulas over
-        the same variables, whose values ``monitor[name]`` is to tell beside the result; each is known
-        at its own horizon. ``time_unit``: of times that are numbers, as in :meth:`evaluate`; what is
-        told comes in it too. In dense time each of several requirements starts when all variables that it reads have
-        started; the result is the minimum of those that have, known once all variables have started. Raises
+        the same variables (text, or such as ``spec.formula``), whose values ``monitor[...]`` reports beside the
+        result; each is known at its own horizon. ``time_unit``: of times that are numbers, as in :meth:`evaluate`,
+        also of those that are reported. In dense time each of several requirements starts when all variables that it
+        reads have started; the result is the minimum of those that have, known once all variables have started. Raises
         :class:`BoundError` for unbounded future.
 
         ``verdict``: what the monitor reports of each sample: ``"delayed"``, the robustness one horizon later;
@@ -292,8 +292,8 @@ class Specification(SpecificationText):
         mode = mode_of(verdict, settings)
         asked, semantics = semantics, semantics_in(mode, self._semantics(semantics))
         formula = self.apply_semantics(self.formula, semantics)
-        names = names_of(watch)
-        watched = [self._watched(name, semantics) for name in names]
+        given_watch = watched_of(watch)
+        watched = [self._watched(each, semantics) for each in given_watch]
         factory = partial(
             self.monitor,
             time=time,
@@ -301,7 +301,7 @@ class Specification(SpecificationText):
             tolerance=tolerance,
             resolution=resolution,
             semantics=asked,
-            watch=names,
+            watch=given_watch,
             time_unit=time_unit,
             verdict=verdict,
             **settings,

@@ -183,11 +183,13 @@ class SpecificationText:
             unit=self.unit,
         )
 
-    def _watched(self, name: str, semantics: Semantics | None) -> Watched:
-        formula = self.named(name)
+    def _watched(self, given: str | Formula, semantics: Semantics | None) -> Watched:
+        formula = self.named(given) if isinstance(given, str) else given
         if not is_number(formula):
             formula = self.apply_semantics(formula, self._semantics(semantics))
-        return Watched(name, formula, name if self._known(name) is None else self.text)
+        if not isinstance(given, str):  # its positions may be those of another text
+            return Watched(given, formula, None)
+        return Watched(given, formula, given if self._known(given) is None else self.text)
 
     def _known(self, name: str) -> Formula | None:
         """Return a named sub-specification or requirement, if there is one."""

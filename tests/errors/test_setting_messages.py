@@ -26,6 +26,18 @@ SAID = {
         lambda: rtamt.parse("x").monitor(watch=3),
         "watch is 3, expected names or formulas, such as ['x >= 3']",
     ),
+    "watch, one of several": (
+        lambda: rtamt.parse("x").monitor(watch=["x", 3]),
+        "watch is ['x', 3], expected names or formulas, such as ['x >= 3']",
+    ),
+    "watched formula": (
+        lambda: rtamt.parse("x").monitor(watch=["x"])[rtamt.parse("x >= 3").formula],
+        "'x >= 3' is not watched; the monitor watches 'x'",
+    ),
+    "variables of a watched formula": (
+        lambda: rtamt.parse("x").monitor(watch=rtamt.parse("y >= 3").formula),
+        "'y >= 3' reads 'y', which the formula does not; watch what reads x only",
+    ),
     "watched": (
         lambda: rtamt.parse("x").monitor(watch=["x"])[3],
         "'3' is not watched; the monitor watches 'x'",

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
 from rtamt.engine.gate import Gate, alone
 from rtamt.errors import UsageError, did_you_mean
-from rtamt.language.formula import variables
+from rtamt.language.formula import Formula, variables
+from rtamt.language.printer import excerpt
 from rtamt.rewrite.horizon import horizon
 from rtamt.signals import arrays
 
@@ -17,18 +18,24 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Mapping, Sequence
 
     from rtamt.engine.backend import Session
-    from rtamt.language.formula import Formula
 
     Self = TypeVar("Self", bound="OnlineMonitor")
 
 
 @dataclass(frozen=True, slots=True)
 class Watched:
-    """A formula whose values are kept beside those of the result; ``text`` is where its spans point."""
+    """A formula whose values are kept beside those of the result; ``text`` is where its spans point.
 
-    name: str
+    ``name``: what the caller gave, by which :meth:`OnlineMonitor.__getitem__` finds it again.
+    """
+
+    name: str | Formula
     formula: Formula
     text: str | None
+
+
+def _label(name: str | Formula) -> str:
+    return excerpt(name) if isinstance(name, Formula) else str(name)
 
 
 class OnlineMonitor:
@@ -56,7 +63,7 @@ class OnlineMonitor:
             for name in variables(watched.formula):
                 if name not in self.input_names:
                     raise UsageError(
-                        f"'{watched.name}' reads '{name}', which the formula does not"
+                        f"'{_label(watched.name)}' reads '{name}', which the formula does not"
                         f"{did_you_mean(name, self.input_names)}; watch what reads "
                         f"{', '.join(self.input_names) or 'no variable'} only"
                     )
@@ -82,12 +89,14 @@ class OnlineMonitor:
         """Declared variables that the formula does not read, which an update may hold."""
         return self._declared - {head for name in self.input_names for head in (name, name.split(".")[0])}
 
-    def _output(self, name: str) -> int:
+    def _output(self, name: str | Formula) -> int:
         output = self._output_of.get(name)
         if output is None:
-            watches = ", ".join(f"'{watched}'" for watched in self._output_of)
+            labels = [_label(watched) for watched in self._output_of]
+            watches = ", ".join(f"'{label}'" for label in labels)
+            label = _label(name)
             raise UsageError(
-                f"'{name}' is not watched{did_you_mean(name, self._output_of)}; "
+                f"'{label}' is not watched{did_you_mean(label, labels)}; "
                 + (f"the monitor watches {watches}" if watches else "name it in monitor(watch=...)")
             )
         return output

@@ -321,7 +321,7 @@ class IntervalMonitor(EarlyMonitor):
             )
         return self._changes(0)
 
-    def __getitem__(self, name: str) -> list[Change]:
+    def __getitem__(self, name: str | Formula) -> list[Change]:
         """Return the changes of a formula that is watched, as :meth:`changes` does for the formula itself."""
         return self._changes(self._output(name) - self._hidden)
 

@@ -320,7 +320,7 @@ class EagerMonitor(EarlyMonitor):
         self._finished = True
         return self._backend.finish()  # type: ignore[no-any-return]
 
-    def __getitem__(self, name: str) -> list[Verdict]:
+    def __getitem__(self, name: str | Formula) -> list[Verdict]:
         """Return the verdicts of a formula that is watched which the last call settled."""
         return self._backend.verdicts(self._output(name))  # type: ignore[no-any-return]
 

@@ -147,7 +147,7 @@ class DenseMonitor(DenseMonitorBase, OnlineMonitor):
         self._finished = True
         return known
 
-    def __getitem__(self, name: str) -> Signal:
+    def __getitem__(self, name: str | Formula) -> Signal:
         """Return what the last update made known of a formula that is watched (see ``Specification.monitor``).
 
         ``name``: as given to ``watch=``. The Signal is of the form that :meth:`update` returns, each
@@ -161,7 +161,7 @@ class DenseMonitor(DenseMonitorBase, OnlineMonitor):
         """
         return self._signal(self.known(name))
 
-    def known(self, name: str) -> Samples:
+    def known(self, name: str | Formula) -> Samples:
         """Return the same as ticks and values."""
         return self._backend.told(self._output(name))  # type: ignore[no-any-return]
 

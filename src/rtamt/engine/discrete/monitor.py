@@ -256,7 +256,7 @@ class Monitor(MonitorBase, OnlineMonitor):
         self._news = self.samples, news
         return news[0]
 
-    def __getitem__(self, name: str) -> float | Signal | None:
+    def __getitem__(self, name: str | Formula) -> float | Signal | None:
         """Return what the last update made known of a formula that is watched (see ``Specification.monitor``).
 
         ``name``: as given to ``watch=``. After :meth:`update` and :meth:`step` the value at the time of
