@@ -2,7 +2,7 @@
 
     python benchmarks/stream.py [GB]
 
-The file on disk holds a hundredth of that; it is read over and over, each time with later time stamps.
+The file on disk holds a hundredth of that; it is read over and over, each time with later timestamps.
 """
 
 from __future__ import annotations

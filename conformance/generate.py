@@ -179,7 +179,7 @@ def ticks_of(times: Any, tick: Fraction) -> list[int]:
 
 
 def settled(formula: Formula) -> bool:
-    """Tell whether the answer is one: min and max may give either zero, and only these tell them apart."""
+    """Return whether the answer is one: min and max may give either zero, and only these tell them apart."""
     names = {node.op.name for node in postorder(formula) if isinstance(node, Apply)}
     return not (names & {"min", "max"} and names & {"div", "pow"})
 

@@ -83,7 +83,7 @@ def _one(log: Path, stem: Path) -> tuple[int, int, str]:
 
 
 def _can_be_plotted(trace: rtamt.Trace, name: str) -> bool:
-    """Tell whether a signal changes, and whether its timestamps were set."""
+    """Return whether a signal changes, and whether its timestamps were set."""
     times, values = trace.channel(name).times, trace[name].values
     if times is None or len(values) < 2:
         return False

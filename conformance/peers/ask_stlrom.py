@@ -34,7 +34,7 @@ class Stl(Writer):
 
     @staticmethod
     def is_number(node):
-        """Tell whether a node is no formula."""
+        """Return whether a node is no formula."""
         return "op" not in node or node["op"] in NUMBERS
 
     def write(self, node):

@@ -259,7 +259,7 @@ def _inside(formula: Formula) -> int | None:
 
 
 def answerable(question: Question) -> bool:
-    """Tell whether the definition has an answer, and of some instant."""
+    """Return whether the definition has an answer, and of some instant."""
     if question.end is None or not variables(question.formula):
         return False
     try:

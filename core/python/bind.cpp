@@ -136,7 +136,7 @@ PyType_Slot monitor_slots[] = {
 PyMethodDef dense_hot_methods[] = {
     {"update", erased(update<DenseMonitor>), METH_FASTCALL,
      "update($self, t, values, /)\n--\n\n"
-     "Take a dict of any inputs at a time as tell() says; return what became known."},
+     "Take a dict of any inputs at a time as set_time_scale() says; return what became known."},
     {nullptr, nullptr, 0, nullptr},
 };
 
@@ -374,21 +374,21 @@ NB_MODULE(_core, m) {
             },
             nb::arg("program"), nb::arg("names"), nb::arg("ignored") = nb::none(),
             nb::arg("calls") = nb::list())
-        .def("tell", &DenseMonitor::tell, nb::arg("signal"), nb::arg("scale"), nb::arg("rate"),
-             nb::arg("whole") = false,
+        .def("set_time_scale", &DenseMonitor::set_time_scale, nb::arg("signal"), nb::arg("scale"),
+             nb::arg("rate"), nb::arg("whole") = false,
              "Say how update() tells time: in numbers of so many ticks, or in integers alone; and "
              "of which class its answers are, with which scale.")
         .def("push", &DenseMonitor::push, nb::arg("columns"),
              "Take a chunk, times and values of each input; return what became known of the first "
              "output, times and values.")
         .def("finish", &DenseMonitor::finish, "End the trace; return the rest of the first output.")
-        .def("told", &DenseMonitor::told, nb::arg("output"),
+        .def("last_output", &DenseMonitor::last_output, nb::arg("output"),
              "What the last update made known of an output, times and values.")
         .def("points", &DenseMonitor::points,
              "The same of every output: a list for each, of pairs of time and value.")
         .def("reset", &DenseMonitor::reset, "Forget every sample.")
         .def("state", &DenseMonitor::state,
-             "What the samples so far have left behind, but for what tell() says.")
+             "What the samples so far have left behind, except the time scale.")
         .def("restore", &DenseMonitor::restore, nb::arg("state"),
              "Go on as the monitor of this state would, which was made like this one.")
         .def("known", &DenseMonitor::known, nb::arg("output"),

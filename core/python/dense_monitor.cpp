@@ -124,8 +124,8 @@ DenseMonitor::DenseMonitor(Program program, const std::vector<nb::str>& names,
       results_(executor_.program().outputs.size()), spare_(results_.size()),
       until_(results_.size()), counts_(names.size()) {}
 
-void DenseMonitor::tell(const nb::type_object& signal, const nb::object& scale, double rate,
-                        bool whole) {
+void DenseMonitor::set_time_scale(const nb::type_object& signal, const nb::object& scale,
+                                  double rate, bool whole) {
     usage_.require_idle();
     scale_attribute_ = attribute_of(signal, "_scale");
     events_attribute_ = attribute_of(signal, "_events");
@@ -135,7 +135,7 @@ void DenseMonitor::tell(const nb::type_object& signal, const nb::object& scale, 
     whole_ = whole;
     nothing_ = signal_of({});
     if (!nothing_.is_valid()) throw nb::python_error();
-    told_ = true;
+    has_time_scale_ = true;
 }
 
 // ---- one instant --------------------------------------------------------------------------------
@@ -161,7 +161,7 @@ PyObject* DenseMonitor::update(PyObject* time, const Values& values) noexcept {
 template PyObject* DenseMonitor::update(PyObject* time, const Named& values) noexcept;
 template PyObject* DenseMonitor::update(PyObject* time, const InDict& values) noexcept;
 
-// Puts a point at the last instant that is known of each output, unless it was told before.
+// Puts a point at the last instant that is known of each output, unless it was reported before.
 void DenseMonitor::close() {
     for (std::size_t output = 0; output < results_.size(); ++output) {
         const auto until = executor_.known_until(output);
@@ -185,10 +185,10 @@ PyObject* DenseMonitor::fail(const Failure& failure) const noexcept {
 // its state is.
 template <class Values>
 bool DenseMonitor::read(PyObject* time, const Values& values) noexcept {
-    const bool told = told_;
+    const bool ready_before = has_time_scale_;
     const double rate = rate_;
     const bool whole = whole_;
-    const auto tick = told ? read_time(time) : std::nullopt;
+    const auto tick = ready_before ? read_time(time) : std::nullopt;
     if (!tick) return usage_.refuse("time") != nullptr;
     const Places own = places();
     own.clear();
@@ -208,7 +208,8 @@ bool DenseMonitor::read(PyObject* time, const Values& values) noexcept {
         std::copy_n(read.given, read.size, own.given);
     }
     time_ = *tick;
-    return (told == told_ && rate == rate_ && whole == whole_ && bind_buffers()) ||
+    return (ready_before == has_time_scale_ && rate == rate_ && whole == whole_ &&
+            bind_buffers()) ||
            usage_.refuse("time") != nullptr;
 }
 
@@ -336,7 +337,7 @@ nb::tuple DenseMonitor::take(std::vector<EventList>& results) {
     return hand_over(results_.front());
 }
 
-nb::tuple DenseMonitor::told(std::size_t output) const {
+nb::tuple DenseMonitor::last_output(std::size_t output) const {
     usage_.require_idle();
     require_output(output);
     const Events events = results_[output].view();
@@ -365,7 +366,7 @@ void DenseMonitor::reset() {
         list.resize(0);
     std::ranges::fill(until_, std::nullopt);
     std::ranges::fill(counts_, 0);
-    told_ = false;
+    has_time_scale_ = false;
 }
 
 nb::bytes DenseMonitor::state() {

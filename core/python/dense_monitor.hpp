@@ -1,9 +1,9 @@
 // The online monitor of dense time as Python sees it: names, times and numbers checked, then the
 // executor.
 //
-// What an update makes known is told as events, and a point at the last instant that is known, so
-// that a reader sees how far. update refuses what is wrong, or not plain, with a short Refused and
-// changes nothing; the Python caller goes the long way, and writes the sentence.
+// What an update makes known is reported as events, and a point at the last instant that is known,
+// so that a reader sees how far. update refuses what is wrong, or not plain, with a short Refused
+// and changes nothing; the Python caller goes the long way, and writes the sentence.
 #pragma once
 
 #include "../dense/executor.hpp"
@@ -48,7 +48,8 @@ class DenseMonitor {
     // How update() tells time until the next reset(): in numbers of so many ticks, a whole number
     // below 2^53; `whole`: in integers alone. It answers with objects of this class, whose `_scale`
     // is the given one and whose `_events` are bytes: the times, then the values.
-    void tell(const nb::type_object& signal, const nb::object& scale, double rate, bool whole);
+    void set_time_scale(const nb::type_object& signal, const nb::object& scale, double rate,
+                        bool whole);
 
     // Any variables at one instant, by name: Named or InDict. What became known of the first
     // output; null, with a Python exception set, is a refusal.
@@ -61,7 +62,7 @@ class DenseMonitor {
 
     // What the last update made known of an output; of the first one, update() and push() have
     // handed it over.
-    [[nodiscard]] nb::tuple told(std::size_t output) const;
+    [[nodiscard]] nb::tuple last_output(std::size_t output) const;
 
     // The same of every output in one call: a list for each, of pairs of time and value.
     [[nodiscard]] nb::list points() const;
@@ -71,7 +72,7 @@ class DenseMonitor {
     // What the garbage collector looks at.
     [[nodiscard]] Calls& calls() const noexcept { return *calls_; }
 
-    // What the samples so far have left behind, but for what tell() says; for a monitor made like
+    // What the samples so far have left behind, except the time scale; for a monitor made like
     // this one.
     [[nodiscard]] nb::bytes state();
     void restore(const nb::bytes& state);
@@ -96,15 +97,15 @@ class DenseMonitor {
     std::vector<dense::Events> events_;              // the same
     std::vector<dense::EventList> results_;          // of the last update, an output each
     std::vector<dense::EventList> spare_;            // of the next one, which may fail
-    std::vector<std::optional<std::int64_t>> until_; // how far each output was told
+    std::vector<std::optional<std::int64_t>> until_; // up to when each output was reported
     std::vector<std::int64_t> counts_;               // samples of each input
     nb::object signal_;                              // the class of the answers
     nb::object scale_;
     nb::object nothing_;         // the answer without events
     nb::object scale_attribute_; // of the answers
     nb::object events_attribute_;
-    bool told_ = false; // whether update() knows how time is told
-    double rate_ = 1.0; // ticks in 1
+    bool has_time_scale_ = false; // whether the time scale has been set
+    double rate_ = 1.0;           // ticks in 1
     bool whole_ = false;
 
     void transfer(Snapshot& snapshot);

@@ -40,7 +40,7 @@ def specification(case: Case, backend: str) -> rtamt.Specification:
 
 
 def same(case: Case, got: list[Any], wanted: list[Any]) -> bool:
-    """Tell whether two lists of values agree: to the last bit, but for what the C library rounds."""
+    """Return whether two lists of values agree: to the last bit, but for what the C library rounds."""
     if len(got) != len(wanted):
         return False
     if case.semantics == "boolean":
@@ -66,7 +66,7 @@ def changes(ticks: list[int], values: list[Any], semantics: str) -> list[list[An
 
 
 def agree(case: Case, ticks: list[int], values: list[Any]) -> bool:
-    """Tell whether dense events are the answer."""
+    """Return whether dense events are the answer."""
     got = changes(ticks, values, case.semantics)
     return [t for t, _ in got] == [t for t, _ in case.values] and same(
         case, [v for _, v in got], [v for _, v in case.values]

@@ -26,7 +26,7 @@ def test_the_period_may_also_come_with_the_data() -> None:
         spec.evaluate({"time": [0, 2], "x": [1, 2]})
     assert str(info.value) == (
         "The operator bound must be a multiple of the sampling period: 1 s is not a whole number of periods "
-        "of 2 s; change the bound or the period (the period was taken from the time stamps; period= sets it)"
+        "of 2 s; change the bound or the period (the period was taken from the timestamps; period= sets it)"
         + place
     )
     with pytest.raises(rtamt.BoundError) as info:

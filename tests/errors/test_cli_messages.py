@@ -110,7 +110,7 @@ def run(capsys, monkeypatch, tmp_path):
             ["check", "always[0:300ms](x > 0)", "good.csv"],
             "good.csv: The operator bound must be a multiple of the sampling period: "
             "300 ms is not a whole number of periods of 1 s; change the bound or the period "
-            "(the period was taken from the time stamps; period= sets it)\n"
+            "(the period was taken from the timestamps; period= sets it)\n"
             "  line 1, column 7:\n"
             "    always[0:300ms](x > 0)\n"
             "          ^^^^^^^^^",

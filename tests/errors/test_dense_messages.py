@@ -51,7 +51,7 @@ WRONG: list[tuple[Any, str]] = [
     ),
     (
         {"x": (np.array([0], "m8[ns]"), [1.0]), "y": [[0.0, 1.0]]},
-        "'y' tells time in seconds, but others in timedeltas: use one of them for all",
+        "'y' has times in seconds, but others in timedeltas: use one of them for all",
     ),
     (
         {"x": (np.array([0], "m8"), [1.0]), "y": [[0.0, 1.0]]},
@@ -115,7 +115,7 @@ def test_nanoseconds_after_seconds(backend: str) -> None:
     monitor.update(0.0, x=5.0)
     with pytest.raises(rtamt.TraceError) as info:
         monitor.update(np.timedelta64(10**9, "ns"), x=5.0)
-    assert str(info.value) == "'x' tells time in timedeltas, but others in seconds: use one of them for all"
+    assert str(info.value) == "'x' has times in timedeltas, but others in seconds: use one of them for all"
     with pytest.raises(rtamt.TraceError) as info:
         monitor.update(np.int64(17 * 10**17), x=5.0)
     assert str(info.value) == (
@@ -131,7 +131,7 @@ def test_a_variable_that_never_appears(backend: str) -> None:
     assert len(monitor.update(0.0, x=5.0)) == 0
     with pytest.raises(rtamt.TraceError) as info:
         monitor.finish()
-    assert str(info.value) == "'y' never had a sample, so that there is nothing to tell"
+    assert str(info.value) == "'y' has no samples; provide one before finish()"
 
 
 @pytest.mark.parametrize("backend", BACKENDS)

@@ -76,7 +76,7 @@ def span(trace) -> tuple[int, int]:
 
 
 def lone(node: Formula) -> bool:
-    """Tell whether an operator asks for φ up to an instant that is at least some a > 0 away."""
+    """Return whether an operator asks for φ up to an instant that is at least some a > 0 away."""
     two = isinstance(node, Apply) and node.op.tense is not Tense.NONE and len(node.args) == 2
     return two and node.op is not STL["since"] and node.interval is not None and node.interval.begin > 0
 
@@ -231,7 +231,7 @@ def test_the_pastified_formula_says_the_same_one_horizon_later(formula, trace):
 
 
 def grid_alike(node: Formula) -> bool:
-    """Tell whether SEMANTICS names this operator among those that agree on a grid."""
+    """Return whether SEMANTICS names this operator among those that agree on a grid."""
     return not (isinstance(node, Apply) and node.op is STL["since"]) and not lone(node)
 
 

@@ -61,7 +61,7 @@ def spelled(draw, language):
 
 
 def balanced(latex):
-    """Tell whether every brace that groups is closed after it was opened."""
+    """Return whether every brace that groups is closed after it was opened."""
     latex = latex.replace(r"\{", "").replace(r"\}", "")
     depths = [latex[:k].count("{") - latex[:k].count("}") for k in range(len(latex) + 1)]
     return min(depths) == 0 == depths[-1]

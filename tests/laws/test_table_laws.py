@@ -18,7 +18,7 @@ import rtamt
 from rtamt.cli import main
 from rtamt.readers import csv
 
-#: Names of the column of time stamps; columns that leave open which one it is, or whether there is one.
+#: Names of the column of timestamps; columns that leave open which one it is, or whether there is one.
 CLOCKS = ["time", "t", "Time [ms]", "time_ms", "stamp_us", "timestamp", "t (ns)", "Time(s)", "when"]
 UNCLEAR = [["t", "timestamp"], ["sim_time"], ["timeMs"], ["header.stamp"], ["elapsed"], ["time_min"]]
 UNITS = {"s": 1, "ms": 10**3, "us": 10**6, "ns": 10**9}

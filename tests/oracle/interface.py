@@ -37,7 +37,7 @@ def sets(semantics: str, variables: set[str], inputs: set[str]) -> tuple[set[str
 
 
 def case(predicate: Formula, semantics: str, inputs: set[str]) -> str:
-    """Tell which of the three cases a predicate is: worth 0, its ordinary value, or its truth."""
+    """Return which of the three cases a predicate is: worth 0, its ordinary value, or its truth."""
     y = {node.name for node in postorder(predicate) if isinstance(node, Variable)}
     u, v = sets(semantics, y | inputs, inputs)
     if not y <= u | v:

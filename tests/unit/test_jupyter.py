@@ -68,7 +68,7 @@ def test_what_no_slice_can_be():
         trace["noon":]  # type: ignore[misc]
     with pytest.raises(rtamt.UsageError, match=r"takes two times; put it on another clock with resample"):
         trace[0:1:2]
-    with pytest.raises(rtamt.TraceError, match="'x' has no time stamps"):
+    with pytest.raises(rtamt.TraceError, match="'x' has no timestamps"):
         rtamt.read({"x": [1]})[0:1]
 
 

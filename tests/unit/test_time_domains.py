@@ -21,7 +21,7 @@ def name_of(node: ast.expr) -> str:
 
 
 def has_name(node: ast.expr) -> bool:
-    """Tell whether an operand is the name of a time domain, or a display or constant that holds one."""
+    """Return whether an operand is the name of a time domain, or a display or constant that holds one."""
     parts = node.elts if isinstance(node, ast.Tuple | ast.List | ast.Set) else [node]
     return any(isinstance(part, ast.Constant) and part.value in DOMAINS for part in parts)
 

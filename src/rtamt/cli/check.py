@@ -53,13 +53,13 @@ Exit code: 0 all satisfied, 1 some violated, 2 some could not be evaluated."""
 _EPILOG = """\
 SPEC is a file (.stl) or a formula in quotes; more .stl files may follow. A trace is a CSV, Parquet,
 Arrow, Excel, PX4 ULog or MDF file, a ROS bag (.bag, .db3, .mcap, or the folder that ROS 2 records), or
-the rows of a query (--sql URL --query TEXT). Time stamps are in the column called time, t, timestamp,
+the rows of a query (--sql URL --query TEXT). Timestamps are in the column called time, t, timestamp,
 stamp or datetime; without one, samples are one period apart. They are dates (ISO 8601) or numbers:
 seconds, or the unit in the header ('t [ms]') or of --time-unit; numbers too large for seconds
 are an error. Columns that no formula reads may hold anything.
 'rtamt info TRACE' tells what is in a file, and what is guessed of it.
 
-With --time dense a value holds until the next one, and time stamps may lie anywhere; a variable has
+With --time dense a value holds until the next one, and timestamps may lie anywhere; a variable has
 no sample where its cell is empty. A NaN is an error, unless --skip-nan says that it is no sample,
 either; --hold-for limits how long the value before then holds. With --time dense -o writes the robustness
 where it changes, and at the end.

@@ -39,7 +39,7 @@ if TYPE_CHECKING:
 
 OK, VIOLATED, ERROR = 0, 1, 2
 
-NO_STAMPS = "dense time needs a column of time stamps: call it 'time', or name it with --time-column"
+NO_STAMPS = "dense time needs a column of timestamps: call it 'time', or name it with --time-column"
 INTERRUPTED = 130  # what a shell reports for a program that Ctrl-C ended
 
 _SPECIFICATION_SUFFIXES = (".stl",)
@@ -175,19 +175,19 @@ def warn(spec: Specification, given: str, ignored: Sequence[str]) -> int:
 
 
 def add_stamp_options(parser: argparse.ArgumentParser, what: str) -> None:
-    """Add where the time stamps are and in what unit; ``what`` they are: a column, a key."""
+    """Add where the timestamps are and in what unit; ``what`` they are: a column, a key."""
     group = options(parser, READING)
-    group.add_argument("--time-column", metavar="NAME", help=f"the {what} of time stamps; '' for none")
+    group.add_argument("--time-column", metavar="NAME", help=f"the {what} of timestamps; '' for none")
     group.add_argument(
         "--time-unit",
         metavar="UNIT",
         choices=tuple(UNITS),
-        help=f"of time stamps that are numbers: {', '.join(UNITS)} (default: what the header says, else s)",
+        help=f"of timestamps that are numbers: {', '.join(UNITS)} (default: what the header says, else s)",
     )
 
 
 def is_trace(path: str | None) -> bool:
-    """Tell whether a text is a file of recordings, or a bag's folder; a ``.txt`` may be a specification as well."""
+    """Return whether a text is a file of recordings, or a bag's folder; a ``.txt`` may be a specification as well."""
     if path is None:
         return False
     return (os.path.isfile(path) and _is_called_like_a_trace(path)) or os.path.isfile(

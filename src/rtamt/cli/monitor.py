@@ -55,7 +55,7 @@ follows at the end of input)."""
 
 _EPILOG = """\
 input: JSON objects, one a line, or CSV with a header row. What the formula does not read is left
-out of account. Time stamps are found and read as in files (see 'rtamt check --help'): in time, t, timestamp,
+out of account. Timestamps are found and read as in files (see 'rtamt check --help'): in time, t, timestamp,
 stamp or datetime, perhaps with a unit ('t [ms]', 'time_ms'), else in the one column of dates. Without any,
 samples are one period apart. A stream does not show its period in time: --period says it (default: 1 s,
 which stamps must then be apart). Fields: {"req": {"value": 3}} or {"req.value": 3}.
@@ -214,7 +214,7 @@ class Output:
 
 
 class SampleFeed:
-    """A monitor with the time stamps of the samples whose robustness is not known yet.
+    """A monitor with the timestamps of the samples whose robustness is not known yet.
 
     ``assumed``: whether nobody said how long the period is. A file is read with the period that its stamps
     have, which a stream shows too late: the stamps must then be what is assumed, and not merely near it.
@@ -259,7 +259,7 @@ class SampleFeed:
         return ""
 
     def _differs(self, gap: float) -> bool:
-        """Tell whether a gap is near the period, so that the monitor would take it, but not the period."""
+        """Return whether a gap is near the period, so that the monitor would take it, but not the period."""
         return _BLUR < abs(gap / self._period - 1) <= TOLERANCE
 
     def finish(self) -> None:

@@ -171,12 +171,12 @@ def choice_for(specs: Sequence[Specification], trace: str, reading: Reading) -> 
 
 
 def has_own_clocks(spec: Specification, trace: str, reading: Reading) -> bool:
-    """Tell whether each signal has a clock of its own, so that signals may begin at different times."""
+    """Return whether each signal has a clock of its own, so that signals may begin at different times."""
     return spec.domain.continuous or is_bag(trace) or reading.resample is not None
 
 
 def is_resampled(spec: Specification, trace: str, reading: Reading) -> bool:
-    """Tell whether each requirement is sampled anew, from when all variables that it reads have started."""
+    """Return whether each requirement is sampled anew, from when all variables that it reads have started."""
     return reading.resample is not None or (not spec.domain.continuous and is_bag(trace))
 
 
@@ -230,7 +230,7 @@ def instant(at: str | None, result: Result, option: str = "--at") -> Any:
     date = date_in(at)
     if (date is not None) != dated:
         has = f"dates: give one such as {EXAMPLE}" if dated else "seconds: give a number of them"
-        raise UsageError(f"{option} is '{at}', but the recording tells time in {has}")
+        raise UsageError(f"{option} is '{at}', but the recording has times in {has}")
     if date is not None:
         return date
     sign, text = (-1, at.strip()[1:]) if at.strip().startswith("-") else (1, at)

@@ -36,7 +36,7 @@ _INFINITIES = ("inf", "-inf")
 
 
 class Samples:
-    """Reads one sample from each line: its time stamp (None if there are none) and the values wanted.
+    """Reads one sample from each line: its timestamp (None if there are none) and the values wanted.
 
     A stamp is seconds; ``dense``: or what else a file of the same columns is read as, and a sample may
     hold some of the values only. ``time_name``: the column of stamps, "" for none, by default the one
@@ -85,7 +85,7 @@ class Samples:
 
 
 class _Stamps:
-    """Where the time stamps are among the columns of a stream, as in a file of the same columns.
+    """Where the timestamps are among the columns of a stream, as in a file of the same columns.
 
     Columns are looked at as long as no clock is found: what a column holds may show in a later line.
     """
@@ -134,7 +134,7 @@ class _Stamps:
             self.clock = None
             del self._kinds[column]
             raise TraceError(
-                f"'{column}' may hold the time stamps, but is empty before: give every sample its time, or {CHOICES}"
+                f"'{column}' may hold the timestamps, but is empty before: give every sample its time, or {CHOICES}"
             )
         return selection
 
@@ -160,7 +160,7 @@ def _load(_: Sequence[Field]) -> list[Raw]:
 
 
 class JsonSamples:
-    """Samples as JSON objects; the first one tells where the time stamp is."""
+    """Samples as JSON objects; the first one tells where the timestamp is."""
 
     def __init__(self, names: tuple[str, ...], stamps: _Stamps, dense: bool) -> None:
         self._names = names

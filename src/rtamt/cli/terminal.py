@@ -37,7 +37,7 @@ def say(text: str = "", *, file: TextIO | None = None, color: bool = False, flus
 
 
 def use_color(mode: str, stream: TextIO) -> bool:
-    """Tell whether to colour what goes to ``stream``; ``auto``: on a terminal, unless NO_COLOR is set."""
+    """Return whether to colour what goes to ``stream``; ``auto``: on a terminal, unless NO_COLOR is set."""
     if mode not in COLOR_MODES:
         raise UsageError(f"unknown colour mode '{mode}'{choices(mode, COLOR_MODES, 'modes')}")
     if mode != "auto":

@@ -291,7 +291,7 @@ def _until(graph: Graph, formula: Apply, hold: int, goal: int) -> int:
 
 
 def _splits(graph: Graph, formula: Formula) -> bool:
-    """Tell whether a part of unbounded future is put together from its value at the start and nothing else."""
+    """Return whether a part of unbounded future is put together from its value at the start and nothing else."""
     return (
         isinstance(formula, Apply)
         and graph._depths[id(formula)] is None

@@ -64,7 +64,7 @@ class Monitor:
         """Forget every sample."""
 
     def state(self) -> bytes:
-        """What the samples so far have left behind; in dense time but for what tell() says."""
+        """What the samples so far have left behind; in dense time but for what set_time_scale() says."""
 
     def restore(self, state: bytes) -> None:
         """Go on as the monitor of this state would, which was made like this one."""
@@ -104,7 +104,7 @@ class DenseMonitor:
         ignored: Collection[str] | None = None,
         calls: _Calls = ...,
     ) -> None: ...
-    def tell(self, signal: type, scale: Any, rate: float, whole: bool = False) -> None:
+    def set_time_scale(self, signal: type, scale: Any, rate: float, whole: bool = False) -> None:
         """Say how update() tells time: in numbers of so many ticks, or in integers alone (``whole``).
 
         Its answers are of the class ``signal``, their ``_scale`` is the given one and their ``_events``
@@ -112,7 +112,7 @@ class DenseMonitor:
         """
 
     def update(self, t: Any, values: Mapping[str, Any], /) -> Any:
-        """Take a dict of any inputs at a time as tell() says; return what became known."""
+        """Take a dict of any inputs at a time as set_time_scale() says; return what became known."""
 
     def push(self, columns: Sequence[_Events]) -> _Events:
         """Take a chunk, times and values of each input; return what became known of the first output."""
@@ -120,7 +120,7 @@ class DenseMonitor:
     def finish(self) -> _Events:
         """End the trace; return the rest of the first output."""
 
-    def told(self, output: int) -> _Events:
+    def last_output(self, output: int) -> _Events:
         """What the last update made known of an output."""
 
     def points(self) -> list[list[tuple[int, float]]]:
@@ -130,7 +130,7 @@ class DenseMonitor:
         """Forget every sample."""
 
     def state(self) -> bytes:
-        """What the samples so far have left behind; in dense time but for what tell() says."""
+        """What the samples so far have left behind; in dense time but for what set_time_scale() says."""
 
     def restore(self, state: bytes) -> None:
         """Go on as the monitor of this state would, which was made like this one."""

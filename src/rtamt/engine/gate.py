@@ -1,7 +1,7 @@
-"""Who may use a monitor: one call at a time.
+"""Reject concurrent and reentrant calls of a monitor.
 
-A second call comes from another thread, or from code that the first one runs: the ``__float__`` of a value,
-the fields of an object, an operator of the user's. It is refused, and neither changes what the other does.
+A second call may come from another thread, or from code that the first one runs: the ``__float__`` of a value,
+the fields of an object, a custom operator. It is rejected, and neither call affects the other.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 class Gate:
-    """Lets one call in; :class:`UsageError` for a second one."""
+    """Admits one call at a time; raises :class:`UsageError` for a second one."""
 
     __slots__ = ("_lock",)
 
@@ -35,7 +35,7 @@ class Gate:
         self._lock.release()
 
     def __reduce__(self) -> tuple[type[Gate], tuple[()]]:
-        return Gate, ()  # nobody is inside a copy
+        return Gate, ()  # a copy is not in use
 
 
 class _Guarded(Protocol):
@@ -57,7 +57,7 @@ def alone(method: Callable[Concatenate[G, P], R]) -> Callable[Concatenate[G, P],
 
 
 def in_use() -> UsageError:
-    """Return the error for a monitor that is in the middle of another call, or was meanwhile used by one."""
+    """Return the error for a monitor that is, or has meanwhile been, used by another call."""
     return UsageError(
         "the monitor is in use by another call, from another thread or from a value or operator that calls it "
         "back; give each thread a monitor of its own"

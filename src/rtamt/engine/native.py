@@ -1,4 +1,4 @@
-"""The door to the compiled core: asked for when it is needed, with a clear answer where it is not built."""
+"""Load the compiled core on first use, with a clear error if it is not built."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 def core() -> ModuleType:
-    """Return the compiled core; raise :class:`UsageError` where it is not installed."""
+    """Return the compiled core; raise :class:`UsageError` if it is not installed."""
     loaded = sys.modules.get("rtamt.engine._core")
     if loaded is not None:
         return loaded
@@ -67,8 +67,8 @@ def core_monitor(
 ) -> Any:
     """Return a compiled monitor of a program; raise :class:`UsageError` where memory does not suffice.
 
-    ``period`` in seconds; ``tolerance`` a fraction of it; a monitor that is not ``strict`` counts the
-    gaps that miss the period and takes the sample; samples of ``ignored`` variables are skipped.
+    ``period`` in seconds; ``tolerance`` a fraction of it. A monitor that is not ``strict`` counts irregular
+    gaps and takes the sample; samples of ``ignored`` variables are skipped.
     """
     _core = core()
     code, calls = program.code(), calls_of(program, SampleDriver)
@@ -86,7 +86,7 @@ def core_monitor(
 
 
 def not_made(program: Program, error: RuntimeError) -> UsageError:
-    """Return the error for what a compiled kernel said when it could not be made."""
+    """Return the error for a compiled kernel that could not be created."""
     names = dict.fromkeys(site.op.name for site in program.calls)
     return UsageError(f"the kernel of '{' or '.join(names)}' cannot be made: {error}")
 
@@ -97,7 +97,7 @@ def culprit(
     asked: Iterable[Formula],
     original: Callable[[Formula], Formula] = lambda formula: formula,
 ) -> Formula:
-    """Return where an operation made NaN, as it is written in the formulas that are ``asked``.
+    """Return the sub-formula that yielded NaN, as it is written in the formulas that are ``asked``.
 
     ``error``: the core's ``Undefined``. ``original``: of a formula of the program, what it stands for.
     Raises what a user's own operator raised or said.

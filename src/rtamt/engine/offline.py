@@ -1,4 +1,4 @@
-"""Offline: what is asked of a finished recording, how that is read, and what answers."""
+"""Queries on a complete recording, and their evaluation with cached plans."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 class Query:
     """A formula under its semantics, and the time domain in which recordings are read.
 
-    ``text``: what the formula was parsed from. ``unit``: of times that are numbers (None: seconds).
+    ``text``: the source text of the formula. ``unit``: the unit of numeric times (None: seconds).
     """
 
     formula: Formula
@@ -35,7 +35,7 @@ class Query:
 
 
 class Evaluators:
-    """What computes robustness signals on one back end; what it has compiled it keeps."""
+    """Computes robustness signals on one back end, and caches compiled plans."""
 
     def __init__(self, backend: str) -> None:
         self._backend = backend

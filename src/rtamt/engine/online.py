@@ -1,4 +1,4 @@
-"""What the monitors of both time domains share: formulas that are watched beside the first, and copies."""
+"""The base of the monitors of both time domains: watched formulas, and copies."""
 
 from __future__ import annotations
 
@@ -39,9 +39,9 @@ def _label(name: str | Formula) -> str:
 
 
 class OnlineMonitor:
-    """A monitor of either time domain, beside a base of the compiled core. Not made by users."""
+    """A monitor of either time domain, beside a base of the compiled core. Not instantiated by users."""
 
-    #: What a monitor remembers by itself, beside what its back end does.
+    #: The attributes that form the state of a monitor, apart from that of its back end.
     _remembered: ClassVar[tuple[str, ...]]
 
     #: What takes a sample, and has to be initialised.
@@ -71,22 +71,22 @@ class OnlineMonitor:
         self._output_of = {watched.name: output for output, watched in enumerate(watch, 1)}
         self._declared = frozenset(declared)
         self._factory = factory
-        self._gate = Gate()  # what takes more than one step is done alone
+        self._gate = Gate()  # serialises operations of several steps
         self._finished = False
 
     @property
     @abstractmethod
     def samples(self) -> int:
-        """How many samples the monitor has taken since the start or the last reset."""
+        """The number of samples since the start or the last reset."""
 
     @property
     def memory(self) -> int:
-        """Bytes of state: that of what is inside the windows."""
+        """The size of the state in bytes: the contents of the windows."""
         return int(self._backend.state_bytes)
 
     @property
     def _unread(self) -> frozenset[str]:
-        """Declared variables that the formula does not read, which an update may hold."""
+        """Declared variables that the formula does not read; an update may contain them."""
         return self._declared - {head for name in self.input_names for head in (name, name.split(".")[0])}
 
     def _output(self, name: str | Formula) -> int:
@@ -102,7 +102,7 @@ class OnlineMonitor:
         return output
 
     def _read_by_formula(self, values: Mapping[str, Any]) -> dict[str, Any]:
-        """Return what the formula reads: objects taken apart, declared variables it does not read left out."""
+        """Return the values that the formula reads: fields of objects, without unread variables."""
         heads = {name.split(".")[0] for name in self.input_names}
         flat = {k: v for k, v in values.items() if k in self.input_names or k not in self._declared | heads}
         for name in self.input_names:
@@ -115,7 +115,7 @@ class OnlineMonitor:
 
     @abstractmethod
     def _connect(self, backend: Any) -> None:
-        """Go on with this back end."""
+        """Continue with this back end."""
 
     def __copy__(self: Self) -> Self:
         twin = type(self).__new__(type(self))
@@ -153,7 +153,7 @@ class OnlineMonitor:
 
 
 def depth_of(formula: Formula, period: Fraction = Fraction(1)) -> Fraction:
-    """Return the horizon of a formula whose future is bounded, in seconds."""
+    """Return the horizon of a formula with bounded future in seconds."""
     depth = horizon(formula, period)
     assert depth is not None, "unbounded future is refused before"
     return depth

@@ -1,8 +1,8 @@
-"""What stands between the core and the operators that it does not know.
+"""Drivers that call custom operators from the core.
 
-A driver belongs to one call of a program. It makes an object of the user's class for each trace, hands
-it the operands, and checks what comes back: the core can trust a driver. A checkpoint is a deep copy of
-the object, so that a failed update leaves no trace in it either; a class that knows a cheaper way has a
+A driver belongs to one call of a program. It creates an object of the user's class for each trace, passes
+it the operands, and checks the results, so that the core can trust a driver. A checkpoint is a deep copy of
+the object, so that a failed update leaves it unchanged, too; a class may define a cheaper
 ``__deepcopy__``.
 """
 
@@ -46,7 +46,7 @@ if TYPE_CHECKING:
 
 
 def calls_of(program: Program, driver: type[_Driver]) -> list[tuple[Any, int, int, float, tuple[int, ...]]]:
-    """Return what the core needs for the calls of a program: of each the kernel, interval, step and operands.
+    """Return the calls of a program for the core: the kernel, interval, step and operands of each.
 
     ``driver``: that of the program's time domain.
     """
@@ -63,7 +63,7 @@ def calls_of(program: Program, driver: type[_Driver]) -> list[tuple[Any, int, in
 
 
 def _kernel(site: CallSite, driver: type[_Driver]) -> Any:
-    """Return the capsule of a compiled kernel, or a function that makes a driver."""
+    """Return the capsule of a compiled kernel, or a factory of drivers."""
     kernel, name = site.op.kernel, driver.domain.name
     if isinstance(kernel, Compiled):
         symbol = getattr(kernel, name)
@@ -97,11 +97,11 @@ def _capsule(op: Operator, library: str, name: str) -> Any:
 
 
 class _Driver:
-    """What both time domains share: the user's object, its checkpoint, and what is said when it fails."""
+    """The base of both drivers: the user's object, its checkpoint, and its errors."""
 
-    #: Whose operands it takes.
+    #: The time domain of its operands.
     domain: ClassVar[type[TimeDomain]]
-    #: What runs the definition of an operator without a kernel.
+    #: The class that evaluates an operator without a kernel by its definition.
     defined: ClassVar[Callable[..., Any]]
 
     @staticmethod
@@ -121,14 +121,14 @@ class _Driver:
         self._object = self._asked(self._make)
 
     def reset(self) -> None:
-        """Begin a new trace. What goes wrong here and in a checkpoint is raised by the next call."""
+        """Start a new trace. Errors here and in a checkpoint are raised by the next call."""
         try:
             self._begin()
         except StlError as error:
             self._fault = error
 
     def checkpoint(self) -> None:
-        """Remember the state."""
+        """Save the state."""
         try:
             self._saved = (self._asked(copy.deepcopy, self._object), self._progress())
         except StlError as error:
@@ -149,9 +149,9 @@ class _Driver:
         raise NotImplementedError
 
     def _asked(self, function: Callable[..., Any], *args: Any, **more: Any) -> Any:
-        """Call the user's code; say which operator it was when that raises something."""
+        """Call the user's code; name the operator in its errors."""
         try:
-            with np.errstate(all="ignore"):  # NaN is found, and told, by the core
+            with np.errstate(all="ignore"):  # the core detects and reports NaN
                 return function(*args, **more)
         except StlError:
             raise
@@ -179,7 +179,7 @@ class SampleDriver(_Driver):
         self._taken, self._given, self._waiting, self._ended = progress
 
     def run(self, operands: Sequence[Array], last: bool, due: int) -> Array:
-        """Take a block of each operand; return the next ``due`` values. ``last``: no more will come."""
+        """Take a block of each operand; return the next ``due`` values. ``last``: the trace ends."""
         if self._fault is not None:
             raise self._fault
         if len(operands[0]):
@@ -193,7 +193,7 @@ class SampleDriver(_Driver):
         return np.ascontiguousarray(values)
 
     def _add(self, values: Any, known: int) -> None:
-        """Take over what the object gave; ``known`` values should have come by now."""
+        """Store the values that the object returned; ``known`` values must be available by now."""
         block = self._asked(numbers_of, self._node, values)
         if block.shape != (known - self._given,):
             raise self._wrong(
@@ -205,7 +205,7 @@ class SampleDriver(_Driver):
 
 
 class EventDriver(_Driver):
-    """A call in dense time; the core looks at what it gives."""
+    """A call in dense time; the core checks its results."""
 
     domain = Dense
     defined = DefinedEvents

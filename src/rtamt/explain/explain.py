@@ -265,7 +265,7 @@ class _Explainer:
 
 
 def overturns(point: CriticalPoint) -> bool:
-    """Tell whether the verdict falls where the critical value alone moves far enough."""
+    """Return whether the verdict falls where the critical value alone moves far enough."""
     robustness = point.polarity * point.value
     return point.lowest < 0 if robustness > 0 else point.highest > 0 if robustness < 0 else True
 

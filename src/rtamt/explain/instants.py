@@ -104,7 +104,7 @@ class Cells:
         return self.meets(cell, cell + 1)
 
     def meets(self, begin: int, end: int) -> bool:
-        """Tell whether any cell is in [begin, end), which is not empty."""
+        """Return whether any cell is in [begin, end), which is not empty."""
         i = int(np.searchsorted(self.starts, end, side="left")) - 1
         return i >= 0 and begin < int(self.ends[i])
 

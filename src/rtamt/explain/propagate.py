@@ -83,7 +83,7 @@ class Demands:
                     self.leaves[node.name, sign] = asked
 
     def truth(self, sign: int) -> bool:
-        """Tell which truth is asked of places of a sign."""
+        """Return which truth is asked of places of a sign."""
         return self._satisfied == (sign > 0)
 
     def _add(self, node: Formula, sign: int, asked: Asked) -> None:

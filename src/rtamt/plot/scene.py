@@ -58,7 +58,7 @@ class Node:
     because: tuple[Range, ...]
 
     def fails_at(self, position: float) -> bool:
-        """Tell whether the sub-formula does not hold at a position."""
+        """Return whether the sub-formula does not hold at a position."""
         return any(start <= position < end for start, end in self.fails)
 
 

@@ -41,7 +41,7 @@ class Choice:
 
 @dataclass(frozen=True, slots=True)
 class Selection:
-    """Of one table: the field of time stamps, and the fields to read with the names of their signals."""
+    """Of one table: the field of timestamps, and the fields to read with the names of their signals."""
 
     table: Table
     clock: Field | None
@@ -99,7 +99,7 @@ def chunks_of(source: Source, choice: Choice) -> Iterator[Trace]:
 
 
 def select(source: Source, choice: Choice) -> list[Selection]:
-    """Find the columns that the caller asks for, and the one of time stamps."""
+    """Find the columns that the caller asks for, and the one of timestamps."""
     if choice.time:
         everything = [(table, field) for table in source.tables for field in table.fields]
         if not any(choice.time in (field.name, field.column) for _, field in everything):
@@ -155,7 +155,7 @@ def _check_skipped(source: Source, found: Sequence[tuple[str, Table, Field]], ch
 
 
 def _has_clock_called_otherwise(source: Source, choice: Choice) -> bool:
-    """Tell whether 'time' means the stamps; the engine reads them under that name."""
+    """Return whether 'time' means the stamps; the engine reads them under that name."""
     fields = [field for table in source.tables for field in table.fields]
     if any(TIME in (field.column, field.name) for field in fields):
         return any(_time_field(source, table, choice)[0] is not None for table in source.tables)
@@ -163,7 +163,7 @@ def _has_clock_called_otherwise(source: Source, choice: Choice) -> bool:
         clock, _ = _time_field(source, table, choice)
         if clock is not None:
             raise TraceError(
-                f"the formula reads '{TIME}', but the time stamps of {source.name} are its column "
+                f"the formula reads '{TIME}', but the timestamps of {source.name} are its column "
                 f"'{clock.column}'; name that column '{TIME}', or the variable something else",
                 variable=TIME,
             )
@@ -216,7 +216,7 @@ def _check_unique(source: Source, found: Sequence[tuple[str, Table, Field]]) -> 
 
 
 def _time_field(source: Source, table: Table, choice: Choice) -> tuple[Field | None, bool]:
-    """Return the field of time stamps, and whether it was guessed."""
+    """Return the field of timestamps, and whether it was guessed."""
     if choice.time == "":
         return None, False
     if choice.time is not None:
@@ -283,7 +283,7 @@ def _channels(
             if times is None:
                 raise TraceError(
                     f"'{name}' is missing at sample {row} of {source.name}: fill the gap, or name the "
-                    f"column of time stamps, so that each signal has a clock of its own",
+                    f"column of timestamps, so that each signal has a clock of its own",
                     variable=name,
                     index=row,
                 )

@@ -169,17 +169,17 @@ BOOLEANS = MappingProxyType({"true": True, "false": False})
 
 
 def is_boolean(text: str) -> bool:
-    """Tell whether the text of a cell is true or false, in any case."""
+    """Return whether the text of a cell is true or false, in any case."""
     return text.lower() in BOOLEANS
 
 
 def is_value(text: str) -> bool:
-    """Tell whether the text of a cell is a number, a Boolean or a date, and no name."""
+    """Return whether the text of a cell is a number, a Boolean or a date, and no name."""
     return is_number(text) or is_boolean(text) or is_date(text)
 
 
 def is_number(text: str) -> bool:
-    """Tell whether the text of a cell is a decimal number, ``inf`` or ``nan``.
+    """Return whether the text of a cell is a decimal number, ``inf`` or ``nan``.
 
     >>> [text for text in ("1e-3", "-inf", "1_000", "0x10", "\u0661", "") if is_number(text)]
     ['1e-3', '-inf']

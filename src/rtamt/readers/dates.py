@@ -40,7 +40,7 @@ class DateError(ValueError):
 
 
 def is_date(value: Any) -> bool:
-    """Tell whether a value is a date, the text of one, or a time since a start.
+    """Return whether a value is a date, the text of one, or a time since a start.
 
     >>> is_date("2026-05-01T12:00Z"), is_date(12.5), is_date("12.5")
     (True, False, False)

@@ -78,7 +78,7 @@ METADATA = "metadata.yaml"
 
 
 def is_bag(path: str) -> bool:
-    """Tell whether a path is that of a ROS bag: by its name, or a folder as ROS 2 records it."""
+    """Return whether a path is that of a ROS bag: by its name, or a folder as ROS 2 records it."""
     suffix = os.path.splitext(path)[1].lower()
     return suffix in BAG.suffixes or (suffix not in SUFFIXES and os.path.isdir(path))
 

@@ -52,7 +52,7 @@ class Gaps:
         if times is None and missing.any():
             raise TraceError(
                 f"samples of '{self._name}' are missing in {self._source} and to be held for "
-                f"{format_duration(self._hold_for)}, which takes time stamps: name their column with time=, or on the "
+                f"{format_duration(self._hold_for)}, which takes timestamps: name their column with time=, or on the "
                 f"command line --time-column",
                 variable=self._name,
             )

@@ -164,7 +164,7 @@ def _formulas(conversion: Any) -> Iterator[str]:
 
 
 def is_arithmetic(formula: str) -> bool:
-    """Tell whether the text of a conversion is arithmetic, without powers of constants, which have no end.
+    """Return whether the text of a conversion is arithmetic, without powers of constants, which have no end.
 
     asammdf runs it: by numexpr, and what that refuses as Python by sympy, where that is installed.
 

@@ -43,7 +43,7 @@ def read(
     rows are samples; a dict, a pandas, polars, xarray or arrow object, or a structured numpy array.
     ``columns``: the signals that are wanted (default: all that are numbers). ``names``: for signals that
     are to be called otherwise than their columns, from the name to the column:
-    ``{"v": "battery_status[1].voltage_v"}``. ``time``: the column of time stamps, ``""`` for none; by
+    ``{"v": "battery_status[1].voltage_v"}``. ``time``: the column of timestamps, ``""`` for none; by
     default the one called time, t, timestamp, stamp or datetime, perhaps with a unit (``Time [ms]``,
     ``time_ms``), else the one column of dates. ``time_unit``: of stamps that are numbers (``"s"``, ``"ms"``,
     ``"us"``, ``"ns"``); by default what their column says, else seconds; numbers that are too large
@@ -98,7 +98,7 @@ def scan(
     r"""Read a recording in chunks, in memory that does not grow with its length; arguments as for :func:`read`.
 
     For :func:`rtamt.check_stream` and ``update_many``. CSV, Parquet, Arrow and Excel files and SQL queries
-    can be read in chunks; what the first chunk tells of the time stamps holds for all. Give
+    can be read in chunks; what the first chunk tells of the timestamps holds for all. Give
     ``columns=spec.input_names``, so that only what a formula reads is read.
 
     >>> import pathlib, tempfile

@@ -57,7 +57,7 @@ class Table:
     load: Callable[[Sequence[Field]], list[Raw]]
     #: The same, some :data:`CHUNK` rows at a time; None where the format has to be read whole.
     chunks: Callable[[Sequence[Field]], Iterator[list[Raw]]] | None = None
-    #: The field that is known to hold the time stamps; None where it has to be found by its name.
+    #: The field that is known to hold the timestamps; None where it has to be found by its name.
     clock: Field | None = None
     #: The line or row of the source in which the first sample stands, for messages.
     first_row: int = 0
@@ -146,7 +146,7 @@ def _guarded(table: Table, guard: Callable[[], AbstractContextManager[None]]) ->
 
 
 def raised_by_us(error: BaseException) -> bool:
-    """Tell whether an exception was raised by code of this package, and not in a library that it called."""
+    """Return whether an exception was raised by code of this package, and not in a library that it called."""
     name = ""
     for frame, _ in walk_tb(error.__traceback__):
         name = frame.f_globals.get("__name__", "")

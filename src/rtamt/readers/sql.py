@@ -22,7 +22,7 @@ _POSTGRESQL = re.compile(r"postgres(?:ql)?://")
 
 
 def is_url(text: str) -> bool:
-    """Tell whether a text is the address of a database.
+    """Return whether a text is the address of a database.
 
     >>> is_url("sqlite:///log.db"), is_url("C:/log.csv")
     (True, False)

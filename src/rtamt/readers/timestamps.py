@@ -1,4 +1,4 @@
-"""Which column holds the time stamps, in what unit, and what its values are as times.
+"""Which column holds the timestamps, in what unit, and what its values are as times.
 
 Files, frames, queries, chunks and streams all come here. What cannot be told from the name of the
 column is told by its first stamp, which every one of them has.
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
     from rtamt.readers.source import Field, Raw
 
-#: What messages offer where the column of time stamps is not clear.
+#: What messages offer where the column of timestamps is not clear.
 CHOICES = "choose one with time=, or on the command line --time-column ('' for none)"
 
 #: Nanoseconds that a double of seconds holds exactly enough to be rounded back.
@@ -36,7 +36,7 @@ _EXACT = 2**50
 
 
 def guess_field(fields: Sequence[Field], source: str, wanted: Collection[str]) -> Field | None:
-    """Return the field of time stamps by its name, else the one with dates in it; None if there is none.
+    """Return the field of timestamps by its name, else the one with dates in it; None if there is none.
 
     What a formula reads (``wanted``) is no candidate while there are others. Raises
     :class:`TraceError` that lists the candidates where there are several, or where there is none
@@ -62,7 +62,7 @@ def _is_wanted(field: Field, wanted: Collection[str]) -> bool:
 def _unclear(candidates: Sequence[Field], source: str) -> TraceError:
     listing = ", ".join(f"'{field.column}'" for field in candidates)
     has = "several columns that" if len(candidates) > 1 else "a column that"
-    return TraceError(f"{source} has {has} may hold the time stamps: {listing}; {CHOICES}")
+    return TraceError(f"{source} has {has} may hold the timestamps: {listing}; {CHOICES}")
 
 
 class Clock:

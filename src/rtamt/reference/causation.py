@@ -142,7 +142,7 @@ class _Causes:
 
 
 def _connects(node: Formula) -> bool:
-    """Tell whether an operator only takes minima, maxima and negations of its operands."""
+    """Return whether an operator only takes minima, maxima and negations of its operands."""
     kernel = node.op.kernel if isinstance(node, Apply) else None
     if isinstance(kernel, Pointwise):
         return kernel.opcode in ("min", "max", "neg")

@@ -58,7 +58,7 @@ class DenseTimeSpecification(Formulas):
             if isinstance(node, Var) and node.name == arrays.TIME:
                 # The engine's recordings keep their timestamps under this name.
                 raise NameInFormulaError(
-                    f"'{arrays.TIME}' means the time stamps; give the variable another name", text, node.span
+                    f"'{arrays.TIME}' means the timestamps; give the variable another name", text, node.span
                 )
 
     @property

@@ -1,4 +1,4 @@
-"""Whatever the caller has (lists, arrays, frames, objects with fields) to float64 arrays: once, at the edge."""
+"""Convert the caller's data (lists, arrays, frames, objects with fields) to float64 arrays."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
     FloatArray = NDArray[np.float64]
 
-#: The key under which a trace holds its time stamps.
+#: The key under which a trace holds its timestamps.
 TIME = "time"
 
 
@@ -34,23 +34,23 @@ _MOMENTS = (datetime, timedelta, np.datetime64, np.timedelta64)
 
 
 class Clocked(ABC):
-    """Data that knows its clocks: see ``trace.py``."""
+    """Data with its own time bases: see ``trace.py``."""
 
     __slots__ = ()
 
     @property
     @abstractmethod
     def start(self) -> Any:
-        """The earliest time of any signal; None without time stamps."""
+        """The earliest time of any signal; None without timestamps."""
 
     @property
     @abstractmethod
     def units(self) -> Mapping[str, str]:
-        """The units of the signals whose source tells them."""
+        """The units of the signals whose source provides them."""
 
     @abstractmethod
     def on_one_clock(self, names: Collection[str]) -> Mapping[str, Any]:
-        """Return n values for each name, and ``"time"`` in seconds where there are stamps."""
+        """Return n values for each name, and ``"time"`` in seconds if there are timestamps."""
 
     @abstractmethod
     def on_own_clocks(self, names: Collection[str]) -> Mapping[str, tuple[Any, Any]]:
@@ -58,26 +58,26 @@ class Clocked(ABC):
 
 
 class Stamps(NamedTuple):
-    """Time stamps in seconds, and as the caller tells time: in the same seconds, in a unit, as dates or durations."""
+    """Timestamps in seconds, and in the caller's format: the same seconds, another unit, dates or durations."""
 
     seconds: FloatArray
-    told: NDArray[Any]
+    original: NDArray[Any]
 
 
 def plain(time: Any) -> Any:
-    """Return a number of numpy as one of Python; a date stays, which Python may not have."""
+    """Convert a numpy number to a Python number; dates are kept, since Python may lack the precision."""
     return time if isinstance(time, np.datetime64 | np.timedelta64) else time.item()
 
 
 def units_of(data: Any) -> Mapping[str, str]:
-    """Return the units of the variables, where the data tells them."""
+    """Return the units of the variables, as far as the data provides them."""
     return data.units if isinstance(data, Clocked) else {}
 
 
 def columns_of(
     data: Any, names: Sequence[str], unit: str | None = None
 ) -> tuple[Stamps | None, dict[str, FloatArray], int]:
-    """Return the time stamps (None if there are none), a column for each name, and their common length."""
+    """Return the timestamps (None if there are none), a column for each name, and their common length."""
     require_no_unit(data, unit)
     if data.__class__ is not dict and isinstance(data, Clocked):
         data = data.on_one_clock(names)
@@ -90,7 +90,7 @@ def columns_of(
 
 
 def require_no_unit(data: Any, unit: str | None) -> None:
-    """Raise :class:`UsageError` where a unit of time is given for data that knows its own."""
+    """Raise :class:`UsageError` if a time unit is given for data that has its own."""
     if unit is not None:
         check_unit(unit)
         if isinstance(data, Clocked):
@@ -101,19 +101,18 @@ def require_no_unit(data: Any, unit: str | None) -> None:
 
 
 def is_mapping(data: Any) -> bool:
-    """Tell whether data is a mapping; a dict is one at once, others cost a microsecond to find out."""
+    """Return whether data is a mapping; dicts are checked first, because the general check takes a microsecond."""
     return data.__class__ is dict or isinstance(data, Mapping)
 
 
 def array(values: Any, name: str, first: int = 0) -> FloatArray:
     """Return ``values`` as a contiguous one-dimensional float64 array.
 
-    ``first`` is the index of ``values[0]`` in the recording, for messages. Always a copy:
-    sub-formulas are evaluated when they are asked for, whatever the caller has done to the data
-    by then.
+    ``first`` is the index of ``values[0]`` in the recording, for messages. The result is always a copy:
+    sub-formulas are evaluated on demand, even if the caller has changed the data since.
     """
     if values.__class__ is np.ndarray and values.dtype == np.float64 and values.ndim == 1:
-        # The most usual, for which the rest would cost more than the evaluation.
+        # The common case, for which the checks below would cost more than the evaluation.
         return np.array(values, dtype=np.float64)
     try:
         if isinstance(values, np.ma.MaskedArray) and values.mask.any():
@@ -141,11 +140,13 @@ def array(values: Any, name: str, first: int = 0) -> FloatArray:
 
 
 def as_array(values: Any) -> NDArray[Any]:
-    """Return values as an array of numpy, of objects where numpy has no type for them or would bring them to one."""
+    """Return values as a numpy array, with dtype object if numpy has no common type or would convert them."""
     if isinstance(values, (list, tuple)) and any(
         isinstance(value, np.datetime64 | np.timedelta64) for value in values
     ):
-        return np.fromiter(values, dtype=object, count=len(values))  # to one unit, in which years may wrap
+        return np.fromiter(
+            values, dtype=object, count=len(values)
+        )  # avoid a common unit, in which years may overflow
     try:
         return np.asarray(values)
     except (TypeError, ValueError):
@@ -155,16 +156,16 @@ def as_array(values: Any) -> NDArray[Any]:
 
 
 def is_number(value: Any) -> bool:
-    """Tell whether a value is a real number that a double can hold: Python's, numpy's, or any other."""
+    """Return whether a value is a real number that a double can hold: Python's, numpy's, or any other."""
     return number_of(value) is not None
 
 
 def number_of(value: Any) -> float | None:
-    """Return a real number as a double; None for what is none, or too large for one."""
+    """Return a real number as a double; None for anything else or if it is too large."""
     if value.__class__ is float:
         return value
     if isinstance(value, np.timedelta64) or not isinstance(value, (Real, np.bool_)):
-        return None  # numpy derives its durations from its integers
+        return None  # timedelta64 is a subclass of numpy's integers
     try:
         number = float(value)
     except (OverflowError, TypeError):
@@ -174,9 +175,9 @@ def number_of(value: Any) -> float | None:
 
 
 def stamps(values: Any, unit: str | None = None) -> Stamps:
-    """Return time stamps in seconds and as they are told: numbers are seconds, or of ``unit``; dates count from 1970.
+    """Return timestamps in seconds and as given; numbers are in ``unit`` or seconds, dates count from 1970.
 
-    Raises :class:`TraceError` for what is no time; a time that is none (NaN, NaT) is NaN seconds.
+    Raises :class:`TraceError` for anything but times; missing times (NaN, NaT) become NaN seconds.
     """
     try:
         raw = values if isinstance(values, np.ma.MaskedArray) else as_array(values)
@@ -191,12 +192,12 @@ def stamps(values: Any, unit: str | None = None) -> Stamps:
                 variable=TIME,
                 index=0,
             )
-        told = in_nanoseconds(
+        original = in_nanoseconds(
             np.where(np.ma.getmaskarray(raw), np.array("NaT", raw.dtype), np.asarray(raw)), TIME
         )
-        seconds = quotients(told.view(np.int64), 1, 10**9)
-        seconds[np.isnat(told)] = np.nan
-        return Stamps(seconds, told)
+        seconds = quotients(original.view(np.int64), 1, 10**9)
+        seconds[np.isnat(original)] = np.nan
+        return Stamps(seconds, original)
     numbers = array(values, TIME)
     if unit is None:
         refuse_implausible(raw, TIME)
@@ -212,7 +213,7 @@ def stamps(values: Any, unit: str | None = None) -> Stamps:
 
 
 def _moments(raw: NDArray[Any]) -> NDArray[Any]:
-    """Return dates, or times since a start, in nanoseconds; without a time zone as they stand, as in dense time."""
+    """Return dates or durations in nanoseconds; dates without a time zone are taken literally, as in dense time."""
     zones: dict[bool, int] = {}
     kinds: dict[str, int] = {}
     found = np.full(raw.size, np.iinfo(np.int64).min)  # NaT
@@ -247,7 +248,7 @@ def _moments(raw: NDArray[Any]) -> NDArray[Any]:
 
 def check_numbers(name: str, column: FloatArray, times: FloatArray, first: int = 0) -> None:
     """Raise :class:`TraceError` at the first NaN; ``first`` is the index of ``column[0]`` in the recording."""
-    if len(column) and isnan(np.minimum.reduce(column)):  # the least of numbers and a NaN is NaN
+    if len(column) and isnan(np.minimum.reduce(column)):  # NaN propagates
         i = int(np.isnan(column).argmax())
         raise nan_error(name, first + i, float(times[i]))
 
@@ -315,7 +316,7 @@ def not_a_mapping(data: Any, to: str) -> TraceError:
 
 
 def refuse_unknown(keys: Sequence[str], names: Sequence[str], declared: Collection[str]) -> None:
-    """Raise :class:`TraceError` at a key that is neither read, nor declared, nor the time.
+    """Raise :class:`TraceError` at a key that is neither a variable of the formula, nor declared, nor the time.
 
     For data that need not hold every variable, where such a key may be a misspelt one; where all variables are
     there, others do no harm.

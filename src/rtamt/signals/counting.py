@@ -1,4 +1,4 @@
-"""Numbers to ticks and back: products and quotients that are rounded once, to the nearest."""
+"""Convert numbers to ticks and back, with products and quotients that are correctly rounded."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     FloatArray = NDArray[np.float64]
     TickArray = NDArray[np.int64]
 
-#: Stamps stay this far from the ends of int64, so that bounds can be added to them.
+#: Timestamps keep this distance from the ends of int64, so that bounds can be added to them.
 FARTHEST = 2**62
 
 #: Up to here a product and a quotient of doubles are within half a tick of the truth; `near` in the core.
@@ -29,7 +29,7 @@ DOUBLES = 2**53
 _DOUBT = 2.0**-53
 
 
-#: Numbers from here on are no number of seconds that anybody means (the year 5138), and how little counts since 1970
+#: Numbers from here on are implausible as seconds (the year 5138), and the smallest plausible time since 1970
 #: in another unit: the year 1973 in it.
 IMPLAUSIBLE = 10**11
 _LARGEST = np.finfo(np.float64).max
@@ -37,18 +37,18 @@ _SINCE_1970 = (("ns", 10**17), ("us", 10**14), ("ms", IMPLAUSIBLE))
 
 
 def all_integers(times: Any) -> bool:
-    """Tell whether every one of some times is an integer, of Python or of numpy."""
+    """Return whether all times are integers, of Python or numpy."""
     if isinstance(times, np.ndarray) and times.dtype.kind != "O":
         return times.dtype.kind in "iu" or not len(times)
     return all(isinstance(time, Integral) for time in times)
 
 
 def refuse_implausible(times: Any, name: str, first: int = 0, source: str = "") -> None:
-    """Raise :class:`TraceError` at a number that is said to be seconds and can only be something else."""
+    """Raise :class:`TraceError` at a number that is too large for seconds."""
     if isinstance(times, np.ndarray) and times.dtype.kind != "O":
         if times.dtype.kind not in "iuf" or not len(times):
             return
-        # Of NaN and infinities others say what is wrong with them.
+        # NaN and infinities are reported elsewhere.
         if times.min() > -IMPLAUSIBLE and times.max() < IMPLAUSIBLE:
             return
     for i, time in enumerate(times):
@@ -57,7 +57,7 @@ def refuse_implausible(times: Any, name: str, first: int = 0, source: str = "") 
 
 
 def is_implausible(time: Any) -> bool:
-    """Tell whether a time is a finite number that is too large for seconds.
+    """Return whether a time is a finite number that is too large for seconds.
 
     >>> is_implausible(1_700_000_000), is_implausible(1_700_000_000_123), is_implausible(1.7e12)
     (False, True, True)
@@ -189,5 +189,5 @@ def tick_of(number: float, rate: int) -> int:
 
 
 def _grids(rate: int) -> tuple[int, ...]:
-    # Stamps may be as much as 1 024 ticks apart from the next double, so three digits are in doubt.
+    # Adjacent doubles may be 1 024 ticks apart, so three digits are uncertain.
     return (rate // 1000, rate // 100, rate // 10) if rate % 1000 == 0 else ()

@@ -29,12 +29,12 @@ _LENGTHS = MappingProxyType(
     }
 )
 
-#: Years and months further from 1970 than this are beyond every tick; as days they would wrap.
+#: Years and months further from 1970 than this exceed all ticks; as days they would overflow.
 _FARTHEST_YEAR = 10**12
 
 
 def has_length(time: Any) -> bool:
-    """Tell whether the unit of a ``timedelta64`` (an array or one) is as long everywhere, and is there at all.
+    """Return whether a ``timedelta64`` (scalar or array) has a unit of fixed length.
 
     >>> has_length(np.timedelta64(5, "ms")), has_length(np.timedelta64(5)), has_length(np.timedelta64(5, "Y"))
     (True, False, False)
@@ -92,7 +92,7 @@ def out_of_reach(name: str, index: int, time: Any, kind: str, where: str = "") -
 
 
 def no_length(name: str, index: int) -> TraceError:
-    """Return the error for a ``timedelta64`` that does not say how long it is."""
+    """Return the error for a ``timedelta64`` without a fixed length."""
     return TraceError(
         f"the time of '{name}' is a timedelta64 without a unit of fixed length at sample {index}: "
         f"give it one, such as np.timedelta64(5, 'ms')",
@@ -102,9 +102,9 @@ def no_length(name: str, index: int) -> TraceError:
 
 
 def nanoseconds_of(time: Any) -> int | None:
-    """Return a datetime or timedelta as nanoseconds, from 1970 if it is a date; None for what is none (NaT).
+    """Return a datetime or timedelta as nanoseconds, since 1970 for dates; None for NaT.
 
-    A date without a time zone is taken as it stands, whatever the zone of this machine.
+    A date without a time zone is taken literally, whatever the time zone of this machine.
 
     >>> nanoseconds_of(datetime(1970, 1, 1, 0, 0, 1)), nanoseconds_of(np.timedelta64(5, "ms"))
     (1000000000, 5000000)

@@ -91,7 +91,7 @@ class DenseTrace(DomainTrace):
 
     columns: Mapping[str, Samples]
     scale: TimeScale
-    #: The units of the variables whose source tells them.
+    #: The units of the variables whose source provides them.
     units: Mapping[str, str] = field(default_factory=dict)
     #: Lower and upper bounds of the samples of each variable; empty where all are known exactly.
     bounds: Mapping[str, Bounds] = field(default_factory=dict)
@@ -242,8 +242,8 @@ def record_dense(
     """Normalise a finished recording; the caller's data is never changed.
 
     ``data``: a mapping from variable to (times, values) or to a list of [time, value] pairs; with a
-    key ``"time"`` all variables share its stamps. ``tick``: seconds. ``scale``: how the caller tells
-    time, by default found out from the first variable. ``unit``: of times that are numbers, by default
+    key ``"time"`` all variables share its timestamps. ``tick``: seconds. ``scale``: the caller's time
+    scale, by default inferred from the first variable. ``unit``: the unit of numeric times, by default
     seconds. Raises :class:`TraceError`.
     """
     _require_variables(names)

@@ -1,4 +1,4 @@
-"""Dense time at the edge: whatever the caller has becomes int64 ticks and float64 values, once."""
+"""Convert dense-time data to int64 ticks and float64 values."""
 
 from __future__ import annotations
 
@@ -31,9 +31,9 @@ _ONE = struct.Struct("=qd").unpack
 
 
 class TickSignal(Signal):
-    """A signal whose arrays are made when they are asked for: most online updates tell a point or none.
+    """A signal with lazily created arrays: most online updates report one point or none.
 
-    Made by the compiled monitor, which sets ``_events``: the ticks, int64, then the values, float64.
+    Created by the compiled monitor, which sets ``_events``: the ticks, int64, then the values, float64.
     """
 
     __slots__ = ("_events", "_scale")
@@ -49,7 +49,7 @@ class TickSignal(Signal):
         return len(self._events) // 16
 
     def points(self) -> list[tuple[Any, float]]:
-        """Return (time, value) pairs; of a single one, as most updates tell, without an array in between."""
+        """Return (time, value) pairs; a single point, the common case, needs no array."""
         rate = self._scale.rate
         if rate is None or len(self._events) != 16:
             return super().points()
@@ -58,7 +58,7 @@ class TickSignal(Signal):
 
     @property
     def times(self) -> NDArray[Any]:
-        """Times as the caller tells them."""
+        """Times in the caller's format."""
         if not hasattr(self, "_times"):
             ticks = np.frombuffer(self._events, np.int64, len(self._events) // 16)
             self._times = self._scale.times(ticks)
@@ -97,7 +97,7 @@ def columns_of(
 ) -> dict[str, tuple[Any, Any]]:
     """Return times (an array or a list) and values (as given) of each variable that is in the data.
 
-    With a key ``"time"`` all variables share its stamps, unless the formula reads a variable of that
+    With a key ``"time"`` all variables share its timestamps, unless the formula reads a variable of that
     name. A variable with fields (``req.value``) may be
     given as ``req``, whose values are objects that have them. ``declared``: for a chunk, which need not
     hold every variable, names that it may hold besides.

@@ -96,13 +96,13 @@ class DiscreteTrace(DomainTrace):
     times: FloatArray
     columns: Mapping[str, FloatArray]
     period: Fraction
-    #: Whether the period was taken from the time stamps.
+    #: Whether the period was inferred from the timestamps.
     inferred: bool = False
-    #: The time stamps as the caller tells time; None where that is in seconds.
-    told: NDArray[Any] | None = None
-    #: Of time stamps that are numbers of something other than seconds.
+    #: The timestamps in the caller's format; None if that is seconds.
+    original: NDArray[Any] | None = None
+    #: The unit of numeric timestamps that are not in seconds.
     unit: str | None = None
-    #: The units of the variables whose source tells them.
+    #: The units of the variables whose source provides them.
     units: Mapping[str, str] = dataclasses.field(default_factory=dict)
     #: Lower and upper bounds of the samples of each variable; empty where all are known exactly.
     bounds: Mapping[str, Bounds] = dataclasses.field(default_factory=dict)
@@ -148,7 +148,7 @@ class DiscreteTrace(DomainTrace):
             if not self.inferred:
                 raise
             raise BoundError(
-                f"{error.message} (the period was taken from the time stamps; period= sets it)",
+                f"{error.message} (the period was taken from the timestamps; period= sets it)",
                 text,
                 error.span,
             ) from None
@@ -193,8 +193,8 @@ class DiscreteTrace(DomainTrace):
 
     @property
     def stamps(self) -> NDArray[Any]:
-        """The time stamps as the caller tells time."""
-        return self.times if self.told is None else self.told
+        """The timestamps in the caller's format."""
+        return self.times if self.original is None else self.original
 
     def time(self, position: int) -> Any:
         """See :class:`DomainTrace`: a number of Python, or a date or duration of numpy."""
@@ -220,9 +220,9 @@ class DiscreteTrace(DomainTrace):
             nearest = int(np.abs(self.times - float(seconds)).argmin())
             if abs(float(self.times[nearest]) - float(seconds)) <= TOLERANCE * float(self.period):
                 return nearest
-        told = at if isinstance(at, np.datetime64) else shown(at)
+        original = at if isinstance(at, np.datetime64) else shown(at)
         raise UsageError(
-            f"there is no sample at {told}; the recording has {len(self)}, "
+            f"there is no sample at {original}; the recording has {len(self)}, "
             f"from {self.show(0)} to {self.show(self.last)}"
         )
 
@@ -264,7 +264,7 @@ def record_discrete(
     stamped, columns, n = columns_of(data, names, unit)
     if n == 0:
         raise TraceError("the trace is empty: give at least one sample")
-    inferred, told = False, None
+    inferred, original = False, None
     if stamped is None:
         period = period or Fraction(1)
         times = np.arange(n, dtype=np.float64)
@@ -272,11 +272,11 @@ def record_discrete(
             times *= float(period)
     else:
         times = stamped.seconds
-        told = None if stamped.told is times else stamped.told
+        original = None if stamped.original is times else stamped.original
         check_increasing(times)
         inferred = period is None
         period = period or infer_period(times)
         check_regular(times, period, tolerance)
     for name, column in columns.items():
         check_numbers(name, column, times)
-    return DiscreteTrace(times, columns, period, inferred, told, unit, units_of(data))
+    return DiscreteTrace(times, columns, period, inferred, original, unit, units_of(data))

@@ -1,4 +1,4 @@
-"""What a time domain is, and what a trace in one is: the interfaces of ``discrete`` and ``dense``."""
+"""The interfaces of time domains and of traces in them, implemented by ``discrete`` and ``dense``."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 
 class TimeDomain(ABC):
-    """How time passes: in which steps bounds are counted, and how data becomes a trace.
+    """A time domain: the step in which bounds are counted, and the conversion of data to a trace.
 
     Immutable; ``rtamt.Discrete(...)`` and ``rtamt.Dense(...)``. What evaluates and monitors formulas in a
     time domain is its engine (``rtamt.engine.domains``).
@@ -36,7 +36,7 @@ class TimeDomain(ABC):
 
     #: As in ``time="discrete"``.
     name: ClassVar[str]
-    #: What is said of it in help texts.
+    #: Its description in help texts.
     summary: ClassVar[str]
     #: Whether signals have values between their samples.
     continuous: ClassVar[bool]
@@ -185,7 +185,7 @@ class DomainTrace(ABC):
 
     @abstractmethod
     def time(self, position: int) -> Any:
-        """Return the time of a position as the caller tells time."""
+        """Return the time of a position in the caller's format."""
 
     @abstractmethod
     def show(self, position: int) -> str:
@@ -193,7 +193,7 @@ class DomainTrace(ABC):
 
     @abstractmethod
     def position(self, at: Any) -> int:
-        """Return the position of a time as the caller tells it; raise :class:`UsageError` outside."""
+        """Return the position of a time in the caller's format; raise :class:`UsageError` outside the trace."""
 
     # ---- on an axis ------------------------------------------------------------------------------
 
@@ -204,7 +204,7 @@ class DomainTrace(ABC):
 
     @abstractmethod
     def seconds(self, times: Any, *, elapsed: bool) -> FloatArray:
-        """Return times as the caller tells them in seconds: as they are, or ``elapsed`` since the origin."""
+        """Convert times in the caller's format to seconds: absolute, or ``elapsed`` since the origin."""
 
     @abstractmethod
     def ends(self, *, elapsed: bool) -> tuple[float, float]:

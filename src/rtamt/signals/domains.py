@@ -23,12 +23,12 @@ DOMAINS: Mapping[str, type[TimeDomain]] = MappingProxyType(
     {domain.name: domain for domain in (Discrete, Dense)}
 )
 
-#: The name of the time domain that holds where none is named.
+#: The name of the default time domain.
 DEFAULT = next(iter(DOMAINS))
 
 
 class Defaults(NamedTuple):
-    """What holds for settings of a time domain that are left out."""
+    """Defaults of the settings of a time domain."""
 
     period: Fraction | None = None
     tolerance: float = TOLERANCE
@@ -45,9 +45,9 @@ def time_domain(
     resolution: Duration | None = None,
     defaults: Defaults = _DEFAULTS,
 ) -> TimeDomain:
-    """Return the time domain that a caller names, with the settings that concern it, or gives as an object.
+    """Return a time domain given by name with its settings, or as an object.
 
-    Raises :class:`UsageError` for anything else, and for settings beside an object.
+    Raises :class:`UsageError` for anything else, and for settings in addition to an object.
 
     >>> time_domain("discrete", tolerance=0.5)
     Discrete(period=None, tolerance=0.5)

@@ -15,7 +15,7 @@ _FIRST, _LAST = 10**9, 4_102_444_800
 
 
 def is_epoch(seconds: Fraction | float) -> bool:
-    """Tell whether a number of seconds is a time since 1970.
+    """Return whether a number of seconds is a time since 1970.
 
     >>> is_epoch(1_700_000_000.5), is_epoch(86_400)
     (True, False)

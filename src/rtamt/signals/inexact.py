@@ -1,4 +1,4 @@
-"""Recordings that are known in part: missing samples, measurement errors, declared ranges.
+"""Partly known recordings: missing samples, measurement errors, declared ranges.
 
 ``None``, a null of Arrow or polars, ``pandas.NA`` and a masked value are missing samples; NaN is an error. A missing
 sample may have any value in the range of its variable, one with an uncertainty ε any value from v - ε to v + ε.
@@ -30,14 +30,14 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Uncertainty:
-    """How far samples may be off, and the ranges of variables: what the caller declares of them."""
+    """The measurement errors and ranges of variables, as declared by the caller."""
 
     errors: Mapping[str, float] = field(default_factory=dict)
     ranges: Mapping[str, tuple[float, float]] = field(default_factory=dict)
 
     @classmethod
     def of(cls, uncertainty: Any, ranges: Any, names: Sequence[str]) -> Uncertainty:
-        """Return what was declared, checked; ``names`` are the variables that the formula reads.
+        """Check and return the declarations; ``names`` are the variables that the formula reads.
 
         >>> Uncertainty.of({"x": 0.5}, {"x": (0, 120)}, ["x", "y"])
         Uncertainty(errors={'x': 0.5}, ranges={'x': (0.0, 120.0)})
@@ -56,7 +56,7 @@ class Uncertainty:
         return cls(errors, limits)
 
     def applied(self, recording: DomainTrace, missing: Mapping[str, Mask]) -> DomainTrace:
-        """Return the recording with bounds of its samples, itself where all of them are known exactly.
+        """Return the recording with bounds of its samples; unchanged if all are known exactly.
 
         Raises :class:`TraceError` at a sample that cannot lie in its declared range.
         """
@@ -87,7 +87,7 @@ class Uncertainty:
 
 
 def range_of(name: str, value: Any) -> tuple[float, float]:
-    """Return a declared range as two numbers; raise :class:`UsageError` where it is none."""
+    """Return a declared range as two numbers; raise :class:`UsageError` if it is invalid."""
     ends = [number_of(end) for end in value] if isinstance(value, tuple | list) else []
     if len(ends) != 2 or None in ends or any(isnan(end) for end in ends if end is not None):
         raise UsageError(f"the range of '{name}' is {shown(value)}; give (lowest, highest), such as (0, 120)")
@@ -100,9 +100,9 @@ def range_of(name: str, value: Any) -> tuple[float, float]:
 
 
 def fill_gaps(data: Any, names: Sequence[str], *, own_clocks: bool) -> tuple[Any, dict[str, Mask]]:
-    """Return the data with zeros in the place of missing samples, and where they are, of those that miss some."""
+    """Return the data with missing samples replaced by zeros, and masks of the variables with missing samples."""
     if isinstance(data, Clocked):
-        return data, {}  # readers decide about gaps
+        return data, {}  # readers handle gaps
     missing: dict[str, Mask] = {}
     if own_clocks:
         filled: dict[str, Any] = {}

@@ -1,4 +1,4 @@
-"""What is known before the whole trace is: bounds of a robustness, and verdicts with the sample that decided them."""
+"""Partial results: bounds of the robustness, and verdicts with the sample that decided them."""
 
 from __future__ import annotations
 
@@ -64,9 +64,9 @@ class VerdictRun:
 
 
 class BoundedSignal(Signal):
-    """A signal that is known up to bounds: ``times``, ``lower`` and ``upper``, arrays of the same length.
+    """A signal given by bounds: ``times``, ``lower`` and ``upper``, arrays of the same length.
 
-    ``values`` are those of a signal that is known exactly; they raise :class:`EvaluationError` where it is not.
+    ``values`` are defined if the signal is known exactly, and raise :class:`EvaluationError` otherwise.
     """
 
     __slots__ = ("_upper",)

@@ -25,9 +25,9 @@ def check_tolerance(tolerance: Any) -> None:
 
 
 def infer_period(times: FloatArray) -> Fraction:
-    """Return the median gap, as the shortest decimal that it cannot be told from; 1 s for one sample.
+    """Return the median gap, as the shortest decimal within its precision; 1 s for a single sample.
 
-    Stamps that count from 1970 are doubles of some 0.2 µs precision, which the gaps inherit.
+    Timestamps since 1970 are doubles with a precision of about 0.2 µs, which limits that of the gaps.
     """
     if len(times) < 2:
         return Fraction(1)
@@ -73,7 +73,7 @@ def never_set(time: float, count: int, name: str = TIME) -> TraceError:
 
 
 def not_increasing(index: int, time: float, before: float) -> TraceError:
-    """Return the error for a stamp that is not later than the one before."""
+    """Return the error for a timestamp that is not later than its predecessor."""
     return TraceError(
         f"time does not increase at sample {index}: {time:.15g} s comes after {before:.15g} s; "
         f"sort the samples and drop repeated stamps",

@@ -31,7 +31,7 @@ class Signal:
 
     @property
     def times(self) -> NDArray[Any]:
-        """When: seconds, or what else the caller tells time in."""
+        """The times: in seconds, or in the caller's format."""
         return self._times
 
     @property
@@ -40,7 +40,7 @@ class Signal:
         return self._values
 
     def points(self) -> list[tuple[Any, float]]:
-        """Return (time, value) pairs of Python's own numbers: the cheapest way to read what an update told.
+        """Return (time, value) pairs of Python's own numbers: the cheapest way to read the result of an update.
 
         >>> import rtamt
         >>> monitor = rtamt.parse("historically[0:1](x >= 3)").monitor(time="dense")

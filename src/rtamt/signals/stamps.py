@@ -1,4 +1,4 @@
-"""Which columns hold the time stamps, and in what unit: by their names, the same for files, frames and streams."""
+"""Recognise the time column and its unit by name, in the same way for files, frames and streams."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ from rtamt.language.units import UNITS
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping
 
-#: What a column of time stamps is called, in any case, perhaps with a unit: ``Time [ms]``, ``time_ms``.
+#: The names of time columns, in upper or lower case, optionally with a unit: ``Time [ms]``, ``time_ms``.
 NAMES = ("time", "t", "timestamp", "stamp", "datetime")
 
-#: How people write units of time.
+#: Common spellings of time units.
 SPELLINGS: Mapping[str, str] = MappingProxyType(
     {
         "h": "h hr hrs hour hours",
@@ -32,9 +32,9 @@ _SUFFIXES = [spelling for spelling, unit in _UNIT_OF.items() if unit not in ("h"
 _STAMPS = re.compile(rf"(?P<name>{'|'.join(NAMES)})(?:[ _](?P<unit>{'|'.join(_SUFFIXES)}))?")
 _BRACKETS = re.compile(r"(?P<name>.*\S)\s*[\[(]\s*(?P<unit>[^\[\]()]+?)\s*[\])]", re.DOTALL)
 
-#: Words in the names of columns that may hold time stamps, but need not.
+#: Words in the names of columns that may hold timestamps, but need not.
 _HINTS = frozenset({*NAMES, "ts", "date", "clock", "epoch", "elapsed"} - {"t"})
-#: Names that are units: 's' and 'ms' are short for too many other things.
+#: Units that are also names of time columns; 's' and 'ms' are too ambiguous.
 _UNITS = frozenset(spelling for spelling in _SUFFIXES if len(spelling) > 2)
 _WORDS = re.compile(r"[A-Z]?[a-z]+|[A-Z]+(?![a-z])")
 
@@ -61,12 +61,12 @@ def unit_called(text: str) -> str | None:
 
 
 def is_stamps(name: str) -> bool:
-    """Tell whether a column is called as columns of time stamps are; ``name``: without a unit in brackets."""
+    """Return whether a column has the name of a time column; ``name``: without a unit in brackets."""
     return _STAMPS.fullmatch(name.lower()) is not None
 
 
 def unit_of(name: str) -> str | None:
-    """Return the unit at the end of such a name, None where there is none.
+    """Return the unit at the end of such a name; None if there is none.
 
     >>> unit_of("time_ms"), unit_of("stamp")
     ('ms', None)
@@ -76,7 +76,7 @@ def unit_of(name: str) -> str | None:
 
 
 def may_be_stamps(name: str) -> bool:
-    """Tell whether a column may hold time stamps, though its name alone does not decide it.
+    """Return whether a column may hold timestamps, though its name alone does not decide it.
 
     >>> [name for name in ("sim_time", "timeMs", "header.stamp", "rostime", "speed", "t_max") if may_be_stamps(name)]
     ['sim_time', 'timeMs', 'header.stamp', 'rostime']
@@ -90,10 +90,10 @@ def may_be_stamps(name: str) -> bool:
 
 
 def check_frame(frame: Any, time: str, names: Collection[str]) -> None:
-    """Raise :class:`TraceError` where a frame may tell time elsewhere than in its column ``time``.
+    """Raise :class:`TraceError` if the timestamps of a frame may be in another column than ``time``.
 
-    What evaluates a frame reads that column alone; ``names``: the variables that it reads. Which column else
-    it is, and in what unit, is for :func:`rtamt.read` to find out.
+    The evaluation of a frame reads only that column; ``names``: the variables that it reads. To use another
+    column or unit, read the frame with :func:`rtamt.read`.
     """
     others = [str(column) for column in frame.columns if column != time and column not in names]
     if time in frame.columns:
@@ -107,7 +107,7 @@ def check_frame(frame: Any, time: str, names: Collection[str]) -> None:
     if found:
         listing = ", ".join(f"'{column}'" for column in found)
         raise TraceError(
-            f"the frame may have its time stamps in {listing}, but only '{time}' is read here: read the frame with "
+            f"the frame may have its timestamps in {listing}, but only '{time}' is read here: read the frame with "
             f"rtamt.read, which takes other columns and units",
             variable=time,
         )

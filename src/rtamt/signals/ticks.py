@@ -1,7 +1,7 @@
-"""Dense time is counted in int64 ticks; here is how a caller's times become ticks, and ticks times again.
+"""Convert the caller's times to int64 ticks, in which dense time is counted, and back.
 
 ======================================================  ==================  ==========================
-what a time is                                          kind                what comes back
+type of the time                                        kind                type of the result
 ======================================================  ==================  ==========================
 a number, of seconds                                    ``"seconds"``       float64
 an integer, of the unit in ``time_unit=``               ``"whole"``         int64 where whole, else float64
@@ -12,9 +12,9 @@ a timedelta, ``numpy.timedelta64``                      ``"timedeltas"``    time
 a number of RTAMT's classes, in their unit              ``"units"``         int where whole, else float
 ======================================================  ==================  ==========================
 
-Numbers are seconds whatever holds them: lists, arrays, frames, integers or not. Counted once on the way in and
-divided once on the way out, both rounded to the nearest: a double that has not more digits than a tick comes back
-as it was, and so does every other double that is the nearest to its own tick.
+Numbers are seconds in any container: lists, arrays, frames, integers or not. They are multiplied once on input and
+divided once on output, both correctly rounded: a double with no more digits than a tick is returned
+unchanged, and so is every other double that is the nearest to its own tick.
 """
 
 from __future__ import annotations
@@ -58,10 +58,10 @@ if TYPE_CHECKING:
 #: One tick, unless the caller chooses another: a nanosecond.
 NANOSECOND = UNITS["ns"]
 
-#: What :func:`kinds_of` calls a ``timedelta64`` that does not say how long it is.
+#: The kind of a ``timedelta64`` without a fixed length in :func:`kinds_of`.
 NO_LENGTH = "no length"
 
-#: How messages call the kinds.
+#: The names of the kinds in messages.
 KINDS = MappingProxyType(
     {
         "seconds": "seconds",
@@ -73,13 +73,13 @@ KINDS = MappingProxyType(
 )
 
 _OF_DTYPE = {"M": "datetimes", "m": "timedeltas"}
-#: The kinds whose times are numbers in a unit that was agreed on.
+#: The kinds whose times are numbers in a given unit.
 _IN_UNITS = ("whole", "numbers", "units")
 
 
 @dataclass(frozen=True, slots=True)
 class TimeScale:
-    """How the caller tells time, and how long a tick is.
+    """The caller's time format, and the length of a tick.
 
     ``tick``: seconds. ``kind``: a row of the module's table. ``unit``: seconds in one of the caller's
     numbers, for the kinds that are numbers.
@@ -88,9 +88,9 @@ class TimeScale:
     tick: Fraction
     kind: str
     unit: Fraction = UNITS["s"]
-    #: ``tick / unit``: an online answer must not wait for fractions.
+    #: ``tick / unit`` as integers: fractions are too slow for online results.
     _ratio: tuple[int, int] = field(init=False, repr=False, compare=False)
-    #: By what ticks are divided to be the caller's times; None where they are told in another way.
+    #: The divisor from ticks to the caller's times; None for other formats.
     rate: int | None = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
@@ -101,7 +101,7 @@ class TimeScale:
 
     @staticmethod
     def of(tick: Fraction, times: Iterable[Any], unit: str | None = None) -> TimeScale:
-        """Return how some sequences of times tell time; ``unit``: what the caller says of their numbers."""
+        """Return the time scale of sequences of times; ``unit``: the given unit of numbers."""
         if unit is None:
             return TimeScale(tick, next((kind_of(some) for some in times if len(some)), "seconds"))
         return TimeScale(
@@ -110,18 +110,18 @@ class TimeScale:
 
     @staticmethod
     def in_ticks(tick: Fraction) -> TimeScale:
-        """Return the scale of times that are ticks already."""
+        """Return the scale of times that are ticks."""
         return TimeScale(tick, "whole", tick)
 
     def widened(self, times: Iterable[Any]) -> TimeScale:
-        """Return the scale that tells these times as well: after numbers that are no integers, no time is one."""
+        """Return the scale extended to these times: after non-integer numbers, results are no longer integers."""
         if self.kind == "whole" and not all(map(all_integers, times)):
             return replace(self, kind="numbers")
         return self
 
     @property
     def ticks_in_1(self) -> int | None:
-        """The ticks in one of the caller's numbers, where a double can multiply with them, else None."""
+        """The ticks in one unit of the caller, if representable as a factor in double precision, else None."""
         numerator, denominator = self._ratio
         quick = self.kind in ("seconds", "numbers", "whole") and numerator == 1 and denominator < DOUBLES
         return denominator if quick else None
@@ -168,11 +168,11 @@ class TimeScale:
                 raise self._not_numbers(times, name, first)
             return
         if self.kind == "zoned" and isinstance(times, np.ndarray) and times.dtype.kind == "M":
-            return  # as times() tells them: in UTC
+            return  # as returned by times(): in UTC
         if len(kinds) > 1:
             (a, i), (b, j) = list(kinds.items())[:2]
             raise TraceError(
-                f"'{name}' tells time in {KINDS[a]} at sample {first + i} and in {KINDS[b]} at sample "
+                f"'{name}' has times in {KINDS[a]} at sample {first + i} and in {KINDS[b]} at sample "
                 f"{first + j}: use one of them for all",
                 variable=name,
                 index=first + j,
@@ -180,7 +180,7 @@ class TimeScale:
         for kind in kinds:
             if self.kind != kind:
                 raise TraceError(
-                    f"'{name}' tells time in {KINDS[kind]}, but others in {KINDS[self.kind]}: "
+                    f"'{name}' has times in {KINDS[kind]}, but others in {KINDS[self.kind]}: "
                     f"use one of them for all",
                     variable=name,
                 )
@@ -251,7 +251,7 @@ class TimeScale:
         )
 
     def times(self, ticks: TickArray) -> NDArray[Any]:
-        """Return ticks as the caller tells time, in the type that the module's table says."""
+        """Convert ticks to the caller's time format, with the type given in the module's table."""
         if self.kind in ("seconds", "numbers"):
             return quotients(ticks, *self._ratio)
         if self.kind == "whole":
@@ -279,7 +279,7 @@ class TimeScale:
         return int(time) if time.denominator == 1 else float(time)
 
     def time(self, tick: int) -> Any:
-        """Return one tick as the caller tells time: a number of Python, or a date or duration of numpy."""
+        """Convert one tick to the caller's time format: a Python number, or a numpy date or duration."""
         times = self.times(np.array([tick], dtype=np.int64))
         return times[0] if times.dtype.kind in "mM" else times.tolist()[0]
 
@@ -289,7 +289,7 @@ class TimeScale:
         if self.kind in ("datetimes", "zoned"):
             return str(time)
         unit = next((name for name, size in UNITS.items() if size == self.unit), "s")
-        # To the last tick: stamps that count from 1970 differ in their last digits.
+        # To the last tick: timestamps since 1970 differ in their last digits.
         return f"{decimal(tick * self.tick / self.unit) or f'{float(time):.12g}'} {unit}"
 
 
@@ -346,7 +346,7 @@ def _are_numbers(times: Any) -> bool:
 
 
 def _exact(times: Any) -> NDArray[np.bool_]:
-    """Tell which of the times are integers or fractions."""
+    """Return which of the times are integers or fractions."""
     if isinstance(times, np.ndarray) and times.dtype.kind != "O":
         return np.full(len(times), times.dtype.kind in "iu")
     types = set(map(type, times))

@@ -1,4 +1,4 @@
-"""What was recorded: named signals, each on its own clock, before anything is evaluated.
+"""Recorded data: named signals, each with its own time base.
 
 ::
 
@@ -40,7 +40,7 @@ HOW = ("hold", "linear")
 class Channel:
     """One signal of a trace.
 
-    ``times``: n strictly increasing stamps, float64 seconds, or, where a double cannot hold them,
+    ``times``: n strictly increasing timestamps, float64 seconds, or, where a double cannot hold them,
     timedelta64[ns], or datetime64[ns]; None where the source has none. ``values``: n numbers, float64.
     ``unit``: of the values, as the source writes it. ``column``: what the source calls the signal.
     ``first_gap``: the first sample of the source at which the signal has no value, so that its times are fewer
@@ -58,10 +58,10 @@ class Trace(Clocked):
     """Named signals of one recording, each with its own times and values; cannot be changed.
 
     Made by :func:`rtamt.read`; ``Specification.evaluate`` and the monitors' ``update_many`` take it.
-    Dense time reads every variable on its own clock. Discrete time needs one clock for all of them:
-    the source's, or one that is chosen openly with :meth:`resample` or :meth:`hold`.
+    In dense time every variable keeps its own time base. Discrete time needs a common time base:
+    that of the source, or one chosen explicitly with :meth:`resample` or :meth:`hold`.
 
-    ``print(trace)`` tells what was found, and what was guessed.
+    ``print(trace)`` shows the signals, and what was guessed.
 
     >>> import rtamt
     >>> trace = rtamt.read({"req": ([0.0, 2.5], [5, 0]), "gnt": ([0.0, 1.0, 4.0], [0, 4, 0])})
@@ -99,37 +99,37 @@ class Trace(Clocked):
 
     @property
     def source(self) -> str:
-        """Where it was read from."""
+        """The source of the trace."""
         return self._source
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """What was guessed or left out while reading, a sentence each; :attr:`losses` among it."""
+        """What was guessed or left out while reading, one sentence each, including :attr:`losses`."""
         return (*self._notes, *self._losses)
 
     @property
     def losses(self) -> tuple[str, ...]:
-        """What a verdict has to do without: the rest of a damaged file, samples that are NaN or passed over."""
+        """Missing data: the rest of a damaged file, samples that are NaN or skipped."""
         return self._losses
 
     @property
     def origin(self) -> np.datetime64 | None:
-        """The date and time (UTC) of time 0, where the source tells it."""
+        """The date and time (UTC) of time 0, if the source provides it."""
         return self._origin
 
     @property
     def start(self) -> Any:
-        """The earliest time of any signal; None without time stamps."""
+        """The earliest time of any signal; None without timestamps."""
         return min((c.times[0] for c in self._timed()), default=None)
 
     @property
     def end(self) -> Any:
-        """The latest time of any signal; None without time stamps."""
+        """The latest time of any signal; None without timestamps."""
         return max((c.times[-1] for c in self._timed()), default=None)
 
     @property
     def units(self) -> dict[str, str]:
-        """The units of the signals whose source tells them.
+        """The units of the signals whose source provides them.
 
         >>> import rtamt
         >>> rtamt.read({"time": [0, 1], "speed [m/s]": [5, 4], "gear": [1, 1]}).units
@@ -241,7 +241,7 @@ class Trace(Clocked):
         for name, channel in self._channels.items():
             if channel.times is None:
                 raise TraceError(
-                    f"'{name}' has no time stamps, so that it has no times to slice", variable=name
+                    f"'{name}' has no timestamps, so that it has no times to slice", variable=name
                 )
             low, high = (_bound(end, channel.times.dtype) for end in (times.start, times.stop))
             inside = np.ones(len(channel.times), dtype=bool)
@@ -253,9 +253,9 @@ class Trace(Clocked):
     # ---- for the engine --------------------------------------------------------------------------
 
     def on_one_clock(self, names: Collection[str]) -> dict[str, Any]:
-        """Return what discrete time reads: n values for each name, and ``"time"``.
+        """Return discrete-time data: n values for each name, and ``"time"``.
 
-        Raises :class:`TraceError` where the signals do not share a clock.
+        Raises :class:`TraceError` if the signals have different time bases.
         """
         channels = {name: self.channel(name) for name in names if name != TIME}
         for name, channel in channels.items():
@@ -270,13 +270,13 @@ class Trace(Clocked):
         return result or {name: channel.values for name, channel in self._channels.items()}
 
     def on_own_clocks(self, names: Collection[str]) -> dict[str, tuple[Times, FloatArray]]:
-        """Return what dense time reads: (times, values) for each name."""
+        """Return dense-time data: (times, values) for each name."""
         result = {}
         for name in names:
             channel = self.channel(name)
             if channel.times is None:
                 raise TraceError(
-                    f"{self._source} has no time stamps, which dense time needs: "
+                    f"{self._source} has no timestamps, which dense time needs: "
                     f"name their column with time=, or on the command line --time-column",
                     variable=name,
                 )
@@ -286,12 +286,12 @@ class Trace(Clocked):
     # ---- one clock, chosen openly ----------------------------------------------------------------
 
     def resample(self, period: str | float | Fraction, how: str = "hold") -> Trace:
-        """Return all signals on one clock: a sample every ``period`` from the first instant at which all have one.
+        """Return all signals on one time base: a sample every ``period`` from the first instant at which all have one.
 
         ``how``: ``"hold"``, the last value before or at an instant (what dense time means; up to the
         latest last sample), or ``"linear"``, on the line between the two samples around it (up to the
-        earliest last sample). ``period``: seconds, or text such as ``"10ms"``. Samples that lie between are
-        left out, which :attr:`losses` tells.
+        earliest last sample). ``period``: seconds, or text such as ``"10ms"``. Samples in between are
+        left out and listed in :attr:`losses`.
 
         >>> import rtamt
         >>> trace = rtamt.read({"x": ([0.0, 1.0], [0, 10]), "y": ([0.0, 0.6, 1.0], [1, 2, 3])})
@@ -312,7 +312,7 @@ class Trace(Clocked):
         return self._at(grid, how)
 
     def hold(self) -> Trace:
-        """Return all signals at the stamps of every one, each holding its last value; from the latest first stamp on.
+        """Return all signals at the timestamps of each, holding last values, from the latest first timestamp on.
 
         >>> import rtamt
         >>> trace = rtamt.read({"x": ([0.0, 1.0], [0, 10]), "y": ([0.0, 0.5, 1.0], [1, 2, 3])})
@@ -333,7 +333,7 @@ class Trace(Clocked):
                 values = channel.values[places]
                 losses += _passed_over(name, places, len(channel.times))
             else:
-                # Differences first: stamps of 10^18 ns do not fit into a double, their distances do.
+                # Differences first: timestamps of 10^18 ns do not fit into a double, their differences do.
                 zero = channel.times[0]
                 values = np.interp(_plain(grid - zero), _plain(channel.times - zero), channel.values)
                 between = channel.times[places] != grid
@@ -356,7 +356,7 @@ class Trace(Clocked):
             raise TraceError(f"{self._source} has no signals")
         for name, channel in self._channels.items():
             if channel.times is None:
-                raise TraceError(f"'{name}' has no time stamps, so that it cannot be put on another clock")
+                raise TraceError(f"'{name}' has no timestamps, so that it cannot be put on another clock")
             if not len(channel.times):
                 raise TraceError(f"'{name}' has no samples: give at least one", variable=name)
         return [channel.times for channel in self._channels.values() if channel.times is not None]
@@ -403,7 +403,7 @@ def _bound(end: Any, dtype: np.dtype[Any]) -> Any:
 
 
 def _passed_over(name: str, places: NDArray[np.intp], count: int) -> list[str]:
-    """Return the note for samples of a signal that none of another clock reads, from the first one read on."""
+    """Return the note on samples that were skipped by resampling, after the first one used."""
     read = np.unique(places)
     left_out = count - int(read[0]) - len(read)
     if not left_out:
@@ -426,7 +426,7 @@ def _exact(time: Any) -> Fraction:
 
 
 def _grid(start: Fraction, step: Fraction, count: int, dtype: np.dtype[Any]) -> Times:
-    """Return ``count`` stamps, each rounded once, in the kind of ``dtype``."""
+    """Return ``count`` timestamps of kind ``dtype``, each correctly rounded."""
     if dtype.kind == "f":
         scale = step.denominator * start.denominator
         zero, gap = int(start * scale), int(step * scale)

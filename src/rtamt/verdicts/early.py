@@ -67,7 +67,7 @@ class GraphDefinition(Session):
 
 
 class EarlyMonitor(EarlyMonitorBase, OnlineMonitor):
-    """What both monitors of discrete time share. Not made by users."""
+    """What both monitors of discrete time share. Not instantiated by users."""
 
     _remembered: ClassVar[tuple[str, ...]] = ("_finished",)
     _base = EarlyMonitorBase
@@ -184,7 +184,7 @@ class EarlyMonitor(EarlyMonitorBase, OnlineMonitor):
     # ---- samples ---------------------------------------------------------------------------------
 
     def _seconds(self, time: Any) -> float:
-        """Return a time stamp in seconds; raise :class:`TraceError` for what is none."""
+        """Return a timestamp in seconds; raise :class:`TraceError` for what is none."""
         number = arrays.number_of(time)
         if number is None:
             raise TraceError(

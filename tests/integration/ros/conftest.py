@@ -52,7 +52,7 @@ class Ros:
         return master
 
     def master_answers(self):
-        """Tell whether the master takes calls."""
+        """Return whether the master takes calls."""
         try:
             with xmlrpc.client.ServerProxy(self.env["ROS_MASTER_URI"]) as master:
                 return master.getPid("/test")[0] == 1

@@ -267,7 +267,7 @@ def test_dates_are_time_stamps_in_both_domains(run, write):
         ),
         (
             ("x", "--time", "dense", "--time-column", ""),
-            "events.csv: dense time needs a column of time stamps: call it 'time', or name it with --time-column",
+            "events.csv: dense time needs a column of timestamps: call it 'time', or name it with --time-column",
         ),
         (
             ("prev(x)", "--time", "dense"),

@@ -69,7 +69,7 @@ def test_dense_time_without_stamps(run, write):
     assert run("explain", "x >= 3", write("log.csv", "x\n1\n"), "--time", "dense") == (
         2,
         "",
-        "rtamt: log.csv: dense time needs a column of time stamps: call it 'time', or name it with --time-column\n",
+        "rtamt: log.csv: dense time needs a column of timestamps: call it 'time', or name it with --time-column\n",
     )
 
 

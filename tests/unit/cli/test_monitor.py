@@ -232,7 +232,7 @@ def test_a_stream_whose_time_column_is_not_clear_is_rejected_as_the_file_is(run,
     write("log.csv", text)
     has = "several columns that" if len(names) > 1 else "a column that"
     sentence = (
-        f"has {has} may hold the time stamps: {', '.join(map(repr, names))}; choose one with time=, "
+        f"has {has} may hold the timestamps: {', '.join(map(repr, names))}; choose one with time=, "
         f"or on the command line --time-column ('' for none)\n"
     )
     assert run("check", "x >= 0", "log.csv").err == f"rtamt: log.csv {sentence}"
@@ -248,7 +248,7 @@ def test_a_time_that_comes_later_is_not_left_out_of_account(run):
         name = "time" if stdin.startswith("{") else "when"
         assert (answer.code, answer.err.split(": ", 2)[2]) == (
             2,
-            f"'{name}' may hold the time stamps, but is empty before: give every sample its time, "
+            f"'{name}' may hold the timestamps, but is empty before: give every sample its time, "
             f"or choose one with time=, or on the command line --time-column ('' for none)\n",
         )
 

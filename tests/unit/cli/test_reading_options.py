@@ -139,12 +139,12 @@ def test_an_instant_is_told_in_seconds_with_a_unit_or_as_a_date(run, write, time
         (
             DATES,
             "0.1",
-            "--at is '0.1', but the recording tells time in dates: give one such as 2026-05-01T12:00:00.5",
+            "--at is '0.1', but the recording has times in dates: give one such as 2026-05-01T12:00:00.5",
         ),
         (
             "time,x\n0,5\n",
             "2026-01-01",
-            "--at is '2026-01-01', but the recording tells time in seconds: give a number of them",
+            "--at is '2026-01-01', but the recording has times in seconds: give a number of them",
         ),
         (
             "time,x\n0,5\n",

@@ -55,7 +55,7 @@ def lists(results: Any) -> list[tuple[list[int], list[float]]]:
     return [(times.tolist(), values.tolist()) for times, values in results]
 
 
-class Told:
+class Answer:
     """What an update answers: its scale, and its events as bytes."""
 
     __slots__ = ("_events", "_scale")
@@ -67,12 +67,12 @@ class Told:
 def monitor(code: bytes, names: list[str], ignored: set[str] | None = None) -> Any:
     """Return a monitor that is told the time in seconds of one tick."""
     m = _core.DenseMonitor(code, names, ignored)
-    m.tell(Told, "scale", 1.0)
+    m.set_time_scale(Answer, "scale", 1.0)
     return m
 
 
-def told(answer: Told) -> tuple[list[int], list[float]]:
-    assert type(answer) is Told
+def told(answer: Answer) -> tuple[list[int], list[float]]:
+    assert type(answer) is Answer
     assert answer._scale == "scale"
     half = len(answer._events) // 2
     return np.frombuffer(answer._events[:half], np.int64).tolist(), np.frombuffer(
@@ -113,14 +113,14 @@ def test_variables_on_clocks_of_their_own_in_chunks() -> None:
     m = monitor(TWO, ["a", "b"], {"c"})
     assert known(m.push([events([0, 4, 9], [1, 2, 3]), events([], [])])) == ([], [])
     assert told(m.update(6, {"b": 2.5, "c": None})) == ([6], [2.5])
-    assert known(m.told(0)) == ([6], [2.5])
-    assert known(m.told(1)) == ([6], [2.0])
+    assert known(m.last_output(0)) == ([6], [2.5])
+    assert known(m.last_output(1)) == ([6], [2.0])
     assert known(m.push([events([], []), events([8, 20], [0, 9])])) == ([8, 9], [2.0, 3.0])
-    assert known(m.told(1)) == ([9], [3.0])
+    assert known(m.last_output(1)) == ([9], [3.0])
     assert (m.start, m.known_until, m.known(1), m.last_times) == (6, 9, 9, [9, 20])
     assert m.counts == [3, 3]
     assert known(m.finish()) == ([20], [9.0])
-    assert known(m.told(1)) == ([20], [3.0])
+    assert known(m.last_output(1)) == ([20], [3.0])
 
 
 @pytest.mark.parametrize(
@@ -137,14 +137,14 @@ def test_seconds_are_rounded_to_the_nearest_tick_and_halves_to_the_even_one(
     rate: float, time: float, tick: int
 ) -> None:
     m = _core.DenseMonitor(ALWAYS, ["a"])
-    m.tell(Told, "scale", rate)
+    m.set_time_scale(Answer, "scale", rate)
     m.update(time, {"a": 1.0})
     assert m.last_times == [tick] == [round(time * rate)]
 
 
 def test_integers_that_are_ticks() -> None:
     m = _core.DenseMonitor(ALWAYS, ["a"])
-    m.tell(Told, "scale", 1.0, True)
+    m.set_time_scale(Answer, "scale", 1.0, True)
     m.update(np.int64(10**18 + 1), {"a": 1.0})
     assert m.last_times == [10**18 + 1]
     for time in (1e18, True, 2**62, np.int64(2**62), np.uint64(2**63), np.timedelta64(10**18 + 2), "1"):
@@ -156,7 +156,7 @@ def test_before_it_is_told_how_and_after_a_reset_no_time_is_plain() -> None:
     m = _core.DenseMonitor(ALWAYS, ["a"])
     with pytest.raises(_core.Refused, match=r"^time$"):
         m.update(1.0, {"a": 1.0})
-    m.tell(Told, "scale", 1.0)
+    m.set_time_scale(Answer, "scale", 1.0)
     m.reset()
     with pytest.raises(_core.Refused, match=r"^time$"):
         m.update(1.0, {"a": 1.0})
@@ -187,7 +187,7 @@ def test_what_is_wrong_is_refused_and_changes_nothing(t: Any, values: Any, reaso
     with pytest.raises(_core.Refused, match=f"^{reason}$"):
         m.update(t, values)
     assert (m.last_times, m.counts) == ([8], [2])
-    assert known(m.told(0)) == ([5], [1.0])
+    assert known(m.last_output(0)) == ([5], [1.0])
     assert told(m.update(9, {"a": 1.0})) == ([6], [1.0])
 
 
@@ -217,7 +217,7 @@ def test_an_update_that_makes_nan_names_instruction_and_tick_and_leaves_the_moni
     assert told(m.update(1, {"a": 9})) == ([1], [3.0])
     with pytest.raises(_core.Undefined):
         m.update(2, {"a": -1})
-    assert known(m.told(0)) == ([1], [3.0])
+    assert known(m.last_output(0)) == ([1], [3.0])
     with pytest.raises(_core.Undefined) as caught:
         _core.dense_evaluate(ROOT, [events([2, 6], [4, -1])])
     assert caught.value.args == (1, 6)
@@ -230,7 +230,7 @@ def test_another_monitor_goes_on_from_a_state() -> None:
     other.restore(m.state())
     for each in (m, other):
         assert (state(each), each.counts) == ((2, 5, [9, 5]), [3, 2])
-        assert known(each.told(1)) == ([2, 4, 5], [1.0, 2.0, 2.0])
+        assert known(each.last_output(1)) == ([2, 4, 5], [1.0, 2.0, 2.0])
         assert told(each.update(6, {"b": 1.0})) == ([6], [2.0])
         assert known(each.finish()) == ([9], [3.0])
     with pytest.raises(ValueError, match=r"^This is not the state of a monitor of this program\.$"):
@@ -278,7 +278,7 @@ def test_wrong_calls_say_what_is_wrong() -> None:
     with pytest.raises(IndexError, match=r"^There is no output 1.$"):
         m.known(1)
     with pytest.raises(IndexError, match=r"^There is no output 1.$"):
-        m.told(1)
+        m.last_output(1)
     with pytest.raises(ValueError, match=r"^There is no scan 'x': it is run_max, run_min or until.$"):
         _core.dense_scan("x", events([1], [1]))
     with pytest.raises(ValueError, match=r"^The scan 'until' takes two signals.$"):

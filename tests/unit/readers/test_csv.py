@@ -195,7 +195,7 @@ LONG = "time,x\n" + "0,1\n" * 10 + "1,{}\n" + "0,1\n" * 10
         (
             "time,time,req\n0,1,2\n",
             ["req"],
-            "log.csv has several columns that may hold the time stamps: 'time', 'time'; "
+            "log.csv has several columns that may hold the timestamps: 'time', 'time'; "
             "choose one with time=, or on the command line --time-column ('' for none)",
         ),
         (

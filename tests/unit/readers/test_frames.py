@@ -166,7 +166,7 @@ def test_the_data_of_the_caller_is_not_shared():
          "an array of 2 dimensions does not say what is in it: give a dict from name to values, "
          "or an array with named fields"),
         (lambda: rtamt.read({"time": [0, 1], "stamp": [0, 1], "x": [1, 2]}),
-         "a dict has several columns that may hold the time stamps: 'time', 'stamp'; "
+         "a dict has several columns that may hold the timestamps: 'time', 'stamp'; "
          "choose one with time=, or on the command line --time-column ('' for none)"),
         (lambda: rtamt.read({"time": [0, 1], "x": [1]}),
          "'time' has 2 and 'x' has 1 samples: give one value of each at every sample"),
@@ -178,7 +178,7 @@ def test_the_data_of_the_caller_is_not_shared():
          "or a date such as 2026-05-01T12:00:00.5"),
         (lambda: rtamt.read({"x": [1, "a"]}, columns=["x"]), "'x' of a dict is 'a' at sample 1, expected a number"),
         (lambda: rtamt.read({"x": [1, None]}),
-         "'x' is missing at sample 1 of a dict: fill the gap, or name the column of time stamps, "
+         "'x' is missing at sample 1 of a dict: fill the gap, or name the column of timestamps, "
          "so that each signal has a clock of its own"),
         (lambda: rtamt.read({"req": [1]}, columns=["rq"]),
          "a dict has no column 'rq'; did you mean 'req'? (columns: req)"),
@@ -188,7 +188,7 @@ def test_the_data_of_the_caller_is_not_shared():
         (lambda: rtamt.read({"time": [1], "x": [1]}, units={"time": "day"}),
          "the unit of the time column 'time' of a dict is 'day', which is none of h, min, s, ms, us, ns"),
         (lambda: rtamt.read({"t": [0, 1], "x": [1, 2]}, columns=["time", "x"]),
-         "the formula reads 'time', but the time stamps of a dict are its column 't'; "
+         "the formula reads 'time', but the timestamps of a dict are its column 't'; "
          "name that column 'time', or the variable something else"),
         (lambda: rtamt.read({"x [V]": [1], "x [A]": [1]}),
          "a dict has several columns for 'x': 'x [V]', 'x [A]'; say which are meant with columns= or names="),
@@ -219,7 +219,7 @@ def test_messages(call, message):
 def test_a_frame_that_is_evaluated_directly_is_not_taken_to_have_no_time(frame, named, time):
     spec = rtamt.parse("always(x >= 0)", time=time)
     sentence = (
-        f"the frame may have its time stamps in {named}, but only 'time' is read here: read the frame with "
+        f"the frame may have its timestamps in {named}, but only 'time' is read here: read the frame with "
         f"rtamt.read, which takes other columns and units"
     )
     for evaluate in (spec.evaluate, lambda data: rtamt.check_stream(spec, [data])):

@@ -137,5 +137,5 @@ def test_a_value_that_is_held_for_too_long_is_an_error_in_both_time_domains(tmp_
         rtamt.UsageError, match="the longest time for which a value is held is 0; it must be positive"
     ):
         rtamt.read(path, hold_for=0)
-    with pytest.raises(rtamt.TraceError, match="which takes time stamps"):
+    with pytest.raises(rtamt.TraceError, match="which takes timestamps"):
         rtamt.read({"x": [1, None]}, hold_for=1)

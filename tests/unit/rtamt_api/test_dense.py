@@ -334,7 +334,7 @@ def test_a_formula_without_variables_has_no_time():
 
 def test_no_variable_is_called_time():
     assert said(declared, "time + x >= 0", "time x") == (
-        "'time' means the time stamps; give the variable another name\n"
+        "'time' means the timestamps; give the variable another name\n"
         "  line 1, column 1:\n"
         "    time + x >= 0\n"
         "    ^^^^"
@@ -367,6 +367,6 @@ def test_the_final_update_tells_all_that_offline_tells(formula):
 def test_a_final_update_that_fails_takes_nothing():
     spec = declared("x and y")
     spec.update(["x", [[0, 1]]])
-    with pytest.raises(rtamt.RTAMTException, match="'y' never had a sample"):
+    with pytest.raises(rtamt.RTAMTException, match="'y' has no samples"):
         spec.final_update(["x", [[4, 3]]])
     assert spec.final_update(["x", [[2, 3]]], ["y", [[0, 2]]]) == [[0, 1.0], [2, 2.0]]

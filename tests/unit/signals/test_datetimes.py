@@ -44,7 +44,7 @@ def test_stamps_of_every_kind_are_the_same_seconds():
     frames = pd.DatetimeIndex(moments), list(map(pd.Timestamp, zoned))
     for given in (moments, zoned, np.array(moments, "M8[us]"), *frames):
         assert stamps(given).seconds.tolist() == expected
-        assert stamps(given).told.tolist() == np.array(moments, "M8[ns]").tolist()
+        assert stamps(given).original.tolist() == np.array(moments, "M8[ns]").tolist()
 
 
 def test_a_date_with_a_time_zone_beside_one_without_is_an_error():

@@ -101,11 +101,11 @@ MIXED: list[tuple[Any, str]] = [
 def test_kinds_mixed_in_one_variable(way: Any, times: Any, kinds: str) -> None:
     with pytest.raises(rtamt.TraceError) as info:
         way(times)
-    assert str(info.value) == f"'x' tells time in {kinds}: use one of them for all"
+    assert str(info.value) == f"'x' has times in {kinds}: use one of them for all"
 
 
 def test_kinds_mixed_between_variables_and_between_updates() -> None:
-    message = "'y' tells time in datetimes, but others in seconds: use one of them for all"
+    message = "'y' has times in datetimes, but others in seconds: use one of them for all"
     data = {"x": ([0.0, 1.0], [1, 2]), "y": ([NOON], [1])}
     with pytest.raises(rtamt.TraceError) as info:
         rtamt.parse("x + y").evaluate(data, time="dense")

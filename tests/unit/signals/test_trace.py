@@ -92,7 +92,7 @@ def test_without_stamps_samples_are_one_period_apart_and_dense_time_says_what_it
     with pytest.raises(rtamt.TraceError) as error:
         rtamt.parse("x >= 3").evaluate(trace, time="dense")
     assert str(error.value) == (
-        "a dict has no time stamps, which dense time needs: name their column with time=, "
+        "a dict has no timestamps, which dense time needs: name their column with time=, "
         "or on the command line --time-column"
     )
 
@@ -103,7 +103,7 @@ def test_without_stamps_samples_are_one_period_apart_and_dense_time_says_what_it
         (lambda t: t.resample("0s"), "the sampling period is '0s'; it must be positive"),
         (lambda t: t.resample(1, how="line"), "cannot resample by 'line'; did you mean 'linear'? "
          "(methods: linear, hold)"),
-        (lambda _: rtamt.read({"x": [1]}).hold(), "'x' has no time stamps, so that it cannot be put on another clock"),
+        (lambda _: rtamt.read({"x": [1]}).hold(), "'x' has no timestamps, so that it cannot be put on another clock"),
         (lambda _: rtamt.read({"x": ([0.0], [1]), "y": ([5.0], [1])}).resample(1, how="linear"),
          "the signals have no instant in common"),
         (lambda _: rtamt.read({"x": (np.array([2**60]), [1])}, time_unit="ns").resample(Fraction(1, 3)),

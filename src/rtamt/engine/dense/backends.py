@@ -123,7 +123,7 @@ class EventProgram(CompiledSession):
 
     def part(self, monitor: Any, formula: Formula) -> Samples:
         """See :class:`Session`; for sessions with ``parts``."""
-        return monitor.told(self._outputs + self.program.value_of[desugar(formula)])  # type: ignore[no-any-return]
+        return monitor.last_output(self._outputs + self.program.value_of[desugar(formula)])  # type: ignore[no-any-return]
 
 
 class EventDefinition(Session):

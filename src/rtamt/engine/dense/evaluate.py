@@ -1,4 +1,4 @@
-"""Offline in dense time: formulas and finished signals, each on its own clock, to robustness signals."""
+"""Evaluate formulas on a complete dense-time trace; every signal has its own time base."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ class Evaluator:
     def __init__(self, formulas: Sequence[Formula], tick: Fraction, inputs: tuple[str, ...]) -> None:
         self._asked = tuple(formulas)
         formulas = tuple(map(desugar, formulas))
-        # Also what these formulas do not read says where the recording starts and ends.
+        # Variables that the formulas do not read also determine where the recording starts and ends.
         self._plan = compile_plan(formulas, tick, domain=Dense, inputs=inputs)
         # What unbounded future reads must have settled: past windows slide on after the last sample.
         self._settled = max(reach(formula, tick) for formula in formulas) if self._plan.stages else 0
@@ -74,7 +74,7 @@ def run(
 
 
 def defined(scan: Scan, operands: list[Samples], recording: DenseTrace, plan: Plan) -> Samples:
-    """Return the values of a user's operator of unbounded future, by its definition."""
+    """Return the values of a custom operator of unbounded future, by its definition."""
     ticks, values = defined_signal(scan.meaning, recording.scale.tick, operands)
     wrong = np.flatnonzero(np.isnan(values) & (ticks <= recording.end))
     if len(wrong):

@@ -1,6 +1,6 @@
-"""Several requirements online in dense time: a back end in which each trace starts with its own variables.
+"""Several requirements in one dense-time monitor: each trace starts with the variables of its requirement.
 
-Requirements that read the same variables are a part: one program, with a trace that starts when all of its
+Requirements that read the same variables form a part: one program, with a trace that starts when all of its
 variables have started. The first output of the back end is the minimum of all requirements: it starts with the
 first of them, and at each instant it is the minimum over those that have started. It is known as far as all
 requirements are.
@@ -40,7 +40,7 @@ _NOTHING: Samples = (np.empty(0, np.int64), np.empty(0))
 
 
 def own_variables(formula: Formula, every: Sequence[str]) -> tuple[str, ...]:
-    """Return the variables whose samples make the trace of a formula; a constant has that of ``every`` variable."""
+    """Return the variables that form the trace of a formula; for a constant ``every`` variable."""
     return variables(formula) or tuple(every)
 
 
@@ -55,7 +55,7 @@ class Part:
 
     @property
     def calls(self) -> bool:
-        """Whether a custom operator remembers something that cannot be saved."""
+        """Whether a custom operator has state that cannot be saved."""
         return bool(self.session.calls)
 
 
@@ -68,7 +68,7 @@ def parts_of(
 ) -> tuple[list[Part], list[Place]]:
     """Return the parts, and where the requirements and then the watched formulas are.
 
-    A watched formula that is no requirement has the trace of all variables. Parts that can fail come first.
+    The trace of a watched formula that is not a requirement has all variables. Parts that can fail come first.
     """
     formulas: dict[frozenset[str], list[Formula]] = {}
     keys = [frozenset(own_variables(formula, every)) for formula in requirements]
@@ -164,17 +164,17 @@ class DenseGroups:
         self._values = [float("inf")] * len(self._requirements)  # so far, as far as the minimum is known
         self._pending = [_NOTHING] * len(self._requirements)  # known beyond that
         self._until: int | None = None
-        self._minimum = float("nan")  # what was told last
+        self._minimum = float("nan")  # the last value reported
         self._told: list[Samples] = [_NOTHING] * (1 + len(self._watched))
 
     # ---- samples ---------------------------------------------------------------------------------
 
     def update(self, *_: Any) -> Any:
-        """Refuse: there is no quick way here."""
+        """Refuse: there is no fast path."""
         raise Refused("time")
 
-    def tell(self, signal: type, scale: TimeScale, rate: float, whole: bool = False) -> None:
-        """Take note of nothing: every update goes the long way."""
+    def set_time_scale(self, signal: type, scale: TimeScale, rate: float, whole: bool = False) -> None:
+        """Ignore the time scale: every update takes the slow path."""
 
     @alone
     def push(self, columns: Sequence[Samples]) -> Samples:
@@ -263,7 +263,7 @@ class DenseGroups:
 
     @property
     def counts(self) -> list[int]:
-        """How many samples of each input came."""
+        """The number of samples of each input."""
         return [self._counts[name] for name in self._names]
 
     @property
@@ -276,7 +276,7 @@ class DenseGroups:
         """Bytes of state of all parts."""
         return sum(int(backend.state_bytes) for backend in self._backends)
 
-    def told(self, output: int) -> Samples:
+    def last_output(self, output: int) -> Samples:
         """Return what the last update made known of an output."""
         return self._told[output]
 
@@ -291,12 +291,12 @@ class DenseGroups:
 
     @alone
     def state(self) -> tuple[Any, ...]:
-        """Return what the samples so far have left behind."""
+        """Return the state after the samples so far."""
         mine = {name: copy(getattr(self, name)) for name in self._REMEMBERED}
         return [backend.state() for backend in self._backends], mine
 
     def restore(self, state: tuple[Any, ...]) -> None:
-        """Go on as the back end of this state would, which was made like this one."""
+        """Restore the state of a back end of the same parts."""
         of_parts, mine = state
         for backend, own in zip(self._backends, of_parts, strict=True):
             backend.restore(own)
@@ -306,7 +306,7 @@ class DenseGroups:
 
 def _outputs(part: Part, backend: Any, first: Samples) -> list[Samples]:
     """Return what became known of every output of a part; ``first``: of the first one."""
-    return [first, *(backend.told(i) for i in range(1, len(part.formulas)))]
+    return [first, *(backend.last_output(i) for i in range(1, len(part.formulas)))]
 
 
 def _joined(before: Samples, after: Samples) -> Samples:

@@ -1,4 +1,4 @@
-"""Online in dense time: samples of any variables, each on its own clock; robustness as soon as it is known."""
+"""The dense-time monitor: samples of variables with their own time bases; robustness as soon as it is known."""
 
 from __future__ import annotations
 
@@ -30,12 +30,12 @@ if TYPE_CHECKING:
 
 
 class DenseMonitor(DenseMonitorBase, OnlineMonitor):
-    """Watches one formula over signals that change at any instant.
+    """Monitors one formula on signals that change at any instant.
 
-    Built by ``Specification.monitor(time="dense")``. After every update it has told ρ for exactly
-    the instants up to the earliest last sample of any variable, less the horizon: never an instant
-    twice, never one late. What it returns is a Signal: a point for every change, and one at the
-    last instant that became known.
+    Built by ``Specification.monitor(time="dense")``. After every update, ρ has been reported for exactly
+    the instants up to the earliest last sample of any variable, minus the horizon: never an instant
+    twice, and never late. Updates return a Signal: a point for every change, and one at the
+    last known instant.
 
     >>> import rtamt
     >>> monitor = rtamt.parse("always[0:1](x >= 3)").monitor(time="dense")
@@ -44,7 +44,7 @@ class DenseMonitor(DenseMonitorBase, OnlineMonitor):
     >>> monitor.update(2.5, x=4.0)
     Signal(times=array([0. , 1.5]), values=array([2., 1.]))
 
-    ``copy.copy`` branches a monitor: the copy has the same state and goes its own way. So does pickling.
+    ``copy.copy`` branches a monitor: the copy has the same state and is independent. Pickling works likewise.
     """
 
     _remembered = ("_finished", "_scale")
@@ -65,7 +65,7 @@ class DenseMonitor(DenseMonitorBase, OnlineMonitor):
         parts: bool = False,
         requirements: Sequence[Formula] = (),
     ) -> None:
-        # ``requirements``: what the formula is the conjunction of, each with a trace of its own.
+        # ``requirements``: the conjuncts of the formula, each with its own trace.
         for watched in (Watched("", formula, text), *watch):
             domain.check(watched.formula, watched.text)
             check_online(watched.formula, watched.text)
@@ -99,7 +99,7 @@ class DenseMonitor(DenseMonitorBase, OnlineMonitor):
 
     @property
     def samples(self) -> int:
-        """How many samples of any variable the monitor has taken since the start or the last reset."""
+        """The number of samples of any variable since the start or the last reset."""
         return sum(self._backend.counts)
 
     if TYPE_CHECKING:  # by the base
@@ -107,8 +107,8 @@ class DenseMonitor(DenseMonitorBase, OnlineMonitor):
         def update(self, time: Any, /, **values: float) -> Signal:
             """Take the values of any variables at one instant: seconds, numbers in ``time_unit=``, or a datetime.
 
-            Without values only the time is looked at. Returns what became known. Raises :class:`TraceError`
-            for wrong data and :class:`EvaluationError` where an operation has no value; the monitor is then as it was.
+            Without values, only the time is checked. Returns the newly known robustness. Raises :class:`TraceError`
+            for wrong data and :class:`EvaluationError` where an operation has no value; the monitor is then unchanged.
             """
 
     def _update_carefully(self, time: Any, /, **values: Any) -> Signal:
@@ -131,18 +131,16 @@ class DenseMonitor(DenseMonitorBase, OnlineMonitor):
 
     @alone
     def finish(self) -> Signal:
-        """Say that no more samples will come: every signal holds its last value. Returns the rest."""
+        """End the trace: every signal holds its last value. Returns the rest of the robustness."""
         return self._signal(self.rest())
 
     def rest(self) -> Samples:
-        """Say that no more samples will come, and return the rest as ticks and values."""
+        """End the trace, and return the rest as ticks and values."""
         if self._finished:
             return np.empty(0, np.int64), np.empty(0)
         for name, last in zip(self.input_names, self._backend.last_times, strict=True):
             if last is None:
-                raise TraceError(
-                    f"'{name}' never had a sample, so that there is nothing to tell", variable=name
-                )
+                raise TraceError(f"'{name}' has no samples; provide one before finish()", variable=name)
         known = self._run(self._backend.finish, self._scale)
         self._finished = True
         return known
@@ -150,8 +148,8 @@ class DenseMonitor(DenseMonitorBase, OnlineMonitor):
     def __getitem__(self, name: str | Formula) -> Signal:
         """Return what the last update made known of a formula that is watched (see ``Specification.monitor``).
 
-        ``name``: as given to ``watch=``. The Signal is of the form that :meth:`update` returns, each
-        formula known at its own horizon. Raises :class:`UsageError` for what is not watched.
+        ``name``: as given to ``watch=``. The Signal has the form of the result of :meth:`update`; each
+        formula has its own horizon. Raises :class:`UsageError` for a formula that is not watched.
 
         >>> import rtamt
         >>> monitor = rtamt.parse("eventually[0:1](x >= 3)").monitor(time="dense", watch=["x >= 3"])
@@ -163,7 +161,7 @@ class DenseMonitor(DenseMonitorBase, OnlineMonitor):
 
     def known(self, name: str | Formula) -> Samples:
         """Return the same as ticks and values."""
-        return self._backend.told(self._output(name))  # type: ignore[no-any-return]
+        return self._backend.last_output(self._output(name))  # type: ignore[no-any-return]
 
     def points(self) -> list[list[tuple[int, float]]]:
         """Return what the last update made known as pairs of tick and value, for loops in which a microsecond counts.
@@ -175,7 +173,7 @@ class DenseMonitor(DenseMonitorBase, OnlineMonitor):
     def part(self, formula: Formula) -> Signal:
         """Return what the last update made known of any part of the formulas; they have no future operators.
 
-        For monitors that were made with ``parts=True``, whose updates cost a few nanoseconds more for
+        Only for monitors with ``parts=True``, whose updates cost a few nanoseconds more for
         each part.
         """
         return self._signal(self._session.part(self._backend, formula))
@@ -190,9 +188,9 @@ class DenseMonitor(DenseMonitorBase, OnlineMonitor):
     # ---- the long way ----------------------------------------------------------------------------
 
     def push(self, chunk: Mapping[str, Samples], scale: TimeScale) -> Samples:
-        """Take samples that are ticks and checked already; return what became known, ticks and values.
+        """Take checked samples in ticks; return the newly known robustness as ticks and values.
 
-        ``scale``: how the caller tells time, for messages and for what comes later.
+        ``scale``: the caller's time scale, for messages and later results.
         """
         empty = np.empty(0, np.int64), np.empty(0)
         samples = [chunk.get(name, empty) for name in self.input_names]
@@ -213,14 +211,14 @@ class DenseMonitor(DenseMonitorBase, OnlineMonitor):
         return self._signal(self.push(self._chunk(columns, scale), scale))
 
     def _scale_of(self, times: Sequence[Any]) -> TimeScale:
-        """Return how time is told from these times on."""
+        """Return the time scale after these times."""
         scale = self._scale or self._given_scale
         return TimeScale.of(self._tick, times, self._unit) if scale is None else scale.widened(times)
 
     def _tell(self, scale: TimeScale) -> None:
-        """Let the back end read plain times by itself."""
+        """Set the time scale of the back end, so that it reads plain times itself."""
         if scale.ticks_in_1 is not None:
-            self._backend.tell(TickSignal, scale, float(scale.ticks_in_1), scale.kind == "whole")
+            self._backend.set_time_scale(TickSignal, scale, float(scale.ticks_in_1), scale.kind == "whole")
 
     def _chunk(self, columns: dict[str, tuple[Any, Any]], scale: TimeScale) -> dict[str, Samples]:
         so_far = zip(self.input_names, self._backend.counts, self._backend.last_times, strict=True)
@@ -231,10 +229,10 @@ class DenseMonitor(DenseMonitorBase, OnlineMonitor):
         }
 
     def _run(self, call: Callable[[], Samples], scale: TimeScale | None) -> Samples:
-        """Call the back end; turn its failure into a sentence."""
+        """Call the back end; convert its failures to errors."""
         try:
             return call()
-        except self._refused:  # all was checked, and then a quicker update came
+        except self._refused:  # all was checked, but a concurrent update came first
             raise in_use() from None
         except self._undefined as error:
             raise self._no_value(error, scale) from None

@@ -1,6 +1,6 @@
 """The Python back end of a monitor in dense time: the definition behind the compiled monitor's interface.
 
-Slow and plain, for machines where nothing can be compiled and for operators that have only a
+Slow and simple: for machines without a compiled core, and for operators that have only a
 definition.
 """
 
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 
 class PythonDenseMonitor:
-    """One monitor over the definition; see ``_core.DenseMonitor`` for what each method means."""
+    """One monitor over the definition; ``_core.DenseMonitor`` documents the methods."""
 
     def __init__(self, formulas: Sequence[Formula], names: tuple[str, ...], tick: Fraction) -> None:
         self._names = names
@@ -34,8 +34,8 @@ class PythonDenseMonitor:
         self._outputs = len(formulas)
         self._gate = Gate()
         self._last: list[int | None]
-        self._until: list[int | None]  # how far each output was told
-        self._told: list[Samples]  # what the last update made known
+        self._until: list[int | None]  # up to when each output was reported
+        self._told: list[Samples]  # the results of the last update
         self._latest: tuple[Mapping[str, Events], Sequence[Events]]  # the trace before it, and its chunk
         self._start_over()
 
@@ -48,7 +48,7 @@ class PythonDenseMonitor:
     @property
     @alone
     def counts(self) -> list[int]:
-        """How many samples of each input came."""
+        """The number of samples of each input."""
         return list(self._counts)
 
     @property
@@ -57,11 +57,11 @@ class PythonDenseMonitor:
         """The tick of the last sample of each input, or None."""
         return list(self._last)
 
-    def tell(self, signal: type, scale: TimeScale, rate: float, whole: bool = False) -> None:
-        """Take note of nothing: every update goes the long way."""
+    def set_time_scale(self, signal: type, scale: TimeScale, rate: float, whole: bool = False) -> None:
+        """Ignore the time scale: every update takes the slow path."""
 
     def update(self, *_: Any) -> Any:
-        """Refuse: there is no quick way here."""
+        """Refuse: there is no fast path."""
         raise Refused("time")
 
     @alone
@@ -87,7 +87,7 @@ class PythonDenseMonitor:
         return self._told[0]
 
     @alone
-    def told(self, output: int) -> Samples:
+    def last_output(self, output: int) -> Samples:
         """Return what the last update made known of an output."""
         return self._told[output]
 
@@ -98,7 +98,7 @@ class PythonDenseMonitor:
 
     @alone
     def part(self, formula: Formula) -> Samples:
-        """Return what the last chunk made known of a formula: it is taken once more, for this one alone."""
+        """Return the results of the last chunk for a formula, by repeating the chunk for this formula alone."""
         before, columns = self._latest
         again = PythonDenseMonitor((formula,), self._names, self._tick)
         again.push([before.get(name, ([], [])) for name in self._names])
@@ -112,12 +112,12 @@ class PythonDenseMonitor:
 
     @alone
     def state(self) -> tuple[Any, ...]:
-        """Return what the samples so far have left behind."""
+        """Return the state after the samples so far."""
         mine = self._counts, self._last, self._until, self._values, self._told
         return tuple(list(items) for items in mine), self._latest, self._monitor.state()
 
     def restore(self, state: tuple[Any, ...]) -> None:
-        """Go on as the monitor of this state would, which was made like this one."""
+        """Restore the state of a monitor of the same program."""
         (self._counts, self._last, self._until, self._values, self._told), self._latest, definition = state
         self._monitor.restore(definition)
 
@@ -125,7 +125,7 @@ class PythonDenseMonitor:
         self._counts = [0 for _ in self._names]
         self._last = [None for _ in self._names]
         self._until = [None] * self._outputs
-        self._values = [float("nan")] * self._outputs  # the last values told
+        self._values = [float("nan")] * self._outputs  # the last values reported
         self._latest = ({}, [([], []) for _ in self._names])
         self._told = [(np.empty(0, np.int64), np.empty(0))] * self._outputs
 

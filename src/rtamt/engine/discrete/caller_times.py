@@ -17,63 +17,63 @@ if TYPE_CHECKING:
 
     from rtamt.signals.arrays import Stamps
 
-#: How messages call what stamps are told in, by the kind of their dtype.
+#: The names of time formats in messages, by the kind of their dtype.
 _KINDS = {"f": "seconds", "M": "datetimes", "m": "timedeltas"}
 _NUMBERS = {"f": np.float64, "i": np.int64, "M": np.int64, "m": np.int64}
 
 
 @dataclass(frozen=True, slots=True)
 class CallerTimes:
-    """The timestamps of the samples that may still have a value to come, and of the last one.
+    """The timestamps of the samples whose values may still be unknown, and of the last one.
 
-    ``unit``: of times that are numbers, None for seconds. ``period``: seconds from sample to sample. ``count``: how
-    many samples may still have a value to come. ``told``: None while all are
-    seconds, which the back end has.
+    ``unit``: the unit of numeric times, None for seconds. ``period``: the sampling period in seconds. ``count``: the
+    largest number of samples without a value. ``original``: the times as given; None while all are
+    seconds, which the back end stores.
     """
 
     unit: str | None
     period: Fraction
     count: int
-    told: NDArray[Any] | None = None
+    original: NDArray[Any] | None = None
 
     @property
     def plain(self) -> bool:
         """Whether all timestamps are seconds."""
-        return self.unit is None and self.told is None
+        return self.unit is None and self.original is None
 
     def read(self, times: Any, samples: int) -> Stamps:
-        """Return times that the caller gave; ``samples``: how many came before.
+        """Return times given by the caller; ``samples``: the number of previous samples.
 
-        Raises :class:`TraceError` where they are not of the kind of those before.
+        Raises :class:`TraceError` if their format differs from that of previous times.
         """
         stamps = arrays.stamps(times, self.unit)
         self.require_alike(stamps, samples)
         return stamps
 
     def require_alike(self, stamps: Stamps, samples: int) -> None:
-        """Raise :class:`TraceError` where timestamps are not of the kind of the ``samples`` before."""
+        """Raise :class:`TraceError` if the format of timestamps differs from that of the ``samples`` before."""
         if self.unit is None and samples:
-            before = "f" if self.told is None else self.told.dtype.kind
-            if stamps.told.dtype.kind != before:
+            before = "f" if self.original is None else self.original.dtype.kind
+            if stamps.original.dtype.kind != before:
                 raise TraceError(
-                    f"'{arrays.TIME}' is told in {_KINDS[stamps.told.dtype.kind]} at sample {samples}, but before "
+                    f"'{arrays.TIME}' is in {_KINDS[stamps.original.dtype.kind]} at sample {samples}, but before "
                     f"in {_KINDS[before]}: use one of them for all",
                     variable=arrays.TIME,
                     index=samples,
                 )
 
-    def extended(self, told: NDArray[Any]) -> CallerTimes:
+    def extended(self, original: NDArray[Any]) -> CallerTimes:
         """Return the timestamps after more samples."""
-        whole = told if self.told is None else np.concatenate((self.told, told))
-        return replace(self, told=whole[-self.count - 1 :].copy())
+        whole = original if self.original is None else np.concatenate((self.original, original))
+        return replace(self, original=whole[-self.count - 1 :].copy())
 
     def later(self, count: int) -> NDArray[Any]:
-        """Return the timestamps of samples that come one period after another."""
-        if self.told is None or not len(self.told):
+        """Return the timestamps of further samples, one period apart."""
+        if self.original is None or not len(self.original):
             start, dtype = Fraction(0), np.dtype(np.int64)
         else:
-            dtype = self.told.dtype
-            last = arrays.plain(self.told[-1:].view(_NUMBERS[dtype.kind])[0])
+            dtype = self.original.dtype
+            last = arrays.plain(self.original[-1:].view(_NUMBERS[dtype.kind])[0])
             start = Fraction(last) + self._period_in_unit(dtype)
         stamps = [start + i * self._period_in_unit(dtype) for i in range(count)]
         if dtype.kind in "mM":

@@ -1,4 +1,4 @@
-"""Offline: formulas and a finished trace to robustness signals."""
+"""Evaluate formulas on a complete discrete-time trace."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
 
 class Evaluator:
-    """Evaluates the same formulas over traces, compiling no more often than needed."""
+    """Evaluates the same formulas on traces, compiling only when necessary."""
 
     def __init__(self, formulas: Sequence[Formula], period: Fraction) -> None:
         self._asked = tuple(formulas)
@@ -88,7 +88,7 @@ class BoundsEvaluator(Evaluator):
 
 
 def is_built_in(node: Formula) -> bool:
-    """Tell whether the core has a kernel of its own for an operator."""
+    """Return whether the core has a built-in kernel for an operator."""
     return not isinstance(node, Apply) or isinstance(
         node.op.kernel, Pointwise | Window | Shift | Since | Until
     )
@@ -137,7 +137,7 @@ def undefined_named(
 
 
 def defined(scan: Scan, operands: list[FloatArray], trace: DiscreteTrace, plan: Plan) -> FloatArray:
-    """Return the values of a user's operator of unbounded future, by its definition."""
+    """Return the values of a custom operator of unbounded future, by its definition."""
     values = defined_column(scan.meaning, trace.period, operands)
     wrong = np.flatnonzero(np.isnan(values))
     if len(wrong):

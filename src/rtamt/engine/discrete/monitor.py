@@ -1,4 +1,4 @@
-"""Online: samples in, robustness out as soon as it is known; nothing is lost when an update fails."""
+"""The discrete-time monitor: samples in, robustness out as soon as it is known; a failed update changes nothing."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 
 
 class Monitor(MonitorBase, OnlineMonitor):
-    """Watches one formula over a stream of samples in discrete time.
+    """Monitors one formula on a stream of samples in discrete time.
 
     Built by ``Specification.monitor``. Feed it with one of :meth:`update` (a sample by name),
     :meth:`step` (a sample by position, fastest) and :meth:`update_many` (a chunk), then
@@ -51,8 +51,8 @@ class Monitor(MonitorBase, OnlineMonitor):
     >>> monitor.finish()
     Signal(times=array([2.]), values=array([3.]))
 
-    ``copy.copy`` branches a monitor: the copy has the same state and goes its own way. So does pickling.
-    Give each thread a monitor of its own: one that threads share takes every sample whole, in some order, or
+    ``copy.copy`` branches a monitor: the copy has the same state and is independent. Pickling works likewise.
+    Give each thread its own monitor: a monitor shared by threads takes each sample atomically, in some order, or
     raises :class:`UsageError`.
     """
 
@@ -83,9 +83,9 @@ class Monitor(MonitorBase, OnlineMonitor):
         self._tolerance = domain.tolerance
         self._depths = [depth_of(formula, period) for formula in self._formulas]
         self._lags = [int(depth / period) for depth in self._depths]
-        self._oldest = max(self._lags)  # samples that may still have a value to come
-        # What the last chunk made known, and how many samples there were then: after any other update
-        # there are more.
+        self._oldest = max(self._lags)  # the largest number of samples without a value
+        # The results of the last chunk, and the number of samples at that time: after any other update
+        # the number is larger.
         self._news: tuple[int, list[Signal]] = (0, [])
         self._times = CallerTimes(None if unit is None else check_unit(unit), period, self._oldest)
         self._session = BACKENDS[backend].session(self._formulas, self.input_names, domain)
@@ -105,12 +105,12 @@ class Monitor(MonitorBase, OnlineMonitor):
 
     @property
     def period(self) -> Fraction:
-        """Seconds from one sample to the next."""
+        """The sampling period in seconds."""
         return self._period
 
     @property
     def samples(self) -> int:
-        """How many samples the monitor has taken since the start or the last reset."""
+        """The number of samples since the start or the last reset."""
         return int(self._backend.samples)
 
     if TYPE_CHECKING:  # by the base
@@ -120,7 +120,7 @@ class Monitor(MonitorBase, OnlineMonitor):
 
             Returns ρ at ``time - horizon``; None until the horizon has passed. Raises
             :class:`TraceError` for wrong data and :class:`EvaluationError` where an operation has no
-            value; the monitor is then as it was. A formula that reads ``req.value`` takes an object
+            value; the monitor is then unchanged. A formula that reads ``req.value`` takes an object
             with that field as ``req=``, or the number as ``**{"req.value": 3}``.
 
             >>> import rtamt
@@ -150,10 +150,10 @@ class Monitor(MonitorBase, OnlineMonitor):
 
     @alone
     def _take_told(self, time: Any, values: dict[str, Any]) -> float | None:
-        """Take a sample whose time is not told in seconds."""
+        """Take a sample whose time is not given in seconds."""
         stamp = self._times.read([time], self.samples)
         robustness = self._take(float(stamp.seconds[0]), values)
-        self._remember(stamp.told)
+        self._remember(stamp.original)
         return robustness
 
     def _take(self, time: Any, values: dict[str, Any]) -> float | None:
@@ -177,7 +177,7 @@ class Monitor(MonitorBase, OnlineMonitor):
 
     @alone
     def _take_row_told(self, values: tuple[float, ...]) -> float | None:
-        """Take a sample after those whose times are not told in seconds."""
+        """Take a sample after samples whose times are not in seconds."""
         later = self._times.later(1)
         robustness = self._take_row(values)
         self._remember(later)
@@ -204,8 +204,8 @@ class Monitor(MonitorBase, OnlineMonitor):
     def update_many(self, data: Any) -> Signal:
         """Take a chunk of samples: a mapping (or frame) from variable to values, with ``"time"``.
 
-        Returns what became known, a Signal of as many values. ``"time"`` may be left out; samples
-        then follow one period after another. Raises as :meth:`update` does.
+        Returns the new values as a Signal. ``"time"`` is optional; without it, samples are one
+        period apart. Raises the errors of :meth:`update`.
 
         >>> import rtamt
         >>> monitor = rtamt.parse("always[0:1](x >= 3)").monitor()
@@ -217,17 +217,17 @@ class Monitor(MonitorBase, OnlineMonitor):
         return self.push(*arrays.columns_of(data, self.input_names, self._times.unit))
 
     def push(self, stamps: Stamps | None, given: Mapping[str, arrays.FloatArray], n: int) -> Signal:
-        """Take a chunk of ``n`` samples as ``arrays.columns_of`` returns it; not for several threads."""
+        """Take a chunk of ``n`` samples as returned by ``arrays.columns_of``; not thread-safe."""
         samples = self.samples
-        (times, told), columns = self._chunk(stamps, given, n)
+        (times, original), columns = self._chunk(stamps, given, n)
         before = self._recent(min(self._oldest, samples))
         try:
             known = self._backend.push(times, columns, samples)
         except self._undefined as error:
             raise self._no_value(error) from None
-        if not self._times.plain or (len(told) and told is not times):
-            self._remember(told)
-        every = np.concatenate((before, told)) if len(before) else told
+        if not self._times.plain or (len(original) and original is not times):
+            self._remember(original)
+        every = np.concatenate((before, original)) if len(before) else original
         news = []
         for lag, values in zip(self._lags, known, strict=True):
             first = len(before) - min(lag, samples)
@@ -237,7 +237,7 @@ class Monitor(MonitorBase, OnlineMonitor):
 
     @alone
     def finish(self) -> Signal:
-        """Say that no more samples will come; returns the values that were still unknown.
+        """End the trace and return the values that were still unknown.
 
         >>> import rtamt
         >>> monitor = rtamt.parse("always[0:1](x >= 3)").monitor()
@@ -259,9 +259,9 @@ class Monitor(MonitorBase, OnlineMonitor):
     def __getitem__(self, name: str | Formula) -> float | Signal | None:
         """Return what the last update made known of a formula that is watched (see ``Specification.monitor``).
 
-        ``name``: as given to ``watch=``. After :meth:`update` and :meth:`step` the value at the time of
-        the sample less the formula's own horizon, None before that; after :meth:`update_many` and
-        :meth:`finish` a Signal. Raises :class:`UsageError` for what is not watched.
+        ``name``: as given to ``watch=``. After :meth:`update` and :meth:`step` it is the value at the time of
+        the sample minus the formula's own horizon, None before that; after :meth:`update_many` and
+        :meth:`finish` it is a Signal. Raises :class:`UsageError` for a formula that is not watched.
 
         >>> import rtamt
         >>> monitor = rtamt.parse("eventually[0:1](x >= 3)").monitor(watch=["x >= 3"])
@@ -289,8 +289,8 @@ class Monitor(MonitorBase, OnlineMonitor):
         self._backend.reset()
         self._finished = False
         self._news = (0, [])
-        if self._times.told is not None:
-            self._times = replace(self._times, told=None)
+        if self._times.original is not None:
+            self._times = replace(self._times, original=None)
             self._connect(self._backend.inner)
 
     @property
@@ -301,19 +301,19 @@ class Monitor(MonitorBase, OnlineMonitor):
         last = self._last_time
         return 0.0 if last is None else last + float(self._period)
 
-    # ---- timestamps that are not told in seconds -------------------------------------------------
+    # ---- timestamps that are not in seconds ------------------------------------------------------
 
-    def _remember(self, told: NDArray[Any]) -> None:
-        first = self._times.told is None
-        self._times = self._times.extended(told)
+    def _remember(self, original: NDArray[Any]) -> None:
+        first = self._times.original is None
+        self._times = self._times.extended(original)
         if first:
             self._connect(getattr(self._backend, "inner", self._backend))
 
     def _recent(self, count: int) -> NDArray[Any]:
-        """Return the timestamps of the last samples, as the caller tells time."""
-        told = self._times.told
-        if told is not None:
-            return told[len(told) - count :]
+        """Return the timestamps of the last samples in the caller's format."""
+        original = self._times.original
+        if original is not None:
+            return original[len(original) - count :]
         return (
             np.array(self._backend.recent(count))
             if count or self._times.unit is None
@@ -344,23 +344,23 @@ class Monitor(MonitorBase, OnlineMonitor):
         return UsageError("the monitor has finished its trace; call reset() before the next sample")
 
     def _refusal(self, time: float) -> Exception:
-        """Find out why the back end took no sample of numbers at this time, and say it."""
+        """Return the error for a sample that the back end rejected."""
         if self._finished:
             return self._is_finished()
         index, last = self.samples, self._last_time
         read_time(time, index, last)
         period = float(self._period)
         if last is None or abs(time - last - period) <= self._tolerance * period:
-            return in_use()  # what was wrong is so no more
+            return in_use()  # the cause has disappeared meanwhile
         return irregular(index, time, last, self._period, self._tolerance)
 
     def _no_value(self, error: Any) -> Exception:
-        """Name the sub-formula and the instant of a value that does not exist."""
+        """Return the error for an undefined value, with its sub-formula and instant."""
         return undefined(self._session.culprit(error), at_sample(error.args[1], error.time))
 
 
 class _Apart:
-    """A back end that the quick way in does not see: the times of its samples have to be read first."""
+    """A back end hidden from the fast path, because the times of its samples have to be converted first."""
 
     def __init__(self, inner: Any) -> None:
         self.inner = inner

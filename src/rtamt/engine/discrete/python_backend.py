@@ -1,7 +1,7 @@
 """The Python back end of a monitor: the definition behind the interface of the compiled monitor.
 
-Slow and plain, for machines where nothing can be compiled and for operators that have only a
-definition. It says no (:class:`Refused`) where the compiled monitor does, and for the same reasons.
+Slow and simple: for machines without a compiled core, and for operators that have only a
+definition. It raises :class:`Refused` in the same cases as the compiled monitor.
 """
 
 from __future__ import annotations
@@ -28,9 +28,9 @@ if TYPE_CHECKING:
 
 
 class PythonMonitor:
-    """One monitor over the definition; see ``_core.Monitor`` for what each method means.
+    """One monitor over the definition; ``_core.Monitor`` documents the methods.
 
-    ``period`` is in seconds, ``unit`` is how many seconds a unit of the time stamps has.
+    ``period`` is in seconds, ``unit`` is how many seconds a unit of the timestamps has.
     """
 
     def __init__(
@@ -54,7 +54,7 @@ class PythonMonitor:
             reach.append(behind)
         # A formula without variables still counts samples: one column that nothing reads.
         self._names = names
-        # One sample more than the next value needs, so that parts of the last one can still be asked for.
+        # One sample more than the next value needs, so that parts of the last value can still be queried.
         self._monitor = _Questioned(
             formulas, names or ("#",), period, lags, max(reach) + 1 if reach else None
         )
@@ -72,13 +72,13 @@ class PythonMonitor:
     @property
     @alone
     def samples(self) -> int:
-        """How many samples have been taken."""
+        """The number of samples."""
         return self._monitor.samples
 
     @property
     @alone
     def last_time(self) -> float | None:
-        """The stamp of the last sample; None before the first."""
+        """The timestamp of the last sample; None before the first."""
         return self._last_time
 
     @property
@@ -93,17 +93,17 @@ class PythonMonitor:
 
     @alone
     def last(self, part: Formula) -> float:
-        """Return the value at the last sample of a past formula: one of the monitor's, or a part of one."""
+        """Return the value of a past formula of the monitor, or a part of one, at the last sample."""
         return self._monitor.last(part)
 
     def latest(self, output: int) -> float | None:
-        """Return the value of an output that the last sample made known, or None."""
+        """Return the new value of an output after the last sample, or None."""
         news = self._news[output]
         return float(news[-1]) if len(news) else None
 
     @alone
     def recent(self, count: int) -> FloatArray:
-        """Return the stamps of the last ``count`` samples."""
+        """Return the timestamps of the last ``count`` samples."""
         return np.array(list(self._stamps)[len(self._stamps) - count :], dtype=np.float64)
 
     def update(self, time: float, values: Mapping[str, float]) -> float | None:
@@ -149,7 +149,7 @@ class PythonMonitor:
 
     @alone
     def finish(self) -> list[FloatArray]:
-        """Return what was still unknown; after it only ``reset`` is possible."""
+        """Return the values that were still unknown; afterwards only ``reset`` is possible."""
         known = self._monitor.finish()
         self._finished = True
         return known
@@ -166,19 +166,19 @@ class PythonMonitor:
 
     @alone
     def state(self) -> tuple[Any, ...]:
-        """Return what the samples so far have left behind."""
+        """Return the state after the samples so far."""
         mine = tuple(self._stamps), self._values, self._news, self._finished, self.violations
         return mine, self._monitor.state()
 
     def restore(self, state: tuple[Any, ...]) -> None:
-        """Go on as the monitor of this state would, which was made like this one."""
+        """Restore the state of a monitor of the same program."""
         (stamps, self._values, self._news, self._finished, self.violations), definition = state
         self._stamps.extend(stamps)
         self._monitor.restore(definition)
 
     @alone
     def _take(self, time: float | None, given: Mapping[str, float]) -> float | None:
-        """Take numbers; those left out keep their values, and without a time it is a period after the last."""
+        """Take a sample; variables left out keep their values, and the default time is one period after the last."""
         if self._finished:
             raise Refused("finished")
         last = self._last_time
@@ -203,29 +203,29 @@ class PythonMonitor:
         return float(known[0]) if len(known) else None
 
     def _begin(self, time: float) -> None:
-        """Let the definition's messages count time from the first stamp."""
+        """Let the definition's messages count time from the first timestamp."""
         if not self._stamps:
             self._monitor.start = time * self._unit
 
     def _off(self, before: float | None, time: float) -> bool:
-        """Return whether a gap misses the period by more than the tolerance; no sample before is no gap."""
+        """Return whether a gap deviates from the period by more than the tolerance; the first sample has no gap."""
         return before is not None and abs(time - before - self._period) > self._tolerance * self._period
 
 
 class _Questioned(ReferenceMonitor):
-    """The definition's monitor, which also tells the last value of parts of its formulas, and its state."""
+    """The definition's monitor, with access to its state and to the last value of parts of its formulas."""
 
     def state(self) -> tuple[Any, ...]:
-        """Return what the samples so far have left behind; none of it is ever changed in place."""
+        """Return the state after the samples so far; it is never changed in place."""
         return self.start, self._samples, self._first, tuple(self._kept), self._finished
 
     def restore(self, state: tuple[Any, ...]) -> None:
-        """Go on as the monitor of this state would."""
+        """Restore a state."""
         self.start, self._samples, self._first, kept, self._finished = state
         self._kept = list(kept)
 
     def last(self, part: Formula) -> float:
-        """Return the value of ``part`` at the last sample: that sample is taken once more, for the part alone."""
+        """Return the value of ``part`` at the last sample, by repeating that sample for the part alone."""
         again = _Questioned((part,), self._inputs, self._period, (0,), None, self.start)
         again._first, again._samples = self._first, self._samples - 1
         again._kept = [column[:-1] for column in self._kept]

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 def read_time(time: Any, index: int, last: float | None, *, again: bool = False) -> float:
-    """Return a sample's time stamp; raise :class:`TraceError` for one that no sample can have.
+    """Return a sample's timestamp; raise :class:`TraceError` for an invalid one.
 
     ``again``: whether it may be the same as the ``last`` one.
     """
