@@ -1,4 +1,4 @@
-"""What ``make bench`` asks every tool: formulas, signals, and how long it may take."""
+"""The cases of ``make bench``: formulas, signals, and time limits."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 PATIENCE = 3.0  # seconds in which a window must be full
 LIMIT = 0.03  # seconds of online updates, or of repeated evaluations
-LONGEST = 1.0  # seconds that one evaluation may take, as far as the one before tells
+LONGEST = 1.0  # the limit of one evaluation in seconds, extrapolated from the previous one
 
 #: Who is asked about the families: the others have no unbounded operators, or take milliseconds a sample.
 CAN = ("this", "RTAMT", "Reelay")
@@ -32,7 +32,7 @@ PHI = {
 
 @dataclass(frozen=True)
 class Case:
-    """One formula over signals of one size: a point of one curve a tool."""
+    """One formula on signals of one size: a point on one curve per tool."""
 
     group: str
     curve: str
@@ -41,12 +41,12 @@ class Case:
     time: str
     mode: str
     workload: dict[str, Any] = field(hash=False)
-    #: Tools that are asked; all if empty. "this (python)" is our Python back end.
+    #: The tools that run the case; all if empty. "this (python)" is our Python back end.
     tools: tuple[str, ...] = ()
 
     @property
     def key(self) -> tuple[str, str, str, str]:
-        """What names its curve."""
+        """The name of its curve."""
         return (self.group, self.curve, self.time, self.mode)
 
 
@@ -75,7 +75,7 @@ def paper(quick: bool) -> Iterator[Case]:
 
 
 def online(quick: bool) -> Iterator[Case]:
-    """Cost of an update against the window, every tool that can."""
+    """Cost of an update over the window length, for every tool that supports it."""
     windows = (10, 100) if quick else (10, 100, 1000, 10_000, 100_000)
     shapes = {
         "historically[0:{k}](a >= -2)": ("discrete", "dense"),
@@ -119,7 +119,7 @@ def families(quick: bool) -> Iterator[Case]:
 
 
 def parsing() -> Iterator[Case]:
-    """A formula of 1 000 characters, from text to what is ready to run."""
+    """A formula of 1 000 characters, from text to a monitor that is ready to run."""
     text = " and ".join(["(a >= 3 -> {}[0:5](a >= 3))"] * 28)
     for name, time, mode in (
         ("eventually", "discrete", "offline"),

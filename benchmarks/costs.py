@@ -1,7 +1,7 @@
-"""``make costs``: what a sample costs, offline and online: medians of repeated runs, ratios to targets.
+"""``make costs``: the cost per sample, offline and online, as medians of repeated runs and ratios to targets.
 
-Figures are of this machine at this moment. Rows are measured in turn, round after round, so that a
-drift of the machine's speed touches all of them alike.
+Figures depend on the machine and its load. Rows are measured in turn, round after round, so that a
+drift of the machine's speed affects all of them equally.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ WINDOWS = (10, 1_000, 100_000, 1_000_000)
 
 @dataclass
 class Row:
-    """One figure: ``run`` returns it once, in ``unit``; ``target`` is the largest value aimed at."""
+    """One figure: ``run`` measures it once, in ``unit``; ``target`` is the upper limit."""
 
     name: str
     unit: str
@@ -43,7 +43,7 @@ class Row:
 
     @property
     def median(self) -> float:
-        """The figure to quote."""
+        """The median of the measurements."""
         return statistics.median(self.measured)
 
 
@@ -162,7 +162,7 @@ def dense_online(text: str) -> Callable[[], float]:
     def run() -> float:
         first = at[0]
         at[0] = first + calls
-        # The caller's own numbers are made before the clock runs.
+        # The caller's numbers are created before timing starts.
         samples = [(i * 0.1, float(i % 17)) for i in range(first, first + calls)]
 
         def updates() -> None:

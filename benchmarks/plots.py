@@ -1,4 +1,4 @@
-"""The curves of ``make bench`` as small PNG files; both axes are logarithmic."""
+"""Plot the curves of ``make bench`` as small PNG files with logarithmic axes."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def file_of(group: str) -> str:
 
 
 def draw(folder: Path, running: list[Tool]) -> list[str]:
-    """Draw one plot a group of curves; return the names of the files."""
+    """Draw one plot per group of curves; return the names of the files."""
     folder.mkdir(exist_ok=True)
     groups: dict[str, dict[tuple[str, str], list[tuple[int, float]]]] = {}
     for tool in running:

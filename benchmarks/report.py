@@ -1,4 +1,4 @@
-"""RESULTS.md from what ``make bench`` measured."""
+"""Write RESULTS.md from the measurements of ``make bench``."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ def write(
 
 
 def head(facts: dict[str, Any]) -> str:
-    """Say where and when this was measured."""
+    """Return the date and the machine of the measurement."""
     before, after = facts["load"]
     return f"""# How fast
 
@@ -57,14 +57,14 @@ machine too. Figures are medians of {facts["rounds"]} interleaved round{"s" if f
 
 
 def how(running: list[Tool], absent: list[tuple[str, str]]) -> str:
-    """Say how this was measured, and who is missing."""
+    """Return the description of the method, and the missing tools."""
     tools = "\n".join(f"- {tool.version}" for tool in running if "(" not in tool.label)
     missing = "\n".join(f"- {name}: {reason}" for name, reason in absent)
     return f"""## How this was measured
 
 Every tool runs in a process of its own, in an environment of its own. What is measured is the processor's time
 of that process, and the time on the clock only at start-up and for threads; a shared cache still shows, and
-ratios tell more than times. In brackets stands how many times as long as ours a tool takes, the median of the
+ratios are more meaningful than times. In brackets stands how many times as long as ours a tool takes, the median of the
 rounds' ratios. Formulas are parsed and samples brought into the form that a tool takes (lists, dicts; for ours
 offline numpy arrays) before the clock runs. Under "parsing" stands the time of the tool's own reader, from a text
 in its language to what is ready to run. The bytecode of all that a tool imports is written before it starts. `this`
@@ -94,7 +94,7 @@ def groups(running: list[Tool]) -> list[str]:
 
 
 def asked(running: list[Tool]) -> list[Case]:
-    """Return every case that somebody was asked, in order."""
+    """Return every case that some tool ran, in order."""
     return list(dict.fromkeys(case for tool in running for case in (*tool.figures, *tool.refusals)))
 
 
@@ -148,7 +148,7 @@ def table(group: str, running: list[Tool], drawn: list[str]) -> str:
 
 
 def amount(seconds: float) -> str:
-    """Return a time with three digits, in the unit that suits it."""
+    """Return a time with three digits, in a suitable unit."""
     for unit, size in (("s", 1.0), ("ms", 1e-3), ("µs", 1e-6)):
         if seconds >= size:
             return f"{seconds / size:.3g} {unit}"

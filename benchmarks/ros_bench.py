@@ -86,7 +86,7 @@ def main() -> None:
 
 
 def measured(node: list[str], drive: list[str], env: dict[str, str]) -> dict[str, Any]:
-    """Run a node on one core, and what talks to it; return what that tells."""
+    """Run a node and its traffic generator on one core; return the measurements."""
     pinned = ["taskset", "-c", "0", *node]
     process = subprocess.Popen(pinned, env=env, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     try:

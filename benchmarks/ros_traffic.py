@@ -1,4 +1,4 @@
-"""What talks to the node of ros_bench.py and hears it, and a node that only relays; run by a Python that has rospy.
+"""The traffic generator of ros_bench.py, and a node that only relays messages; needs a Python with rospy.
 
 ros_traffic.py drive TOPICS RATE SECONDS PID    one JSON object: latencies, and what was lost
 ros_traffic.py relay TOPICS                     each message of /bench/x again on so many topics
@@ -34,7 +34,7 @@ def drive(topics: int, rate: float, seconds: float, pid: int) -> None:
     talker = rospy.Publisher("/bench/x", FloatStamped, queue_size=1000, tcp_nodelay=True)
     while talker.get_num_connections() < 1 or any(known.get_num_connections() < 1 for known in listeners):
         time.sleep(0.1)
-    # A listener knows of a connection before the publisher does.
+    # A subscriber sees a connection before the publisher does.
     start, sent, before = time.time() + 2.0, [], cpu(pid)
     for i in range(int(rate * seconds)):
         time.sleep(max(0.0, start + i / rate - time.time()))

@@ -1,4 +1,4 @@
-"""``make bench``: every tool timed beside the others, into RESULTS.md and plots.
+"""``make bench``: measure all tools, and write RESULTS.md and plots.
 
     python benchmarks/run.py [--quick] [--out FOLDER]
 
@@ -29,7 +29,7 @@ from rtamt.language.parser import parse_formula
 
 ROUNDS = 5
 PATIENCE = 10.0  # seconds for an answer
-SLOWEST = 1.0  # seconds that an update may take, as far as the one before tells
+SLOWEST = 1.0  # the limit of one update in seconds, extrapolated from the previous case
 #: Python reads the bytecode of all that a tool imports: it is written before the clock runs (`compiled`).
 ENV = ("env", "-u", "PYTHONDONTWRITEBYTECODE")
 #: Everything that the interpreter of a tool imports but its standard library, which came compiled.
@@ -40,7 +40,7 @@ FUSED = FOLDER.parent / "build" / "bench" / "benchmarks" / "fused_bench"
 
 
 def compiled(python: str) -> None:
-    """Write the bytecode of whatever a tool's environment and its adapter import, as an installation does."""
+    """Compile the modules of a tool's environment and its adapter to bytecode, as an installation does."""
     said = subprocess.run([*ENV, python, "-c", IMPORTED], check=True, capture_output=True, text=True).stdout
     found = {path for path in said.splitlines() if path.endswith("-packages")}
     folders = [*sorted(found), str(HERE), *([str(SOURCE)] if python == sys.executable else [])]
@@ -103,7 +103,7 @@ class Tool:
             one = median(self.figures[before])
             if case.mode == "offline" and "n" in case.workload:
                 sizes = case.workload["n"], before.workload["n"]
-                # A tool whose cost a sample grew is taken to go on like that.
+                # If a tool's cost per sample has grown, it is assumed to keep growing.
                 growth = self._growth(before)
                 if one * growth * sizes[0] > LONGEST:
                     self.refusals[case] = f"longer than {LONGEST:g} s"
@@ -116,7 +116,7 @@ class Tool:
         if not smaller:
             return 1.0
         last = max(smaller, key=lambda c: c.x)
-        # Small traces cost what a call costs, which says nothing of larger ones.
+        # For small traces the cost of the call dominates, so they predict nothing.
         return max(1.0, median(self.figures[case]) / median(self.figures[last])) if last.x >= 1000 else 1.0
 
 

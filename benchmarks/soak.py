@@ -1,8 +1,8 @@
-"""A long watch: 10^8 samples, and hours of dense stamps, one update each; `make soak`, some minutes.
+"""A soak test: 10^8 samples, and hours of dense events, one update each; `make soak`, some minutes.
 
-Two things must hold to the end: the memory is what it was at the beginning, and every value is the one
-that an offline evaluation gives. That evaluation goes piece by piece, each with as much before and after
-as the formula can see, so that it is bounded too.
+Two properties must hold to the end: memory stays constant, and every value equals that of an
+offline evaluation. The offline evaluation runs piece by piece, each with as much context as the formula
+can read, so that its memory is bounded, too.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ GROWTH = 32 * 2**20
 
 
 class Watch:
-    """Says how far a run is, and what it has taken."""
+    """Reports the progress, time and memory of a run."""
 
     def __init__(self, what: str, total: int) -> None:
         self.what, self.total = what, total
@@ -106,9 +106,9 @@ def discrete(total: int) -> None:
         told = [monitor.step(*row) for row in rows]
         watch.in_updates += time.perf_counter() - begin
         if k == 0:
-            expect(told[:late] == [None] * late, "nothing is told before the horizon")
+            expect(told[:late] == [None] * late, "nothing is reported before the horizon")
             told = told[late:]
-        # Samples from `first` on; the values that these updates told are those of [low, high).
+        # Samples from `first` on; these updates reported the values of [low, high).
         whole = [np.concatenate(parts) for parts in zip(before, (req, gnt), strict=True)]
         first = k * PIECE - len(before[0])
         low, high = max(0, k * PIECE - late), (k + 1) * PIECE - late
@@ -188,7 +188,7 @@ def changes(times: Any, values: Any, begin: int, end: int) -> Any:
 
 
 def expect(holds: bool, what: str) -> None:
-    """Stop where something does not hold."""
+    """Stop if a condition does not hold."""
     if not holds:
         raise SystemExit(f"\nsoak: {what}")
 

@@ -1,4 +1,4 @@
-"""The head of RESULTS.md: what is aimed at, how many rows reach it, and which do not."""
+"""The head of RESULTS.md: the targets, how many rows meet them, and which do not."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class Row:
 def write(
     ratios: Mapping[tuple[Case, str], float], ready: Mapping[str, float], machine: Sequence[Mapping[str, Any]]
 ) -> str:
-    """Hold every ratio against what is aimed at.
+    """Compare every ratio with its target.
 
     ``ratios``: how many times as long as ours another tool takes. ``ready``: the same at start-up.
     ``machine``: how many times as long as a loop written by hand the engine takes.

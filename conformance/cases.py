@@ -1,4 +1,4 @@
-"""The corpus as it is kept: one case a line, JSON, every number with all its digits (README.md beside)."""
+"""The file format of the corpus: one case per line, JSON, every number with all digits (see README.md)."""
 
 from __future__ import annotations
 
@@ -56,13 +56,13 @@ def read(name: str) -> list[Case]:
 
 
 def write(name: str, cases: list[Case]) -> None:
-    """Write one file of the corpus; what a field holds by default is left out."""
+    """Write one file of the corpus; fields with default values are left out."""
     with (FOLDER / name).open("w", encoding="utf-8") as file:
         file.writelines(line(case) + "\n" for case in cases)
 
 
 def line(case: Case) -> str:
-    """Return a case as it is written."""
+    """Return a case as one line of the file."""
     kept = {k: v for k, v in asdict(case).items() if k == "known" or v not in ("standard", [], None)}
     return json.dumps(each(kept, text), separators=(",", ":"), allow_nan=False, ensure_ascii=False)
 

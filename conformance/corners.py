@@ -1,4 +1,4 @@
-"""Cases chosen by hand: worked values, the paper's figures and listings, and what tools get wrong.
+"""Hand-written cases: worked values, the paper's figures and listings, and common errors of tools.
 
 Formula and trace only; the answers are computed like all others.
 """

@@ -1,12 +1,12 @@
-"""The table of truth: the conformance corpus through every peer, into conformance/RESULTS.md.
+"""Run the conformance corpus through every peer, and write conformance/RESULTS.md.
 
 A peer is asked only what it claims (its adapter's table of operators and modes), and by its own declared
 conventions: where these differ, the expected answer is that of the formula which says in our language
 what the peer means by it. Where the literature leaves a choice nobody is judged: dense traces begin and
 end at the same instant for all signals, and only instants count whose windows end inside the trace.
 
-Every value that a tool tells is judged, of all tools alike: one that is wrong makes the answer disagree. An
-answer without a wrong value that does not reach all those instants (told too late, too little, or nothing)
+Every value that a tool reports is checked, for all tools alike: one wrong value makes the answer disagree. An
+answer without a wrong value that does not cover all those instants (too late, too few, or none)
 is "right, but incomplete". How far an answer reaches is the last instant that the tool names; of one that
 names changes only and no end, the notes say so, the time of the last sample that it was given.
 """

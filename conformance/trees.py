@@ -1,4 +1,4 @@
-"""Formulas as trees of JSON: what a case carries beside the text, and what adapters of other tools read."""
+"""Formulas as JSON trees, stored with the text of a case and read by the adapters of other tools."""
 
 from __future__ import annotations
 

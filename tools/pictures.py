@@ -1,4 +1,4 @@
-"""Draws the pictures of README.md and the documentation into docs/images: `make pictures`."""
+"""Create the images of README.md and the documentation in docs/images: `make pictures`."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def draw() -> None:
 
 
 def gallery() -> None:
-    """Run the code of the gallery, which writes its pictures into the current directory."""
+    """Run the code of the gallery, which writes its images to the current directory."""
     page = (IMAGES.parent / "how-to" / "gallery.md").read_text(encoding="utf-8")
     names: dict[str, object] = {}
     with tempfile.TemporaryDirectory() as folder, contextlib.chdir(folder):
@@ -134,7 +134,7 @@ def photograph(arguments: list[str], name: str, size: tuple[int, int], script: s
 
 
 def shrink(path: Path) -> None:
-    """Keep 64 colours, which is all that such pictures have."""
+    """Reduce an image to 64 colors, which is enough for plots."""
     Image.open(path).convert("RGB").quantize(64).save(path, optimize=True)
 
 

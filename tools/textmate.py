@@ -1,8 +1,8 @@
-"""Write editors/stl.tmLanguage.json, the colours of formulas for editors that read TextMate grammars.
+"""Write editors/stl.tmLanguage.json: syntax highlighting for editors that read TextMate grammars.
 
-    python tools/textmate.py            # writes it anew, after a change in the table of operators
+    python tools/textmate.py            # rewrites it after a change of the operator table
 
-It is committed, as editors take it from the repository; a test holds it to the table.
+It is committed, since editors load it from the repository; a test compares it with the operator table.
 """
 
 from __future__ import annotations

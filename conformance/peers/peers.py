@@ -1,4 +1,4 @@
-"""Whom we are compared with, and an environment for each: `python conformance/peers/peers.py` makes them.
+"""The tools in the comparison, and an environment for each: `python conformance/peers/peers.py` makes them.
 
 Each is installed from PyPI into build/peers/<name>, a virtual environment of its own. One that cannot be
 installed is reported by whoever wanted to ask it, and does not stop the others.
@@ -18,7 +18,7 @@ ENVIRONMENTS = HERE.parents[1] / "build" / "peers"
 
 @dataclass(frozen=True)
 class Peer:
-    """A tool: its name on PyPI, the adapter that asks it, and what its build needs (Debian packages)."""
+    """A tool: its name on PyPI, its adapter, and its build dependencies (Debian packages)."""
 
     name: str
     adapter: str
@@ -31,16 +31,16 @@ class Peer:
 
     @property
     def log(self) -> Path:
-        """What its installation said."""
+        """The log of its installation."""
         return ENVIRONMENTS / f"{self.name}.log"
 
     @property
     def installed(self) -> bool:
-        """Whether its installation ended well."""
+        """Whether its installation succeeded."""
         return (ENVIRONMENTS / self.name / "installed").exists()
 
     def command(self) -> list[str]:
-        """Return how its adapter is started."""
+        """Return the command that starts its adapter."""
         return [str(self.python), str(HERE / self.adapter)]
 
     def why_not(self) -> str:
@@ -62,7 +62,7 @@ PEERS = (
 
 
 def install(peer: Peer) -> None:
-    """Make the environment of a peer, unless it is there."""
+    """Create the environment of a peer if necessary."""
     if peer.installed:
         return
     venv.create(ENVIRONMENTS / peer.name, with_pip=True, clear=True)
@@ -74,7 +74,7 @@ def install(peer: Peer) -> None:
 
 
 def main() -> None:
-    """Install all, and say how it went."""
+    """Install all peers, and report the results."""
     ENVIRONMENTS.mkdir(parents=True, exist_ok=True)
     for peer in PEERS:
         sys.stderr.write(f"{peer.name} ... ")

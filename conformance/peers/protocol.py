@@ -1,4 +1,4 @@
-"""What every adapter of a peer does: a JSON line with a question in, a JSON line with the answer out.
+"""The protocol of the peers' adapters: a JSON line with a question in, a JSON line with the answer out.
 
 An adapter runs in the environment of its peer, as a process of its own, and knows nothing of this
 project but these lines. A question is a formula (nested dicts), a trace and a mode; the answer is what
@@ -16,7 +16,7 @@ import timing
 
 
 class UnsupportedError(Exception):
-    """The peer does not claim to know this."""
+    """The peer does not claim to support this."""
 
 
 class Writer:

@@ -1,4 +1,4 @@
-"""Counterexamples made small: formula and trace, step by step, while the tool stays wrong."""
+"""Shrink counterexamples: simplify formula and trace step by step while the tool's answer stays wrong."""
 
 from __future__ import annotations
 

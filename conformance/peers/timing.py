@@ -1,4 +1,4 @@
-"""How every tool is timed, in its own process: the same signals, the same clock, the same rules.
+"""Time a tool in its own process: the same signals, the same clock, the same rules for all.
 
 An adapter's ``prepare(formula, time, mode, signals)`` parses the formula and brings the samples into the
 form in which the tool takes them; none of that is timed. The clock is the processor's time of the process:

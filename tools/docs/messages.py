@@ -1,4 +1,4 @@
-"""The messages in the source: every text that an error of ours is made with, also by a function that adds to it.
+"""Collect the error messages in the source, including those completed by helper functions.
 
 A function that makes an error out of a text it is given, such as ``header.error(line, "...")``, is a *maker*.
 Its calls are found, and their texts put into its own.

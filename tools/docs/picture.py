@@ -1,4 +1,4 @@
-"""The picture of an operator: two signals, and below them the robustness of the operator's example."""
+"""The plot of an operator: two signals, and below them the robustness of the operator's example."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ GREY = "#808080"  # can be read on white and on black
 
 
 def of(example: str) -> str:
-    """Return the picture as SVG, transparent, for pages light and dark."""
+    """Return the plot as transparent SVG, for light and dark pages."""
     spec = rtamt.parse(example)
     read = {name: values for name, values in SIGNALS.items() if name in spec.input_names}
     rho = spec.evaluate({"time": TIME, **read}).signal.values

@@ -1,4 +1,4 @@
-"""The reference: pages made from the table of operators, docstrings, argparse and the messages in the source."""
+"""Generate the reference pages from the operator table, docstrings, argparse and the messages in the source."""
 
 from __future__ import annotations
 
@@ -36,12 +36,12 @@ _GROUPS: tuple[tuple[str, Callable[[Operator], bool]], ...] = (
 
 
 def spelled() -> list[Operator]:
-    """Return the operators that texts can use, in the order of the table."""
+    """Return the operators with a spelling, in the order of the table."""
     return list(STL)
 
 
 def pictures() -> dict[str, str]:
-    """Return the picture of each operator as SVG, by its place in the site."""
+    """Return the plot of each operator as SVG, by its path in the site."""
     return {f"reference/operators/{op.name}.svg": picture.of(op.example) for op in spelled()}
 
 
@@ -200,7 +200,7 @@ def api() -> str:
 
 
 def public_modules() -> list[str]:
-    """Return the modules beside `rtamt` itself that the pages tell users to import."""
+    """Return the modules besides `rtamt` itself that pages import."""
     pages = "\n".join(p.read_text(encoding="utf-8") for p in sorted((ROOT / "docs").rglob("*.md")))
     named = set(re.findall(r"^(?:from|import) (rtamt\.\w+)", pages, re.MULTILINE))
     for names in re.findall(r"^from rtamt import ([\w, ]+)", pages, re.MULTILINE):

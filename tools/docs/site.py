@@ -1,4 +1,4 @@
-"""What `make docs` adds to the pages under docs/: an mkdocs hook.
+"""An mkdocs hook: what `make docs` adds to the pages under docs/.
 
 The order of the pages, those that are made while the site is built (nothing generated is committed), and
 links that leave docs/: to another page of the site where the file is one, else to a copy of the file.
