@@ -43,7 +43,7 @@ if TYPE_CHECKING:
 class Specification(SpecificationText):
     """One requirement or several, with the names, types and sub-formulas of their document.
 
-    Made by :func:`parse` and :func:`load`; immutable, so that it can be shared and reused.
+    Created by :func:`parse` and :func:`load`; immutable, so that it can be shared and reused.
 
     >>> import rtamt
     >>> rtamt.parse("specification slow always(speed <= 30)")
@@ -74,15 +74,15 @@ class Specification(SpecificationText):
         uncertainty: Mapping[str, float] | None = None,
         ranges: Mapping[str, tuple[float, float]] | None = None,
     ) -> Result:
-        """Compute the robustness of a finished recording at every sample.
+        """Compute the robustness of a complete trace at every sample.
 
-        ``data``: a mapping (or frame) from variable to n numbers; ``"time"``: n stamps, may be left
-        out. Numbers are seconds, whatever holds them, or of the unit that ``time_unit`` names: ``"s"``, ``"ms"``,
-        ``"us"``, ``"ns"``; datetimes and timedeltas are what they are. Times come back as they were given:
+        ``data``: a mapping (or frame) from variable to n numbers; ``"time"``: n timestamps,
+        optional. Numeric times are in seconds, or in the unit given by ``time_unit``: ``"s"``, ``"ms"``,
+        ``"us"``, ``"ns"``; datetimes and timedeltas are also accepted. Times are returned in the same form:
         seconds as floats, integers of a unit as integers, datetimes and timedeltas as those of numpy (in
         UTC if they have a time zone). ``period``: seconds, or text such as ``"100ms"``; by default
-        that of the specification, else the median gap of the stamps, else 1 s. ``tolerance``: the
-        fraction of the period by which a gap between samples may miss it.
+        that of the specification, else the median gap of the timestamps, else 1 s. ``tolerance``: the
+        allowed deviation of a gap between samples, as a fraction of the period.
 
         ``time``: ``"discrete"``, ``"dense"``, or a time domain with its settings: ``rtamt.Discrete(period=...)``,
         ``rtamt.Dense(resolution=...)``. In dense time signals change at any instant, each on its own time base:
@@ -97,8 +97,8 @@ class Specification(SpecificationText):
         variables how far a sample may be off the value, in either direction. ``ranges``: for some
         variables the lowest and the highest possible value, which bound missing samples.
 
-        Raises :class:`TraceError` where the data is wrong, :class:`BoundError` where an interval is
-        no multiple of the period, :class:`EvaluationError` where an operation has no value.
+        Raises :class:`TraceError` if the data is invalid, :class:`BoundError` if an interval is
+        not a multiple of the period, :class:`EvaluationError` if an operation has no value.
 
         >>> import rtamt
         >>> result = rtamt.parse("always(x >= 3)").evaluate({"time": [0, 1, 2], "x": [5, 4, 6]})
@@ -114,7 +114,7 @@ class Specification(SpecificationText):
         return self.result(query, recording)
 
     def result(self, query: Query, recording: DomainTrace) -> Result:
-        """Return the result over a normalised recording, for which the formula was checked."""
+        """Return the result on a normalised recording; the formula must have been checked."""
         if len(self.requirements) > 1 and recording.domain.continuous:
             outputs = [one.outputs(query.semantics) for one in self.requirements.values()]
             if len(by_start(outputs, recording)) > 1:
@@ -256,7 +256,7 @@ class Specification(SpecificationText):
         lateness: Duration | None = None,
         on_correction: str | None = None,
     ) -> OnlineMonitor:
-        """Return an online monitor; of dense time where that is asked for here or in :func:`parse`.
+        """Return an online monitor; for dense time if selected here or in :func:`parse`.
 
         ``period`` as in :meth:`evaluate`, by default 1 s. ``tolerance``: the fraction of the period
         by which a gap between samples may miss it. ``semantics``: as for :func:`parse`; under
@@ -338,7 +338,7 @@ class Specification(SpecificationText):
         resolution: Duration | None = None,
         semantics: Semantics | None = None,
     ) -> Program:
-        """Return the requirement as a program, whose bytes run wherever the core does, without Python.
+        """Compile the requirement to a standalone program, which the core runs without Python.
 
         Its outputs are ``robustness`` (ρ, or what ``semantics`` says) and ``verdict`` (+inf where the
         formula holds, -inf where it does not); of several requirements these are of all together, and each has
@@ -373,7 +373,7 @@ class Specification(SpecificationText):
 
     def _check(self, query: Query, recording: DomainTrace) -> None:
         if query.domain.step is None:  # else checked without a recording; many recordings have the same step
-            key = (query.formula, recording.step.as_integer_ratio())  # fractions are slow to hash
+            key = (query.formula, recording.step.as_integer_ratio())  # hashing fractions is slow
             if key not in self._checked:
                 recording.check(query.formula, self.text)
                 self._checked.add(key)
@@ -387,7 +387,7 @@ class Specification(SpecificationText):
         return Evaluators(self.backend)
 
     def __reduce__(self) -> tuple[Any, ...]:
-        # The text says it all, and is read without recursion however long it is.
+        # The text is sufficient, and is parsed without recursion at any length.
         declared = {declaration.name for declaration in self.document.declarations}
         given = {name: v for name, v in self.document.constants.items() if name not in declared}
         names = ("domain", "period", "resolution", "unit", "backend", "language", "semantics")

@@ -12,13 +12,13 @@ _Events: TypeAlias = tuple[NDArray[np.int64], NDArray[np.float64]]
 _Calls: TypeAlias = list[tuple[Any, int, int, float, tuple[int, ...]]]
 
 class Refused(Exception):  # noqa: N818 - a word that reads well after except
-    """An update was refused; the monitor is as it was."""
+    """An update was rejected; the monitor is unchanged."""
 
 class Undefined(Exception):  # noqa: N818
-    """An operation made NaN; args are the instruction and the sample, or the tick in dense time.
+    """An operation yielded NaN; args are the instruction and the sample, or the tick in dense time.
 
-    A monitor in discrete time tells the ``time`` of the sample. Or a call failed: a third one is what it
-    said, and the cause what a Python operator raised.
+    A discrete-time monitor also sets the ``time`` of the sample. If a call failed, a third argument is its
+    message, and the cause is the exception of a Python operator.
     """
 
     args: tuple[int, int] | tuple[int, int, str]
@@ -105,14 +105,14 @@ class DenseMonitor:
         calls: _Calls = ...,
     ) -> None: ...
     def set_time_scale(self, signal: type, scale: Any, rate: float, whole: bool = False) -> None:
-        """Say how update() tells time: in numbers of so many ticks, or in integers alone (``whole``).
+        """Set the times that update() accepts: numbers of so many ticks, or only integers (``whole``).
 
         Its answers are of the class ``signal``, their ``_scale`` is the given one and their ``_events``
         are bytes: the ticks, then the values.
         """
 
     def update(self, t: Any, values: Mapping[str, Any], /) -> Any:
-        """Take a dict of any inputs at a time as set_time_scale() says; return what became known."""
+        """Take a dict of any inputs at a time in the set time scale; return what became known."""
 
     def push(self, columns: Sequence[_Events]) -> _Events:
         """Take a chunk, times and values of each input; return what became known of the first output."""
