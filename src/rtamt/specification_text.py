@@ -89,7 +89,7 @@ class SpecificationText:
 
     @cached_property
     def warnings(self) -> tuple[LintWarning, ...]:
-        """What is legal in the text and seldom meant; each with a code, a message and its place.
+        """Warnings about legal but probably unintended text, each with a code, a message and a position.
 
         >>> import rtamt
         >>> print(*rtamt.parse("prev(x) - x <= 3").warnings)

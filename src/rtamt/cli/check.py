@@ -72,7 +72,7 @@ is written again, with the topics of robustness and verdicts that SPEC names.
 Each requirement has a row of its own: the formulas after 'require ID "text" severity WORD:' in SPEC, and
 without any of these the formulas that no other one uses.
 
-What is legal in SPEC and seldom meant is a warning on stderr, with a code that --ignore silences; it does
+Legal but probably unintended formulas in SPEC cause a warning on stderr, with a code for --ignore; they do
 not change the exit code. 'rtamt lint' prints the same.
 
 Large files are read in chunks, in memory that does not grow with them, where the future of the formula

@@ -74,7 +74,7 @@ examples:
 
 @dataclass(frozen=True, slots=True)
 class Facts:
-    """What there is to tell of a requirement; None is for what it does not have."""
+    """The properties of a requirement; None for those that it does not have."""
 
     spec: Specification
     step: Fraction  # seconds in which bounds are counted: the period, or in dense time the tick
@@ -103,7 +103,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Print what there is to tell."""
+    """Print the properties."""
     if args.sql is not None or is_trace(args.spec):
         if args.sql is not None and args.spec is not None:
             args.signals.insert(0, args.spec)
@@ -152,7 +152,7 @@ def _refuse_reading_options(args: argparse.Namespace) -> None:
 
 
 def gather(spec: Specification) -> Facts:
-    """Find out all there is to tell; what an online monitor cannot have stays None."""
+    """Compute the properties; those that an online monitor cannot have stay None."""
     domain = spec.domain.online
     step = domain.step
     assert step is not None
@@ -198,7 +198,7 @@ def _variables(spec: Specification) -> list[dict[str, Any]]:
 
 
 def _requirements(facts: Facts) -> list[dict[str, Any]]:
-    """Return what there is to tell of each requirement; ``ahead``: its horizon in words."""
+    """Return the properties of each requirement; ``ahead``: its horizon in words."""
     rows = []
     for known in facts.spec.document.requirements:
         depth = horizon(known.formula, facts.step)

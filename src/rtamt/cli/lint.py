@@ -30,10 +30,10 @@ if TYPE_CHECKING:
     from rtamt.specification import Specification
 
 _DESCRIPTION = """\
-Read specification files and report what is wrong with each: what, where (line, column and a caret) and how
-to mend it; and as warnings what is legal and seldom meant. Nothing is evaluated.
+Check specification files and report each error: what, where (line, column and a caret) and how
+to fix it; and warn of legal but probably unintended formulas. Nothing is evaluated.
 
-Exit code: 0 all are right, 2 some are not; with --strict 1 where there are warnings only."""
+Exit code: 0 all files are valid, 2 some are not; with --strict 1 if there are only warnings."""
 
 _EPILOG = """\
 With --period the bounds must be whole numbers of it; with --online no operator may need the whole

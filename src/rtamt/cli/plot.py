@@ -1,4 +1,4 @@
-"""``rtamt plot``: a picture of a recording, the robustness over time and what decides the verdict."""
+"""``rtamt plot``: plot a trace, the robustness over time and the cause of the verdict."""
 
 from __future__ import annotations
 

@@ -160,7 +160,7 @@ def _load(_: Sequence[Field]) -> list[Raw]:
 
 
 class JsonSamples:
-    """Samples as JSON objects; the first one tells where the timestamp is."""
+    """Samples as JSON objects; the first one determines the key of the timestamp."""
 
     def __init__(self, names: tuple[str, ...], stamps: _Stamps, dense: bool) -> None:
         self._names = names
