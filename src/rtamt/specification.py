@@ -77,10 +77,10 @@ class Specification(SpecificationText):
         """Compute the robustness of a complete trace at every sample.
 
         ``data``: a mapping (or frame) from variable to n numbers; ``"time"``: n timestamps,
-        optional. Numeric times are in seconds, or in the unit given by ``time_unit``: ``"s"``, ``"ms"``,
-        ``"us"``, ``"ns"``; datetimes and timedeltas are also accepted. Times are returned in the same form:
+        optional: numbers, datetimes or timedeltas. Times are returned in the same form:
         seconds as floats, integers of a unit as integers, datetimes and timedeltas as those of numpy (in
-        UTC if they have a time zone). ``period``: seconds, or text such as ``"100ms"``; by default
+        UTC if they have a time zone). ``time_unit``: the unit of numeric times: ``"s"`` (the default), ``"ms"``,
+        ``"us"`` or ``"ns"``. ``period``: seconds, or text such as ``"100ms"``; by default
         that of the specification, else the median gap of the timestamps, else 1 s. ``tolerance``: the
         allowed deviation of a gap between samples, as a fraction of the period.
 
@@ -264,16 +264,19 @@ class Specification(SpecificationText):
         not, also where the robustness is 0. ``watch``: names of sub-specifications, or formulas over
         the same variables (text, or such as ``spec.formula``), whose values ``monitor[...]`` reports beside the
         result; each is known at its own horizon. ``time_unit``: of times that are numbers, as in :meth:`evaluate`,
-        also of those that are reported. In dense time each of several requirements starts when all variables that it
-        reads have started; the result is the minimum of those that have, known once all variables have started. Raises
+        also of those that are reported. ``time`` as in :meth:`evaluate`. ``resolution`` as in :meth:`evaluate`.
+
+        In dense time each of several requirements starts when all variables that it reads have started; the
+        result is the minimum of those that have, known once all variables have started. Raises
         :class:`BoundError` for unbounded future.
 
         ``verdict``: what the monitor reports of each sample: ``"delayed"``, the robustness one horizon later;
         ``"eager"``, whether the formula holds, as soon as no later sample can change it; ``"interval"``, bounds
-        of the robustness from what is known by now. Of intervals: ``at``, the ``"start"`` of the trace, as by
-        default for unbounded future, or ``"every"`` sample; ``ranges``, from a variable to its least and
-        greatest value; ``lateness``, by how much a sample may come late; ``on_correction``, whether to
-        ``"reject"`` or ``"replay"`` a sample that contradicts an earlier one.
+        of the robustness from what is known by now. ``at``: of which instants ``"interval"`` reports: the
+        ``"start"`` of the trace, as by default for unbounded future, or ``"every"`` sample. ``ranges``: from a
+        variable to its least and greatest value (``"interval"``). ``lateness``: by how much a sample may come late
+        (``"interval"``). ``on_correction``: whether to ``"reject"`` or ``"replay"`` a sample that contradicts an
+        earlier one (``"interval"``).
 
         >>> import rtamt
         >>> monitor = rtamt.parse("always[0:200ms](x >= 3)").monitor(period="100ms")

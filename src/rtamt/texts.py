@@ -51,7 +51,8 @@ def parse(
     must be a multiple of it. ``unit``: the unit of bounds without a unit. ``backend``: ``"cpp"`` or ``"python"``.
     ``constants``: named numbers. ``time``: the default time domain of evaluations and monitors:
     ``"discrete"``, ``"dense"`` with ticks of ``resolution`` seconds, or a time domain with its settings,
-    ``rtamt.Discrete(...)`` or ``rtamt.Dense(...)``. Raises :class:`SpecificationError`
+    ``rtamt.Discrete(...)`` or ``rtamt.Dense(...)``. ``language``: the operators of the text, see
+    ``rtamt.extend``. ``resolution``: the length of a tick of dense time. Raises :class:`SpecificationError`
     with the position in the text.
 
     ``semantics``: the semantics of predicates. By name: ``"standard"``, the robustness; ``"boolean"``,

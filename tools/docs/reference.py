@@ -19,7 +19,7 @@ from rtamt.language.lint import RULES
 from rtamt.language.operators import STL, Bounds, Fixity, Tense
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable, Collection, Iterator
 
     from rtamt.language.operators import Operator
 
@@ -176,27 +176,75 @@ def command_line() -> str:
 # ---- the API ----------------------------------------------------------------------------------------
 
 
+#: The tasks, in the order in which a user meets them: what the page says of each, and what belongs to it. Of a
+#: class, members that are named themselves are left out where the class is shown.
+TASKS: dict[str, tuple[str, tuple[str, ...]]] = {
+    "Parse and load": ("", ("parse", "load", "Specification")),
+    "Evaluate": (
+        "",
+        (
+            "Specification.evaluate", "robustness", "Result", "first_violation", "Signal", "evaluate_all",
+            "evaluate_batch", "check_stream", "StreamResult", "Discrete", "Dense",
+        ),
+    ),
+    "Monitor": ("", ("Specification.monitor", "Monitor", "DenseMonitor")),
+    "Verdicts": (
+        "What the monitors of the [verdict modes](../how-to/early-verdicts.md) report.",
+        (
+            "rtamt.verdicts.early.EagerMonitor", "Verdict", "VerdictRun", "rtamt.verdicts.bounds.IntervalMonitor",
+            "Interval",
+        ),
+    ),
+    "Explain": ("", ("Result.explain", "rtamt.explain.report.Explanation")),
+    "Plot": ("", ("Result.plot", "Result.plot_tree")),
+    "Read recordings": ("", ("read", "scan", "Trace", "Channel")),
+    "Extend": ("", ("rtamt.extend", "rtamt.testing")),
+    "Search": ("", ("rtamt.search",)),
+    "ROS": ("", ("rtamt.ros",)),
+    "C and C++": (
+        "Compiled requirements run without Python: see [the program](program.md).", ("Specification.compile",)
+    ),
+    "FMI": ("", ("rtamt.fmi",)),
+}  # fmt: skip
+
+
 def api() -> str:
-    """Return the page of the API: what `rtamt` exports, then the modules that pages of docs/ import."""
-    groups: dict[str, dict[str, None]] = {"The library": {}, "Errors": {}, "The classes of RTAMT": {}}
-    for name in rtamt.__all__:
-        thing = getattr(rtamt, name)
-        module = getattr(thing, "__module__", "")
-        title = (
-            "Errors" if module == "rtamt.errors"
-            else "The classes of RTAMT" if module.startswith("rtamt.rtamt_api")
-            else "The library"
-        )  # fmt: skip
-        if hasattr(thing, "__name__"):  # a class that has a second name, as RTAMT's have, is shown once
-            groups[title][f"{module}.{thing.__name__}"] = None
+    """Return the page of the API: what `rtamt` exports and the modules that pages of docs/ import, by task."""
+    placed = {name for _, names in TASKS.values() for name in names}
+    missing = sorted({*rtamt.__all__, *public_modules()} - placed - {*_errors(), *_former(), "STL"})
+    if missing:  # STL is part of rtamt.extend
+        raise ValueError(f"give each a task in TASKS: {', '.join(missing)}")
     lines = ["# The API\n"]
-    for title, names in groups.items():
+    for title, (about, names) in TASKS.items():
+        lines.append(f"## {title}\n\n{about}\n")
+        lines += [f"::: {n}\n" if n.startswith("rtamt.") else _shown(n, placed) for n in names]
+    for title, names in {"Errors": _errors(), "The classes of RTAMT": sorted({*_former().values()})}.items():
         lines.append(f"## {title}\n")
-        inherited = "true" if title == "The library" else "false"
-        lines += [f"::: {name}\n    options:\n      inherited_members: {inherited}\n" for name in names]
-    for module in public_modules():
-        lines.append(f"## {module}\n\n::: {module}\n    options:\n      show_root_heading: false\n")
+        lines += [f"::: rtamt.{name}\n    options:\n      inherited_members: false\n" for name in names]
     return "\n".join(lines)
+
+
+def _shown(name: str, placed: Collection[str]) -> str:
+    """Return what shows a function or class; of a class its members, except those that are placed themselves."""
+    apart = sorted(other for other in placed if other.startswith(f"{name}."))
+    hidden = "".join(f", '!^{other.partition('.')[2]}$'" for other in apart)
+    return (
+        f"::: rtamt.{name}\n    options:\n      inherited_members: true\n      filters: ['!^_[^_]'{hidden}]\n"
+    )
+
+
+def _errors() -> list[str]:
+    return [name for name in rtamt.__all__ if getattr(rtamt, name).__module__ == "rtamt.errors"]
+
+
+def _former() -> dict[str, str]:
+    """Return the classes of RTAMT's own API; a second name of a class leads to its first."""
+    found = {name: getattr(rtamt, name) for name in rtamt.__all__ if name not in {"STL"}}
+    return {
+        name: thing.__name__
+        for name, thing in found.items()
+        if thing.__module__.startswith("rtamt.rtamt_api")
+    }
 
 
 def public_modules() -> list[str]:

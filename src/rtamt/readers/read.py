@@ -56,7 +56,9 @@ def read(
     clock of its own. Any other NaN stays, and an evaluation that reads it is an error; for the signals
     in ``skip_nan`` it is a missing value, too. ``hold_for``: how long, in seconds or as text such as
     ``"500ms"``, the value before may take the place of samples that are missing; one that is missing for
-    longer is an error. What was guessed or left out is in ``Trace.notes``, and printed with it; what a
+    longer is an error.
+
+    What was guessed or left out is in ``Trace.notes``, and printed with it; what a
     verdict has to do without is in ``Trace.losses``, too.
 
     Raises :class:`TraceError` where the data is wrong or columns cannot be told apart, and

@@ -78,10 +78,11 @@ def check_stream(
 ) -> StreamResult:
     """Check a recording that comes in chunks, in memory that does not grow with its length.
 
-    ``chunks``: what ``update_many`` takes, such as the traces of :func:`rtamt.scan`. Other arguments as
-    for ``Specification.evaluate``, which gives the same numbers; without a ``period`` it is taken from
-    the stamps of the first chunk. The formula's future must be bounded, but for ``always`` and
-    ``eventually`` at its top. Raises :class:`BoundError` where it is not, else as ``evaluate`` does.
+    ``chunks``: what ``update_many`` takes, such as the traces of :func:`rtamt.scan`.
+
+    Other arguments are as for ``Specification.evaluate``, which gives the same numbers; without a ``period``
+    it is taken from the stamps of the first chunk. The formula's future must be bounded, but for ``always``
+    and ``eventually`` at its top. Raises :class:`BoundError` where it is not, else as ``evaluate`` does.
 
     >>> import rtamt
     >>> chunks = ({"time": [t, t + 1], "x": [5, 4 - t]} for t in (0, 2, 4))
