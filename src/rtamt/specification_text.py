@@ -22,7 +22,7 @@ from rtamt.rewrite.semantics import apply_semantics, semantics_of
 from rtamt.signals.discrete import DISCRETE
 from rtamt.signals.domains import Defaults, time_domain
 from rtamt.signals.ticks import NANOSECOND
-from rtamt.verdicts.outputs import Outputs, outputs_of
+from rtamt.verdicts.robustness_and_truth import Outputs, outputs_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 import rtamt
 from rtamt.cli import main
 from rtamt.ros import Robustness, RosMonitor, bind
-from rtamt.ros.messages import SATISFIED
+from rtamt.ros.message_definitions import SATISFIED
 from tests.unit.readers.bags import SECOND, Bag
 
 pytest.importorskip("rosbags")

@@ -17,7 +17,7 @@ import pytest
 
 import rtamt
 from rtamt.cli import main
-from rtamt.signals.stamps import is_stamps
+from rtamt.signals.time_columns import is_stamps
 
 ODD = ["trajectory_setpoint.position[2]", "a.b", "engine speed", 'the "fast" one', "/ns/x", "Ü", "3d"]
 

@@ -20,9 +20,9 @@ import rospy
 from rtamt import load
 from rtamt.errors import StlError
 from rtamt.ros.binding import MessageType
+from rtamt.ros.diagnostics import Level
 from rtamt.ros.options import options, parser
 from rtamt.ros.publisher import DIAGNOSTICS, Publisher
-from rtamt.ros.report import Level
 
 PROGRAM = "ros_stl_monitor.py"
 QUEUE = 100  # messages that wait for a slow subscriber

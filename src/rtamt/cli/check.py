@@ -97,7 +97,6 @@ examples:
 """
 
 
-_REPORT_NAMES = {"junit": "JUnit XML", "sarif": "SARIF 2.1.0", "html": "an interactive HTML page"}
 _KINDS = {"satisfied": "good", "violated": "bad", "error": "error"}
 #: Of a verdict, the exit code.
 CODES = {"satisfied": OK, "violated": VIOLATED, "error": ERROR}
@@ -119,7 +118,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         help="write the robustness at every sample as CSV, or (.mcap) a bag with topics of it",
     )
     group.add_argument("--json", action="store_true", help="print JSON, one object a line")
-    for kind, name in _REPORT_NAMES.items():
+    for kind, (name, _) in REPORTS.items():
         group.add_argument(f"--{kind}", metavar="FILE", help=f"write a report as {name}")
     parser.add_argument("--jobs", type=int, metavar="N", help="processes (default: one a core, if it pays)")
     add_ignore_option(parser)
@@ -169,9 +168,10 @@ def run(args: argparse.Namespace) -> int:
             write_bag(given[0], traces[0], reading, results, args.output)
         else:
             _write(requirements, results, args.output)
-    for kind in REPORTS:
-        if getattr(args, kind) is not None:
-            write_report(kind, getattr(args, kind), requirements, found)
+    for kind, (_, make) in REPORTS.items():
+        path = getattr(args, kind)
+        if make is not None and path is not None:
+            write_report(make, path, requirements, found)
     if page is not None:
         page.write(args.html)
     return max(CODES[outcome.verdict] for outcome in found)

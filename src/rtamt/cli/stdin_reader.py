@@ -16,7 +16,7 @@ from rtamt.readers.frames import field_of
 from rtamt.readers.source import Source, Table
 from rtamt.readers.timestamps import CHOICES
 from rtamt.signals.arrays import TIME, missing_sample, missing_variable
-from rtamt.signals.stamps import is_stamps, may_be_stamps, split_unit
+from rtamt.signals.time_columns import is_stamps, may_be_stamps, split_unit
 from rtamt.signals.trace import in_seconds
 
 if TYPE_CHECKING:

@@ -22,7 +22,7 @@ from rtamt.language.printer import PAGE, to_text
 from rtamt.rewrite.semantics import boolean, no_verdict
 from rtamt.rewrite.structure import NEVER, Structure, literal, reaches
 from rtamt.verdicts.offline import first_violation
-from rtamt.verdicts.outputs import outputs_of
+from rtamt.verdicts.robustness_and_truth import outputs_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence

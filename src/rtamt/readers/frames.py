@@ -15,7 +15,7 @@ from rtamt.readers.dates import is_date
 from rtamt.readers.source import Field, Source, Table
 from rtamt.signals import dense_arrays
 from rtamt.signals.arrays import TIME, as_array
-from rtamt.signals.stamps import is_stamps, split_unit
+from rtamt.signals.time_columns import is_stamps, split_unit
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

@@ -18,8 +18,8 @@ from rtamt.readers.dates import EXAMPLE, DateError, Dates, is_date
 from rtamt.signals.arrays import is_number
 from rtamt.signals.counting import refuse_implausible
 from rtamt.signals.datetimes import in_nanoseconds
-from rtamt.signals.stamps import is_stamps, may_be_stamps, unit_called, unit_of
 from rtamt.signals.ticks import NANOSECOND, TimeScale
+from rtamt.signals.time_columns import is_stamps, may_be_stamps, unit_called, unit_of
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Sequence

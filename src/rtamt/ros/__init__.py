@@ -3,20 +3,20 @@
 The nodes are thin: they pass messages to :class:`~rtamt.ros.monitor.RosMonitor` and publish its output. They are
 part of the ROS packages, in the directory ``ros/``.
 
-============  ===============================================================================
-module        purpose
-============  ===============================================================================
-binding       annotations of a specification to topics, types and fields
-fields        read a number from a message: ``pose.position.x``, ``ranges[3]``; its timestamp
-monitor       messages and ticks to robustness, verdicts and conditions
-output_group  outputs that are monitored together
-report        conditions as ROS diagnostics
-publisher     output as messages
-messages      the definitions of ``rtamt_msgs``
-bags          columns of a bag; a copy of a bag with added results
-dds           ROS 2 nodes directly on Cyclone DDS
-options       the arguments of all nodes
-============  ===============================================================================
+===================  ===============================================================================
+module               purpose
+===================  ===============================================================================
+binding              annotations of a specification to topics, types and fields
+fields               read a number from a message: ``pose.position.x``, ``ranges[3]``; its timestamp
+monitor              messages and ticks to robustness, verdicts and conditions
+output_group         outputs that are monitored together
+diagnostics          conditions as ROS diagnostics
+publisher            output as messages
+message_definitions  the definitions of ``rtamt_msgs``
+bags                 columns of a bag; a copy of a bag with added results
+dds                  ROS 2 nodes directly on Cyclone DDS
+options              the arguments of all nodes
+===================  ===============================================================================
 """
 
 from rtamt.ros.binding import Binding, Input, MessageType, Output, bind

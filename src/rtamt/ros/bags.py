@@ -15,7 +15,7 @@ from rtamt.extras import library
 from rtamt.files import replacing
 from rtamt.readers.formats import BAG
 from rtamt.readers.rosbag import messages, open_reader
-from rtamt.ros.messages import DEFINITIONS, FLOAT_STAMPED, SATISFIED, VERDICT, VIOLATED
+from rtamt.ros.message_definitions import DEFINITIONS, FLOAT_STAMPED, SATISFIED, VERDICT, VIOLATED
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence

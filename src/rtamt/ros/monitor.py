@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import StlError, UsageError
 from rtamt.language.units import duration, positive_period
+from rtamt.ros.diagnostics import Condition, Level, Notice
 from rtamt.ros.fields import reader, stamp_of
 from rtamt.ros.output_group import DenseWatch, DiscreteWatch, Robustness, Verdict, group_outputs
-from rtamt.ros.report import Condition, Level, Notice
 from rtamt.signals.domains import DEFAULT, time_domain
 
 if TYPE_CHECKING:

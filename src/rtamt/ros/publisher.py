@@ -6,15 +6,15 @@ from typing import TYPE_CHECKING, Any
 
 from rtamt.ros.binding import MessageType
 from rtamt.ros.fields import write
-from rtamt.ros.messages import SATISFIED, UNKNOWN, VIOLATED
+from rtamt.ros.message_definitions import SATISFIED, UNKNOWN, VIOLATED
 from rtamt.ros.output_group import Robustness
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
     from rtamt.ros.binding import Binding
+    from rtamt.ros.diagnostics import Condition, Level
     from rtamt.ros.output_group import Record
-    from rtamt.ros.report import Condition, Level
 
 VERDICT = MessageType("rtamt_msgs.msg", "Verdict")
 DIAGNOSTICS = "/diagnostics"

@@ -1,8 +1,8 @@
 """Convert the caller's data to float64 arrays, integer ticks and timestamps, and represent traces.
 
-============  =================================================================
+============  ====================================================================
 module        purpose
-============  =================================================================
+============  ====================================================================
 domain        the interfaces of a time domain and of a trace in one
 domains       the list of time domains
 discrete      discrete time and its traces: one value of every variable per sample
@@ -19,6 +19,6 @@ ticks         times to int64 ticks and back
 counting      exact conversion of numbers to ticks, rounded once
 epoch         times since 1970 as text: a date, and the seconds since the start
 datetimes     dates and durations of Python, numpy and pandas as integers
-stamps        recognise the time column and its unit by name
-============  =================================================================
+time_columns  recognise the time column and its unit by name
+============  ====================================================================
 """

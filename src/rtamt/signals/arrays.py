@@ -17,7 +17,7 @@ from rtamt.errors import TraceError, UsageError, choices, shown, with_article
 from rtamt.language.units import UNITS, check_unit, in_seconds
 from rtamt.signals.counting import all_integers, integers, quotients, refuse_implausible
 from rtamt.signals.datetimes import has_length, in_nanoseconds, nanoseconds_of, no_length, out_of_reach
-from rtamt.signals.stamps import check_frame
+from rtamt.signals.time_columns import check_frame
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Sequence

@@ -13,8 +13,8 @@ from rtamt.language.units import format_duration
 from rtamt.signals import arrays
 from rtamt.signals.regular import never_set
 from rtamt.signals.signal import Signal
-from rtamt.signals.stamps import check_frame
 from rtamt.signals.ticks import sequence_of
+from rtamt.signals.time_columns import check_frame
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Sequence

@@ -2,18 +2,18 @@
 
 Everything that decides about a requirement is here: specifications, results, searches, nodes and commands use it.
 
-===============  ==================================================================
-module           purpose
-===============  ==================================================================
-outputs          robustness and Boolean truth: the two outputs of a requirement
-decompose        split a formula into windows that start at the first sample
-trackers         the value and the first violation of a formula that was split
-offline          first violations in a finished trace
-streaming        ``check_stream``: check a recording in chunks with bounded memory
-robust_interval  stop a simulation as soon as its verdict is final
-modes            the list of verdict modes of a monitor
-early            the monitor of verdicts as soon as they are settled
-bounds           the monitor of bounds of the robustness
-standalone       compile a requirement to a program that runs without Python
-===============  ==================================================================
+====================  =================================================================
+module                purpose
+====================  =================================================================
+robustness_and_truth  the two outputs of a requirement: robustness and Boolean truth
+decompose             split a formula into windows that start at the first sample
+trackers              the value and the first violation of a formula that was split
+offline               first violations in a finished trace
+streaming             ``check_stream``: check a recording in chunks with bounded memory
+robust_interval       stop a simulation as soon as its verdict is final
+modes                 the list of verdict modes of a monitor
+early                 the monitor of verdicts as soon as they are settled
+bounds                the monitor of bounds of the robustness
+standalone            compile a requirement to a program that runs without Python
+====================  =================================================================
 """

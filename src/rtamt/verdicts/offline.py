@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from rtamt.language.formula import Formula
     from rtamt.signals.domain import DomainTrace
     from rtamt.verdicts.decompose import Leaf
-    from rtamt.verdicts.outputs import Evaluate, Outputs
+    from rtamt.verdicts.robustness_and_truth import Evaluate, Outputs
     from rtamt.verdicts.trackers import Tracker
 
 #: Values of all outputs of one program: what many requirements read of a long trace must fit into memory.

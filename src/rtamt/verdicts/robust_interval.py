@@ -20,14 +20,14 @@ from rtamt.language.records import Tense
 from rtamt.reference import discrete as reference
 from rtamt.rewrite.structure import Structure, literal
 from rtamt.signals import arrays
-from rtamt.verdicts.outputs import outputs_of
+from rtamt.verdicts.robustness_and_truth import outputs_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
 
     from rtamt.signals.arrays import FloatArray
     from rtamt.signals.domain import DomainTrace, TimeDomain
-    from rtamt.verdicts.outputs import Evaluate
+    from rtamt.verdicts.robustness_and_truth import Evaluate
 
     #: Stamps (seconds) and a column of values for each variable, all of one length.
     Columns = Mapping[str, FloatArray]

@@ -12,7 +12,7 @@ from rtamt.language.formula import Apply, Const, Formula, Var, fold, postorder, 
 from rtamt.language.printer import PAGE, excerpt, to_text
 from rtamt.rewrite.check import check_online
 from rtamt.rewrite.desugar import as_written, desugar
-from rtamt.verdicts.outputs import Outputs, outputs_of
+from rtamt.verdicts.robustness_and_truth import Outputs, outputs_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping

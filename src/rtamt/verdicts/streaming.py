@@ -30,7 +30,7 @@ from rtamt.signals.signal import Signal
 from rtamt.signals.ticks import TimeScale
 from rtamt.verdicts.decompose import Leaf, anchor, check_in_chunks
 from rtamt.verdicts.offline import end_of
-from rtamt.verdicts.outputs import align_inputs
+from rtamt.verdicts.robustness_and_truth import align_inputs
 from rtamt.verdicts.trackers import Tracker, Trackers
 
 if TYPE_CHECKING:

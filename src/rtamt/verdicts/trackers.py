@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from rtamt.language.formula import Formula
     from rtamt.signals.arrays import FloatArray
     from rtamt.verdicts.decompose import Anchored, Leaf
-    from rtamt.verdicts.outputs import Evaluate
+    from rtamt.verdicts.robustness_and_truth import Evaluate
 
     Positions = NDArray[np.int64]
 

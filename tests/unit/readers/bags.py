@@ -7,7 +7,7 @@ import rosbags.rosbag1
 import rosbags.rosbag2
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
-from rtamt.ros.messages import DEFINITIONS, FLOAT_STAMPED
+from rtamt.ros.message_definitions import DEFINITIONS, FLOAT_STAMPED
 
 SECOND = 10**9
 LASER = "sensor_msgs/msg/LaserScan"

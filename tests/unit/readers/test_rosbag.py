@@ -17,7 +17,7 @@ from rosbags.rosbag2.storage_mcap import zstd
 import rtamt
 from rtamt.cli import main
 from rtamt.errors import TraceError
-from rtamt.ros.messages import DEFINITIONS, SATISFIED, VIOLATED
+from rtamt.ros.message_definitions import DEFINITIONS, SATISFIED, VIOLATED
 from tests.unit.readers.bags import SECOND, Bag
 
 ROOT = Path(__file__).parents[3]

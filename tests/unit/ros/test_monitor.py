@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 import rtamt
 from rtamt.errors import BoundError, UsageError
 from rtamt.ros import Robustness, RosMonitor, Verdict, bind
-from rtamt.ros.report import Level
+from rtamt.ros.diagnostics import Level
 
 SECOND = 10**9
 #: What is said of messages that arrive at 0, which is a simulated clock that nobody has set.
@@ -503,7 +503,7 @@ def test_any_path_of_fields_is_read(name):
 @pytest.mark.parametrize(
     ("name", "sentence"),
     [
-        ("a.hnad.x", "'a' has no field 'hnad'; did you mean 'hand'? (it has fingers, hand, torque)"),
+        ("a.hnad.x", "'a' has no field 'hnad'; did you mean 'hand'? (fields: hand, fingers, torque)"),
         ("a.hand", "'a.hand' is no number but a Point; name one of its fields, such as a.hand.x"),
         ("a.hand.x.z", "'a.hand.x' is a number and has no field 'z'"),
         ('"a.hand[1].x"', "'a.hand' is no array, so that there is no 'a.hand[1].x' in a m/Arm"),

@@ -46,7 +46,7 @@ def test_an_argument_comes_before_a_parameter_and_that_before_the_default():
         (["--pace", "3"], "unrecognized arguments: --pace; see 'node --help'"),
         (
             [LISTING_8, "--time", "dens"],
-            "unknown time domain 'dens'; choose from discrete, dense; did you mean 'dense'?",
+            "unknown time domain 'dens'; did you mean 'dense'? (time domains: dense, discrete)",
         ),
     ],
 )

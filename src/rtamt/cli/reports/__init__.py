@@ -20,15 +20,22 @@ if TYPE_CHECKING:
 
     Report = Callable[[Sequence[Requirement], Sequence[Outcome]], str]
 
-#: Option of ``rtamt check`` to what makes the text of the file.
-REPORTS: Mapping[str, Report] = MappingProxyType({"junit": as_junit, "sarif": as_sarif})
+#: Option of ``rtamt check`` to the name of the format and what makes the text of the file. An HTML page has none:
+#: it is written while the check runs.
+REPORTS: Mapping[str, tuple[str, Report | None]] = MappingProxyType(
+    {
+        "junit": ("JUnit XML", as_junit),
+        "sarif": ("SARIF 2.1.0", as_sarif),
+        "html": ("an interactive HTML page", None),
+    }
+)
 
 
 def write_report(
-    kind: str, path: str, requirements: Sequence[Requirement], outcomes: Sequence[Outcome]
+    make: Report, path: str, requirements: Sequence[Requirement], outcomes: Sequence[Outcome]
 ) -> None:
-    """Write the report of one kind."""
-    write_output(path, REPORTS[kind](requirements, outcomes))
+    """Write the report that a function makes."""
+    write_output(path, make(requirements, outcomes))
 
 
 __all__ = ["REPORTS", "HtmlReport", "write_report"]

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import UsageError, choices
 from rtamt.extras import library, message_package
-from rtamt.ros.messages import DEFINITIONS
+from rtamt.ros.message_definitions import DEFINITIONS
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
