@@ -38,9 +38,15 @@ def test_an_answer_before_the_horizon_where_an_operand_does_not_matter(backend: 
 
 
 def test_masked_values_are_missing_values() -> None:
-    with pytest.raises(rtamt.TraceError) as info:
-        rtamt.parse("x >= 1").evaluate({"x": np.ma.array([1.0, 2.0, 3.0], mask=[0, 1, 0])})
-    assert str(info.value) == "'x' is NaN at sample 1, time 1 s: fill the gap or leave the sample out"
+    x = np.ma.array([1.0, 2.0, 3.0], mask=[0, 1, 0])
+    result = rtamt.parse("x >= 1").evaluate({"x": x})
+    assert (result.intervals.lower.tolist(), result.intervals.upper.tolist()) == ([0, -np.inf, 2], [0, np.inf, 2])
+    with pytest.raises(rtamt.EvaluationError) as info:
+        _ = rtamt.parse("always(x >= 1)").evaluate({"x": x}).robustness
+    assert str(info.value) == (
+        "the robustness at time 0 is only known to lie between -inf and 0, because samples are missing or "
+        "uncertain; read result.interval or result.intervals"
+    )
 
 
 def test_a_stamp_that_is_not_a_time() -> None:

@@ -24,11 +24,11 @@ def test_check_as_a_program():
     with start("check", SPEC, *TRACES) as process:
         out, err = process.communicate(timeout=60)
     assert (process.returncode, err) == (1, "")
-    assert [line.split()[-2:] for line in out.splitlines() if ".csv" in line] == [
-        ["3", "satisfied"],
-        ["1", "satisfied"],
-        ["-2", "violated"],
-        ["-1", "violated"],
+    assert [line.split(maxsplit=4)[4].split() for line in out.splitlines() if ".csv" in line] == [
+        ["3", "-", "satisfied"],
+        ["1", "-", "satisfied"],
+        ["-2", "2", "s", "violated"],
+        ["-1", "2", "s", "violated"],
     ]
     assert out.splitlines()[-1] == "2 satisfied, 2 violated"
 

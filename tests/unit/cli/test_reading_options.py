@@ -53,7 +53,7 @@ def test_nan_is_skipped_and_the_rest_put_on_one_clock(commands, write, run):
         )
     found = commands(MENDED, "log.csv", "--skip-nan", "x", "--resample", "500ms", "--how", "linear")
     *_, row, _, note = found["check"].out.splitlines()
-    assert row.split() == ["log.csv", "4", "500", "ms", "-1", "violated"]
+    assert row.split() == ["log.csv", "4", "500", "ms", "-1", "1.5", "s", "violated"]
     assert note == "note: log.csv: left out, NaN: 1 sample of x, the first at 0.5 s"
     assert found["explain"].out.splitlines()[2].startswith("critical point at 1.5 s: 'x >= 3' is -1")
     assert (

@@ -66,9 +66,9 @@ def test_inputs_of_every_kind(problem):
         (
             "duration",
             "durration",
-            "'durration' is no setting; there are specification, formula, plant, duration, ",
+            "'durration' is not a setting; did you mean 'duration'? (settings: duration, ",
         ),
-        ("budget", "buget", "'search.buget' is no setting; there are optimizer, budget, "),
+        ("budget", "buget", "'search.buget' is not a setting; did you mean 'budget'? (settings: budget, optimizer, "),
         (
             "thrower:throw",
             "thrower",
@@ -130,6 +130,6 @@ def test_the_command_prints_json_and_records(problem, capsys, tmp_path):
 
 def test_the_command_says_what_is_wrong(problem, capsys):
     assert main(["falsify", str(problem), "--optimizer", "magic"]) == 2
-    assert capsys.readouterr().err.startswith("rtamt: there is no optimizer 'magic', only cma, ")
+    assert capsys.readouterr().err.startswith("rtamt: there is no optimizer 'magic'; optimizers: cma, ")
     assert main(["falsify", str(problem), "--plot", str(Path("no") / "where.png")]) == 2
     assert "cannot write the picture 'no/where.png'" in capsys.readouterr().err

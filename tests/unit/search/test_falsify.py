@@ -252,8 +252,8 @@ def test_a_problem_that_is_none(inputs, duration, sentence):
     [
         (
             {"optimizer": "cmaes"},
-            "there is no optimizer 'cmaes', only cma, differential_evolution, dual_annealing, optuna, sobol, random; "
-            "did you mean 'cma'?",
+            "there is no optimizer 'cmaes'; did you mean 'cma'? (optimizers: cma, differential_evolution, "
+            "dual_annealing, optuna, sobol, random)",
         ),
         ({"budget": 0}, "the budget is 0; give a whole number, 1 or more"),
         ({"workers": 0}, "the number of workers is 0; give a whole number, 1 or more"),
