@@ -40,7 +40,10 @@ def test_an_answer_before_the_horizon_where_an_operand_does_not_matter(backend: 
 def test_masked_values_are_missing_values() -> None:
     x = np.ma.array([1.0, 2.0, 3.0], mask=[0, 1, 0])
     result = rtamt.parse("x >= 1").evaluate({"x": x})
-    assert (result.intervals.lower.tolist(), result.intervals.upper.tolist()) == ([0, -np.inf, 2], [0, np.inf, 2])
+    assert (result.intervals.lower.tolist(), result.intervals.upper.tolist()) == (
+        [0, -np.inf, 2],
+        [0, np.inf, 2],
+    )
     with pytest.raises(rtamt.EvaluationError) as info:
         _ = rtamt.parse("always(x >= 1)").evaluate({"x": x}).robustness
     assert str(info.value) == (

@@ -68,7 +68,11 @@ def test_inputs_of_every_kind(problem):
             "durration",
             "'durration' is not a setting; did you mean 'duration'? (settings: duration, ",
         ),
-        ("budget", "buget", "'search.buget' is not a setting; did you mean 'budget'? (settings: budget, optimizer, "),
+        (
+            "budget",
+            "buget",
+            "'search.buget' is not a setting; did you mean 'budget'? (settings: budget, optimizer, ",
+        ),
         (
             "thrower:throw",
             "thrower",
