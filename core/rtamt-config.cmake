@@ -1,13 +1,11 @@
-# find_package(rtamt CONFIG): what an operator outside this repository is built with.
+# find_package(rtamt CONFIG): what operators outside this repository, and programs in
+# C and C++, are built with.
 #
+#   rtamt::rtamt                             the C library and its header rtamt.h; not in the Python package
 #   rtamt::kernel                            the header rtamt/kernel.hpp
 #   rtamt_add_kernels(<name> <source>...)    a shared library of kernels, <name>.so or .dll
 
-if(NOT TARGET rtamt::kernel)
-  add_library(rtamt::kernel INTERFACE IMPORTED)
-  target_include_directories(rtamt::kernel INTERFACE "${CMAKE_CURRENT_LIST_DIR}/../include")
-  target_compile_features(rtamt::kernel INTERFACE cxx_std_20)
-endif()
+include("${CMAKE_CURRENT_LIST_DIR}/rtamt-targets.cmake")
 
 # Optimised unless the build says otherwise; contraction is off so that a kernel gives the same bits
 # as its definition on every machine.
