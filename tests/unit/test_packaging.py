@@ -91,3 +91,21 @@ def test_the_stub_names_what_the_core_has():
     assert set(described) == public
     for name, methods in described.items():
         assert {method for method in methods if not hasattr(getattr(core(), name), method)} == set()
+
+
+def test_every_vendored_folder_is_in_the_file_of_licences():
+    """The file is part of wheels and of the source distribution by the pattern in pyproject.toml."""
+    tracked = subprocess.run(["git", "ls-files"], cwd=ROOT, check=True, capture_output=True, text=True).stdout
+    vendored = {
+        found[1]
+        for found in map(re.compile(r"(.*/(?:third_party/[^/]+|vendor))/").match, tracked.split())
+        if found
+    }
+    assert len(vendored) >= 3
+    licences = ROOT / "LICENSE-THIRD-PARTY.txt"
+    assert (
+        set(re.findall(r"^.+ \((.+): .+\)$", licences.read_text(encoding="utf-8"), re.MULTILINE)) == vendored
+    )
+    assert [licences.match(name) for name in PROJECT["tool"]["scikit-build"]["wheel"]["license-files"]] == [
+        True
+    ]
