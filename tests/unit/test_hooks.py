@@ -146,3 +146,18 @@ def test_wheels_are_for_every_python_that_we_support():
     wheels = re.findall(r"cp3(\d+)-", PROJECT["tool"]["cibuildwheel"]["build"])
     assert list(map(int, wheels)) == [10, 11, 12, 13, 14]
     assert PROJECT["project"]["requires-python"] == ">=3.10"
+
+
+WORKFLOWS = [ROOT / "action.yml", *sorted((ROOT / ".github/workflows").glob("*.yml"))]
+
+
+@pytest.mark.parametrize("path", WORKFLOWS, ids=lambda path: path.name)
+def test_foreign_actions_are_pinned_by_hash_with_their_version_beside_it(path):
+    lines = re.findall(r"uses: (.*)", path.read_text(encoding="utf-8"))
+    assert [line for line in lines if not re.fullmatch(r"\S+@[0-9a-f]{40} # v\d+\.\d+\.\d+", line)] == []
+
+
+def test_the_workflow_of_a_public_host_runs_what_must_pass_here():
+    (job,) = yaml.safe_load((ROOT / ".github/workflows/ci.yml").read_text(encoding="utf-8"))["jobs"].values()
+    assert job["steps"][-1]["run"] == ".ci/run"
+    assert os.access(ROOT / ".ci/run", os.X_OK)
