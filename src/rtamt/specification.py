@@ -157,8 +157,7 @@ class Specification(SpecificationText):
 
     def with_units(self, recording: DomainTrace) -> DomainTrace:
         """Return a recording with the declared units of the variables whose source names none."""
-        units = {d.name: d.unit for d in self.document.declarations if d.unit and d.name in self.input_names}
-        return recording.with_units({**units, **recording.units}) if units else recording
+        return recording.with_units({**self.units, **recording.units}) if self.units else recording
 
     def query(
         self,

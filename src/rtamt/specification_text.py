@@ -203,6 +203,17 @@ class SpecificationText:
         return {}
 
     @cached_property
+    def units(self) -> Mapping[str, str]:
+        """The units that the text declares of the variables that the formula reads.
+
+        >>> import rtamt
+        >>> dict(rtamt.parse("input float v [km/h]; always(v <= 30)").units)
+        {'v': 'km/h'}
+        """
+        declared = {d.name: d.unit for d in self.document.declarations if d.unit}
+        return MappingProxyType({name: declared[name] for name in self.input_names if name in declared})
+
+    @cached_property
     def declared(self) -> tuple[str, ...]:
         """The names that the text declares: data may have them, also where the formula reads none of them."""
         return tuple(declaration.name for declaration in self.document.declarations)

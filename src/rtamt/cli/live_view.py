@@ -2,20 +2,22 @@
 
 from __future__ import annotations
 
-import shutil
 import sys
 import time
 from collections import deque
-from itertools import groupby
 from math import inf, isfinite
-from operator import itemgetter
 from typing import TYPE_CHECKING, Any
 
-from rtamt.cli.command import short, stamp_text
-from rtamt.cli.terminal import paint, use_color
+import numpy as np
+
+from rtamt.cli.command import short
+from rtamt.cli.terminal import use_color
+from rtamt.errors import escaped
+from rtamt.extras import library
+from rtamt.signals.trace import in_seconds
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Mapping, Sequence
     from typing import TextIO
 
 _BLOCKS = "▁▂▃▄▅▆▇█"
@@ -25,29 +27,51 @@ _MOST = 1000
 
 
 class Live:
-    """Draws over its own last lines on a terminal, at most some times a second."""
+    """Draws on a terminal with rich, at most some times a second; a context, at whose end the last picture stays.
+
+    ``units``: of variables, shown behind their values. What is printed on stderr meanwhile goes above the picture.
+    """
 
     #: Seconds between two pictures.
     PAUSE = 0.05
 
-    def __init__(self, title: str, stream: TextIO | None = None) -> None:
+    def __init__(
+        self, title: str, stream: TextIO | None = None, units: Mapping[str, str] | None = None
+    ) -> None:
+        stream = sys.stderr if stream is None else stream
+        console, text, live = (
+            library(f"rich.{name}", "--live", "cli") for name in ("console", "text", "live")
+        )
+        self._text = text.Text  # which reads no markup
+        self._live = live.Live(
+            self,
+            console=console.Console(file=stream, no_color=not use_color("auto", stream)),
+            auto_refresh=False,
+            redirect_stdout=False,
+        )
+        self.units = dict(units or {})
         self._title = title
-        self._stream = sys.stderr if stream is None else stream
-        self._color = use_color("auto", self._stream)
         self._values: deque[float] = deque(maxlen=_MOST)
         self._latest: dict[str, float] = {}
         self._known: Any = None
         self._lowest: tuple[float, Any] = (inf, None)
         self._samples = 0
-        self._drawn = 0
         self._next = 0.0
 
-    def sample(self, values: dict[str, float]) -> None:
+    def __enter__(self) -> Live:
+        self._live.start()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._live.stop()
+
+    def sample(self, values: Mapping[str, float]) -> None:
         """Take a sample that the monitor has taken."""
         self._samples += 1
         self._latest.update(values)
         if time.monotonic() >= self._next:
-            self.draw()
+            self._next = time.monotonic() + self.PAUSE
+            self._live.refresh()
 
     def point(self, stamp: Any, robustness: float) -> None:
         """Take a robustness that became known."""
@@ -56,43 +80,47 @@ class Live:
         if robustness < self._lowest[0] or self._lowest[1] is None:
             self._lowest = (robustness, stamp)
 
-    def draw(self) -> None:
-        """Draw over what was drawn before."""
-        self._next = time.monotonic() + self.PAUSE
-        lines = self._lines(max(shutil.get_terminal_size().columns - 1, 20))
-        self.clear()
-        self._stream.write("".join(f"{line}\n" for line in lines))
-        self._stream.flush()
-        self._drawn = len(lines)
+    def __rich_console__(self, _: object, options: Any) -> Iterator[Any]:
+        """Yield the lines, none wider than the terminal."""
+        seen = list(self._values)[-options.max_width :]
+        yield self._line(self._title, "bold")
+        yield self._line(self._verdict(), _color(seen[-1]) if seen else "")
+        yield self._text.assemble(*zip(blocks(seen), map(_color, seen), strict=True))
+        values = "  ".join(
+            f"{name} = {short(value)} {self.units.get(name, '')}".rstrip()
+            for name, value in self._latest.items()
+        )
+        yield self._line(f"{self._samples} samples  {values}")
 
-    def clear(self) -> None:
-        """Take away what was drawn, before anything else is printed."""
-        if self._drawn:
-            self._stream.write(f"\x1b[{self._drawn}F\x1b[J")
-            self._stream.flush()
-            self._drawn = 0
-
-    def _lines(self, width: int) -> list[str]:
-        values = " ".join(f"{name}={short(value)}" for name, value in self._latest.items())
-        lines = [self._title, self._verdict(), f"{self._samples} samples  {values}"]
-        cut = [line if len(line) <= width else f"{line[: width - 1]}…" for line in lines]
-        seen = list(self._values)[-width:]
-        kind = _kind(seen[-1]) if seen else ""
-        parts = groupby(zip(blocks(seen), map(_kind, seen), strict=True), key=itemgetter(1))
-        line = "".join(paint("".join(block for block, _ in part), of, self._color) for of, part in parts)
-        return [paint(cut[0], "head", self._color), paint(cut[1], kind, self._color), line, cut[2]]
+    def _line(self, text: str, style: str = "") -> Any:
+        return self._text(escaped(text).replace("\n", " "), style, no_wrap=True, overflow="ellipsis")
 
     def _verdict(self) -> str:
         if not self._values:
             return "… nothing is known yet"
         last = self._values[-1]
         sign = _SIGNS[last > 0] if last else "?"
-        lowest = f"lowest {short(self._lowest[0])} at {stamp_text(self._lowest[1])}"
-        return f"{sign} {short(last)} at {stamp_text(self._known)}  ({lowest})"
+        lowest = f"lowest {short(self._lowest[0])} at {rounded(self._lowest[1])}"
+        return f"{sign} {short(last)} at {rounded(self._known)}  ({lowest})"
 
 
-def _kind(robustness: float) -> str:
-    return "good" if robustness > 0 else "bad" if robustness < 0 else "error"
+def rounded(stamp: Any) -> str:
+    """Return a time for people: to the millisecond, below a second to six digits.
+
+    >>> rounded(12.300000000000001), rounded(1.25e-5), rounded(1700000000.1)
+    ('12.3 s', '1.25e-05 s', '1700000000.1 s')
+    >>> rounded(np.datetime64("2026-05-01T12:00:00.123456789")), rounded(np.timedelta64(1500, "ms"))
+    ('2026-05-01T12:00:00.123', '1.5 s')
+    """
+    if isinstance(stamp, np.datetime64):
+        return str(stamp.astype("datetime64[ms]"))
+    seconds = float(in_seconds(np.array([stamp]))[0])
+    text = f"{seconds:.3f}".rstrip("0").rstrip(".") if abs(seconds) >= 1 else short(seconds)
+    return f"{text} s"
+
+
+def _color(robustness: float) -> str:
+    return "green" if robustness > 0 else "red" if robustness < 0 else "yellow"
 
 
 def blocks(values: Sequence[float]) -> str:

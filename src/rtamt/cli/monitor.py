@@ -5,9 +5,10 @@ from __future__ import annotations
 import json
 import sys
 from collections import deque
+from contextlib import nullcontext
 from dataclasses import dataclass
 from math import inf
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
@@ -81,8 +82,8 @@ A line that is no sample ends the monitor with exit code 2. With --keep-going it
 left out, and the exit code is 2 at the end. A sample that is left out leaves a gap in time, which
 --tolerance inf allows: the next sample then takes its place.
 
---live draws on the terminal (stderr) instead: verdict, robustness so far, lowest value, latest samples; what
-is piped on stays as it is.
+--live draws on the terminal (stderr) instead: verdict, robustness so far, lowest value, latest samples with
+their units; what is piped on stays as it is. It needs the package rich: pip install 'rtamt[cli]'.
 
 examples:
   echo '{"time": 0, "x": 5}' | rtamt monitor "x >= 3"
@@ -122,10 +123,10 @@ def run(args: argparse.Namespace) -> int:
         raise CommandError(f"the tolerance is {args.tolerance:g}; give a fraction of the period, such as 0.1")
     spec = read_specification(args, args.time)
     dense = spec.domain.continuous
-    live = _live(printed(spec.formula)) if args.live else None
+    live = _live(printed(spec.formula), spec.units) if args.live else None
     told = Output(verdicts=spec.semantics == "boolean", live=live)
     names = tuple(spec.requirements) if len(spec.requirements) > 1 else ()
-    watched: SampleFeed | EventFeed | EagerFeed | IntervalFeed
+    watched: Feed
     early = _early(spec, args)
     if early is not None:
         watched = early
@@ -138,6 +139,12 @@ def run(args: argparse.Namespace) -> int:
         raise CommandError(f"{STDIN} is closed: give one JSON object a line, or CSV with a header row")
     if sys.stdin.isatty():
         complain("reading samples from the terminal, one JSON object a line; Ctrl-D ends")
+    with nullcontext() if live is None else live:
+        return _follow(watched, samples, live, keep_going=args.keep_going)
+
+
+def _follow(watched: Feed, samples: Samples, live: Live | None, *, keep_going: bool) -> int:
+    """Feed the monitor from stdin until the end of input; return the exit code."""
     code = OK
     for number, line in enumerate(sys.stdin.buffer, 1):
         try:
@@ -147,19 +154,16 @@ def run(args: argparse.Namespace) -> int:
         else:
             problem = watched.take(*sample, number) if sample is not None else ""
             if live is not None and sample is not None and not problem:
+                live.units.update(samples.units)
                 live.sample(sample[1])
         if problem:
-            if live is not None:
-                live.clear()
             complain(problem)
             code = ERROR
-            if not args.keep_going:
+            if not keep_going:
                 return code
     if not watched.monitor.samples:
         raise CommandError(f"{STDIN} has no samples: give one JSON object a line, or CSV with a header row")
     watched.finish()
-    if live is not None:
-        live.draw()
     return code
 
 
@@ -181,10 +185,10 @@ def _watched(spec: Specification, tolerance: float | None, told: Output, names: 
     return SampleFeed(monitor, told, names, assumed=spec.period is None and tolerance is None)
 
 
-def _live(title: str) -> Live:
+def _live(title: str, units: Mapping[str, str]) -> Live:
     if not sys.stderr.isatty():
         raise CommandError("--live draws on a terminal, and stderr is none: leave it out")
-    return Live(title)
+    return Live(title, units=units)
 
 
 @dataclass(frozen=True, slots=True)
@@ -321,5 +325,8 @@ class EventFeed:
                 started = {name: self._latest[name] for name in self._names if name in self._latest}
                 self._output.point(time, self._robustness, started)
 
+
+#: What takes the samples, and prints what becomes known.
+Feed: TypeAlias = SampleFeed | EventFeed | EagerFeed | IntervalFeed
 
 COMMAND = Command("monitor", "watch a stream: samples on stdin, robustness on stdout", configure, run)

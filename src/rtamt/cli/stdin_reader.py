@@ -55,6 +55,8 @@ class Samples:
         self._choice = Choice(time=time_name, units={} if unit is None else {TIME: unit})
         self._dense = dense
         self._read: Callable[[str, int], Sample] | None = None
+        #: The units that the header of CSV gives.
+        self.units: dict[str, str] = {}
 
     def read(self, line: bytes, number: int) -> Sample | None:
         """Return the sample in line ``number`` (from 1); None for an empty line, a comment, the CSV header.
@@ -76,7 +78,9 @@ class Samples:
                 sample = reader.read(text, number)
                 self._read = reader.read
                 return sample
-            self._read = CsvSamples(self._names, stamps, self._dense, text, number).read
+            rows = CsvSamples(self._names, stamps, self._dense, text, number)
+            self.units = rows.units
+            self._read = rows.read
         except TraceError as error:
             if str(error).startswith(STDIN):
                 raise
@@ -200,6 +204,7 @@ class CsvSamples:
         selection = stamps.look((column, None) for column in self._header.names)
         assert selection is not None
         self._columns = [Column(name, self._header.names.index(f.column)) for name, f in selection.signals]
+        self.units = {name: field.unit for name, field in selection.signals if field.unit}
 
     def read(self, text: str, number: int) -> Sample:
         """Return the sample in one line."""

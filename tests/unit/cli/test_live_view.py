@@ -1,27 +1,46 @@
 """``rtamt monitor --live`` on a terminal of its own."""
 
+import io
 import os
 import pty
 import re
 import subprocess
 import sys
 
-from rtamt.cli.live_view import Live
+import numpy as np
+
+from rtamt.cli.live_view import Live, rounded
 
 LINES = "".join(f'{{"time": {t}, "x": {x}}}\n' for t, x in enumerate([5, 4, 1, 6]))
 
 
-def monitor(stdout):
+class Terminal(io.StringIO):
+    """A terminal that remembers what is written."""
+
+    def isatty(self):
+        return True
+
+
+def picture(live, stream):
+    """Return the lines of the last picture, without colours and codes."""
+    with live:
+        stream.seek(0)
+        stream.truncate()
+    plain = re.sub(r"\x1b\[[\d;?]*[a-zA-Z]", "", stream.getvalue().rpartition("\x1b[2K")[2])
+    return [line.rstrip() for line in plain.splitlines()]
+
+
+def monitor(stdout, lines=LINES, *options):
     """Run the monitor with a terminal for stderr; return the code, what is on the terminal, and stdout."""
     main, terminal = pty.openpty()
-    command = [sys.executable, "-m", "rtamt", "monitor", "always[0:1](x >= 3)", "--live"]
+    command = [sys.executable, "-m", "rtamt", "monitor", "always[0:1](x >= 3)", "--live", *options]
     environment = {**os.environ, "TERM": "xterm", "NO_COLOR": ""}
     out = terminal if stdout == "terminal" else subprocess.PIPE
     with subprocess.Popen(
         command, stdin=subprocess.PIPE, stdout=out, stderr=terminal, env=environment
     ) as process:
         os.close(terminal)
-        piped, _ = process.communicate(LINES.encode())
+        piped, _ = process.communicate(lines.encode())
     seen = b""
     try:
         while chunk := os.read(main, 65536):
@@ -41,17 +60,49 @@ def test_the_view_is_on_the_terminal_and_json_goes_through_the_pipe():
         '{"time": 2.0, "robustness": -2.0}',
         '{"time": 3.0, "robustness": 3.0}',
     ]
-    last = seen.rpartition("\x1b[J")[2].splitlines()
+    last = [line.strip() for line in seen.rpartition("\x1b[2K")[2].splitlines()]
     assert "always[0:1](x >= 3)" in last[0]
-    assert "✓ 3 at 3.0  (lowest -2 at 1.0)" in last[1]
-    assert [re.sub(r"\x1b\[\d*m", "", line) for line in last[2:]] == ["▅▁▁█", "4 samples  x=6"]
-    assert "\x1b[31m▁▁\x1b[0m" in last[2]
+    assert "✓ 3 at 3 s  (lowest -2 at 1 s)" in last[1]
+    assert [re.sub(r"\x1b\[[\d?]*[a-z]", "", line) for line in last[2:4]] == ["▅▁▁█", "4 samples  x = 6"]
+    assert "\x1b[31m▁" in last[2]
+
+
+def test_units_are_those_of_the_header_or_of_the_declaration():
+    lines = "time,x [m/s]\n0,5\n1,6\n"
+    assert "2 samples  x = 6 m/s" in monitor("pipe", lines)[1]
+
+
+def test_a_bad_line_is_reported_above_the_picture():
+    code, seen, _ = monitor("pipe", LINES + "{\n", "--keep-going")
+    assert code == 2
+    assert seen.count("rtamt: stdin, line 5: ") == 1
+    assert seen.rindex("4 samples  x = 6") > seen.index("rtamt: stdin, line 5: ")
+
+
+def test_a_title_draws_nothing_but_its_text(monkeypatch):
+    monkeypatch.setenv("TERM", "xterm")
+    stream = Terminal()
+    live = Live("[red]\x1b[2J[/red] :smile:", stream)
+    assert "[red]\\x1b[2J[/red] :smile:" in picture(live, stream)[0]
+
+
+def test_times_are_rounded_and_dates_keep_milliseconds():
+    assert rounded(0.30000000000000004) == "0.3 s"
+    assert rounded(np.timedelta64(1_700_000_000_100_000_001, "ns")) == "1700000000.1 s"
+    assert rounded(np.datetime64("2026-05-01T12:00:00.123456789")) == "2026-05-01T12:00:00.123"
+
+
+def test_without_rich_it_names_the_extra(run, monkeypatch):
+    monkeypatch.setattr("sys.stderr", Terminal())
+    monkeypatch.setitem(sys.modules, "rich.console", None)
+    assert run("monitor", "x >= 3", "--live", stdin=LINES)[0] == 2
+    assert "pip install 'rtamt[cli]'" in sys.stderr.getvalue()
 
 
 def test_on_a_terminal_alone_the_view_replaces_the_json():
     code, seen, _ = monitor("terminal")
     assert code == 0
-    assert "4 samples  x=6" in seen
+    assert "4 samples  x = 6" in seen
     assert "robustness" not in seen
 
 
@@ -60,13 +111,14 @@ def test_without_a_terminal_it_is_refused(run):
     assert answer == (2, "", "rtamt: --live draws on a terminal, and stderr is none: leave it out\n")
 
 
-def test_a_line_is_never_wider_than_the_terminal(monkeypatch, capsys):
+def test_a_line_is_never_wider_than_the_terminal(monkeypatch):
     monkeypatch.setenv("COLUMNS", "30")
-    live = Live("always(" + "x" * 90 + " >= 3)", sys.stderr)
-    live.point(0.0, float("inf"))
+    monkeypatch.setenv("TERM", "xterm")
+    stream = Terminal()
+    live = Live("always(" + "x" * 90 + " >= 3)", stream)
+    for time in range(50):
+        live.point(time, float("inf"))
     live.sample({f"signal_{i}": i for i in range(20)})
-    lines = capsys.readouterr().err.splitlines()
+    lines = picture(live, stream)
     assert len(lines) == 4
-    assert max(map(len, lines)) == 29
-    live.clear()
-    assert capsys.readouterr().err == "\x1b[4F\x1b[J"
+    assert max(map(len, lines)) == 30
