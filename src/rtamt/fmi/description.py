@@ -24,18 +24,22 @@ _LOG = {
 
 @dataclass(frozen=True, slots=True)
 class Unit:
-    """What a model description is about. ``token`` names the program, so that they cannot be mixed up."""
+    """What a model description is about. ``token`` names the program, so that they cannot be mixed up.
+
+    ``units``: the declared units of inputs and parameters, by name.
+    """
 
     program: Program
     name: str
     identifier: str
     token: str
     tool: str
+    units: Mapping[str, str]
 
     @property
     def variables(self) -> tuple[Variable, ...]:
         """The variables of the unit."""
-        return variables_of(self.program)
+        return variables_of(self.program, self.units)
 
 
 def identifier(name: str) -> str:
@@ -68,13 +72,14 @@ def _fmi2(unit: Unit) -> Element:
         canGetAndSetFMUstate="true",
         canSerializeFMUstate="true",
     )
+    _units(root, variables)
     _logs(root)
     _experiment(root, unit)
     listed = _add(root, "ModelVariables")
     tags = {"real": "Real", "integer": "Integer", "boolean": "Boolean"}
     for variable in variables:
         scalar = _add(listed, "ScalarVariable", **_common(variable))
-        _add(scalar, tags[variable.type], start=_start(variable))
+        _add(scalar, tags[variable.type], start=_start(variable), **_unit(variable))
     outputs = _add(_add(root, "ModelStructure"), "Outputs")
     for variable in variables:
         if variable.causality == "output":  # counted from 1; nothing depends on an input directly
@@ -93,12 +98,13 @@ def _fmi3(unit: Unit) -> Element:
         canGetAndSetFMUState="true",
         canSerializeFMUState="true",
     )
+    _units(root, variables)
     _logs(root)
     _experiment(root, unit)
     listed = _add(root, "ModelVariables")
     tags = {"real": "Float64", "integer": "Int32", "boolean": "Boolean"}
     for variable in variables:
-        _add(listed, tags[variable.type], **_common(variable), start=_start(variable))
+        _add(listed, tags[variable.type], **_common(variable), start=_start(variable), **_unit(variable))
     reference = str(len(variables))
     _add(
         listed,
@@ -133,6 +139,17 @@ def _root(unit: Unit, version: str, rest: Mapping[str, str]) -> Element:
 
 def _add(parent: Element, tag: str, **attributes: str) -> Element:
     return SubElement(parent, tag, attributes)
+
+
+def _units(root: Element, variables: tuple[Variable, ...]) -> None:
+    # As names only: what a unit is in base units is not declared.
+    definitions = _add(root, "UnitDefinitions")
+    for name in sorted({variable.unit for variable in variables} - {""}):
+        _add(definitions, "Unit", name=name)
+
+
+def _unit(variable: Variable) -> dict[str, str]:
+    return {"unit": variable.unit} if variable.unit else {}
 
 
 def _logs(root: Element) -> None:

@@ -66,7 +66,8 @@ def export(
     name = spec.name or path.stem
     # A program ends in its checksum; the runtime looks at the same four bytes.
     token = f"rtamt-{int.from_bytes(code[-4:], 'little'):08x}"
-    unit = Unit(program, name, identifier(name), token, f"rtamt {rtamt.__version__}")
+    units = {declared.name: declared.unit for declared in spec.document.declarations if declared.unit}
+    unit = Unit(program, name, identifier(name), token, f"rtamt {rtamt.__version__}", units)
     library = runtime.library()
     parts = {
         "modelDescription.xml": description(unit, version),

@@ -14,6 +14,8 @@ from rtamt.errors import UsageError
 from rtamt.language.units import format_duration
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from rtamt.compiler.program import Program
 
 #: The grammar of the naming convention "structured": names with dots, or anything in single quotes.
@@ -22,7 +24,10 @@ _STRUCTURED = re.compile(r"[A-Za-z_]\w*(\.[A-Za-z_]\w*)*", re.ASCII)
 
 @dataclass(frozen=True, slots=True)
 class Variable:
-    """One variable of a unit. ``type``: real, integer or boolean; ``causality``: input, output, parameter."""
+    """One variable of a unit. ``type``: real, integer or boolean; ``causality``: input, output, parameter.
+
+    ``unit``: of the value, such as m/s; empty if none is declared.
+    """
 
     name: str
     reference: int
@@ -30,10 +35,11 @@ class Variable:
     causality: str
     start: float
     description: str
+    unit: str
 
 
-def variables_of(program: Program) -> tuple[Variable, ...]:
-    """Return the variables of the unit that carries a program.
+def variables_of(program: Program, units: Mapping[str, str]) -> tuple[Variable, ...]:
+    """Return the variables of the FMU that carries a program; ``units``: the declared ones, by name.
 
     Raises :class:`UsageError` where two would have the same name.
     """
@@ -41,7 +47,7 @@ def variables_of(program: Program) -> tuple[Variable, ...]:
     assert metadata is not None
     found: list[Variable] = []
 
-    def add(name: str, kind: str, causality: str, start: float, description: str) -> None:
+    def add(name: str, kind: str, causality: str, start: float, description: str, unit: str) -> None:
         other = next((v for v in found if v.name == name), None)
         if other is not None or name == "time":
             taken = "the time" if other is None else f"an {other.causality}"
@@ -49,40 +55,51 @@ def variables_of(program: Program) -> tuple[Variable, ...]:
                 f"the {causality} '{name}' has the name that {taken} of the unit has already: rename it in the "
                 f"specification"
             )
-        found.append(Variable(name, len(found), kind, causality, start, description))
+        found.append(Variable(name, len(found), kind, causality, start, description, unit))
 
     for name in program.inputs:
-        add(name, "real", "input", 0.0, "a variable of the requirement")
+        add(name, "real", "input", 0.0, "a variable of the requirement", units.get(name, ""))
     for output, lag in zip(metadata.outputs[::2], program.lags[::2], strict=True):
         requirement = output.removeprefix("robustness")
-        for name, kind, description in _outputs(format_duration(lag * program.period)):
-            add(f"{name}{requirement}", kind, "output", 0.0, description)
+        for name, kind, unit, description in _outputs(format_duration(lag * program.period)):
+            add(f"{name}{requirement}", kind, "output", 0.0, description, unit)
     for name, places in metadata.parameters.items():
         value = program.instructions[places[0]].x
-        add(name, "real", "parameter", value, "a constant of the requirement")
+        add(name, "real", "parameter", value, "a constant of the requirement", units.get(name, ""))
     return tuple(found)
 
 
-def _outputs(late: str) -> tuple[tuple[str, str, str], ...]:
-    """Return the names, types and descriptions of the outputs of one requirement; ``late``: its horizon."""
+def _outputs(late: str) -> tuple[tuple[str, str, str, str], ...]:
+    """Return the names, types, units and descriptions of the outputs of one requirement; ``late``: its horizon."""
     return (
         (
             "robustness",
             "real",
+            "",
             f"how far the behaviour is from violating the requirement at known_since ({late} before the last "
             f"sample); 0 while known is false",
         ),
-        ("verdict", "integer", "1 satisfied, -1 violated at known_since; 0 while known is false"),
-        ("known", "boolean", "whether the horizon has passed, so that robustness and verdict mean something"),
-        ("known_since", "real", "the time in s that robustness and verdict are for; 0 while known is false"),
+        ("verdict", "integer", "", "1 satisfied, -1 violated at known_since; 0 while known is false"),
+        (
+            "known",
+            "boolean",
+            "",
+            "whether the horizon has passed, so that robustness and verdict mean something",
+        ),
+        (
+            "known_since",
+            "real",
+            "s",
+            "the time in s that robustness and verdict are for; 0 while known is false",
+        ),
     )
 
 
 def convention(variables: tuple[Variable, ...]) -> str:
     """Return the naming convention that all names keep: ``structured`` where they do, else ``flat``.
 
-    >>> x = Variable("req.value", 0, "real", "input", 0.0, "")
-    >>> convention((x,)), convention((Variable("robot/speed", 0, "real", "input", 0.0, ""),))
+    >>> x = Variable("req.value", 0, "real", "input", 0.0, "", "")
+    >>> convention((x,)), convention((Variable("robot/speed", 0, "real", "input", 0.0, "", ""),))
     ('structured', 'flat')
     """
     return "structured" if all(_STRUCTURED.fullmatch(v.name) for v in variables) else "flat"

@@ -408,3 +408,13 @@ def test_each_of_several_requirements_has_outputs_as_soon_as_it_is_known(exporte
     assert (unit.get("known_since"), unit.get("known_since.R1")) == (0, 0)
     assert unit.get("known_since.R2") == pytest.approx(0.2)
     unit.close()
+
+
+@BOTH
+def test_declared_units_are_in_the_model_description(exported, version):
+    text = """input float v [m/s]  float "q[2]" [rad]  float free  const float limit = 3 [m/s]
+    always[0:1s](v >= limit and "q[2]" <= free)"""
+    described = fmpy.read_model_description(str(exported(text, version, period="1s")))
+    units = {variable.name: variable.unit for variable in described.modelVariables if variable.unit}
+    assert units == {"v": "m/s", "q[2]": "rad", "limit": "m/s", "known_since": "s"}
+    assert [unit.name for unit in described.unitDefinitions] == ["m/s", "rad", "s"]
