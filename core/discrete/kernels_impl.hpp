@@ -18,9 +18,9 @@ namespace detail {
 struct Make {
     using Pointer = std::unique_ptr<Kernel>;
     const Instruction& at;
-    std::int64_t lag; // of the operands
-    void* state;
-    void* journal;
+    std::int64_t lag = 0; // of the operands
+    void* state = nullptr;
+    void* journal = nullptr;
     Same same;
 
     template <class Operation>

@@ -282,7 +282,7 @@ nb::object DenseMonitor::signal_of(const Events& events) const noexcept {
     const std::size_t times = events.count * sizeof(*events.times);
     const std::size_t values = events.count * sizeof(*events.values);
     auto signal = nb::steal(type->tp_alloc(type, 0));
-    auto bytes =
+    const auto bytes =
         nb::steal(PyBytes_FromStringAndSize(nullptr, static_cast<Py_ssize_t>(times + values)));
     if (!signal.is_valid() || !bytes.is_valid()) return {};
     if (events.count != 0) {

@@ -21,6 +21,7 @@ from rtamt.compiler.plan import compile_program
 from rtamt.engine import _core
 from rtamt.language.parser import parse_formula
 from rtamt.rewrite.desugar import desugar
+from rtamt.signals.discrete import Discrete
 from rtamt.signals.domains import DOMAINS
 
 if TYPE_CHECKING:
@@ -165,7 +166,7 @@ def test_inputs_that_nothing_stands_behind_are_refused_before_memory_is_taken_fo
 
 
 def test_a_value_before_its_operands_are_known_is_refused() -> None:
-    program = compiled("always[0:1] eventually[0:3] x", "discrete")
+    program = compiled("always[0:1] eventually[0:3] x", Discrete)
     body = bytearray(program[:-CHECKSUM])
     struct.pack_into("<q", body, HEADER + RECORD * (records(program) - 1) + 32, 2)
     with pytest.raises(ValueError, match="^" + REFUSED) as info:

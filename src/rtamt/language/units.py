@@ -23,12 +23,13 @@ from numbers import Rational, Real
 from types import MappingProxyType
 from typing import TYPE_CHECKING, SupportsFloat, TypeAlias
 
+import numpy as np
+
 from rtamt.errors import UsageError, choices, shown
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    import numpy as np
     from numpy.typing import NDArray
 
 #: Seconds, or text with a unit, such as ``"100ms"``.
@@ -148,7 +149,8 @@ def positive_period(period: Duration, what: str = "sampling period") -> Fraction
 
 def in_seconds(numbers: NDArray[np.float64], unit: Fraction) -> NDArray[np.float64]:
     """Return doubles in seconds, each rounded once: by a whole number, where a product with 0.001 would round twice."""
-    return numbers * float(unit) if unit >= 1 else numbers / float(1 / unit)
+    with np.errstate(over="ignore"):  # the caller rejects infinite times
+        return numbers * float(unit) if unit >= 1 else numbers / float(1 / unit)
 
 
 def decimal(number: Fraction) -> str | None:

@@ -81,8 +81,8 @@ def refuse_encodings(path: str) -> None:
         for kind, data, complete in _records(file, size):
             records = [(kind, data)] if kind != _CHUNK else _whole_records(data) if complete else []
             for part, content in records:
-                if part == _CHANNEL:
-                    topic, encoding = _channel(content)
+                if part == _CHANNEL and (channel := _channel(content)):
+                    topic, encoding = channel
                     if encoding not in _ENCODINGS:
                         raise TraceError(
                             f"'{path}' cannot be read: the messages on {topic} are {encoding or 'of no encoding'}, "
@@ -92,10 +92,12 @@ def refuse_encodings(path: str) -> None:
                 return  # the first messages: what follows would have to be read whole
 
 
-def _channel(data: bytes) -> tuple[str, str]:
-    """Return topic and encoding of a channel."""
+def _channel(data: bytes) -> tuple[str, str] | None:
+    """Return topic and encoding of a channel; None if it is damaged, which the reader of the file reports."""
     texts, at = [], 4  # after its number and that of its schema
     for _ in range(2):
+        if len(data) < at + 4:
+            return None
         (length,) = struct.unpack_from("<I", data, at)
         texts.append(printable(data[at + 4 : at + 4 + length].decode("utf-8", "replace")))
         at += 4 + length

@@ -175,6 +175,6 @@ def test_a_domain_that_there_is_not_is_said(tmp_path, monkeypatch, capsys, domai
 
 def test_a_type_that_is_not_known_is_said(dds):
     node = dds.node("--distro", "hummble", "--period", "1")
-    node.wait_for_output("rtamt: unknown distribution 'hummble' of ROS 2, only ")
+    node.wait_for_output("rtamt: unknown distribution 'hummble' of ROS 2; did you mean 'humble'? ")
     wait_for(lambda: node.popen.poll() is not None, "the end of the command")
     assert node.stop() == 2
