@@ -133,7 +133,7 @@ $(VENV)/.extras: $(VENV)/.core
 
 # Debian's packages that some tests run against; where they cannot be had, those tests are skipped and say so.
 # CI skips none: there it is an error.
-PACKAGES := postgresql chromium zsh fish
+PACKAGES := postgresql chromium zsh fish pkg-config
 # ROS 1: master, rospy, bags, and what builds the workspace in ros/.
 PACKAGES += ros-core catkin rosbash python3-rosbag python3-rospkg python3-genpy ros-message-generation
 PACKAGES += ros-std-msgs python3-std-msgs python3-nav-msgs python3-geometry-msgs python3-diagnostic-msgs
