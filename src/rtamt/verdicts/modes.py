@@ -91,9 +91,12 @@ def clock_of(mode: Mode, domain: TimeDomain, unit: str | None) -> TimeDomain:
 
 
 def semantics_in(mode: Mode, semantics: str | PredicateSemantics) -> str | PredicateSemantics:
-    """Return the semantics whose sign settles: where a predicate is true or false, ``>=`` and ``>`` differ at equality.
+    """Return the semantics whose sign settles the verdicts of a mode.
+
+    Whether a formula holds is the same under every semantics, as for ``Result.satisfied``; ``>=`` and ``>`` differ
+    at equality.
 
     >>> semantics_in(MODES["eager"], "standard"), semantics_in(MODES["eager"], "output_robustness")
-    ('boolean', 'output_robustness')
+    ('boolean', 'boolean')
     """
-    return "boolean" if mode.boolean and semantics == "standard" else semantics
+    return "boolean" if mode.boolean else semantics

@@ -9,6 +9,7 @@ import pytest
 
 import rtamt
 from rtamt import Interval, Verdict
+from rtamt.rewrite.semantics import SEMANTICS
 
 SETTINGS = {"verdict": "interval", "ranges": {"x": (0, 10)}}
 
@@ -29,6 +30,15 @@ def test_each_sample_is_reported_once_and_at_the_first_that_settles_it():
     assert monitor.update(2, x=4) == []
     assert monitor.finish() == [Verdict(2.0, True, 2.0)]
     assert monitor.finish() == []
+
+
+@pytest.mark.parametrize("backend", ["cpp", "python"])
+@pytest.mark.parametrize("semantics", SEMANTICS)
+def test_whether_a_formula_holds_is_the_same_under_every_semantics(semantics, backend):
+    text = "input float x; output float y; x >= 3 -> eventually[0:2](y >= 1)"
+    monitor = rtamt.parse(text, semantics=semantics, backend=backend).monitor(verdict="eager")
+    found = [v for k, x in enumerate([5, 4, 3, 2]) for v in monitor.update(k, x=x, y=0)] + monitor.finish()
+    assert sorted((v.time, v.satisfied) for v in found) == [(0, False), (1, False), (2, False), (3, True)]
 
 
 def test_what_is_settled_before_it_is_reached_waits():
