@@ -26,12 +26,8 @@ if TYPE_CHECKING:
     from rtamt.signals.outcomes import BoundedSignal
 
 
-class CompiledDense(Backend):
-    """The compiled core."""
-
-    def evaluator(self, formulas: tuple[Formula, ...], step: Fraction, inputs: tuple[str, ...]) -> Evaluator:
-        """See :class:`Backend`."""
-        return Evaluator(formulas, step, inputs)
+class _DenseBackend(Backend):
+    """A back end of dense time, where bounds are computed by the definition."""
 
     def bounds(
         self,
@@ -39,8 +35,16 @@ class CompiledDense(Backend):
         step: Fraction,  # noqa: ARG002
         inputs: tuple[str, ...],  # noqa: ARG002
     ) -> Callable[[DenseTrace], list[BoundedSignal]]:
-        """See :class:`Backend`: by the definition."""
+        """See :class:`Backend`."""
         return lambda trace: [bounded.dense(formula, trace) for formula in formulas]
+
+
+class CompiledDense(_DenseBackend):
+    """The compiled core."""
+
+    def evaluator(self, formulas: tuple[Formula, ...], step: Fraction, inputs: tuple[str, ...]) -> Evaluator:
+        """See :class:`Backend`."""
+        return Evaluator(formulas, step, inputs)
 
     def session(
         self,
@@ -55,7 +59,7 @@ class CompiledDense(Backend):
         return EventProgram(formulas, inputs, domain, ignored, parts=parts)
 
 
-class DefinedDense(Backend):
+class DefinedDense(_DenseBackend):
     """The definition."""
 
     def evaluator(
@@ -71,15 +75,6 @@ class DefinedDense(Backend):
             return [(each.times, each.values) for each in steps]
 
         return evaluated
-
-    def bounds(
-        self,
-        formulas: tuple[Formula, ...],
-        step: Fraction,  # noqa: ARG002
-        inputs: tuple[str, ...],  # noqa: ARG002
-    ) -> Callable[[DenseTrace], list[BoundedSignal]]:
-        """See :class:`Backend`."""
-        return lambda trace: [bounded.dense(formula, trace) for formula in formulas]
 
     def session(
         self,
