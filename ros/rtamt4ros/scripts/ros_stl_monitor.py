@@ -13,6 +13,7 @@ import sys
 import threading
 import time
 import xmlrpc.client
+from concurrent.futures import ThreadPoolExecutor
 
 import rosgraph
 import rospy
@@ -70,16 +71,38 @@ class Node:
             self.publish(self.monitor.message(topic, message, rospy.Time.now().to_nsec()))
 
     def run(self):
-        """Look at the clock until the node is shut down."""
-        while not rospy.is_shutdown():
-            with self.lock:
-                now = rospy.Time.now().to_nsec()
-                if now:  # simulated time is 0 until somebody publishes it
-                    self.publish(self.monitor.tick(now))
-                notices = self.monitor.notices()
-                conditions = self.conditions(now, notices)
-            self.tell(now, notices, conditions)  # messages need not wait for that
-            self.sleep(self.monitor.pause(rospy.Time.now().to_nsec()))
+        """Monitor until the node is shut down, while the calling thread only handles signals.
+
+        rospy closes the connections in its signal handler. A handler that interrupts a thread inside publish()
+        waits forever for the queue that this thread has locked.
+        """
+        with ThreadPoolExecutor(1) as pool:
+            work = pool.submit(self.work)
+            work.add_done_callback(lambda _: rospy.signal_shutdown("the monitor has ended"))
+            rospy.spin()
+        work.result()
+
+    def work(self):
+        """Log what is monitored; read the clock, sample and publish until the node is shut down."""
+        for output in self.monitor.binding.outputs:
+            rospy.loginfo("%s: %s", output.name, output.specification.formula)
+        try:
+            while not rospy.is_shutdown():
+                self.cycle()
+        except rospy.ROSException:
+            if not rospy.is_shutdown():  # which closes topics that are being published
+                raise
+
+    def cycle(self):
+        """Sample and publish what is due, then sleep."""
+        with self.lock:
+            now = rospy.Time.now().to_nsec()
+            if now:  # simulated time is 0 until somebody publishes it
+                self.publish(self.monitor.tick(now))
+            notices = self.monitor.notices()
+            conditions = self.conditions(now, notices)
+        self.tell(now, notices, conditions)  # messages need not wait for that
+        self.sleep(self.monitor.pause(rospy.Time.now().to_nsec()))
 
     def sleep(self, seconds):
         """Sleep, or wait for the next simulated instant."""
@@ -184,10 +207,7 @@ def main():
         return 0
     Registration().start()
     gc.freeze()  # what is here stays: looking through it again and again would make messages wait
-    for output in node.monitor.binding.outputs:
-        rospy.loginfo("%s: %s", output.name, output.specification.formula)
-    with contextlib.suppress(rospy.ROSInterruptException):
-        node.run()
+    node.run()
     return 0
 
 
