@@ -5,7 +5,7 @@
 // input, and every kernel brings its events up to it (kernel.hpp). finish() lets every input hold
 // its last value and moves the frontier on until the outputs are known at the latest last time.
 //
-// Kernels run in the two groups of guard_plan.hpp. An update of more than one block runs the
+// Kernels run in the two groups of rollback_plan.hpp. An update of more than one block runs the
 // guarded group over the whole chunk once to look for undefined values, takes it back, and then
 // runs everything.
 //

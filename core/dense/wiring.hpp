@@ -8,8 +8,8 @@
 // for other inputs.
 #pragma once
 
-#include "../program/guard_plan.hpp"
 #include "../program/program.hpp"
+#include "../program/rollback_plan.hpp"
 #include "../values/domain.hpp"
 #include "events.hpp"
 #include "input_queue.hpp"
@@ -44,7 +44,7 @@ class Wiring {
     Wiring& operator=(Wiring&&) = delete;
 
     [[nodiscard]] const Program& program() const noexcept { return program_; }
-    [[nodiscard]] const GuardPlan<Unit>& units() const noexcept { return units_; }
+    [[nodiscard]] const RollbackPlan<Unit>& units() const noexcept { return units_; }
     [[nodiscard]] std::size_t bytes() const noexcept;
 
     // By input.
@@ -74,7 +74,7 @@ class Wiring {
     std::vector<Sort> sorts_;                      // by instruction
     std::vector<std::unique_ptr<Kernel>> kernels_; // by instruction; none for inputs and constants
     std::map<Stand, StandIn> stands_;
-    GuardPlan<Unit> units_;
+    RollbackPlan<Unit> units_;
     std::vector<InputQueue<Number>> queues_;
     std::vector<const BasicEvents<Formula>*> outputs_;
 

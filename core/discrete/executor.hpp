@@ -1,8 +1,8 @@
 // Runs a program over samples in discrete time: online in chunks of any size, offline in one.
 //
-// Kernels run block by block, in the two groups of guard_plan.hpp. An update of more than one block
-// runs the guarded group over the whole chunk once to look for undefined values, takes it back, and
-// then runs everything.
+// Kernels run block by block, in the two groups of rollback_plan.hpp. An update of more than one
+// block runs the guarded group over the whole chunk once to look for undefined values, takes it
+// back, and then runs everything.
 //
 // An executor is a template over the value domain of the program's formulas. Numbers and formulas
 // have registers of their own, since their values may differ; predicates take the one and give the

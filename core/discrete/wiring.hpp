@@ -9,8 +9,8 @@
 // registers, which grow() makes larger.
 #pragma once
 
-#include "../program/guard_plan.hpp"
 #include "../program/program.hpp"
+#include "../program/rollback_plan.hpp"
 #include "../values/domain.hpp"
 #include "arena.hpp"
 #include "bank.hpp"
@@ -55,7 +55,7 @@ class Wiring {
     [[nodiscard]] const Program& program() const noexcept { return program_; }
     [[nodiscard]] Bank<Number>& numbers() noexcept { return numbers_; }
     [[nodiscard]] Bank<Formula>& formulas() noexcept { return formulas_; }
-    [[nodiscard]] const GuardPlan<Unit>& units() const noexcept { return units_; }
+    [[nodiscard]] const RollbackPlan<Unit>& units() const noexcept { return units_; }
     [[nodiscard]] std::size_t capacity() const noexcept { return capacity_; }
     [[nodiscard]] std::size_t bytes() const noexcept;
 
@@ -123,7 +123,7 @@ class Wiring {
     std::vector<std::unique_ptr<Kernel>> crossings_;
     std::vector<std::pair<Call*, std::uint32_t>> calls_; // and their instructions
     std::vector<Wire> wires_;
-    GuardPlan<Unit> units_;
+    RollbackPlan<Unit> units_;
     std::vector<Sort> input_sorts_;
     std::vector<Formula*> outputs_;
     std::size_t capacity_ = 1; // slots in a register

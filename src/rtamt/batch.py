@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from rtamt.engine.offline import Query
     from rtamt.settings import EvaluationSettings
-    from rtamt.signals.domain import DomainTrace
+    from rtamt.signals.domain_interface import DomainTrace
     from rtamt.specification import Specification
 
 

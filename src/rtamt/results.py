@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
     from rtamt.explain.report import Explanation
     from rtamt.rewrite.semantics import PredicateSemantics
-    from rtamt.signals.domain import DomainTrace
+    from rtamt.signals.domain_interface import DomainTrace
     from rtamt.signals.signal import Signal
     from rtamt.specification import Specification
 

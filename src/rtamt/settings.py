@@ -18,7 +18,7 @@ from rtamt.signals.arrays import is_number
 if TYPE_CHECKING:
     from rtamt.language.document import Document
     from rtamt.language.units import Duration
-    from rtamt.signals.domain import TimeDomain
+    from rtamt.signals.domain_interface import TimeDomain
 
 #: A name, a member of an enumeration whose text is a name, or a function of a predicate and roles.
 Semantics: TypeAlias = str | Enum | PredicateSemantics

@@ -33,10 +33,10 @@ if TYPE_CHECKING:
     from rtamt.settings import Semantics, Watch
     from rtamt.signals.dense import Dense
     from rtamt.signals.discrete import Discrete
-    from rtamt.signals.domain import DomainTrace, TimeDomain
+    from rtamt.signals.domain_interface import DomainTrace, TimeDomain
     from rtamt.signals.signal import Signal
-    from rtamt.verdicts.bounds import IntervalMonitor
-    from rtamt.verdicts.early import EagerMonitor
+    from rtamt.verdicts.eager import EagerMonitor
+    from rtamt.verdicts.interval import IntervalMonitor
 
 
 @dataclass(frozen=True, eq=False, repr=False)

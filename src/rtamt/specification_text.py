@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from rtamt.language.units import Duration
     from rtamt.rewrite.semantics import PredicateSemantics
     from rtamt.settings import Semantics
-    from rtamt.signals.domain import TimeDomain
+    from rtamt.signals.domain_interface import TimeDomain
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
     from rtamt.language.units import Duration
     from rtamt.settings import Semantics, Settings
-    from rtamt.signals.domain import TimeDomain
+    from rtamt.signals.domain_interface import TimeDomain
 
 
 def parse(

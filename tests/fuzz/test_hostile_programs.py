@@ -27,7 +27,7 @@ from rtamt.signals.domains import DOMAINS
 if TYPE_CHECKING:
     from hypothesis.strategies import DrawFn
 
-    from rtamt.signals.domain import TimeDomain
+    from rtamt.signals.domain_interface import TimeDomain
 
 FORMULAS = (
     "x >= 3 -> eventually[0:5](y >= 3)",

@@ -24,7 +24,7 @@ from tests import c_api
 from tests.strategies import dense_chunkings, dense_traces, formulas, traces
 
 if TYPE_CHECKING:
-    from rtamt.signals.domain import TimeDomain
+    from rtamt.signals.domain_interface import TimeDomain
 
 ONE = Fraction(1)
 SAMPLES, TICKS = Discrete(ONE), Dense(ONE)

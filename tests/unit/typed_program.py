@@ -9,8 +9,8 @@ import rtamt
 from rtamt.compiler.program import Program
 from rtamt.explain.report import Explanation
 from rtamt.language.formula import Formula
-from rtamt.verdicts.bounds import IntervalMonitor
-from rtamt.verdicts.early import EagerMonitor
+from rtamt.verdicts.eager import EagerMonitor
+from rtamt.verdicts.interval import IntervalMonitor
 
 if TYPE_CHECKING:
     from typing_extensions import assert_type

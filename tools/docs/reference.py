@@ -191,7 +191,7 @@ TASKS: dict[str, tuple[str, tuple[str, ...]]] = {
     "Verdicts": (
         "What the monitors of the [verdict modes](../how-to/early-verdicts.md) report.",
         (
-            "rtamt.verdicts.early.EagerMonitor", "Verdict", "VerdictRun", "rtamt.verdicts.bounds.IntervalMonitor",
+            "rtamt.verdicts.eager.EagerMonitor", "Verdict", "VerdictRun", "rtamt.verdicts.interval.IntervalMonitor",
             "Interval",
         ),
     ),

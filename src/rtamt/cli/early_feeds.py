@@ -15,8 +15,9 @@ from rtamt.signals.trace import in_seconds
 
 if TYPE_CHECKING:
     from rtamt.signals.outcomes import Interval, Verdict
-    from rtamt.verdicts.bounds import Change, IntervalMonitor
-    from rtamt.verdicts.early import EagerMonitor, EarlyMonitor
+    from rtamt.verdicts.eager import EagerMonitor
+    from rtamt.verdicts.early import EarlyMonitor
+    from rtamt.verdicts.interval import Change, IntervalMonitor
 
 
 class _Feed:

@@ -35,7 +35,7 @@ from rtamt.signals.dense import Dense
 from rtamt.signals.regular import TOLERANCE
 from rtamt.signals.signal import Signal
 from rtamt.signals.trace import in_seconds
-from rtamt.verdicts.early import EagerMonitor
+from rtamt.verdicts.eager import EagerMonitor
 from rtamt.verdicts.modes import DELAYED, MODES
 
 if TYPE_CHECKING:

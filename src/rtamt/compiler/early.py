@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from fractions import Fraction
 
-    from rtamt.signals.domain import TimeDomain
+    from rtamt.signals.domain_interface import TimeDomain
 
 #: In the order of the core's enumerations.
 KINDS = (

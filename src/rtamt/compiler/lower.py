@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
     from fractions import Fraction
 
-    from rtamt.signals.domain import TimeDomain
+    from rtamt.signals.domain_interface import TimeDomain
 
 _IDENTITY = {"max": -inf, "min": inf}
 

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
     from rtamt.language.formula import Apply, Formula
     from rtamt.language.operators import Operator
-    from rtamt.signals.domain import TimeDomain
+    from rtamt.signals.domain_interface import TimeDomain
 
 #: Opcodes in the order of the core's enumeration; a test compares the two.
 OPCODES = (

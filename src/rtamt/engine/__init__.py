@@ -8,7 +8,7 @@ discrete        the engine of discrete time
 dense           the engine of dense time
 backend         the interface of a back end, and what compiled back ends share
 offline         evaluate queries on a recording; cache compiled plans
-bounded         offline bounds of recordings with missing or uncertain samples
+offline_bounds  offline bounds of recordings with missing or uncertain samples
 online          watched formulas and copies, shared by the monitors
 gate            reject concurrent and reentrant use of a monitor
 native          load the compiled core

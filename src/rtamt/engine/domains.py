@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from rtamt.engine.backend import Backend
     from rtamt.engine.online import OnlineMonitor
-    from rtamt.signals.domain import TimeDomain
+    from rtamt.signals.domain_interface import TimeDomain
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
     from rtamt.language.formula import Formula
     from rtamt.rewrite.semantics import PredicateSemantics
-    from rtamt.signals.domain import DomainTrace, TimeDomain
+    from rtamt.signals.domain_interface import DomainTrace, TimeDomain
     from rtamt.signals.signal import Signal
 
 

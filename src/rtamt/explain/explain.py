@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from rtamt.explain.minimise import Interval
     from rtamt.language.formula import Formula
     from rtamt.rewrite.structure import Leaf
-    from rtamt.signals.domain import DomainTrace
+    from rtamt.signals.domain_interface import DomainTrace
 
 #: How many places are tried for one that overturns the verdict alone.
 _TRIED = 64

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from rtamt.language.formula import Formula
     from rtamt.signals.arrays import FloatArray
     from rtamt.signals.dense_arrays import Samples
-    from rtamt.signals.domain import DomainTrace, TimeDomain
+    from rtamt.signals.domain_interface import DomainTrace, TimeDomain
 
     #: From a function of cells for each variable to one for each formula.
     Runner = Callable[[Mapping[str, StepFunction]], list[StepFunction]]

@@ -13,7 +13,7 @@ from rtamt.signals.epoch import is_epoch, moment_text
 
 if TYPE_CHECKING:
     from rtamt.signals.arrays import FloatArray
-    from rtamt.signals.domain import DomainTrace
+    from rtamt.signals.domain_interface import DomainTrace
 
 #: Stamps that start later than this many seconds are told from their start on.
 _FAR = 1e5

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from fractions import Fraction
 
     from rtamt.language.formula import Formula
-    from rtamt.signals.domain import DomainTrace
+    from rtamt.signals.domain_interface import DomainTrace
     from rtamt.signals.signal import Signal
 
 

@@ -1,24 +1,24 @@
 """Convert the caller's data to float64 arrays, integer ticks and timestamps, and represent traces.
 
-============  ====================================================================
-module        purpose
-============  ====================================================================
-domain        the interfaces of a time domain and of a trace in one
-domains       the list of time domains
-discrete      discrete time and its traces: one value of every variable per sample
-dense         dense time and its traces: timestamps per signal, counted in ticks
-signal        ``Signal``: the result of evaluations and monitors
-inexact       missing samples, measurement errors, declared ranges
-outcomes      bounds and verdicts that are known before the whole trace is
-trace         ``Trace``: named signals, each with its own time base; resampling
-listing       a trace as text: its signals topic by topic
-arrays        data (lists, arrays, frames, objects) to float64 arrays
-dense_arrays  dense-time data to int64 ticks and float64 values
-regular       infer the sampling period; check order and distance of timestamps
-ticks         times to int64 ticks and back
-counting      exact conversion of numbers to ticks, rounded once
-epoch         times since 1970 as text: a date, and the seconds since the start
-datetimes     dates and durations of Python, numpy and pandas as integers
-time_columns  recognise the time column and its unit by name
-============  ====================================================================
+================  ====================================================================
+module            purpose
+================  ====================================================================
+domain_interface  the interfaces of a time domain and of a trace in one
+domains           the list of time domains
+discrete          discrete time and its traces: one value of every variable per sample
+dense             dense time and its traces: timestamps per signal, counted in ticks
+signal            ``Signal``: the result of evaluations and monitors
+inexact           missing samples, measurement errors, declared ranges
+outcomes          bounds and verdicts that are known before the whole trace is
+trace             ``Trace``: named signals, each with its own time base; resampling
+listing           a trace as text: its signals topic by topic
+arrays            data (lists, arrays, frames, objects) to float64 arrays
+dense_arrays      dense-time data to int64 ticks and float64 values
+regular           infer the sampling period; check order and distance of timestamps
+ticks             times to int64 ticks and back
+counting          exact conversion of numbers to ticks, rounded once
+epoch             times since 1970 as text: a date, and the seconds since the start
+datetimes         dates and durations of Python, numpy and pandas as integers
+time_columns      recognise the time column and its unit by name
+================  ====================================================================
 """

@@ -11,7 +11,7 @@ from rtamt.errors import StlError, TraceError, UsageError, shown
 from rtamt.language.units import positive_period
 from rtamt.rewrite.check import TICKS, check_bounds, check_dense
 from rtamt.signals import arrays, dense_arrays
-from rtamt.signals.domain import DomainTrace, TimeDomain
+from rtamt.signals.domain_interface import DomainTrace, TimeDomain
 from rtamt.signals.signal import Signal
 from rtamt.signals.ticks import NANOSECOND, TimeScale
 
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from rtamt.language.formula import Formula
     from rtamt.language.units import Duration
     from rtamt.signals.dense_arrays import Samples
-    from rtamt.signals.domain import Bounds
+    from rtamt.signals.domain_interface import Bounds
     from rtamt.signals.ticks import TickArray
 
 

@@ -14,7 +14,7 @@ from rtamt.errors import BoundError, StlError, TraceError, UsageError, shown
 from rtamt.language.units import UNITS, decimal, positive_period
 from rtamt.rewrite.check import PERIODS, check_bounds
 from rtamt.signals.arrays import check_numbers, columns_of, is_number, plain, stamps, units_of
-from rtamt.signals.domain import DomainTrace, TimeDomain
+from rtamt.signals.domain_interface import DomainTrace, TimeDomain
 from rtamt.signals.regular import TOLERANCE, check_increasing, check_regular, check_tolerance, infer_period
 from rtamt.signals.signal import Signal
 
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from rtamt.language.formula import Formula
     from rtamt.language.units import Duration
     from rtamt.signals.arrays import FloatArray
-    from rtamt.signals.domain import Bounds
+    from rtamt.signals.domain_interface import Bounds
 
 
 @dataclass(frozen=True, init=False)

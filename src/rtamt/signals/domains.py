@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from rtamt.errors import UsageError, choices, shown
 from rtamt.signals.dense import Dense
 from rtamt.signals.discrete import Discrete
-from rtamt.signals.domain import TimeDomain
+from rtamt.signals.domain_interface import TimeDomain
 from rtamt.signals.regular import TOLERANCE
 from rtamt.signals.ticks import NANOSECOND
 

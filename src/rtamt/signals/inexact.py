@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from rtamt.signals.arrays import FloatArray
-    from rtamt.signals.domain import DomainTrace
+    from rtamt.signals.domain_interface import DomainTrace
 
     Mask = NDArray[np.bool_]
 

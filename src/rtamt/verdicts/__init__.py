@@ -12,8 +12,9 @@ offline               first violations in a finished trace
 streaming             ``check_stream``: check a recording in chunks with bounded memory
 robust_interval       stop a simulation as soon as its verdict is final
 modes                 the list of verdict modes of a monitor
-early                 the monitor of verdicts as soon as they are settled
-bounds                the monitor of bounds of the robustness
+eager                 the monitor of verdicts as soon as they are settled
+interval              the monitor of bounds of the robustness
+early                 what the monitors ``eager`` and ``interval`` share
 standalone            compile a requirement to a program that runs without Python
 ====================  =================================================================
 """

@@ -1,6 +1,6 @@
-"""Online in discrete time: the verdict of every sample as soon as no later one can change it.
+"""Online in discrete time: what the monitors of verdicts (``eager.py``) and of bounds (``interval.py``) share.
 
-The monitors of verdicts and of bounds (``bounds.py``) run the same graph (``compiler/early.py``) in the core.
+Both run the same graph (``compiler/early.py``) in the core.
 """
 
 from __future__ import annotations
@@ -11,14 +11,14 @@ from typing import TYPE_CHECKING, Any, ClassVar
 from rtamt.compiler.early import compile_graph
 from rtamt.engine.backend import Session
 from rtamt.engine.discrete.early_python_backend import PythonEarlyMonitor
-from rtamt.engine.gate import alone, in_use
+from rtamt.engine.gate import alone
 from rtamt.engine.native import EarlyMonitorBase, core
 from rtamt.engine.online import OnlineMonitor, Watched
 from rtamt.errors import TraceError, UsageError, did_you_mean, shown
 from rtamt.language.undefined_value import at_sample, undefined
 from rtamt.rewrite.desugar import desugar, written
 from rtamt.signals import arrays
-from rtamt.signals.outcomes import Interval, Verdict
+from rtamt.signals.outcomes import Interval
 from rtamt.signals.regular import irregular, not_increasing
 
 if TYPE_CHECKING:
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
     from rtamt.compiler.early import Graph
     from rtamt.language.formula import Formula
-    from rtamt.signals.domain import TimeDomain
+    from rtamt.signals.domain_interface import TimeDomain
 
 
 class GraphSession(Session):
@@ -265,64 +265,6 @@ class EarlyMonitor(EarlyMonitorBase, OnlineMonitor):
         """Name the sub-formula and the instant of a value that does not exist."""
         formula = written(self._graph.origins[error.args[0]], self._formulas)
         return undefined(formula, at_sample(error.args[1], error.time))
-
-
-class EagerMonitor(EarlyMonitor):
-    """Reports whether a formula holds at each sample, each once, as soon as no later sample can change it.
-
-    Built by ``Specification.monitor(verdict="eager")``.
-
-    >>> import rtamt
-    >>> monitor = rtamt.parse("always[0:9](x >= 3)").monitor(verdict="eager")
-    >>> monitor.update(0, x=4), monitor.update(1, x=2)
-    ([], [Verdict(time=0.0, satisfied=False, decided_at=1.0), Verdict(time=1.0, satisfied=False, decided_at=1.0)])
-    """
-
-    _verdict = Verdict
-
-    def __init__(self, formula: Formula, domain: TimeDomain, **settings: Any) -> None:
-        super().__init__(formula, domain, **settings)
-        self._prepare()
-
-    if TYPE_CHECKING:  # by the base
-
-        def update(self, time: Any, /, **values: Any) -> list[Verdict]:
-            """Take one sample, ``time`` in seconds and a number for every variable; return what became settled.
-
-            A value may also be bounds ``(lower, upper)``, or None if it is missing.
-
-            Raises :class:`TraceError` for wrong data and :class:`EvaluationError` where an operation has no
-            value; the monitor is then as it was.
-            """
-
-    def _update_carefully(self, time: Any, /, **values: Any) -> list[Verdict]:
-        """Take a sample that the core did not take, or find out what is wrong with it."""
-        with self._gate:
-            flat = self._read_by_formula(values)
-            if self._finished:
-                raise self._is_finished()
-            after = self.samples
-            stamp = self._seconds(time)
-            known = self._bounds_of(flat, after, stamp)
-            self._check_order(stamp)
-            try:
-                return self._backend.take(stamp, *self._row(known), after)  # type: ignore[no-any-return]
-            except self._refused:
-                raise in_use() from None
-            except self._undefined as error:
-                raise self._no_value(error) from None
-
-    @alone
-    def finish(self) -> list[Verdict]:
-        """Say that no more samples will come; return the verdicts that were still open."""
-        if self._finished:
-            return []
-        self._finished = True
-        return self._backend.finish()  # type: ignore[no-any-return]
-
-    def __getitem__(self, name: str | Formula) -> list[Verdict]:
-        """Return the verdicts of a formula that is watched which the last call settled."""
-        return self._backend.verdicts(self._output(name))  # type: ignore[no-any-return]
 
 
 def bounds_of(value: Any) -> tuple[float, float] | None:

@@ -10,14 +10,14 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import UsageError, did_you_mean, shown
-from rtamt.verdicts.bounds import IntervalMonitor
-from rtamt.verdicts.early import EagerMonitor
+from rtamt.verdicts.eager import EagerMonitor
+from rtamt.verdicts.interval import IntervalMonitor
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from rtamt.rewrite.semantics import PredicateSemantics
-    from rtamt.signals.domain import TimeDomain
+    from rtamt.signals.domain_interface import TimeDomain
 
 
 @dataclass(frozen=True, slots=True)

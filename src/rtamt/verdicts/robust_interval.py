@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
 
     from rtamt.signals.arrays import FloatArray
-    from rtamt.signals.domain import DomainTrace, TimeDomain
+    from rtamt.signals.domain_interface import DomainTrace, TimeDomain
     from rtamt.verdicts.robustness_and_truth import Evaluate
 
     #: Stamps (seconds) and a column of values for each variable, all of one length.

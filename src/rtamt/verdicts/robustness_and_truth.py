@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 from rtamt.language.formula import Const, Formula, Var
 from rtamt.language.operators import STL
 from rtamt.rewrite.semantics import boolean
-from rtamt.signals.domain import DomainTrace
+from rtamt.signals.domain_interface import DomainTrace
 from rtamt.signals.signal import Signal
 
 if TYPE_CHECKING:

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
     from rtamt.compiler.program import Program
-    from rtamt.signals.domain import TimeDomain
+    from rtamt.signals.domain_interface import TimeDomain
 
 #: What a standalone program tells, in this order: ρ, and +inf or -inf as the formula holds or not. Of several
 #: requirements it tells both of all together, then of each: ``robustness.R1``, ``verdict.R1``.

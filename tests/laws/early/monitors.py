@@ -18,14 +18,14 @@ from rtamt.reference import dense_bounds, discrete_bounds, earliest
 from rtamt.reference.discrete_bounds import ANYTHING, Knowledge
 from rtamt.rewrite.semantics import boolean
 from rtamt.signals.discrete import DISCRETE
-from rtamt.verdicts.bounds import IntervalMonitor
-from rtamt.verdicts.early import EagerMonitor
+from rtamt.verdicts.eager import EagerMonitor
+from rtamt.verdicts.interval import IntervalMonitor
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
     from rtamt.language.formula import Formula
-    from rtamt.verdicts.bounds import Change
+    from rtamt.verdicts.interval import Change
     from tests.laws.early.cases import Range
 
 PERIOD = TICK = Fraction(1)

@@ -6,7 +6,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from rtamt.compiler.plan import compile_program
-from rtamt.engine import bounded
+from rtamt.engine import offline_bounds
 from rtamt.engine.backend import Backend, CompiledSession, Session, named
 from rtamt.engine.dense.evaluate import Evaluator
 from rtamt.engine.dense.python_backend import PythonDenseMonitor
@@ -36,7 +36,7 @@ class _DenseBackend(Backend):
         inputs: tuple[str, ...],  # noqa: ARG002
     ) -> Callable[[DenseTrace], list[BoundedSignal]]:
         """See :class:`Backend`."""
-        return lambda trace: [bounded.dense(formula, trace) for formula in formulas]
+        return lambda trace: [offline_bounds.dense(formula, trace) for formula in formulas]
 
 
 class CompiledDense(_DenseBackend):

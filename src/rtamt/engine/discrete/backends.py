@@ -6,7 +6,7 @@ from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
 from rtamt.compiler.plan import compile_program
-from rtamt.engine import bounded
+from rtamt.engine import offline_bounds
 from rtamt.engine.backend import Backend, CompiledSession, Session, named
 from rtamt.engine.discrete.evaluate import BoundsEvaluator, Evaluator, is_built_in
 from rtamt.engine.discrete.python_backend import PythonMonitor
@@ -41,7 +41,7 @@ class CompiledDiscrete(Backend):
     ) -> Callable[[DiscreteTrace], list[BoundedSignal]]:
         """See :class:`Backend`. What the core can only call is left to the definition."""
         if not all(map(is_built_in, postorder(*map(desugar, formulas)))):
-            return lambda trace: [bounded.discrete(formula, trace) for formula in formulas]
+            return lambda trace: [offline_bounds.discrete(formula, trace) for formula in formulas]
         evaluator = BoundsEvaluator(formulas, step)
         return lambda trace: [BoundedSignal(trace.stamps, *ends) for ends in evaluator.of_bounds(trace)]
 
@@ -83,7 +83,7 @@ class DefinedDiscrete(Backend):
         inputs: tuple[str, ...],  # noqa: ARG002
     ) -> Callable[[DiscreteTrace], list[BoundedSignal]]:
         """See :class:`Backend`."""
-        return lambda trace: [bounded.discrete(formula, trace) for formula in formulas]
+        return lambda trace: [offline_bounds.discrete(formula, trace) for formula in formulas]
 
     def session(
         self,

@@ -1,4 +1,4 @@
-#include "program/guard_plan.hpp"
+#include "program/rollback_plan.hpp"
 
 #include "check.hpp"
 
@@ -19,7 +19,7 @@ struct Unit {
     int instruction;
 };
 
-using Plan = rtamt::GuardPlan<Unit>;
+using Plan = rtamt::RollbackPlan<Unit>;
 
 const auto place = [](const Unit& unit) { return unit.kernel->place; };
 

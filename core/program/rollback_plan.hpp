@@ -19,7 +19,7 @@
 namespace rtamt {
 
 template <class Unit>
-class GuardPlan {
+class RollbackPlan {
   public:
     // In the order of the program. `reversible`: checkpoint() and rollback() mean something to it.
     void add(const Unit& unit, bool guarded, bool reversible = true) {

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
     from rtamt.language.formula import Formula
     from rtamt.language.units import Duration
-    from rtamt.signals.domain import TimeDomain
+    from rtamt.signals.domain_interface import TimeDomain
 
 #: How many samples come between two snapshots of a monitor that replays corrections.
 _SNAPSHOT_EVERY = 64

@@ -1,0 +1,71 @@
+"""Online in discrete time: the verdict of every sample as soon as no later one can change it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from rtamt.engine.gate import alone, in_use
+from rtamt.signals.outcomes import Verdict
+from rtamt.verdicts.early import EarlyMonitor
+
+if TYPE_CHECKING:
+    from rtamt.language.formula import Formula
+    from rtamt.signals.domain_interface import TimeDomain
+
+
+class EagerMonitor(EarlyMonitor):
+    """Reports whether a formula holds at each sample, each once, as soon as no later sample can change it.
+
+    Built by ``Specification.monitor(verdict="eager")``.
+
+    >>> import rtamt
+    >>> monitor = rtamt.parse("always[0:9](x >= 3)").monitor(verdict="eager")
+    >>> monitor.update(0, x=4), monitor.update(1, x=2)
+    ([], [Verdict(time=0.0, satisfied=False, decided_at=1.0), Verdict(time=1.0, satisfied=False, decided_at=1.0)])
+    """
+
+    _verdict = Verdict
+
+    def __init__(self, formula: Formula, domain: TimeDomain, **settings: Any) -> None:
+        super().__init__(formula, domain, **settings)
+        self._prepare()
+
+    if TYPE_CHECKING:  # by the base
+
+        def update(self, time: Any, /, **values: Any) -> list[Verdict]:
+            """Take one sample, ``time`` in seconds and a number for every variable; return what became settled.
+
+            A value may also be bounds ``(lower, upper)``, or None if it is missing.
+
+            Raises :class:`TraceError` for wrong data and :class:`EvaluationError` where an operation has no
+            value; the monitor is then as it was.
+            """
+
+    def _update_carefully(self, time: Any, /, **values: Any) -> list[Verdict]:
+        """Take a sample that the core did not take, or find out what is wrong with it."""
+        with self._gate:
+            flat = self._read_by_formula(values)
+            if self._finished:
+                raise self._is_finished()
+            after = self.samples
+            stamp = self._seconds(time)
+            known = self._bounds_of(flat, after, stamp)
+            self._check_order(stamp)
+            try:
+                return self._backend.take(stamp, *self._row(known), after)  # type: ignore[no-any-return]
+            except self._refused:
+                raise in_use() from None
+            except self._undefined as error:
+                raise self._no_value(error) from None
+
+    @alone
+    def finish(self) -> list[Verdict]:
+        """Say that no more samples will come; return the verdicts that were still open."""
+        if self._finished:
+            return []
+        self._finished = True
+        return self._backend.finish()  # type: ignore[no-any-return]
+
+    def __getitem__(self, name: str | Formula) -> list[Verdict]:
+        """Return the verdicts of a formula that is watched which the last call settled."""
+        return self._backend.verdicts(self._output(name))  # type: ignore[no-any-return]
