@@ -30,3 +30,9 @@ def test_a_package_lists_each_of_its_modules(package: str) -> None:
     named = listed | set(re.findall(r"``(\w+)``", doc))
     assert modules(SRC / package) - named == set()
     assert listed - modules(SRC / package) == set()
+
+
+def test_the_folders_of_unit_tests_are_the_packages_of_the_library() -> None:
+    folders = {path.parent.name for path in Path(__file__).parent.glob("*/__init__.py")}
+    assert folders - {"docs"} <= {path.parent.name for path in SRC.glob("*/__init__.py")}
+    assert set(PACKAGES) <= folders

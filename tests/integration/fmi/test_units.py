@@ -1,10 +1,8 @@
-"""Units that ``rtamt.fmi`` exports, as fmpy validates, runs and couples them."""
+"""Units that ``rtamt.fmi`` exports, as fmpy runs and couples them."""
 
 from __future__ import annotations
 
-import shutil
 import subprocess
-import zipfile
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -14,122 +12,20 @@ import numpy as np
 import pytest
 from fmpy.fmi1 import FMICallException
 from fmpy.fmi2 import FMU2Slave
-from fmpy.fmi3 import FMU3Slave
-from fmpy.validation import validate_fmu
 
 import rtamt
 from rtamt import fmi
-from rtamt.language.parser import parse_formula
+from tests.integration.fmi.instance import PERIOD, Unit
+from tests.unit.fmi import BOTH
 
 RESPONSE = (
     "specification response  const float limit = 3\n"
     "always[0:200ms]((req >= limit) -> eventually[0:300ms](gnt / scale >= limit))"
 )
-PERIOD = 0.1
-BOTH = pytest.mark.parametrize("version", [2, 3])
 
 
 def bits(values: Any) -> list[int]:
     return np.array(values, np.float64).view(np.int64).tolist()
-
-
-@pytest.fixture
-def exported(tmp_path):
-    """Export a requirement, return the file."""
-
-    def export(text: str, version: int, **settings: Any) -> Path:
-        path = tmp_path / f"unit{version}.fmu"
-        fmi.export(rtamt.parse(text), path, version=version, **settings)
-        assert validate_fmu(str(path)) == []
-        return path
-
-    return export
-
-
-class Unit:
-    """An instance of a unit, by the names of its variables."""
-
-    def __init__(self, path: Path, folder: Path) -> None:
-        self.folder = fmpy.extract(str(path), str(folder))
-        self.description = fmpy.read_model_description(str(path))
-        self.reference = {v.name: v.valueReference for v in self.description.modelVariables}
-        self.version = int(self.description.fmiVersion[0])
-        self.said: list[tuple[int, str]] = []
-        self.slave = self.make()
-
-    def make(self, name: str = "monitor") -> Any:
-        kind = FMU2Slave if self.version == 2 else FMU3Slave
-        identifier = self.description.coSimulation.modelIdentifier
-        slave = kind(
-            guid=self.description.guid,
-            unzipDirectory=self.folder,
-            modelIdentifier=identifier,
-            instanceName=name,
-        )
-        if self.version == 2:
-            self.callbacks = fmpy.fmi2.fmi2CallbackFunctions()
-            self.callbacks.logger = fmpy.fmi2.fmi2CallbackLoggerTYPE(
-                lambda _env, _name, status, _category, said: self.said.append((status, said.decode()))
-            )
-            slave.instantiate(callbacks=self.callbacks)
-        else:
-            self.callbacks = fmpy.fmi3.fmi3LogMessageCallback(
-                lambda _env, status, _category, said: self.said.append((status, said.decode()))
-            )
-            slave.instantiate(logMessage=self.callbacks)
-        return slave
-
-    def begin(self, start: float = 0.0, **parameters: float) -> Unit:
-        if self.version == 2:
-            self.slave.setupExperiment(startTime=start, tolerance=1e-6, stopTime=start + 10)
-            self.slave.enterInitializationMode()
-        else:
-            self.slave.enterInitializationMode(startTime=start, tolerance=1e-6, stopTime=start + 10)
-        self.set(**parameters)
-        self.slave.exitInitializationMode()
-        return self
-
-    def set(self, **values: float) -> None:
-        references = [self.reference[name] for name in values]
-        setter = self.slave.setReal if self.version == 2 else self.slave.setFloat64
-        setter(references, list(values.values()))
-
-    def get(self, name: str) -> Any:
-        reference = [self.reference[name]]
-        if name.startswith("verdict"):
-            return (self.slave.getInteger if self.version == 2 else self.slave.getInt32)(reference)[0]
-        if name.partition(".")[0] == "known":
-            return bool(self.slave.getBoolean(reference)[0])
-        return (self.slave.getReal if self.version == 2 else self.slave.getFloat64)(reference)[0]
-
-    def step(self, time: float, length: float = PERIOD) -> None:
-        self.slave.doStep(currentCommunicationPoint=time, communicationStepSize=length)
-
-    def refusal(self, time: float, length: float = PERIOD) -> str:
-        self.said.clear()
-        with pytest.raises(FMICallException):
-            self.step(time, length)
-        ((status, sentence),) = self.said
-        assert status == 2  # discard: the unit is as it was
-        return sentence
-
-    def close(self) -> None:
-        self.slave.terminate()
-        self.slave.freeInstance()
-
-
-@pytest.fixture
-def unit(exported, tmp_path):
-    """Make an instance of a unit, which is closed at the end."""
-    units = []
-
-    def make(text: str, version: int, **settings: Any) -> Unit:
-        units.append(Unit(exported(text, version, **settings), tmp_path / f"unit{version}"))
-        return units[-1]
-
-    yield make
-    for each in units:
-        each.close()
 
 
 def wave(n: int) -> list[dict[str, float]]:
@@ -320,49 +216,6 @@ def test_a_monitor_beside_a_plant(unit, tmp_path):
 
 
 @BOTH
-def test_names_are_those_of_the_requirement(exported, version):
-    path = exported('req.value >= 1 and "a b" >= 0', version)
-    description = fmpy.read_model_description(str(path))
-    assert [v.name for v in description.modelVariables if v.causality == "input"] == ["req.value", "a b"]
-    assert description.variableNamingConvention == "flat"
-    plain = fmpy.read_model_description(str(exported("req.value >= 1", version)))
-    assert plain.variableNamingConvention == "structured"
-
-
-@pytest.mark.parametrize(
-    ("text", "sentence"),
-    [
-        (
-            "known >= 3",
-            "the output 'known' has the name that an input of the unit has already: rename it in the specification",
-        ),
-        (
-            "time >= 3",
-            "the input 'time' has the name that the time of the unit has already: rename it in the specification",
-        ),
-        ("always(x >= 3)", None),
-    ],
-)
-def test_what_cannot_be_a_unit_is_refused_and_nothing_is_written(tmp_path, text, sentence):
-    path = tmp_path / "unit.fmu"
-    with pytest.raises(rtamt.StlError) as refused:
-        fmi.export(rtamt.parse(text), path)
-    assert sentence is None or str(refused.value) == sentence
-    assert not path.exists()
-
-
-def test_a_version_that_does_not_exist_and_a_folder_that_does_not(tmp_path):
-    spec = rtamt.parse("x >= 3")
-    with pytest.raises(rtamt.UsageError) as refused:
-        fmi.export(spec, tmp_path / "unit.fmu", version=1)
-    assert str(refused.value) == "there is no FMI version 1 to write, only 2 and 3"
-    path = tmp_path / "nowhere" / "unit.fmu"
-    with pytest.raises(rtamt.UsageError) as refused:
-        fmi.export(spec, path)
-    assert str(refused.value) == f"cannot write the unit '{path}': No such file or directory"
-
-
-@BOTH
 def test_a_program_that_was_changed_afterwards_is_refused(unit, exported, tmp_path, version):
     path = exported("x >= 3", version)
     folder = Path(fmpy.extract(str(path), str(tmp_path / "changed")))
@@ -379,21 +232,6 @@ def test_a_program_that_was_changed_afterwards_is_refused(unit, exported, tmp_pa
     )
 
 
-def test_equal_requirements_make_equal_archives_with_the_library_and_the_program(exported, tmp_path):
-    path = exported("x >= 3", 2)
-    again = tmp_path / "again.fmu"
-    shutil.copy(path, again)
-    fmi.export(rtamt.parse("x >= 3"), path)
-    assert path.read_bytes() == again.read_bytes()
-    with zipfile.ZipFile(path) as archive:
-        assert archive.namelist() == [
-            "modelDescription.xml",
-            f"binaries/{fmi.platform(2)}/unit2.so",
-            "resources/program.rtamt",
-        ]
-    assert parse_formula("x >= 3") == rtamt.parse("x >= 3").formula
-
-
 @BOTH
 def test_each_of_several_requirements_has_outputs_as_soon_as_it_is_known(exported, tmp_path, version):
     text = "require R1: eventually[0:200ms](x >= 3); require R2: x <= 6"
@@ -408,13 +246,3 @@ def test_each_of_several_requirements_has_outputs_as_soon_as_it_is_known(exporte
     assert (unit.get("known_since"), unit.get("known_since.R1")) == (0, 0)
     assert unit.get("known_since.R2") == pytest.approx(0.2)
     unit.close()
-
-
-@BOTH
-def test_declared_units_are_in_the_model_description(exported, version):
-    text = """input float v [m/s]  float "q[2]" [rad]  float free  const float limit = 3 [m/s]
-    always[0:1s](v >= limit and "q[2]" <= free)"""
-    described = fmpy.read_model_description(str(exported(text, version, period="1s")))
-    units = {variable.name: variable.unit for variable in described.modelVariables if variable.unit}
-    assert units == {"v": "m/s", "q[2]": "rad", "limit": "m/s", "known_since": "s"}
-    assert [unit.name for unit in described.unitDefinitions] == ["m/s", "rad", "s"]

@@ -11,7 +11,7 @@ import pytest
 import rtamt
 from rtamt.extend import STL, Blocks, Operator
 from rtamt.testing import check_operator
-from tests.unit.test_extension import CLIP, FLIPS, MEAN, TOTAL
+from tests.unit.test_extend import CLIP, FLIPS, MEAN, TOTAL
 
 
 def by_definition_alone(name: str) -> Operator:

@@ -1,31 +1,20 @@
-"""Bounds, early verdicts and causation against values that were worked out by hand."""
+"""Bounds in discrete time, calculated by hand."""
 
 from __future__ import annotations
 
-from fractions import Fraction
 from math import inf
+from typing import TYPE_CHECKING
 
-import numpy as np
 import pytest
 
 from rtamt.errors import EvaluationError, SpecificationError
-from rtamt.language.enclosures import Enclosure
 from rtamt.language.operators import STL
 from rtamt.language.parser import parse_formula
-from rtamt.reference import dense_bounds, discrete_bounds, earliest
-from rtamt.reference.causation import causation
-from rtamt.reference.dense_bounds import DenseKnowledge
-from rtamt.reference.discrete_bounds import Knowledge
+from rtamt.reference import discrete_bounds
+from tests.unit.reference.knowledge import ONE, known
 
-ONE = Fraction(1)
-
-
-def known(n: int | None = None, *, finished: bool = False, ranges=None, **columns) -> Knowledge:
-    enclosures = {}
-    for name, values in columns.items():
-        pairs = [v if isinstance(v, tuple) else (v, v) for v in values][:n]
-        enclosures[name] = Enclosure(*(np.array([pair[k] for pair in pairs], float) for k in (0, 1)))
-    return Knowledge(enclosures, len(next(iter(enclosures.values())).lower), ranges or {}, finished)
+if TYPE_CHECKING:
+    from rtamt.reference.discrete_bounds import Knowledge
 
 
 def bounds(text: str, knowledge: Knowledge) -> list[tuple[float, float]]:
@@ -95,50 +84,3 @@ def test_an_operator_that_only_has_a_definition_has_no_bounds():
     own = replace(STL["once"], name="own", spellings=("own",), kernel=None)
     with pytest.raises(SpecificationError, match="'own' has no interval extension"):
         discrete_bounds.bounds(own(parse_formula("x")), known(x=[1]), ONE)
-
-
-def test_the_earliest_verdicts_of_a_response():
-    knowledge = known(req=[0, 5, 0, 5, 0], gnt=[0, 0, 3, 0, 0], finished=True)
-    found = earliest.verdicts(parse_formula("req >= 1 -> eventually[0:1](gnt >= 1)"), knowledge, ONE)
-    # Without a request at once; the request at 1 by the grant at 2; that at 3 by the missing grant at 4.
-    assert found == [[(0, True, 0)], [], [(1, True, 2), (2, True, 2)], [], [(3, False, 4), (4, True, 4)], []]
-
-
-def test_a_verdict_may_come_before_its_instant_and_is_reported_at_it():
-    found = earliest.verdicts(parse_formula("once[1:3] x > 0"), known(x=[1, 0, 0, 0, 0], finished=True), ONE)
-    assert found[:3] == [[(0, False, 0)], [(1, True, 0)], [(2, True, 0)]]
-
-
-def test_dense_bounds_of_a_response():
-    formula = parse_formula("req >= 1 -> eventually[0:2](gnt >= 1)")
-    samples = {"req": ([0, 3], [0, 5], [0, 5]), "gnt": ([0, 4], [0, 0], [0, 0])}
-    found = dense_bounds.bounds(formula, DenseKnowledge(samples), ONE)
-    # req is known up to tick 3 and gnt, which is 0, up to tick 4: ticks 0 to 2 see all of it. At tick 4 the
-    # window has begun, so that the best is -1 at least.
-    assert [found.at(t) for t in range(6)] == [(1, 1), (1, 1), (1, 1), (-1, inf), (-1, inf), (-inf, inf)]
-    finished = dense_bounds.bounds(formula, DenseKnowledge(samples, finished=True), ONE)
-    assert [finished.at(t) for t in (0, 3, 9)] == [(1, 1), (-1, -1), (-1, -1)]
-
-
-def test_dense_verdicts_are_runs():
-    updates = [(0, {"x": (1.0, 1.0)}), (4, {"x": (-1.0, -1.0)}), (6, {"x": (2.0, 2.0)})]
-    found = earliest.dense_verdicts(parse_formula("x > 0"), updates, ("x",), ONE, {}, finished=True)
-    assert [earliest.runs(each) for each in found] == [
-        [(0, 1, True, 0)],
-        [(1, 4, True, 4), (4, 5, False, 4)],
-        [(5, 6, False, 6), (6, 7, True, 6)],
-        [],
-    ]
-
-
-def test_causation_of_a_response_by_hand():
-    formula = parse_formula("always[0:1](x >= 3)")
-    x = [4, 1, 2]
-    # At 0 after sample 1: it alone violates by 2. Sample 2 is outside the window of 0.
-    assert causation(formula, known(2, x=x), ONE, 1) == [(-2, -2)]
-    assert causation(formula, known(3, x=x), ONE, 1) == [(inf, -inf)]
-
-
-def test_arithmetic_on_formulas_in_time_has_no_causation():
-    with pytest.raises(SpecificationError, match=r"^'\(once x\) \+ 1' is arithmetic on a formula in time"):
-        causation(parse_formula("(once x) + 1 >= 0"), known(x=[1]), ONE, 1)

@@ -1,0 +1,4 @@
+import pytest
+
+#: Both versions of FMI.
+BOTH = pytest.mark.parametrize("version", [2, 3])
