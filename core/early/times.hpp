@@ -62,6 +62,10 @@ class Times {
     // The index of the newest sample, -1 before the first.
     [[nodiscard]] Tick newest() const noexcept { return newest_; }
     [[nodiscard]] double last() const noexcept { return last_; }
+    // The earliest time that is kept.
+    [[nodiscard]] double earliest() const noexcept {
+        return anchors_.empty() ? last_ : anchors_.front().time;
+    }
 
     [[nodiscard]] std::size_t bytes() const noexcept { return anchors_.size() * sizeof(Anchor); }
 

@@ -87,6 +87,7 @@ void add_early_monitor(const nb::module_& module, const Exceptions& exceptions) 
              "Go on as the monitor of this state would, which was made like this one.")
         .def_prop_ro("samples", &EarlyMonitor::samples, "How many samples came.")
         .def_prop_ro("newest", &EarlyMonitor::newest, "The newest sample, or -1.")
+        .def_prop_ro("earliest", &EarlyMonitor::earliest, "The first time that may be reported.")
         .def_prop_ro("closed", &EarlyMonitor::closed, "The last sample that is final, or -1.")
         .def_prop_ro("finished", &EarlyMonitor::finished, "Whether the trace has ended.")
         .def_prop_ro("state_bytes", &EarlyMonitor::state_bytes, "Bytes of state by now.");

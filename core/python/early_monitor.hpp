@@ -98,6 +98,7 @@ class EarlyMonitor {
 
     [[nodiscard]] std::int64_t samples() const { return samples_; }
     [[nodiscard]] early::Tick newest() const { return times_.newest(); }
+    [[nodiscard]] double earliest() const { return times_.earliest(); }
     [[nodiscard]] early::Tick closed() const { return closed_; }
     [[nodiscard]] bool finished() const { return finished_; }
     [[nodiscard]] std::size_t state_bytes() const;

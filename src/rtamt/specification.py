@@ -312,12 +312,13 @@ class Specification(SpecificationText):
         if mode.monitor is not None:
             return mode.monitor(
                 formula,
-                clock_of(mode, domain, time_unit),
+                clock_of(mode, domain),
                 text=self.text,
                 backend=self.backend,
                 declared=self.declared,
                 watch=watched,
                 factory=factory,
+                unit=time_unit,
                 **settings,
             )
         return engine_of(domain).monitor(

@@ -231,6 +231,10 @@ class EarlyMonitor:
     @property
     def newest(self) -> int: ...
     @property
+    def earliest(self) -> float:
+        """The first time that may still be reported."""
+
+    @property
     def closed(self) -> int: ...
     @property
     def finished(self) -> bool: ...

@@ -64,6 +64,11 @@ class Stamps(NamedTuple):
     original: NDArray[Any]
 
 
+def is_moment(time: Any) -> bool:
+    """Return whether a time is a date or a duration, and not a number."""
+    return isinstance(time, _MOMENTS)
+
+
 def plain(time: Any) -> Any:
     """Convert a numpy number to a Python number; dates are kept, since Python may lack the precision."""
     return time if isinstance(time, np.datetime64 | np.timedelta64) else time.item()

@@ -33,9 +33,10 @@ class EagerMonitor(EarlyMonitor):
     if TYPE_CHECKING:  # by the base
 
         def update(self, time: Any, /, **values: Any) -> list[Verdict]:
-            """Take one sample, ``time`` in seconds and a number for every variable; return what became settled.
+            """Take one sample: its time, and a number for every variable; return what became settled.
 
-            A value may also be bounds ``(lower, upper)``, or None if it is missing.
+            Times are seconds, numbers of ``time_unit=``, dates or durations, and reported as they were given. A
+            value may also be bounds ``(lower, upper)``, or None if it is missing.
 
             Raises :class:`TraceError` for wrong data and :class:`EvaluationError` where an operation has no
             value; the monitor is then as it was.
@@ -48,11 +49,13 @@ class EagerMonitor(EarlyMonitor):
             if self._finished:
                 raise self._is_finished()
             after = self.samples
-            stamp = self._seconds(time)
-            known = self._bounds_of(flat, after, stamp)
-            self._check_order(stamp)
+            stamp = self._stamp(time)
+            known = self._bounds_of(flat, after, stamp.seconds)
+            self._check_order(stamp.seconds)
             try:
-                return self._backend.take(stamp, *self._row(known), after)  # type: ignore[no-any-return]
+                verdicts = self._backend.take(stamp.seconds, *self._row(known), after)
+                self._remember(stamp)
+                return self._as_given(verdicts)
             except self._refused:
                 raise in_use() from None
             except self._undefined as error:
@@ -64,8 +67,15 @@ class EagerMonitor(EarlyMonitor):
         if self._finished:
             return []
         self._finished = True
-        return self._backend.finish()  # type: ignore[no-any-return]
+        return self._as_given(self._backend.finish())
 
     def __getitem__(self, name: str | Formula) -> list[Verdict]:
         """Return the verdicts of a formula that is watched which the last call settled."""
-        return self._backend.verdicts(self._output(name))  # type: ignore[no-any-return]
+        return self._as_given(self._backend.verdicts(self._output(name)))
+
+    def _as_given(self, verdicts: list[Verdict]) -> list[Verdict]:
+        """Return verdicts with their times in the form of the caller's."""
+        if self._clock.plain:
+            return verdicts
+        time = self._clock.time
+        return [Verdict(time(each.time), each.satisfied, time(each.decided_at)) for each in verdicts]

@@ -10,16 +10,19 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from rtamt.compiler.early import compile_graph
 from rtamt.engine.backend import Session
+from rtamt.engine.discrete.apart import Apart
 from rtamt.engine.discrete.early_python_backend import PythonEarlyMonitor
 from rtamt.engine.gate import alone
 from rtamt.engine.native import EarlyMonitorBase, core
 from rtamt.engine.online import OnlineMonitor, Watched
 from rtamt.errors import TraceError, UsageError, did_you_mean, shown
 from rtamt.language.undefined_value import at_sample, undefined
+from rtamt.language.units import check_unit
 from rtamt.rewrite.desugar import desugar, written
 from rtamt.signals import arrays
 from rtamt.signals.outcomes import Interval
 from rtamt.signals.regular import irregular, not_increasing
+from rtamt.verdicts.caller_clock import CallerClock, Stamp
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Mapping, Sequence
@@ -69,7 +72,7 @@ class GraphDefinition(Session):
 class EarlyMonitor(EarlyMonitorBase, OnlineMonitor):
     """What both monitors of discrete time share. Not instantiated by users."""
 
-    _remembered: ClassVar[tuple[str, ...]] = ("_finished",)
+    _remembered: ClassVar[tuple[str, ...]] = ("_finished", "_clock")
     _base = EarlyMonitorBase
     #: The class of what update() returns, None for bounds.
     _verdict: type | None
@@ -87,6 +90,7 @@ class EarlyMonitor(EarlyMonitorBase, OnlineMonitor):
         ranges: Mapping[str, Any] | None = None,
         start: bool = False,
         every: bool = True,
+        unit: str | None = None,
     ) -> None:
         for watched in (Watched("", formula, text), *watch):
             domain.check(watched.formula, watched.text)
@@ -102,6 +106,7 @@ class EarlyMonitor(EarlyMonitorBase, OnlineMonitor):
         # A formula that is asked for at the start alone is no output.
         self._hidden = 0 if every else 1
         self._outputs = self._graph.outputs[self._hidden :]
+        self._clock = CallerClock(None if unit is None else check_unit(unit), period)
 
     def _prepare(self) -> None:
         """Open the first monitor of the back end."""
@@ -138,9 +143,13 @@ class EarlyMonitor(EarlyMonitorBase, OnlineMonitor):
         )
 
     def _connect(self, backend: Any) -> None:
-        self._backend = backend
+        self._backend = backend if self._clock.plain else Apart(backend)
         self._refused = self._session.refused
         self._undefined: Any = self._session.undefined
+
+    def _resume(self, state: tuple[Any, ...]) -> None:
+        super()._resume(state)
+        self._clock = self._clock.copied()
 
     #: By how many samples at most a sample may be late; None where all come in order.
     _late: int | None = None
@@ -179,12 +188,38 @@ class EarlyMonitor(EarlyMonitorBase, OnlineMonitor):
     def reset(self) -> None:
         """Forget the trace; the next sample is the first."""
         self._finished = False
+        self._clock = self._clock.cleared()
         self._connect(self._session.open())
 
     # ---- samples ---------------------------------------------------------------------------------
 
+    @property
+    def _count(self) -> int:
+        """How many samples came, also if they are not in the back end yet."""
+        return self.samples
+
+    def _stamp(self, time: Any) -> Stamp:
+        """Return a time in seconds and as it was given; raise :class:`TraceError` for what is none."""
+        stamp = self._clock.read(time, self._count)
+        if stamp is None:
+            return Stamp(self._number(time))
+        return Stamp(self._number(stamp.seconds), stamp.original)
+
     def _seconds(self, time: Any) -> float:
-        """Return a timestamp in seconds; raise :class:`TraceError` for what is none."""
+        return self._stamp(time).seconds
+
+    def _remember(self, stamp: Stamp, *, begun: bool = True) -> None:
+        """Remember the time of a sample that the back end has taken, if it was not given in seconds."""
+        if stamp.original is None:
+            return
+        plain = self._clock.plain
+        self._clock.take(stamp, begun=begun)
+        if plain != self._clock.plain:
+            self._connect(self._backend)
+        if self._clock.full and begun:
+            self._clock.forget(self._backend.earliest)
+
+    def _number(self, time: Any) -> float:
         number = arrays.number_of(time)
         if number is None:
             raise TraceError(

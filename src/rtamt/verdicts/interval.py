@@ -38,8 +38,8 @@ class Change(NamedTuple):
     ``retracted``: whether they are outside what they were, after a correction.
     """
 
-    begin: float
-    end: float
+    begin: Any
+    end: Any
     interval: Interval
     final: bool
     retracted: bool = False
@@ -62,6 +62,8 @@ class IntervalMonitor(EarlyMonitor):
 
     _remembered: ClassVar[tuple[str, ...]] = (
         "_finished",
+        "_clock",
+        "_early",
         "_rest",
         "_open_at_end",
         "_at_end",
@@ -123,6 +125,7 @@ class IntervalMonitor(EarlyMonitor):
         def update(self, time: Any, /, **values: Any) -> None:
             """Take what is known at one time: of a variable a number, bounds ``(lower, upper)``, or None if missing.
 
+            Times are seconds, numbers of ``time_unit=``, dates or durations, and reported as they were given.
             With a ``lateness``, samples may come in any order, variables one by one, and may be made more precise.
             Raises :class:`TraceError` for wrong data and :class:`EvaluationError` where an operation has no
             value; the monitor is then as it was.
@@ -133,32 +136,40 @@ class IntervalMonitor(EarlyMonitor):
         with self._gate:
             self._take(time, values)
 
+    @property
+    def _count(self) -> int:
+        return self.samples + len(self._early)
+
     def _take(self, time: Any, values: dict[str, Any]) -> None:
         flat = self._read_by_formula(values)
         if self._finished:
             raise self._is_finished()
         index = self.samples
-        stamp = self._seconds(time)
-        known = self._bounds_of(flat, index, stamp)
+        stamp = self._stamp(time)
+        seconds = stamp.seconds
+        known = self._bounds_of(flat, index, seconds)
+        begun = self._late is None or self._backend.newest >= 0
         try:
             if self._late is None:
-                self._check_order(stamp)
-                self._backend.take(stamp, *self._row(known), index)
-            elif self._backend.newest < 0:
-                self._begin(stamp, known)
+                self._check_order(seconds)
+                self._backend.take(seconds, *self._row(known), index)
+            elif begun:
+                self._check_late(seconds)
+                self._learn(seconds, known)
             else:
-                self._check_late(stamp)
-                self._learn(stamp, known)
+                self._begin(seconds, known)
         except self._refused:
             raise in_use() from None
         except self._undefined as error:
             raise self._no_value(error) from None
+        self._remember(stamp, begun=begun)
 
     def _begin(self, time: float, known: dict[str, tuple[float, float] | None]) -> None:
         """Keep the first samples until no earlier one can come: only then it is known where the trace starts."""
         self._early = (*self._early, (time, known))
         times = [time for time, _ in self._early]
-        if max(times) - min(times) > float(self._lateness):
+        assert self._late is not None
+        if round((max(times) - min(times)) / float(self._period)) > self._late:
             self._start()
 
     def _start(self) -> None:
@@ -339,7 +350,8 @@ class IntervalMonitor(EarlyMonitor):
         backend = self._backend
         lag = max(0, self._graph.horizon(self._outputs[output]))
         final = self._finished or lower == upper or (lag < FOREVER and last + lag <= backend.closed)
-        return Change(backend.time(first), backend.time(last), Interval(lower, upper), final, retracted)
+        begin, end = (self._clock.time(backend.time(t)) for t in (first, last))
+        return Change(begin, end, Interval(lower, upper), final, retracted)
 
     @alone
     def finish(self) -> list[Change]:
@@ -373,6 +385,7 @@ class IntervalMonitor(EarlyMonitor):
     def reset(self) -> None:
         """Forget the trace; the next sample is the first."""
         self._finished = False
+        self._clock = self._clock.cleared()
         self._forget()
         self._connect(self._session.open())
 

@@ -78,15 +78,10 @@ def mode_of(verdict: Any, settings: Mapping[str, Any]) -> Mode:
     return mode
 
 
-def clock_of(mode: Mode, domain: TimeDomain, unit: str | None) -> TimeDomain:
-    """Return the time domain of a mode's monitor; raise :class:`UsageError` where there is none.
-
-    ``unit``: of times that are numbers.
-    """
+def clock_of(mode: Mode, domain: TimeDomain) -> TimeDomain:
+    """Return the time domain of a mode's monitor; raise :class:`UsageError` where there is none."""
     if domain.continuous:
         raise UsageError(f"verdict='{mode.name}' needs discrete time; use it, or verdict='{DELAYED}'")
-    if unit not in {None, "s"}:
-        raise UsageError(f"verdict='{mode.name}' takes times in seconds, and time_unit is {shown(unit)}")
     return domain
 
 

@@ -31,11 +31,6 @@ import rtamt
             {"verdict": "interval", "ranges": {"x": (3, 1)}},
             "the range of 'x' is (3, 1), reversed; give (lower, upper)",
         ),
-        (
-            "x",
-            {"verdict": "eager", "time_unit": "ms"},
-            "verdict='eager' takes times in seconds, and time_unit is 'ms'",
-        ),
     ],
 )
 def test_wrong_setting_is_rejected_with_one_sentence(text, settings, message):

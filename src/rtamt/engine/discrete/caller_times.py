@@ -74,13 +74,14 @@ class CallerTimes:
         else:
             dtype = self.original.dtype
             last = arrays.plain(self.original[-1:].view(_NUMBERS[dtype.kind])[0])
-            start = Fraction(last) + self._period_in_unit(dtype)
-        stamps = [start + i * self._period_in_unit(dtype) for i in range(count)]
+            start = Fraction(last) + self.period_in_unit(dtype)
+        stamps = [start + i * self.period_in_unit(dtype) for i in range(count)]
         if dtype.kind in "mM":
             return np.array([round(stamp) for stamp in stamps], np.int64).view(dtype)
         if dtype.kind == "i" and all(stamp.denominator == 1 for stamp in stamps):
             return np.array([int(stamp) for stamp in stamps], np.int64)
         return np.array([float(stamp) for stamp in stamps])
 
-    def _period_in_unit(self, dtype: np.dtype[Any]) -> Fraction:
+    def period_in_unit(self, dtype: np.dtype[Any]) -> Fraction:
+        """Return how much a period is in times of a format."""
         return self.period / UNITS["ns" if dtype.kind in "mM" else self.unit or "s"]

@@ -197,6 +197,11 @@ class PythonEarlyMonitor:
         earlier = max((i for i in self._times if i <= sample), default=min(self._times, default=0))
         return self._times.get(earlier, 0.0) + (sample - earlier) * float(self._period)
 
+    @property
+    def earliest(self) -> float:
+        """The first time that may still be reported."""
+        return self._times[0]
+
     def held(self, _output: int) -> int:
         """The first sample that is held."""
         return 0

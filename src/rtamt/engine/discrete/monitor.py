@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from rtamt.engine.discrete.apart import Apart, inner_of
 from rtamt.engine.discrete.backends import BACKENDS
 from rtamt.engine.discrete.caller_times import CallerTimes
 from rtamt.engine.discrete.samples import read_time, read_values
@@ -92,7 +93,7 @@ class Monitor(MonitorBase, OnlineMonitor):
         self._connect(self._session.open())
 
     def _connect(self, backend: Any) -> None:
-        self._backend = backend if self._times.plain else _Apart(backend)
+        self._backend = backend if self._times.plain else Apart(backend)
         self._update = backend.update
         self._step = backend.step
         self._refused = self._session.refused
@@ -291,7 +292,7 @@ class Monitor(MonitorBase, OnlineMonitor):
         self._news = (0, [])
         if self._times.original is not None:
             self._times = replace(self._times, original=None)
-            self._connect(self._backend.inner)
+            self._connect(inner_of(self._backend))
 
     @property
     def _last_time(self) -> float | None:
@@ -307,7 +308,7 @@ class Monitor(MonitorBase, OnlineMonitor):
         first = self._times.original is None
         self._times = self._times.extended(original)
         if first:
-            self._connect(getattr(self._backend, "inner", self._backend))
+            self._connect(inner_of(self._backend))
 
     def _recent(self, count: int) -> NDArray[Any]:
         """Return the timestamps of the last samples in the caller's format."""
@@ -357,13 +358,3 @@ class Monitor(MonitorBase, OnlineMonitor):
     def _no_value(self, error: Any) -> Exception:
         """Return the error for an undefined value, with its sub-formula and instant."""
         return undefined(self._session.culprit(error), at_sample(error.args[1], error.time))
-
-
-class _Apart:
-    """A back end hidden from the fast path, because the times of its samples have to be converted first."""
-
-    def __init__(self, inner: Any) -> None:
-        self.inner = inner
-
-    def __getattr__(self, name: str) -> Any:
-        return getattr(self.inner, name)

@@ -1,0 +1,120 @@
+"""The times of early monitors as the caller gives them: seconds, numbers of another unit, dates or durations."""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from fractions import Fraction
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from rtamt.engine.discrete.caller_times import CallerTimes
+from rtamt.signals import arrays
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+#: How many times may be kept before it is looked which of them can still be asked for.
+_FEW = 64
+
+
+class Stamp(NamedTuple):
+    """A time in seconds, and as the caller gave it: an array of one, None where that is the same."""
+
+    seconds: float
+    original: NDArray[Any] | None = None
+
+
+class CallerClock:
+    """Converts times to seconds for the back end, and those that it reports back.
+
+    ``unit``: of times that are numbers, None for seconds. Only samples that are not a whole number of periods after
+    one that is kept need memory. The caller of a copied monitor copies its clock, with :meth:`copied`.
+    """
+
+    def __init__(self, unit: str | None, period: Fraction) -> None:
+        self._times = CallerTimes(unit, period, 0)
+        self._period = period
+        self._seconds: list[float] = []
+        self._originals: list[NDArray[Any]] = []
+        self._limit = _FEW
+
+    @property
+    def plain(self) -> bool:
+        """Whether all times are numbers of seconds."""
+        return self._times.plain
+
+    def copied(self) -> CallerClock:
+        """Return a clock that is independent of this one."""
+        copy = CallerClock(self._times.unit, self._period)
+        copy._times = self._times
+        copy._seconds, copy._originals = list(self._seconds), list(self._originals)
+        copy._limit = self._limit
+        return copy
+
+    def cleared(self) -> CallerClock:
+        """Return a clock of a monitor without samples."""
+        return CallerClock(self._times.unit, self._period)
+
+    def read(self, time: Any, samples: int) -> Stamp | None:
+        """Return a time, None for a number of seconds; ``samples``: how many came before.
+
+        Raises :class:`TraceError` for what is no time, or of another form than the times before.
+        """
+        if self.plain and (samples or not arrays.is_moment(time)):
+            return None
+        stamps = self._times.read([time], samples)
+        return Stamp(float(stamps.seconds[0]), stamps.original)
+
+    def take(self, stamp: Stamp, *, begun: bool) -> None:
+        """Remember the time of a sample; ``begun``: whether it is known where the trace starts.
+
+        From then on a late sample has the time that follows from those before it, as in the back end.
+        """
+        assert stamp.original is not None
+        self._times = self._times.extended(stamp.original)
+        place = bisect_right(self._seconds, stamp.seconds)
+        if begun and place < len(self._seconds):
+            return
+        if place < len(self._seconds) or not self._continues(stamp):
+            self._seconds.insert(place, stamp.seconds)
+            self._originals.insert(place, stamp.original)
+
+    def _continues(self, stamp: Stamp) -> bool:
+        """Return whether a time follows from the last one that is kept, in both forms."""
+        if not self._seconds:
+            return False
+        steps = round((stamp.seconds - self._seconds[-1]) / float(self._period))
+        same = self._seconds[-1] + steps * float(self._period) == stamp.seconds
+        return same and bool(self._after(self._originals[-1], steps) == stamp.original[0])  # type: ignore[index]
+
+    def forget(self, earliest: float) -> None:
+        """Forget times that are not needed for any time from ``earliest`` on."""
+        first = bisect_right(self._seconds, earliest) - 1
+        if first > 0:
+            del self._seconds[:first], self._originals[:first]
+        self._limit = max(_FEW, 2 * len(self._seconds))
+
+    @property
+    def full(self) -> bool:
+        """Whether :meth:`forget` should be called."""
+        return len(self._seconds) > self._limit
+
+    def time(self, seconds: float) -> Any:
+        """Return the time of a sample, or of one that is missing, as the caller would give it."""
+        if not self._seconds:
+            return seconds
+        place = max(0, bisect_right(self._seconds, seconds) - 1)
+        steps = round((seconds - self._seconds[place]) / float(self._period))
+        return self._after(self._originals[place], steps)
+
+    def _after(self, original: NDArray[Any], steps: int) -> Any:
+        """Return a time some periods after one that is kept."""
+        value = original[0]
+        if steps == 0:
+            return value if value.dtype.kind in "mM" else arrays.plain(value)
+        span = steps * self._times.period_in_unit(value.dtype)
+        if value.dtype.kind in "mM":
+            return value + np.timedelta64(round(span), "ns")
+        later = Fraction(arrays.plain(value)) + span
+        return int(later) if value.dtype.kind == "i" and later.denominator == 1 else float(later)
