@@ -110,8 +110,8 @@ def report(found: Found) -> str:
             listing("Listing 8, what its monitor publishes from the horizon on: a request every 10 s, the third "
                     "without a grant", "listing 8", found, "no value is printed; by its definition 1, then -3 from "
                     "the instant on at which the third request has waited for 5 s"),
-            "## The monitor as a block in Simulink\n\nThe block is in `matlab/`; `tests/integration/test_matlab.py` "
-            "runs it in Octave, and holds each of its values to the monitor in Python.",
+            "## The monitor as a block in Simulink\n\nThe block is in `matlab/`; "
+            "`tests/integration/matlab/test_block.py` runs it in Octave, compared with the monitor in Python.",
             table("Scaling of offline monitors, seconds", "scaling", found,
                   "time grows with the samples and the length of the formula; dense time is the slower one; at most "
                   "0.5 ms a sample in Python"),

@@ -2,11 +2,6 @@
 
 from __future__ import annotations
 
-import gc
-import numbers
-import sys
-import threading
-import weakref
 from decimal import Decimal
 from fractions import Fraction
 from math import inf, nan
@@ -15,31 +10,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pytest
 
-import rtamt
-from rtamt.compiler.program import Instruction, Program
-from rtamt.engine.native import core
-from rtamt.errors import UsageError
+from rtamt.compiler.program import Instruction
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+from tests.unit.engine.discrete.programs import CORE, DIFFERENCE, A, B, monitor, program, state
 
-_core = core()
-
-
-def program(*instructions: Instruction, outputs: tuple[int, ...], inputs: tuple[str, ...]) -> bytes:
-    return Program(
-        instructions=instructions,
-        inputs=inputs,
-        outputs=outputs,
-        period=Fraction(1),
-        value_of={},
-        origins=(),
-    ).to_bytes()
-
-
-A = Instruction("input", n=0)
-B = Instruction("input", n=1)
-DIFFERENCE = program(A, B, Instruction("sub", a=0, b=1), outputs=(2,), inputs=("a", "b"))
 # a - b known two samples late, and its maximum over three samples
 LATE = program(
     A,
@@ -51,18 +27,10 @@ LATE = program(
 )
 
 
-def monitor(**options: Any) -> Any:
-    return _core.Monitor(DIFFERENCE, ["a", "b"], **options)
-
-
-def state(m: Any) -> tuple[Any, ...]:
-    return (m.samples, m.violations, m.last_time, m.last(2))
-
-
 def refused(m: Any, method: str, *arguments: Any) -> str:
     """Return why a call was refused, after checking that it changed nothing."""
     before = state(m)
-    with pytest.raises(_core.Refused) as caught:
+    with pytest.raises(CORE.Refused) as caught:
         getattr(m, method)(*arguments)
     assert state(m) == before
     return str(caught.value)
@@ -78,7 +46,7 @@ def test_update_takes_a_dict_in_any_order() -> None:
 
 
 def test_a_value_is_none_until_it_is_known() -> None:
-    m = _core.Monitor(LATE, ["a", "b"])
+    m = CORE.Monitor(LATE, ["a", "b"])
     assert [m.step(float(x), 0.0) for x in (3, 1, 2, 5)] == [None, None, 3.0, 5.0]
     late, now = m.finish()
     assert late.tolist() == [5.0, 5.0]
@@ -189,18 +157,18 @@ def test_a_failed_operation_names_instruction_and_sample_and_changes_nothing() -
         lambda: m.push(None, [np.array([inf]), np.array([inf])]),
     ]
     for call in calls:
-        with pytest.raises(_core.Undefined) as caught:
+        with pytest.raises(CORE.Undefined) as caught:
             call()
         assert caught.value.args == (2, 1)
         assert state(m) == before
     assert m.update_pairs(1.0, [("b", 0.0)]) == 3.0
-    with pytest.raises(_core.Undefined) as caught:
-        _core.evaluate(DIFFERENCE, [np.array([1.0, inf]), np.array([1.0, inf])], 2)
+    with pytest.raises(CORE.Undefined) as caught:
+        CORE.evaluate(DIFFERENCE, [np.array([1.0, inf]), np.array([1.0, inf])], 2)
     assert caught.value.args == (2, 1)
 
 
 def test_after_finish_samples_are_refused_until_reset() -> None:
-    m = _core.Monitor(LATE, ["a", "b"])
+    m = CORE.Monitor(LATE, ["a", "b"])
     m.step(1.0, 0.0)
     assert [values.tolist() for values in m.finish()] == [[1.0], []]
     assert [values.tolist() for values in m.finish()] == [[], []]
@@ -218,8 +186,8 @@ def test_chunks_give_what_single_samples_give() -> None:
     rng = np.random.default_rng(1)
     a, b = rng.normal(size=(2, 10_000))
     times = np.cumsum(rng.uniform(0.5, 1.5, size=10_000))
-    whole = _core.evaluate(LATE, [a, b], len(a))
-    chunks = _core.Monitor(LATE, ["a", "b"])
+    whole = CORE.evaluate(LATE, [a, b], len(a))
+    chunks = CORE.Monitor(LATE, ["a", "b"])
     parts = [
         chunks.push(times[i:j], [a[i:j], b[i:j]]) for i, j in ((0, 1), (1, 1), (1, 5000), (5000, 10_000))
     ]
@@ -236,7 +204,7 @@ def test_step_takes_as_many_values_as_inputs() -> None:
 
 
 def test_the_latest_value_of_each_output_is_there_once_it_is_known() -> None:
-    m = _core.Monitor(LATE, ["a", "b"])
+    m = CORE.Monitor(LATE, ["a", "b"])
     assert [m.latest(0), m.latest(1)] == [None, None]
     for a in (5.0, 4.0, 6.0):
         m.step(a, 1.0)
@@ -247,7 +215,7 @@ def test_the_latest_value_of_each_output_is_there_once_it_is_known() -> None:
 
 
 def test_another_monitor_goes_on_from_a_state() -> None:
-    m, other = _core.Monitor(LATE, ["a", "b"]), _core.Monitor(LATE, ["a", "b"])
+    m, other = CORE.Monitor(LATE, ["a", "b"]), CORE.Monitor(LATE, ["a", "b"])
     for t, a in enumerate((5.0, 4.0)):
         m.update(t + 0.5, {"a": a, "b": 1.0})
     other.step(9.0, 0.0)
@@ -259,93 +227,6 @@ def test_another_monitor_goes_on_from_a_state() -> None:
     assert m.state() == other.state()
     with pytest.raises(ValueError, match=r"^This is not the state of a monitor of this program\.$"):
         monitor().restore(m.state())
-
-
-class Watcher(_core.MonitorBase):
-    """As the monitors of Python are made: the back end takes the sample, and Python where that does not do."""
-
-    def __init__(self, backend: Any) -> None:
-        super().__init__()
-        self._backend = backend
-        self.asked: list[Any] = []
-
-    def _update_carefully(self, *args: Any, **values: Any) -> str:
-        self.asked.append((args, values))
-        return "asked"
-
-    _step_carefully = _update_carefully
-
-    def _no_value(self, error: Exception) -> Exception:
-        return ArithmeticError(*error.args)
-
-
-def test_a_method_is_taken_over_where_the_monitor_takes_the_sample() -> None:
-    watcher = Watcher(monitor())
-    reference = monitor()
-    assert watcher.update(0.5, b=2, a=np.float64(3)) == reference.update(0.5, {"a": 3.0, "b": 2.0})
-    assert Watcher.update(watcher, 1.5, a=1, b=2) == reference.update(1.5, {"a": 1.0, "b": 2.0})
-    step = watcher.step
-    assert step(4, 5.0) == reference.step(4.0, 5.0)
-    assert watcher.asked == []
-    assert state(watcher._backend) == state(reference)
-
-
-@pytest.mark.parametrize(
-    ("args", "values"),
-    [
-        ((0.0,), {"a": 1.0}),
-        ((0.0,), {"a": 1.0, "b": float("nan")}),
-        ((0.0,), {"a": 1.0, "c": 1.0}),
-        (("0",), {"a": 1.0, "b": 1.0}),
-        ((), {"a": 1.0, "b": 1.0}),
-        ((0.0, 1.0), {"a": 1.0, "b": 1.0}),
-    ],
-)
-def test_what_the_monitor_refuses_goes_to_the_function_as_it_came(args: Any, values: Any) -> None:
-    watcher = Watcher(monitor())
-    before = state(watcher._backend)
-    assert watcher.update(*args, **values) == "asked"
-    assert watcher.asked == [(args, values)]
-    assert state(watcher._backend) == before
-
-
-def test_without_a_compiled_monitor_the_function_is_called() -> None:
-    for backend in (_core.DenseMonitor, object()):
-        watcher = Watcher(backend)
-        assert (watcher.update(0.0, a=1.0, b=1.0), watcher.step(1.0)) == ("asked", "asked")
-    with pytest.raises(TypeError, match="MonitorBase"):
-        Watcher.update(object(), 0.0)  # type: ignore[arg-type]
-    with pytest.raises(TypeError, match=r"^The monitor was never initialised\.$"):
-        Watcher.__new__(Watcher).update(0.0)
-
-
-def test_python_makes_the_error_of_an_undefined_value() -> None:
-    ratio = program(A, B, Instruction("div", a=0, b=1), outputs=(2,), inputs=("a", "b"))
-    watcher = Watcher(_core.Monitor(ratio, ["a", "b"]))
-    with pytest.raises(ArithmeticError) as raised:
-        watcher.update(0.0, a=0.0, b=0.0)
-    assert (raised.value.args, watcher.asked) == ((2, 0), [])
-
-
-def test_a_monitor_that_holds_itself_is_collected() -> None:
-    watcher = Watcher(object())
-    watcher._backend = watcher
-    there = weakref.ref(watcher)
-    del watcher
-    gc.collect()
-    assert there() is None
-
-
-def test_what_a_number_raises_by_itself_is_not_asked_about() -> None:
-    class Stop:
-        def __float__(self) -> float:
-            raise KeyboardInterrupt
-
-    numbers.Real.register(Stop)
-    watcher = Watcher(monitor())
-    with pytest.raises(KeyboardInterrupt):
-        watcher.update(0.0, a=Stop(), b=1.0)
-    assert watcher.asked == []
 
 
 def test_wrong_calls_say_what_is_wrong() -> None:
@@ -365,9 +246,9 @@ def test_wrong_calls_say_what_is_wrong() -> None:
     with pytest.raises(IndexError, match=r"^There is no instruction 3.$"):
         m.last(3)
     with pytest.raises(ValueError, match=r"^Got 1 names for a program with 2 inputs.$"):
-        _core.Monitor(DIFFERENCE, ["a"])
+        CORE.Monitor(DIFFERENCE, ["a"])
     with pytest.raises(ValueError, match=r"^Two inputs are called 'a'.$"):
-        _core.Monitor(DIFFERENCE, ["a", "a"])
+        CORE.Monitor(DIFFERENCE, ["a", "a"])
     with pytest.raises(
         ValueError, match=r"^The period must be positive and finite, the tolerance 0 or more.$"
     ):
@@ -376,105 +257,33 @@ def test_wrong_calls_say_what_is_wrong() -> None:
         ValueError,
         match=r"^This is not a program that can be run: its checksum does not match, so it was damaged on the way.$",
     ):
-        _core.Monitor(DIFFERENCE[:-1] + b"\0", ["a", "b"])
+        CORE.Monitor(DIFFERENCE[:-1] + b"\0", ["a", "b"])
     with pytest.raises(TypeError, match=r"^The monitor was never initialised.$"):
-        _core.Monitor.__new__(_core.Monitor).step(1.0)
+        CORE.Monitor.__new__(CORE.Monitor).step(1.0)
 
 
 def test_a_monitor_whose_memory_cannot_be_had_is_refused_in_a_sentence() -> None:
     huge = program(A, Instruction("slide_max", a=0, n=2**48), outputs=(1,), inputs=("a",))
     with pytest.raises(MemoryError, match=r"^There is not enough memory\.$"):
-        _core.Monitor(huge, ["a"])
+        CORE.Monitor(huge, ["a"])
 
 
 def test_scans_are_unbounded_future() -> None:
     phi, psi = np.array([1.0, 5.0, -2.0]), np.array([-9.0, 3.0, 4.0])
-    assert _core.scan("run_max", phi).tolist() == [5.0, 5.0, -2.0]
-    assert _core.scan("run_min", phi).tolist() == [-2.0, -2.0, -2.0]
-    assert _core.scan("until", phi, psi).tolist() == [1.0, 4.0, 4.0]
+    assert CORE.scan("run_max", phi).tolist() == [5.0, 5.0, -2.0]
+    assert CORE.scan("run_min", phi).tolist() == [-2.0, -2.0, -2.0]
+    assert CORE.scan("until", phi, psi).tolist() == [1.0, 4.0, 4.0]
     with pytest.raises(ValueError, match=r"^The scan 'until' takes two columns of the same length.$"):
-        _core.scan("until", phi)
+        CORE.scan("until", phi)
     with pytest.raises(ValueError, match=r"^There is no scan 'next': it is run_max, run_min or until.$"):
-        _core.scan("next", phi)
+        CORE.scan("next", phi)
 
 
 def test_memory_is_that_of_a_new_monitor_and_irregular_times_add_to_it() -> None:
-    m = _core.Monitor(LATE, ["a", "b"])
-    assert m.state_bytes == _core.memory(LATE)
+    m = CORE.Monitor(LATE, ["a", "b"])
+    assert m.state_bytes == CORE.memory(LATE)
     m.update(0.0, {"a": 1.0, "b": 1.0})
     m.update(1.0, {"a": 1.0, "b": 1.0})
-    assert m.state_bytes == _core.memory(LATE)
+    assert m.state_bytes == CORE.memory(LATE)
     m.update(2.25, {"a": 1.0, "b": 1.0})
-    assert m.state_bytes == _core.memory(LATE) + 3 * 8
-
-
-def test_calls_neither_lose_nor_keep_references() -> None:
-    m = monitor(ignored={"c"})
-    m.step(1.0, 1.0)
-    value, name, pair, values = 1234.5, "unseen", ("a", 2.5), {"a": 1.5, "b": 2.5}
-    watched = (None, value, name, pair, values)
-    gc.collect()  # what others left behind holds None too
-    before = [sys.getrefcount(thing) for thing in watched]
-    for i in range(1000):
-        m.update(2.0 * i + 1, values)
-        m.update_pairs(2.0 * i + 2, [pair, ("b", value)])
-        m.step(value, Fraction(1, 2))
-        m.reset()
-        m.step(value, 1.0)
-        m.reset()
-        m.step(value, value)
-        for pairs in ([(name, value)], [pair, pair, value]):
-            with pytest.raises(_core.Refused):
-                m.update_pairs(1e9, pairs)
-        m.reset()
-        m.step(value, value)
-        m.reset()
-    m.reset()
-    gc.collect()
-    after = [sys.getrefcount(thing) for thing in watched]
-    assert max(abs(a - b) for a, b in zip(after, before, strict=True)) < 100
-
-
-def complaint(m: Any) -> str | None:
-    try:
-        m.step(1.0, 1.0)
-    except UsageError as error:
-        return str(error)
-    return None
-
-
-def test_a_monitor_in_use_by_another_thread_says_so_and_goes_on_undisturbed() -> None:
-    n = 2_000_000
-    column = np.ones(n)
-    m = monitor()
-    answers: list[str | None] = []
-    pushes = 0
-    while set(answers) <= {None}:  # the two threads may miss each other
-        assert pushes < 100
-        thread = threading.Thread(target=lambda: m.push(None, [column, column]))
-        thread.start()
-        while thread.is_alive():
-            answers.append(complaint(m))
-        thread.join()
-        pushes += 1
-    assert set(answers) - {None} == {
-        "the monitor is in use by another call, from another thread or from a value or operator that calls it "
-        "back; give each thread a monitor of its own"
-    }
-    assert m.samples == pushes * n + answers.count(None)
-
-
-@pytest.mark.parametrize("time", ["discrete", "dense"])
-def test_a_field_is_read_once_a_sample(time: Any) -> None:
-    reads: list[float] = []
-
-    class Request:
-        @property
-        def value(self) -> float:
-            reads.append(5.0)
-            return 5.0
-
-    monitor = rtamt.parse("gnt >= req.value").monitor(time=time)
-    for t in range(3):
-        monitor.update(float(t), gnt=1.0, req=Request())
-    assert len(reads) == 3
+    assert m.state_bytes == CORE.memory(LATE) + 3 * 8
