@@ -15,6 +15,7 @@ modes                 the list of verdict modes of a monitor
 eager                 the monitor of verdicts as soon as they are settled
 interval              the monitor of bounds of the robustness
 early                 what the monitors ``eager`` and ``interval`` share
+caller_clock          times of early monitors in the format of the caller
 standalone            compile a requirement to a program that runs without Python
 ====================  =================================================================
 """
