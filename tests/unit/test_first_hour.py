@@ -276,9 +276,11 @@ def test_what_the_environment_sets_for_ros_is_named_in_errors(tmp_path):
         assert done.returncode == 2
         return done.stderr
 
-    assert (
-        "check the environment variable CYCLONEDDS_URI, which configures the network and is '<bad'"
-        in answer(CYCLONEDDS_URI="<bad")
+    cause, sentence = answer(CYCLONEDDS_URI="no.xml").splitlines()  # of Cyclone DDS, and ours
+    assert cause.endswith("can't open configuration file no.xml")
+    assert sentence == (
+        "rtamt: cannot join DDS domain 0 (the lines above give the cause): check the environment variable "
+        "CYCLONEDDS_URI, which configures the network and is 'no.xml'"
     )
     sentence = "unknown distribution 'jazy' of ROS 2 (from the environment variable ROS_DISTRO); did you mean 'jazzy'?"
     assert sentence in answer(ROS_DISTRO="jazy")

@@ -49,6 +49,13 @@ def test_type_checkers_see_our_annotations():
     assert (files("rtamt") / "py.typed").is_file()
 
 
+def test_the_readme_lists_every_extra():
+    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+    assert set(re.findall(r"pip install '\.\[(\w+)\]'", readme)) == set(
+        PROJECT["project"]["optional-dependencies"]
+    )
+
+
 def test_the_editable_build_has_what_an_isolated_build_asks_for():
     assert set(PROJECT["build-system"]["requires"]) <= set(PROJECT["dependency-groups"]["build"])
 

@@ -36,8 +36,8 @@ class Clock:
         if isinstance(origin, np.datetime64):
             return Clock(origin, recording)
         if is_epoch(origin):
-            return Clock(np.datetime64(round(Fraction(repr(float(origin))) * 10**9), "ns"), recording)
-        return Clock(0.0 if abs(origin) <= _FAR else origin, recording)
+            return Clock(np.datetime64(round(origin * 10**9), "ns"), recording)
+        return Clock(0.0 if abs(origin) <= _FAR else float(origin), recording)
 
     def positions(self, times: Any) -> FloatArray:
         """Return times, as signals and explanations tell them, as positions."""

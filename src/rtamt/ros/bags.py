@@ -102,7 +102,10 @@ def _copy(reader: Any, writer: Any, store: Any) -> None:
     for known in reader.connections:
         key = known.topic, known.msgtype
         if key not in connections:
-            connections[key] = writer.add_connection(known.topic, known.msgtype, typestore=store)
+            offered = known.ext.offered_qos_profiles if reader.is2 else ()
+            connections[key] = writer.add_connection(
+                known.topic, known.msgtype, typestore=store, offered_qos_profiles=offered
+            )
     for known, recorded, raw in messages(reader):
         with BAG.guard(str(reader.paths[0])):
             data = raw if reader.is2 else store.ros1_to_cdr(raw, known.msgtype)

@@ -202,10 +202,10 @@ class DenseTrace(DomainTrace):
         )
 
     @property
-    def origin(self) -> float | np.datetime64:
+    def origin(self) -> Fraction | np.datetime64:
         """See :class:`DomainTrace`."""
         start = self.scale.time(self.start)
-        return start if isinstance(start, np.datetime64) else float(self.start * self.scale.tick)
+        return start if isinstance(start, np.datetime64) else self.start * self.scale.tick
 
     def seconds(self, times: Any, *, elapsed: bool) -> arrays.FloatArray:
         """See :class:`DomainTrace`."""

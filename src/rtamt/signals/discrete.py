@@ -14,6 +14,7 @@ from rtamt.errors import BoundError, StlError, TraceError, UsageError, shown
 from rtamt.language.units import UNITS, decimal, positive_period
 from rtamt.rewrite.check import PERIODS, check_bounds
 from rtamt.signals.arrays import check_numbers, columns_of, is_number, plain, stamps, units_of
+from rtamt.signals.datetimes import nanoseconds_of
 from rtamt.signals.domain_interface import DomainTrace, TimeDomain
 from rtamt.signals.regular import TOLERANCE, check_increasing, check_regular, check_tolerance, infer_period
 from rtamt.signals.signal import Signal
@@ -227,10 +228,12 @@ class DiscreteTrace(DomainTrace):
         )
 
     @property
-    def origin(self) -> float | np.datetime64:
+    def origin(self) -> Fraction | np.datetime64:
         """See :class:`DomainTrace`."""
         first = self.stamps[0]
-        return first if isinstance(first, np.datetime64) else float(self.times[0])
+        if isinstance(first, np.timedelta64):
+            return Fraction(nanoseconds_of(first) or 0, 10**9)
+        return first if isinstance(first, np.datetime64) else Fraction(repr(float(self.times[0])))
 
     def seconds(self, times: Any, *, elapsed: bool) -> FloatArray:
         """See :class:`DomainTrace`."""

@@ -199,8 +199,8 @@ class DomainTrace(ABC):
 
     @property
     @abstractmethod
-    def origin(self) -> float | np.datetime64:
-        """The first instant at which formulas are evaluated: a date, or seconds."""
+    def origin(self) -> Fraction | np.datetime64:
+        """The first instant at which formulas are evaluated: a date, or exact seconds."""
 
     @abstractmethod
     def seconds(self, times: Any, *, elapsed: bool) -> FloatArray:

@@ -6,6 +6,7 @@ import os
 import sys
 import threading
 
+from cyclonedds.builtin import BuiltinDataReader, BuiltinTopicDcpsPublication, BuiltinTopicDcpsSubscription
 from cyclonedds.core import Policy, Qos
 from cyclonedds.domain import DomainParticipant
 from cyclonedds.sub import DataReader
@@ -60,6 +61,16 @@ class Puppet:
             for info in told
             for node in info.node_entities_info_seq
         ]
+
+    def user_data(self, topic):
+        """Return what other participants attach to readers and writers of a topic, as ``ros2 topic info`` reads it."""
+        found = set()
+        for kind in (BuiltinTopicDcpsPublication, BuiltinTopicDcpsSubscription):
+            for endpoint in BuiltinDataReader(self.participant._participant, kind).take(100):
+                mine = endpoint.participant_key == self.participant._participant.guid
+                if endpoint.topic_name == f"rt/{topic}" and not mine:
+                    found.add(endpoint.qos[Policy.Userdata].data.decode())
+        return sorted(found)
 
     def peers(self, topic):
         return self.participant.peers(topic)

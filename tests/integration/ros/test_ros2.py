@@ -10,6 +10,7 @@ import sys
 import pytest
 
 from rtamt.cli import main
+from rtamt.ros.dds.types import Types
 from tests.integration.ros.processes import Process, Puppet, free_port, stop_all, wait_for
 
 FLOAT = "rtamt_msgs/msg/FloatStamped"
@@ -109,6 +110,11 @@ def test_two_processes_on_dds_alone_in_dense_time(dds):
 
     # What `ros2 node list` and `ros2 topic list` read: three topics in, four out and /diagnostics.
     wait_for(lambda: ["response", 3, 5] in puppet.ask(do="nodes")["answer"], "the node in the graph")
+    # What `ros2 topic info --verbose` reads: the hash of the type.
+    for topic, kind in (("rtamt/req", FLOAT), ("rtamt/rob", FLOAT), ("rtamt/rob/verdict", VERDICT)):
+        types = Types()
+        expected = [f"typehash={types.type_hash(types.named(kind))};"]
+        assert puppet.ask(do="user_data", topic=topic)["answer"] == expected
     puppet.wait_for(
         "/diagnostics", lambda arrays: any(s["message"] == "violated" for a in arrays for s in a["status"])
     )

@@ -12,18 +12,32 @@ import lz4.frame
 import numpy as np
 import pytest
 from rosbags.highlevel import AnyReader
+from rosbags.interfaces import Qos, QosDurability, QosHistory, QosLiveliness, QosReliability, QosTime
 from rosbags.rosbag2.storage_mcap import zstd
 
 import rtamt
 from rtamt.cli import main
 from rtamt.errors import TraceError
-from rtamt.ros.message_definitions import DEFINITIONS, SATISFIED, VIOLATED
+from rtamt.ros.message_definitions import DEFINITIONS, FLOAT_STAMPED, SATISFIED, VIOLATED
 from tests.unit.readers.bags import SECOND, Bag
 
 ROOT = Path(__file__).parents[3]
 LISTING_8 = ROOT / "ros/rtamt4ros/specs/spec.stl"
 KINDS = ("ros1", "sqlite3", "mcap")
 START = 1_700_000_000
+NEVER = QosTime(2147483647, 4294967295)
+#: What sensors offer, and not what a recorder takes where nothing is known.
+SENSOR = Qos(
+    QosHistory.KEEP_LAST,
+    5,
+    QosReliability.BEST_EFFORT,
+    QosDurability.VOLATILE,
+    NEVER,
+    NEVER,
+    QosLiveliness.AUTOMATIC,
+    NEVER,
+    False,
+)
 
 
 @pytest.fixture(params=KINDS)
@@ -185,6 +199,37 @@ def test_the_bag_is_written_again_with_topics_of_robustness_and_verdicts(drive, 
     }  # fmt: skip
     assert kinds["/rtamt/rob/verdict"] == "rtamt_msgs/msg/Verdict"
     assert list(tmp_path.glob("tmp*")) == []
+
+
+@pytest.mark.parametrize("options", [(), ("--time", "dense")])
+@pytest.mark.parametrize("kind", KINDS)
+def test_the_written_bag_keeps_nanoseconds_types_and_qualities_of_service(tmp_path, capsys, kind, options):
+    start, period, held = 1_763_790_478_123_456_789, 10_000_001, 7
+    with Bag(tmp_path, kind) as bag:
+        if not bag.ros1:
+            bag.topics["/x"] = bag.writer.add_connection(
+                "/x", FLOAT_STAMPED, typestore=bag.store, offered_qos_profiles=[SENSOR]
+            )
+        for i in range(5):
+            stamp = start + i * period
+            message = bag.store.types[FLOAT_STAMPED](header=bag.header(stamp), value=float(-i % 2))
+            bag.write("/x", FLOAT_STAMPED, stamp + held, message)
+    out = tmp_path / "out.mcap"
+    spec = 'always("/x.value" >= 1)'
+    assert main(["check", spec, str(bag.path), *options, "-o", str(out)]) == 1
+    assert "2025-11-22 05:47:58.123456789 (+0 s)  violated" in capsys.readouterr().out
+    with AnyReader([out]) as reader:
+        (copied,) = (connection for connection in reader.connections if connection.topic == "/x")
+        assert copied.msgtype == FLOAT_STAMPED
+        assert copied.ext.offered_qos_profiles == ([] if bag.ros1 else [SENSOR])
+        stamps = {connection.topic: [] for connection in reader.connections}
+        for connection, recorded, raw in reader.messages():
+            header = reader.deserialize(raw, connection.msgtype).header.stamp
+            stamps[connection.topic].append((header.sec * 10**9 + header.nanosec, recorded))
+    exact = [start + i * period for i in range(5)]
+    assert stamps["/x"] == [(stamp, stamp + held) for stamp in exact]
+    assert stamps["/rtamt/robustness"][0] == (start, start)
+    assert {stamp for stamp, _ in stamps["/rtamt/robustness"]} <= set(exact)
 
 
 def test_a_recorded_robustness_topic_stays_and_the_offline_one_lies_beside_it(drive, tmp_path):

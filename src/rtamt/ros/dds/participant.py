@@ -69,18 +69,25 @@ class Participant:
         self._graph = self._writer("ros_discovery_info", self._info, self._qos(latest))
 
     def _join(self) -> Any:
-        """Return the participant of the domain; errors are mostly due to environment settings."""
+        """Return the participant of the domain; errors are mostly due to environment settings.
+
+        Cyclone DDS prints the cause itself. Its lines are not held back: for some wrong settings it prints one and
+        aborts the process.
+        """
         domain = _domain()
+        enclave = self._user_data(self._cyclone["core"].Qos(), "enclave=/;")
         try:
-            return self._cyclone["domain"].DomainParticipant(domain)
-        except self._cyclone["core"].DDSException as error:
+            return self._cyclone["domain"].DomainParticipant(domain, enclave)
+        except self._cyclone["core"].DDSException:
             given = os.environ.get("CYCLONEDDS_URI")
-            cause = (
+            remedy = (
                 f"check the environment variable CYCLONEDDS_URI, which configures the network and is {shown(given)}"
                 if given
                 else "is there a network interface? CYCLONEDDS_URI chooses one"
             )
-            raise UsageError(f"cannot join DDS domain {domain} ({error}): {cause}") from None
+            raise UsageError(
+                f"cannot join DDS domain {domain} (the lines above give the cause): {remedy}"
+            ) from None
 
     def _qos(self, quality: Quality) -> Any:
         core = self._cyclone["core"]
@@ -97,16 +104,26 @@ class Participant:
             policy.DataRepresentation(use_cdrv0_representation=True, use_xcdrv2_representation=False),
         )
 
+    def _user_data(self, qos: Any, text: str) -> Any:
+        """Return a quality of service with the pairs of keys and values that ROS 2 attaches to an entity."""
+        core = self._cyclone["core"]
+        return core.Qos(core.Policy.Userdata(text.encode()), base=qos)
+
+    def _hashed(self, qos: Any, cls: Any) -> Any:
+        """Return the quality of service of a reader or writer, with the hash of its type (Iron and newer)."""
+        return self._user_data(qos, f"typehash={self._types.type_hash(cls)};")
+
     def _writer(self, topic: str, cls: Any, qos: Any) -> Any:
         channel = self._cyclone["topic"].Topic(self._participant, topic, cls, qos=qos)
-        return self._cyclone["pub"].DataWriter(self._participant, channel, qos=qos)
+        return self._cyclone["pub"].DataWriter(self._participant, channel, qos=self._hashed(qos, cls))
 
     # ---- topics ----------------------------------------------------------------------------------
 
     def subscribe(self, topic: str, cls: Any) -> None:
         """Subscribe to a topic; see :meth:`take`."""
         channel = self._cyclone["topic"].Topic(self._participant, _on_wire(topic), cls, qos=self._quality)
-        reader = self._cyclone["sub"].DataReader(self._participant, channel, qos=self._quality)
+        hashed = self._hashed(self._quality, cls)
+        reader = self._cyclone["sub"].DataReader(self._participant, channel, qos=hashed)
         core = self._cyclone["core"]
         new = core.SampleState.NotRead | core.ViewState.Any | core.InstanceState.Any
         condition = core.ReadCondition(reader, new)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -42,6 +43,7 @@ class Types:
         self._store = self._typesys.get_typestore(self._typesys.Stores[f"ROS2_{name.upper()}"])
         self._folders = [Path(folder) for folder in folders] + _folders()
         self._classes: dict[str, Any] = {}
+        self._names: dict[Any, str] = {}
         for own, text in DEFINITIONS.items():
             if own not in self._store.fielddefs:
                 self._store.register(self._typesys.get_types_from_msg(text, own))
@@ -54,8 +56,13 @@ class Types:
         """Return the class of a type by its full name, ``nav_msgs/msg/Odometry``; call it for a message of zeros."""
         if name not in self._classes:
             self._find(name)
-            self._classes[name] = self._make(name)
+            made = self._classes[name] = self._make(name)
+            self._names[made] = name
         return self._classes[name]
+
+    def type_hash(self, cls: Any) -> str:
+        """Return the hash of a class of :meth:`named`: ``RIHS01_...``, as ROS 2 computes it since Iron."""
+        return str(self._store.hash_rihs01(self._names[cls]))
 
     def _find(self, name: str) -> None:
         """Register a definition and all definitions that it needs."""
@@ -68,12 +75,21 @@ class Types:
                     f"the definition of {package}/{short} is not known: name the folder in which the package "
                     f"'{package}' is with --messages"
                 )
-            types = self._typesys.get_types_from_msg(found.read_text(encoding="utf-8"), name)
-            self._store.register(types)
+            self._store.register(self._read(found, name))
         for _, field in self._store.fielddefs[name][1]:
             inner = self._named_in(field)
             if inner is not None:
                 self._find(inner)
+
+    def _read(self, path: Path, name: str) -> Any:
+        text = path.read_text(encoding="utf-8")
+        if re.search(r"^\s*wstring\b", text, re.MULTILINE):  # which rosbags takes for the name of a message
+            raise _unsupported("wstring")
+        try:
+            return self._typesys.get_types_from_msg(text, name)
+        except self._typesys.TypesysError as error:
+            place = "".join(str(error).splitlines()[3:4])  # after what is wrong, the text and a position
+            raise UsageError(f"'{path}' is not a message definition of ROS: '{place}' is no field") from None
 
     def _named_in(self, field: Any) -> str | None:
         node, what = field
@@ -116,11 +132,15 @@ class Types:
             self._idl.types, {"byte": "uint8", "octet": "uint8", "char": "uint8"}.get(base, base), None
         )
         if known is None:
-            raise UsageError(
-                f"a message with a field of type {base} cannot be read or sent over DDS: Cyclone DDS for Python has no "
-                f"such type; change the field to string, or use the node for rclpy (ros/rtamt_ros2)"
-            )
+            raise _unsupported(base)
         return known, float if base.startswith("float") else int
+
+
+def _unsupported(base: str) -> UsageError:
+    return UsageError(
+        f"a message with a field of type {base} cannot be read or sent over DDS: Cyclone DDS for Python has no such "
+        f"type; change the field to string, or use the node for rclpy (ros/rtamt4ros2)"
+    )
 
 
 def _folders() -> list[Path]:
