@@ -1,8 +1,8 @@
 """Core formula to instructions: value numbering, lags, and the delays that align operands.
 
 One function per kernel shape of the operator table, and a call for every operator without a kernel; no
-operator is named here. Time is counted in steps: samples in discrete time, ticks in
-dense time. The two differ only in the number of steps of a closed window, and in how until over [a, b] is
+operator is named here. Time is counted in steps: samples, or ticks where signals have values between
+samples. The two differ only in the number of steps of a closed window, and in how until over [a, b] is
 composed for a > 0.
 """
 
@@ -10,14 +10,11 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from math import inf
-from types import MappingProxyType
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING
 
 from rtamt.compiler.program import CallSite, Instruction, Program
 from rtamt.language.formula import Apply, Const, Formula, Var, postorder
 from rtamt.language.operators import Bounds, Pointwise, Shift, Since, Tense, Until, Window
-from rtamt.signals.dense import Dense
-from rtamt.signals.discrete import Discrete
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -31,14 +28,18 @@ _IDENTITY = {"max": -inf, "min": inf}
 class Lowering(ABC):
     """The instructions so far; emitting an existing instruction returns its index."""
 
-    #: The time domain of its programs.
-    domain: ClassVar[type[TimeDomain]]
     #: The width of the window [0, 0].
     point: int
 
     def __init__(
-        self, period: Fraction, inputs: tuple[str, ...], clip: int | None, parameters: Mapping[str, float]
+        self,
+        domain: type[TimeDomain],
+        period: Fraction,
+        inputs: tuple[str, ...],
+        clip: int | None,
+        parameters: Mapping[str, float],
     ) -> None:
+        self.domain = domain
         self.period = period
         self.inputs = inputs
         self.clip = clip
@@ -263,10 +264,9 @@ class Lowering(ABC):
         return self.emit(Instruction("until", hold, goal, n=width, lag=known), node)
 
 
-class DiscreteLowering(Lowering):
-    """Steps are samples; a closed window contains one more than its length."""
+class SampledLowering(Lowering):
+    """Signals have values at samples only: steps are samples; a closed window contains one more than its length."""
 
-    domain = Discrete
     point = 1
 
     @staticmethod
@@ -288,10 +288,9 @@ class DiscreteLowering(Lowering):
         return self.chain(node, hold, goal, end - begin + 1, known)
 
 
-class DenseLowering(Lowering):
-    """Steps are ticks; a closed window contains as many as its length."""
+class ContinuousLowering(Lowering):
+    """Signals have values between samples: steps are ticks; a closed window contains as many as its length."""
 
-    domain = Dense
     point = 0
 
     @staticmethod
@@ -315,6 +314,6 @@ class DenseLowering(Lowering):
         return self.emit(Instruction("min", after, first, lag=known), node)
 
 
-LOWERINGS: Mapping[type[TimeDomain], type[Lowering]] = MappingProxyType(
-    {lowering.domain: lowering for lowering in (DiscreteLowering, DenseLowering)}
-)
+def lowering_of(domain: type[TimeDomain]) -> type[Lowering]:
+    """Return the lowering of a time domain."""
+    return ContinuousLowering if domain.continuous else SampledLowering

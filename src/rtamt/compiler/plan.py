@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-from rtamt.compiler.lower import LOWERINGS
+from rtamt.compiler.lower import lowering_of
 from rtamt.language.formula import Apply, Formula, Interval, Var, fold, folds, postorder, variables
 from rtamt.language.operators import STL, Until, Window
 from rtamt.rewrite.check import reads_unbounded_future
@@ -93,7 +93,7 @@ def compile_program(
     """
     if inputs is None:
         inputs = _read_by(outputs)
-    lowering = LOWERINGS[domain](period, inputs, clip, parameters or {})
+    lowering = lowering_of(domain)(domain, period, inputs, clip, parameters or {})
     indices = lowering.lower(outputs)
     if clip is None:  # online: each output is known at its horizon, even if it could be known earlier
         depths = (horizon(formula, period) for formula in outputs)
@@ -142,7 +142,7 @@ def _cut(
     """Replace the innermost operators of unbounded future by inputs that a new stage computes."""
     operands: dict[Formula, int] = {}
     scans: dict[tuple[Formula | None, str, tuple[int, ...]], Scan] = {}
-    just_before = LOWERINGS[domain].until_just_before(period)
+    just_before = lowering_of(domain).until_just_before(period)
 
     def cut(node: Formula, below: tuple[tuple[Formula, bool], ...]) -> tuple[Formula, bool]:
         """Return the rebuilt node, and whether it or a node below it has unbounded future."""

@@ -9,6 +9,7 @@ dense           the engine of dense time
 backend         the interface of a back end, and what compiled back ends share
 offline         evaluate queries on a recording; cache compiled plans
 offline_bounds  offline bounds of recordings with missing or uncertain samples
+timeline        a recording divided into cells, as explanations evaluate it
 online          watched formulas and copies, shared by the monitors
 gate            reject concurrent and reentrant use of a monitor
 native          load the compiled core

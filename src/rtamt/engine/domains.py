@@ -1,46 +1,40 @@
-"""The engine of each time domain: its back ends and its monitor."""
+"""The engine of a time domain: the folder of this package that has its name."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from types import MappingProxyType
-from typing import TYPE_CHECKING
-
-from rtamt.engine.dense import backends as dense
-from rtamt.engine.dense.monitor import DenseMonitor
-from rtamt.engine.discrete import backends as discrete
-from rtamt.engine.discrete.monitor import Monitor
-from rtamt.signals.dense import Dense
-from rtamt.signals.discrete import Discrete
+from functools import cache
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
     from rtamt.engine.backend import Backend
     from rtamt.engine.online import OnlineMonitor
+    from rtamt.engine.timeline import Timeline
     from rtamt.signals.domain_interface import TimeDomain
 
 
 @dataclass(frozen=True, slots=True)
 class Engine:
-    """What evaluates and monitors formulas in one time domain.
+    """What evaluates, monitors and explains formulas in one time domain: ``ENGINE`` in its folder.
 
     ``backends``: by name, see :data:`rtamt.engine.backend.BACKENDS`. ``monitor``: takes a formula and the time
-    domain; for its settings see :class:`Monitor`.
+    domain; for its settings see :class:`Monitor`. ``timeline``: takes a recording and the name of a back end.
     """
 
     backends: Mapping[str, Backend]
     monitor: Callable[..., OnlineMonitor]
-
-
-_ENGINES: Mapping[type[TimeDomain], Engine] = MappingProxyType(
-    {
-        Discrete: Engine(discrete.BACKENDS, Monitor),
-        Dense: Engine(dense.BACKENDS, DenseMonitor),
-    }
-)
+    timeline: Callable[[Any, str], Timeline]
 
 
 def engine_of(domain: TimeDomain) -> Engine:
     """Return the engine of a time domain."""
-    return _ENGINES[type(domain)]
+    return _engine(domain.name)
+
+
+@cache
+def _engine(name: str) -> Engine:
+    found: Engine = import_module(f"{__package__}.{name}").ENGINE
+    return found

@@ -9,8 +9,6 @@ module     purpose
 =========  ===================================================================
 explain    a formula and a recording to an explanation
 signals    values of sub-formulas, and where they hold
-time_axis  a recording divided into cells; evaluation with replaced predicates
-instants   sets of times as intervals
 critical   the critical point
 propagate  required truth values, from the verdict down to the predicates
 necessary  intervals that every implicant contains

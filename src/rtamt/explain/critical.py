@@ -22,8 +22,8 @@ from rtamt.rewrite.structure import CHOOSING, NEGATION, opcode, window_of
 if TYPE_CHECKING:
     from fractions import Fraction
 
-    from rtamt.explain.instants import StepFunction
     from rtamt.explain.signals import Signals
+    from rtamt.signals.instants import StepFunction
 
 #: What decides a value that no predicate does.
 START, END, CONSTANT = "start", "end", "constant"

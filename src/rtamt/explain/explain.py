@@ -6,21 +6,21 @@ from itertools import islice
 from math import inf
 from typing import TYPE_CHECKING, Any
 
+from rtamt.engine.domains import engine_of
 from rtamt.engine.offline import Evaluators
 from rtamt.errors import EvaluationError
 from rtamt.explain.critical import Point, Walk
-from rtamt.explain.instants import StepFunction, two_valued
 from rtamt.explain.minimise import Forcing, intervals_of, minimal
 from rtamt.explain.necessary import Needs
 from rtamt.explain.propagate import Demands
 from rtamt.explain.report import CriticalPoint, Explanation, Stretch
 from rtamt.explain.sentences import cause, predicate_text, summary
 from rtamt.explain.signals import Signals, truths
-from rtamt.explain.time_axis import timeline
 from rtamt.language.formula import postorder
 from rtamt.language.printer import PAGE, to_text
 from rtamt.rewrite.semantics import boolean, no_verdict
 from rtamt.rewrite.structure import NEVER, Structure, literal, reaches
+from rtamt.signals.instants import StepFunction, two_valued
 from rtamt.verdicts.offline import first_violation
 from rtamt.verdicts.robustness_and_truth import outputs_of
 
@@ -70,7 +70,7 @@ class _Explainer:
         self._text = text
         self._recording = recording
         self._evaluators = Evaluators(backend)
-        self._line = timeline(recording, backend)
+        self._line = engine_of(recording.domain).timeline(recording, backend)
         self._dense = recording.domain.continuous
         self._structure = Structure.of(formula, self._line.period if self._dense else None)
         leaves = self._structure.leaves

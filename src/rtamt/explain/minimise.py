@@ -12,15 +12,15 @@ from dataclasses import dataclass
 from math import inf
 from typing import TYPE_CHECKING
 
-from rtamt.explain.instants import NONE, Cells, StepFunction, two_valued
 from rtamt.explain.signals import truths
 from rtamt.rewrite.structure import literal, reaches
+from rtamt.signals.instants import NONE, Cells, StepFunction, two_valued
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
+    from rtamt.engine.timeline import Timeline
     from rtamt.explain.propagate import Demands
-    from rtamt.explain.time_axis import Timeline
     from rtamt.rewrite.structure import Place, Structure
 
 

@@ -13,10 +13,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rtamt.explain.instants import NONE, Cells
 from rtamt.explain.propagate import Asked, Demands
 from rtamt.language.formula import Var
 from rtamt.rewrite.structure import NEVER
+from rtamt.signals.instants import NONE, Cells
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

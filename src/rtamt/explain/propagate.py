@@ -10,11 +10,11 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from rtamt.explain.critical import around
-from rtamt.explain.instants import NONE, Cells
 from rtamt.explain.witnesses import blocking, reaching, witnesses
 from rtamt.language.formula import Apply, Formula, Var
 from rtamt.language.records import Shift, Since, Tense, Window
 from rtamt.rewrite.structure import CHOOSING, NEGATION, NEVER, Place, opcode, window_of
+from rtamt.signals.instants import NONE, Cells
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rtamt.explain.instants import Cells, StepFunction, two_valued
 from rtamt.language.formula import Apply, Const, Formula, Var, children
 from rtamt.rewrite.structure import CHOOSING, NEGATION, opcode
+from rtamt.signals.instants import Cells, StepFunction, two_valued
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from rtamt.explain.time_axis import Timeline
+    from rtamt.engine.timeline import Timeline
     from rtamt.rewrite.structure import Structure
 
 

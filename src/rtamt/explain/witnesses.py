@@ -11,8 +11,8 @@ from __future__ import annotations
 
 from bisect import bisect_left, bisect_right
 
-from rtamt.explain.instants import NONE, Cells
 from rtamt.rewrite.structure import NEVER
+from rtamt.signals.instants import NONE, Cells
 
 
 def witnesses(asked: Cells, found: Cells, before: int, after: int, *, whole: bool) -> Cells:

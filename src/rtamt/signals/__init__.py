@@ -9,6 +9,7 @@ discrete          discrete time and its traces: one value of every variable per 
 dense             dense time and its traces: timestamps per signal, counted in ticks
 signal            ``Signal``: the result of evaluations and monitors
 inexact           missing samples, measurement errors, declared ranges
+instants          sets of times as intervals, and step functions of them
 outcomes          bounds and verdicts that are known before the whole trace is
 trace             ``Trace``: named signals, each with its own time base; resampling
 listing           a trace as text: its signals topic by topic

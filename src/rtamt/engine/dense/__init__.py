@@ -7,6 +7,14 @@ backends        the back ends: the compiled core and the definition
 evaluate        offline evaluation by the compiled core
 monitor         the monitor
 groups          several requirements, each with the trace of its own variables
+timeline        a recording in ticks, as explanations evaluate it
 python_backend  the definition behind the interface of the compiled monitor
 ==============  =====================================================================
 """
+
+from rtamt.engine.dense.backends import BACKENDS
+from rtamt.engine.dense.monitor import DenseMonitor
+from rtamt.engine.dense.timeline import DenseTimeline
+from rtamt.engine.domains import Engine
+
+ENGINE = Engine(BACKENDS, DenseMonitor, DenseTimeline)

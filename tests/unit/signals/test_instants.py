@@ -6,7 +6,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rtamt.explain.instants import Cells, StepFunction, two_valued
+from rtamt.signals.instants import Cells, StepFunction, two_valued
 
 SETS = st.sets(st.integers(-12, 12))
 

@@ -1,0 +1,88 @@
+"""Explanations in discrete time: a recording in samples."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rtamt.engine.discrete.backends import BACKENDS
+from rtamt.engine.timeline import Timeline
+from rtamt.rewrite.desugar import desugar
+from rtamt.signals.datetimes import nanoseconds_of
+from rtamt.signals.discrete import DiscreteTrace
+from rtamt.signals.epoch import is_epoch, moment_text
+from rtamt.signals.instants import StepFunction
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+
+    from rtamt.engine.timeline import Runner
+    from rtamt.language.formula import Formula
+    from rtamt.signals.arrays import FloatArray
+
+
+class DiscreteTimeline(Timeline):
+    """Cells are samples."""
+
+    def __init__(self, recording: DiscreteTrace, backend: str) -> None:
+        self._recording = recording
+        self._backend = BACKENDS[backend]
+        self.period = recording.period
+        self.end = len(recording)
+
+    def measured(self, formulas: Sequence[Formula]) -> list[StepFunction]:
+        """See :class:`Timeline`."""
+        evaluator = self._evaluator([desugar(formula) for formula in formulas])
+        return [StepFunction.of_samples(values) for values in evaluator(self._recording)]
+
+    def runner(self, formulas: Sequence[Formula]) -> Runner:
+        """See :class:`Timeline`."""
+        evaluator = self._evaluator(formulas)
+
+        def run(signals: Mapping[str, StepFunction]) -> list[StepFunction]:
+            columns = {name: self._samples(steps) for name, steps in signals.items()}
+            recording = DiscreteTrace(self._recording.times, columns, self.period)
+            return [StepFunction.of_samples(values) for values in evaluator(recording)]
+
+        return run
+
+    def _evaluator(self, formulas: Sequence[Formula]) -> Callable[[DiscreteTrace], Sequence[FloatArray]]:
+        names = tuple(self._recording.columns)
+        return self._backend.evaluator(tuple(formulas), self.period, names)
+
+    def _samples(self, steps: StepFunction) -> np.ndarray[Any, Any]:
+        return np.repeat(steps.values, np.diff(steps.changes, append=self.end))
+
+    def cell(self, at: Any) -> int:
+        """See :class:`Timeline`."""
+        return self._recording.position(at)
+
+    def later(self, time: Any) -> int:
+        """See :class:`Timeline`."""
+        return self.cell(time)
+
+    def time(self, cell: int) -> Any:
+        """See :class:`Timeline`."""
+        return self._recording.time(cell)
+
+    def show(self, cell: int) -> str:
+        """See :class:`Timeline`."""
+        stamps = self._recording.stamps
+        if stamps.dtype.kind in "mM":
+            seconds = [Fraction(nanoseconds_of(stamps[i]) or 0, 10**9) for i in (0, cell)]
+        else:
+            seconds = [Fraction(repr(float(self._recording.times[i]))) for i in (0, cell)]
+        if stamps.dtype.kind == "M" or is_epoch(seconds[0]):
+            return moment_text(seconds[1], seconds[0])
+        return self._recording.show(cell)
+
+    @property
+    def last(self) -> int:
+        """See :class:`Timeline`."""
+        return self.end - 1
+
+    def closes(self, end: int, formula: Formula, at: int) -> bool:  # noqa: ARG002 - samples are all there is
+        """See :class:`Timeline`."""
+        return True
