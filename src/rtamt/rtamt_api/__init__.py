@@ -18,6 +18,8 @@ explained        explanations, shared by the offline classes
 backends         select the compiled core, or the definition if the core is not built
 associativity    the warning for chains that RTAMT parses differently
 failures         convert every error to an RTAMTException
+trees            RTAMT's syntax trees, pastifiers and interpreters
+paths            modules without files, for RTAMT's module paths
 ===============  ====================================================================
 """
 

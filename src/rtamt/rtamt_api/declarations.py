@@ -35,6 +35,21 @@ if TYPE_CHECKING:
 #: The types of variables that need no import, and their classes; ``long`` is from Python 2.
 SCALARS: dict[str, type] = {name: getattr(builtins, name, int) for name in TYPES}
 
+#: What a program sets before ``parse``.
+_DECLARED = (
+    "name",
+    "spec",
+    "modules",
+    "var_topic_dict",
+    "var_io_dict",
+    "_trusted",
+    "_unit",
+    "_sub_specs",
+    "_types",
+    "_constants",
+    "_objects",
+)
+
 #: The name of the result of an assertion without one.
 UNNAMED = "out"
 
@@ -200,6 +215,12 @@ class Declarations(ABC):
         out = self._out_name[0]
         self._objects.setdefault(out, 0.0)
         self.var_topic_dict.setdefault(out, f"rtamt/{out}")
+
+    def read_as_in(self, other: Declarations) -> None:
+        """Parse the text of another specification with its declarations, independently of it."""
+        theirs = copy.deepcopy(other).__dict__
+        self.__dict__.update((name, theirs[name]) for name in _DECLARED)
+        self.parse()
 
     @property
     def var_object_dict(self) -> dict[str, Any]:

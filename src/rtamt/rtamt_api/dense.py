@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from bisect import bisect_right
 from copy import copy
 from functools import partial
 from typing import TYPE_CHECKING, Any
@@ -10,7 +11,7 @@ from rtamt.engine.dense.monitor import DenseMonitor
 from rtamt.engine.gate import alone
 from rtamt.engine.online import Watched
 from rtamt.errors import NameInFormulaError, StlError, TraceError, UsageError, shown
-from rtamt.language.formula import Apply, Var, folds, outermost, postorder, variables
+from rtamt.language.formula import Apply, Const, Var, folds, outermost, postorder, variables
 from rtamt.language.operators import Tense
 from rtamt.language.printer import EXCERPT, canonical
 from rtamt.language.units import UNITS
@@ -96,6 +97,21 @@ def _points(signal: Signal, whole: bool) -> list[list[float]]:
     return [list(point) for point in zip(times, signal.values.tolist(), strict=True)]
 
 
+def _with_points_at(
+    points: list[list[float]], times: Sequence[float], before: Sequence[list[float]]
+) -> list[list[float]]:
+    """Return a step function with further points, where it has none at one of ``times``.
+
+    ``before``: its last point so far, or nothing.
+    """
+    if not points:
+        return points
+    steps = [*before, *points]
+    known = [time for time, _ in steps]
+    more = {time for time in times if known[0] < time < known[-1]}.difference(known)
+    return sorted([*points, *([time, steps[bisect_right(known, time) - 1][1]] for time in more)])
+
+
 class StlDenseTimeOfflineSpecification(ExplainedSpecification, DenseTimeSpecification):
     """Evaluates complete signals, each on its own time base.
 
@@ -116,7 +132,8 @@ class StlDenseTimeOfflineSpecification(ExplainedSpecification, DenseTimeSpecific
         from sample to sample, counted in nanoseconds; a value holds until the next one. Integers are
         exact, whatever their size, and if all times are integers so are those of the result, where they
         can be. A value is a number, or an object where the specification reads fields. Other names are
-        ignored, and nothing is changed. Raises :class:`RTAMTException` for wrong data.
+        ignored, and nothing is changed. The robustness of signals without samples has no points. Raises
+        :class:`RTAMTException` for wrong data.
         """
         formula = self._result
         given = _by_name(dataset)
@@ -136,11 +153,16 @@ class StlDenseTimeOfflineSpecification(ExplainedSpecification, DenseTimeSpecific
 
     def _evaluation(
         self, part: Formula, columns: dict[str, Samples], scale: TimeScale
-    ) -> tuple[DenseTrace, list[list[float]]]:
-        """Return the recording over which a part of the specification is evaluated, and its points."""
+    ) -> tuple[DenseTrace | None, list[list[float]]]:
+        """Return the recording over which a part of the specification is evaluated, and its points.
+
+        Both are missing if no signal has samples: there is no instant then.
+        """
         check_dense(part, self._parsed_document.text)
         read = tuple(dict.fromkeys((*variables(self._result), *variables(part))))
         held = {name: columns[name] for name in read if name in columns}
+        if held and not any(times for times, _ in held.values()):
+            return None, []
         recording = record_dense(held, read, NANOSECOND, scale=scale)
         whole = all(all_integers(times) for times, _ in held.values())
         return recording, _points(signal(self._worth(part), recording), whole)
@@ -169,6 +191,7 @@ class StlDenseTimeOnlineSpecification(OnlineSpecification, DenseTimeSpecificatio
         self._watched: tuple[Formula, ...] = ()  # by it
         self._given: dict[str, Samples] = {}  # by the latest update
         self._whole = True  # whether all times so far were integers
+        self._last: list[list[float]] = []  # the last point so far, if there is one
 
     @raises_rtamt
     def pastify(self) -> None:
@@ -187,10 +210,26 @@ class StlDenseTimeOnlineSpecification(OnlineSpecification, DenseTimeSpecificatio
 
         ``dataset``: as for ``evaluate``; a variable may have no samples (``[]``) or be left out. The
         robustness is known up to the earliest last time of the variables: a point for every change
-        since the previous update, and one at that time. Raises :class:`RTAMTException` for wrong data;
-        the monitor is then unchanged.
+        since the previous update, and one at that time. As in RTAMT, a variable and an operator with one
+        operand and no interval also keep the points of the operand, where the value need not change. Raises
+        :class:`RTAMTException` for wrong data; the monitor is then unchanged.
         """
-        return self._updated(dataset)
+        changes = self._updated(dataset)
+        points = _with_points_at(changes, self._kept_times(), self._last)
+        self._last = points[-1:] or self._last
+        return points
+
+    def _kept_times(self) -> list[float]:
+        """Return the times at which the result has a point after the latest update, even without a change."""
+        part = self._result
+        while isinstance(part, Apply) and part.interval is None and len(part.args) == 1:
+            (part,) = part.args
+        if isinstance(part, Var):
+            times, _ = self._given.get(part.name, ((), ()))
+            return list(self._scale.times(self._scale.ticks(times, part.name)))
+        return (
+            [] if part is self._result or isinstance(part, Const) else [time for time, _ in self._told(part)]
+        )
 
     def _updated(self, dataset: tuple[Any, ...]) -> list[list[float]]:
         monitor = self._require_monitor()
@@ -230,6 +269,7 @@ class StlDenseTimeOnlineSpecification(OnlineSpecification, DenseTimeSpecificatio
         """
         before = copy(self)
         told = self._updated(dataset)
+        kept = self._kept_times()
         try:
             signal = self._require_monitor().finish()
         except StlError:  # the last samples are rejected as well
@@ -243,7 +283,8 @@ class StlDenseTimeOnlineSpecification(OnlineSpecification, DenseTimeSpecificatio
         points = told + rest
         last = len(points) - 1
         # Nothing need have changed at the end of the update.
-        return [point for i, point in enumerate(points) if i in {0, last} or point[1] != points[i - 1][1]]
+        changes = [point for i, point in enumerate(points) if i in {0, last} or point[1] != points[i - 1][1]]
+        return _with_points_at(changes, [*kept, *self._kept_times()], self._last)
 
     @raises_rtamt
     @alone
@@ -251,6 +292,7 @@ class StlDenseTimeOnlineSpecification(OnlineSpecification, DenseTimeSpecificatio
         """Forget the signals; the next samples are the first."""
         self._value_of = None
         self._whole = True
+        self._last = []
         if self._monitor is not None:
             self._monitor.reset()
 
@@ -271,6 +313,7 @@ class StlDenseTimeOnlineSpecification(OnlineSpecification, DenseTimeSpecificatio
         super()._start_over(formulas)
         self._monitor = None
         self._whole = True
+        self._last = []
 
     def _require_monitor(self) -> DenseMonitor:
         if self._monitor is None:

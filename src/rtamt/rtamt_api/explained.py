@@ -49,9 +49,10 @@ class ExplainedSpecification(Formulas):
         self._evaluated = None
         self.explainer = Explainer()
 
-    def _remember(self, formula: Formula, recording: DomainTrace) -> None:
-        """Keep the evaluated recording and its semantics for a later explanation."""
-        self._evaluated = formula, recording, semantics_of(self._semantics)
+    def _remember(self, formula: Formula, recording: DomainTrace | None) -> None:
+        """Keep the evaluated recording, if there is one, and its semantics for a later explanation."""
+        semantics = semantics_of(self._semantics)
+        self._evaluated = None if recording is None else (formula, recording, semantics)
 
     @raises_rtamt
     def explain(self, at: Any = None) -> Explanation:

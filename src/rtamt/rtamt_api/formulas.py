@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from abc import abstractmethod
+from dataclasses import dataclass
+from fractions import Fraction
 from numbers import Real
 from typing import TYPE_CHECKING, Any
 
@@ -10,6 +12,7 @@ from rtamt.errors import UsageError, did_you_mean
 from rtamt.language.formula import Formula, Var, outermost, postorder, variables
 from rtamt.language.grammar import is_number
 from rtamt.language.printer import canonical
+from rtamt.language.units import UNITS
 from rtamt.rewrite.semantics import apply_semantics, semantics_of
 from rtamt.rtamt_api.declarations import Declarations
 from rtamt.rtamt_api.failures import raises_rtamt
@@ -18,13 +21,30 @@ from rtamt.rtamt_api.options import Semantics
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from typing_extensions import Self
+
     from rtamt.language.document import Document
     from rtamt.rewrite.semantics import PredicateSemantics
+
+
+@dataclass(frozen=True, slots=True)
+class Node:
+    """A formula as RTAMT's syntax trees have it: ``name`` is its canonical text.
+
+    ``unit``: seconds in one unit of its bounds. ``period``: the step of ``next`` in seconds.
+    """
+
+    name: str
+    formula: Formula
+    unit: Fraction
+    period: Fraction
 
 
 class Formulas(Declarations):
     """A parsed specification, shared by the classes of both time domains. Not instantiated by users."""
 
+    #: The step of ``next`` in seconds; dense time has no ``next``.
+    _period = Fraction(1)
     _semantics: Semantics | str | PredicateSemantics = Semantics.STANDARD
 
     def __init__(self) -> None:
@@ -69,6 +89,17 @@ class Formulas(Declarations):
         'eventually[0,1]((a)>=(b))'
         """
         return canonical(self._result)
+
+    @property
+    def ast(self) -> Self:
+        """The specification: RTAMT keeps declarations and formulas in an object of their own."""
+        return self
+
+    @property
+    def specs(self) -> list[Node]:
+        """The formulas of all assertions, in the order of the text; after ``pastify`` the pastified ones."""
+        unit = UNITS[self._unit]
+        return [Node(canonical(f), f, unit, self._period) for f in self._formulas.values()]
 
     @property
     def _result(self) -> Formula:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
 from rtamt.engine.gate import Gate
@@ -21,9 +20,6 @@ if TYPE_CHECKING:
 
 class OnlineSpecification(Formulas):
     """A specification that is monitored while samples arrive. Not instantiated by users."""
-
-    #: The step of ``next`` in seconds; dense time has no ``next``.
-    _period = Fraction(1)
 
     def __init__(self) -> None:
         super().__init__()

@@ -54,6 +54,18 @@ class StlIOType(Enum):
     UNDEFINED = 2
 
 
+class StlComparisonOperator(Enum):
+    """The comparisons, under the names of RTAMT's two enumerations."""
+
+    LESS = 0
+    LEQ = 1
+    EQ = 2
+    EQUAL = 2  # noqa: PIE796  # the name in comp_op
+    NEQ = 3
+    GREATER = 4
+    GEQ = 5
+
+
 def sampling(period: float, unit: str, tolerance: float) -> tuple[Fraction, float]:
     """Return a sampling period in seconds, and the tolerance as a fraction of it."""
     seconds = duration(period, unit)

@@ -1,6 +1,8 @@
 """RTAMT's module path for the dense-time classes."""
 
 from rtamt.rtamt_api import (
+    Language,
+    Semantics,
     STLCTSpecification,
     StlDenseTimeOfflineSpecification,
     StlDenseTimeOnlineSpecification,
@@ -9,8 +11,10 @@ from rtamt.rtamt_api import (
 )
 
 __all__ = [
+    "Language",
     "STLCTSpecification",
     "STLDenseTimeSpecification",
+    "Semantics",
     "StlDenseTimeOfflineSpecification",
     "StlDenseTimeOnlineSpecification",
     "StlDenseTimeSpecification",

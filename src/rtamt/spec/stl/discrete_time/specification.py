@@ -1,6 +1,8 @@
 """RTAMT's module path for the discrete-time classes."""
 
 from rtamt.rtamt_api import (
+    Language,
+    Semantics,
     StlDiscreteTimeOfflineSpecification,
     StlDiscreteTimeOnlineSpecification,
     StlDiscreteTimeOnlineSpecificationCpp,
@@ -10,7 +12,9 @@ from rtamt.rtamt_api import (
 )
 
 __all__ = [
+    "Language",
     "STLDiscreteTimeSpecification",
+    "Semantics",
     "StlDiscreteTimeOfflineSpecification",
     "StlDiscreteTimeOnlineSpecification",
     "StlDiscreteTimeOnlineSpecificationCpp",

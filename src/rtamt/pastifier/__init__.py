@@ -1,0 +1,14 @@
+"""Provide RTAMT's module paths of pastification and horizons."""
+
+from rtamt.rtamt_api.paths import provide
+from rtamt.rtamt_api.trees import LtlHorizon, LtlPastifier, StlHorizon, StlPastifier
+
+provide(
+    __name__,
+    {
+        "stl.pastifier": {"StlPastifier": StlPastifier},
+        "stl.horizon": {"StlHorizon": StlHorizon},
+        "ltl.pastifier": {"LtlPastifier": LtlPastifier},
+        "ltl.horizon": {"LtlHorizon": LtlHorizon},
+    },
+)
