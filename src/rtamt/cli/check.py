@@ -21,16 +21,15 @@ from rtamt.cli.command import (
     add_specification_options,
     add_time_option,
     complain,
-    json_number,
     json_text,
     options,
-    short,
     stamp_text,
     warn,
     write_output,
 )
 from rtamt.cli.reading_options import add_reading_options, reading_of
 from rtamt.cli.reports import REPORTS, HtmlReport, write_report
+from rtamt.cli.reports.messages import robustness_members
 from rtamt.cli.runner import Outcome, Requirement, outcomes
 from rtamt.cli.terminal import Progress, printed, say, table, use_color
 from rtamt.errors import escaped
@@ -78,12 +77,18 @@ not change the exit code. 'rtamt lint' prints the same.
 Large files are read in chunks, in memory that does not grow with them, where the future of the formula
 is bounded (but for always and eventually at its top). Many files are read on all cores.
 
+--early stops reading once the verdict and the first violation are decided: the verdict is that of the whole
+recording, the robustness lies in the bounds that are printed, and nothing later is looked at. It applies to
+discrete time and formats that are read in chunks (CSV, Parquet, Arrow, SQL); 'rtamt info' reports for which formulas
+the end of a recording may change an early verdict, and these are checked over the whole recording.
+
 --json prints one object a line: {"requirement", "trace", "satisfied", "robustness", "first_violation",
 "samples", "period"}, of what was written with 'require' also "description" and "severity", or
 {"requirement", "trace", "error"}. The first violation of 'always f' is the first instant at which f does
 not hold, of a conjunction the first of its parts, of anything else the first instant of the trace: seconds,
 or a date where the trace has dates; null where there is none. The period of dense time is null. JSON has
-no infinities: they are the strings "inf" and "-inf". The reports for --junit and --sarif say the same.
+no infinities: they are the strings "inf" and "-inf". What --early decides also has "lower", "upper" and
+"decided_at"; "robustness" is null unless both are equal. The reports for --junit and --sarif say the same.
 
 examples:
   rtamt check examples/request_grant/spec.stl examples/request_grant/*.csv
@@ -120,6 +125,11 @@ def configure(parser: argparse.ArgumentParser) -> None:
     group.add_argument("--json", action="store_true", help="print JSON, one object a line")
     for kind, (name, _) in REPORTS.items():
         group.add_argument(f"--{kind}", metavar="FILE", help=f"write a report as {name}")
+    parser.add_argument(
+        "--early",
+        action="store_true",
+        help="stop reading a recording once its verdicts are decided, where its end cannot change them",
+    )
     parser.add_argument("--jobs", type=int, metavar="N", help="processes (default: one a core, if it pays)")
     add_ignore_option(parser)
     group.add_argument("--quiet", action="store_true", help="print errors only: the exit code has it all")
@@ -142,7 +152,12 @@ def run(args: argparse.Namespace) -> int:
         raise CommandError(f"--jobs is {args.jobs}; give a number of processes, 1 or more")
     page = None if args.html is None else HtmlReport("rtamt check", given, requirements)
     whole = args.output is not None or page is not None
-    reading = reading_of(args, variables_of(requirements), whole=whole)
+    if whole and args.early:
+        option = "--output" if page is None else "--html"
+        raise CommandError(
+            f"--early reads no more than the verdicts need, and {option} shows all: leave one out"
+        )
+    reading = reading_of(args, variables_of(requirements), whole=whole, early=args.early)
     found: list[Outcome] = []
     told = {""}  # several requirements may have one reason
     with Progress() as progress:
@@ -200,11 +215,12 @@ def _as_json(outcome: Outcome, requirement: Requirement) -> str:
         return json_text({**row, "error": outcome.error})
     row |= {
         "satisfied": outcome.verdict == "satisfied",
-        "robustness": json_number(outcome.robustness),
+        **robustness_members(outcome),
         "first_violation": outcome.first_violation,
         "samples": outcome.samples,
         "period": None if outcome.period is None else float(outcome.period),
         **more,
+        **({} if outcome.bounds is None else {"decided_at": outcome.decided_at}),
         **({"notes": outcome.notes} if outcome.notes else {}),
     }
     return json_text(row)
@@ -216,7 +232,7 @@ def _as_table(requirements: Sequence[Requirement], found: Sequence[Outcome], col
         cells = ("-", "-", "-", "-")
         if not outcome.error:
             period = requirements[0].spec.time if outcome.period is None else format_duration(outcome.period)
-            cells = (str(outcome.samples), period, short(outcome.robustness), outcome.moment or "-")
+            cells = (str(outcome.samples), period, outcome.robustness_text, outcome.moment or "-")
         rows.append((outcome.requirement, outcome.trace, *cells, outcome.verdict))
     kinds = [_KINDS[outcome.verdict] for outcome in found]
     if len(requirements) > 1:

@@ -44,6 +44,8 @@ class Reading:
     recover: bool = False
     #: Never in chunks: somebody wants the whole signal.
     whole: bool = False
+    #: No further than the verdicts need.
+    early: bool = False
 
 
 # ---- the options ---------------------------------------------------------------------------------
@@ -101,8 +103,13 @@ def add_instant_option(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def reading_of(args: argparse.Namespace, read: Collection[str], *, whole: bool) -> Reading:
-    """Return what the options say. ``read``: the variables of the requirements; ``whole``: never in chunks."""
+def reading_of(
+    args: argparse.Namespace, read: Collection[str], *, whole: bool, early: bool = False
+) -> Reading:
+    """Return what the options say.
+
+    ``read``: the variables of the requirements; ``whole``: never in chunks; ``early``: no further than needed.
+    """
     names = _names_of(args.name)
     for name in names:
         if name not in read:
@@ -122,6 +129,7 @@ def reading_of(args: argparse.Namespace, read: Collection[str], *, whole: bool) 
         args.how,
         args.recover,
         whole=whole,
+        early=early,
     )
 
 

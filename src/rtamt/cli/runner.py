@@ -9,12 +9,14 @@ from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, replace
 from decimal import Decimal
 from fractions import Fraction
+from itertools import islice
+from math import inf
 from multiprocessing import get_context
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rtamt.cli.command import NO_STAMPS, stamp_text
+from rtamt.cli.command import NO_STAMPS, short, stamp_text
 from rtamt.cli.reading_options import choice_for, how_to_mend, is_resampled, on_clock, read_for
 from rtamt.errors import BoundError, StlError, TraceError
 from rtamt.readers.assemble import chunks_of
@@ -23,6 +25,7 @@ from rtamt.readers.sql import is_url, shown
 from rtamt.results import first_violation
 from rtamt.signals.datetimes import nanoseconds_of
 from rtamt.signals.epoch import is_epoch, moment_text
+from rtamt.verdicts.early_check import EarlyCheck, holds_at_end
 from rtamt.verdicts.streaming import check_stream, check_streamable
 
 if TYPE_CHECKING:
@@ -31,6 +34,7 @@ if TYPE_CHECKING:
     from rtamt.cli.reading_options import Reading
     from rtamt.language.document import Requirement as Written
     from rtamt.results import Result
+    from rtamt.signals.outcomes import Interval
     from rtamt.signals.trace import Trace
     from rtamt.specification import Specification
     from rtamt.verdicts.streaming import StreamResult
@@ -39,6 +43,7 @@ if TYPE_CHECKING:
 LARGE = 256 * 2**20
 #: Bytes of all files together from which on starting a process for each core pays.
 _WORTH_PROCESSES = 16 * 2**20
+_UNREAD = "later samples are not checked"
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,6 +72,8 @@ class Outcome:
     none. ``moment``: the same as text: seconds, or a date with the seconds since the start of the recording.
     ``period``: None in dense time.
     ``notes``: what the verdict has to do without (:attr:`Trace.losses`).
+    ``decided_at``: when its verdict was decided, where nothing later was read; the robustness is then known to lie
+    within ``bounds``, and NaN where these differ.
     ``explanation``: why it is violated, where that was asked for and the whole recording was read.
     ``seconds``: how long it took. ``result`` stays in the process that made it.
     """
@@ -81,9 +88,21 @@ class Outcome:
     period: Fraction | None = None
     error: str = ""
     notes: tuple[str, ...] = ()
+    decided_at: float | str | Decimal | None = None
+    bounds: Interval | None = None
     explanation: str = ""
     seconds: float = 0.0
     result: Result | None = None
+
+    @property
+    def robustness_text(self) -> str:
+        """The robustness, or what is known of it."""
+        low, high = (self.robustness,) * 2 if self.bounds is None else (self.bounds.lower, self.bounds.upper)
+        if low == high or self.bounds is None:
+            return short(self.robustness)
+        if low == -inf:
+            return "unknown" if high == inf else f"<= {short(high)}"
+        return f">= {short(low)}" if high == inf else f"{short(low)} to {short(high)}"
 
 
 def outcomes(
@@ -141,6 +160,23 @@ def _processes(traces: Sequence[str]) -> int:
 
 def evaluate(requirements: Sequence[Requirement], trace: str, reading: Reading) -> list[Outcome]:
     """Check requirements over one recording, which is read once if that goes well; an outcome for each row."""
+    early = {
+        requirement.label: _early(requirement, trace, reading) if reading.early else None
+        for requirement in requirements
+    }
+    rest = [requirement for requirement in requirements if early[requirement.label] is None]
+    late = iter(_all_of(rest, trace, reading))
+    return [
+        outcome
+        for requirement in requirements
+        for outcome in early[requirement.label] or islice(late, len(requirement.rows) or 1)
+    ]
+
+
+def _all_of(requirements: Sequence[Requirement], trace: str, reading: Reading) -> list[Outcome]:
+    """Check requirements over one whole recording."""
+    if not requirements:
+        return []
     if _is_large(trace, reading):
         return [o for requirement in requirements for o in _in_chunks(requirement, trace, reading)]
     whole: Trace | None
@@ -149,6 +185,51 @@ def evaluate(requirements: Sequence[Requirement], trace: str, reading: Reading) 
     except StlError:  # each reads what it needs, and says what is wrong with that
         whole = None
     return [o for requirement in requirements for o in _check(requirement, trace, whole, reading)]
+
+
+def _early(requirement: Requirement, trace: str, reading: Reading) -> list[Outcome] | None:
+    """Check no further than the verdicts need; None where they need the whole recording."""
+    begin = time.perf_counter()
+    rows = requirement.rows or (requirement,)
+    specs = [row.spec for row in rows]
+    if is_resampled(requirement.spec, trace, reading) or not all(map(holds_at_end, specs)):
+        return None
+    check = EarlyCheck(specs)
+    try:
+        with opened(trace, reading.sheet, reading.query, reading.recover) as source:
+            if len(source.tables) > 1 or source.tables[0].chunks is None:
+                return None
+            chunks = _Chunks(chunks_of(source, choice_for([requirement.spec], trace, reading)))
+            if not any(map(check.take, chunks)):
+                return None
+    except StlError:  # the check of the whole recording says what is wrong
+        return None
+    assert check.decided is not None
+    seconds = (time.perf_counter() - begin) / len(rows)
+    return [
+        Outcome(
+            row.label,
+            shown(trace),
+            "satisfied" if part.satisfied else "violated",
+            part.bounds.lower if part.bounds.lower == part.bounds.upper else float("nan"),
+            _told(part.first_violation),
+            _moment(part.first_violation, chunks.start),
+            part.samples,
+            part.period,
+            notes=(
+                *chunks.losses,
+                f"{_stop(row, rows)} at {_moment(part.decided_at, chunks.start)}, {_UNREAD}",
+            ),
+            decided_at=_told(part.decided_at),
+            bounds=part.bounds,
+            seconds=seconds,
+        )
+        for row, part in zip(rows, check.decided, strict=True)
+    ]
+
+
+def _stop(row: Requirement, rows: Sequence[Requirement]) -> str:
+    return "decided" if len(rows) == 1 else f"{row.label} is decided"
 
 
 def _is_large(trace: str, reading: Reading) -> bool:

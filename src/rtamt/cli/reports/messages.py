@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from rtamt.cli.command import short
+from rtamt.cli.command import json_number
 
 if TYPE_CHECKING:
     from rtamt.cli.runner import Outcome, Requirement
@@ -16,6 +16,18 @@ def sentence(outcome: Outcome, requirement: Requirement) -> str:
         return outcome.error
     description = requirement.written.description
     name = f"{outcome.requirement} ({description})" if description else outcome.requirement
-    told = f"{name} is {outcome.verdict} by {outcome.trace}: robustness {short(outcome.robustness)}"
+    told = f"{name} is {outcome.verdict} by {outcome.trace}: robustness {outcome.robustness_text}"
     told = f"{told}, first violated at {outcome.moment}" if outcome.moment else told
     return "; ".join([told, *outcome.notes])
+
+
+def robustness_members(outcome: Outcome) -> dict[str, Any]:
+    """Return the robustness as members of a JSON object; its bounds too, if later samples were not read."""
+    if outcome.bounds is None:
+        return {"robustness": json_number(outcome.robustness)}
+    lower, upper = outcome.bounds.lower, outcome.bounds.upper
+    return {
+        "robustness": json_number(lower) if lower == upper else None,
+        "lower": json_number(lower),
+        "upper": json_number(upper),
+    }

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 from urllib.parse import quote
 
 import rtamt
-from rtamt.cli.command import json_number, json_text
-from rtamt.cli.reports.messages import sentence
+from rtamt.cli.command import json_text
+from rtamt.cli.reports.messages import robustness_members, sentence
 from rtamt.cli.terminal import printed
 
 if TYPE_CHECKING:
@@ -68,7 +68,7 @@ def _result(outcome: Outcome, number: int, requirements: Sequence[Requirement]) 
         },
         "locations": [_location(outcome.trace)],
         "properties": {
-            "robustness": json_number(outcome.robustness),
+            **robustness_members(outcome),
             "firstViolation": when,
         },
     }

@@ -1,0 +1,237 @@
+"""Checking a recording that comes in chunks no further than its verdicts need, in discrete time."""
+
+from __future__ import annotations
+
+import sys
+from dataclasses import dataclass
+from fractions import Fraction
+from math import inf
+from typing import TYPE_CHECKING, Any
+
+from rtamt.engine.online import Watched
+from rtamt.language.formula import Apply, Formula
+from rtamt.language.operators import Pointwise, Tense, Window
+from rtamt.rewrite.check import check_bounds
+from rtamt.rewrite.early import ends_differently
+from rtamt.signals import arrays
+from rtamt.signals.discrete import Discrete
+from rtamt.signals.regular import TOLERANCE, check_increasing, check_regular, infer_period
+from rtamt.verdicts.eager import EagerMonitor
+from rtamt.verdicts.interval import IntervalMonitor
+from rtamt.verdicts.robustness_and_truth import align_inputs
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping, Sequence
+
+    from rtamt.signals.outcomes import Interval, Verdict
+    from rtamt.specification import Specification
+
+
+@dataclass(frozen=True, slots=True)
+class Decided:
+    """A verdict that no later sample can change.
+
+    ``decided_at``: the time of the sample that decided verdict and first violation. ``samples``: how many there were
+    up to it. ``bounds``: of the robustness, by then.
+    """
+
+    satisfied: bool
+    first_violation: Any
+    decided_at: Any
+    samples: int
+    period: Fraction
+    bounds: Interval
+
+
+def holds_at_end(spec: Specification) -> bool:
+    """Return whether verdicts that are decided early also hold at the end of a recording.
+
+    >>> import rtamt
+    >>> [holds_at_end(rtamt.parse(text)) for text in ("always(x > 0)", "eventually[1:2] once[0:5](x > 0)")]
+    [True, False]
+    """
+    return not spec.domain.continuous and ends_differently(spec.outputs().truth, {}) is None
+
+
+class EarlyCheck:
+    """Checks requirements over chunks until all of them are decided.
+
+    ``specs``: each of one requirement for which :func:`holds_at_end`. Raises the errors of ``check_stream``.
+    """
+
+    def __init__(self, specs: Sequence[Specification], tolerance: float = TOLERANCE) -> None:
+        self._specs = specs
+        self._names = tuple(dict.fromkeys(name for spec in specs for name in spec.input_names))
+        self._tolerance = tolerance
+        self._period = specs[0].period
+        self._open: dict[int, _Requirement] = {}
+        self._found: dict[int, Decided] = {}
+        self._samples = 0
+        self._last: float | None = None
+        self._start: Any = None
+        #: The times of samples from ``_first`` on, where something may be violated first.
+        self._times: list[Any] = []
+        self._first = 0
+
+    @property
+    def decided(self) -> list[Decided] | None:
+        """What came of each specification; None while one is open."""
+        return None if self._open or not self._found else [self._found[i] for i in range(len(self._specs))]
+
+    def take(self, chunk: Any) -> bool:
+        """Take the next chunk; return whether everything is decided, so that no further one is needed."""
+        stamps, columns, n = arrays.columns_of(chunk, self._names)
+        if not n:
+            return False
+        if self._period is None:
+            self._period = Fraction(1) if stamps is None else infer_period(stamps.seconds)
+        if not self._samples:
+            self._begin(self._period)
+        if stamps is not None:
+            check_increasing(stamps.seconds, self._last, self._samples)
+            check_regular(stamps.seconds, self._period, self._tolerance, self._last, self._samples)
+            self._last = float(stamps.seconds[-1])
+        step = float(self._period)
+        self._times += (
+            [i * step for i in range(self._samples, self._samples + n)]
+            if stamps is None
+            else [arrays.plain(time) for time in stamps.original]
+        )
+        if not self._samples:
+            self._start = self._times[0]
+        rows = {name: column.tolist() for name, column in columns.items()}
+        for i in range(n):
+            self._step(self._samples + i, {name: values[i] for name, values in rows.items()}, self._period)
+            if not self._open:
+                return True
+        self._samples += n
+        needed = min(self._samples, *(each.needed for each in self._open.values()))
+        del self._times[: needed - self._first]
+        self._first = max(self._first, needed)
+        return False
+
+    def _begin(self, period: Fraction) -> None:
+        for number, spec in enumerate(self._specs):
+            check_bounds(spec.formula, period, spec.text)
+            self._open[number] = _Requirement(spec, period)
+
+    def _step(self, sample: int, row: Mapping[str, float], period: Fraction) -> None:
+        for number, each in list(self._open.items()):
+            if not each.take(sample, row):
+                continue
+            violated = each.violated
+            self._found[number] = Decided(
+                violated is None,
+                None if violated is None else self._time(violated),
+                self._time(sample),
+                sample + 1,
+                period,
+                each.bounds,
+            )
+            del self._open[number]
+
+    def _time(self, sample: int) -> Any:
+        return self._times[sample - self._first] if sample else self._start
+
+
+class _Requirement:
+    """The parts of a requirement that must all hold, watched from sample to sample."""
+
+    def __init__(self, spec: Specification, period: Fraction) -> None:
+        outputs = spec.outputs()
+        domain = Discrete(period).online
+        self._names = spec.input_names
+        self._step = float(period)
+        self._parts = [_Part(part, period) for part in _conjuncts(outputs.truth)]
+        first, *others = (part.formula for part in self._parts)
+        watch = [Watched(str(i), formula, None) for i, formula in enumerate(others, 1)]
+        self._verdicts = EagerMonitor(
+            align_inputs(first, self._names), domain, watch=watch, backend=spec.backend
+        )
+        robustness = align_inputs(outputs.robustness, self._names)
+        self._bounds = IntervalMonitor(robustness, domain, at="start", backend=spec.backend)
+
+    @property
+    def needed(self) -> int:
+        """The first sample, not counting that at the start, that may be the first violation."""
+        return min(part.certain if part.is_window else sys.maxsize for part in self._parts)
+
+    @property
+    def violated(self) -> int | None:
+        """The sample at which the requirement is first violated."""
+        return min((part.violated for part in self._parts if part.violated is not None), default=None)
+
+    @property
+    def bounds(self) -> Interval:
+        """What is known of the robustness."""
+        return self._bounds.interval()
+
+    def take(self, sample: int, row: Mapping[str, float]) -> bool:
+        """Take a sample; return whether the requirement is decided, and where it is violated first."""
+        time, mine = sample * self._step, {name: row[name] for name in self._names}
+        self._bounds.update(time, **mine)
+        found = self._verdicts.update(time, **mine)
+        for i, part in enumerate(self._parts):
+            part.take(self._verdicts[str(i)] if i else found)
+        violated = self.violated
+        if violated is None:
+            return all(part.satisfied for part in self._parts)
+        return all(part.certain >= violated for part in self._parts)
+
+
+class _Part:
+    """``always`` over a window from the start of the trace, or any other formula at the start.
+
+    ``certain``: the first sample of the window at which it is not decided that the formula holds; behind the window
+    the largest number.
+    """
+
+    def __init__(self, formula: Formula, period: Fraction) -> None:
+        self.formula, self.certain, self._last, self.is_window = formula, 0, 0.0, False
+        if (
+            isinstance(formula, Apply)
+            and formula.op.tense is Tense.FUTURE
+            and formula.op.kernel == Window("min")
+        ):
+            (self.formula,), interval, self.is_window = formula.args, formula.interval, True
+            self.certain = 0 if interval is None else int(interval.begin / period)
+            end = None if interval is None else interval.end
+            self._last = inf if end is None else int(end / period)
+        self._period = float(period)
+        self._ahead: set[int] = set()  # samples that hold, after one that is open
+        self.violated: int | None = None
+
+    @property
+    def satisfied(self) -> bool:
+        """Whether the part holds."""
+        return self.certain > self._last
+
+    def take(self, verdicts: list[Verdict]) -> None:
+        """Take what was decided."""
+        for verdict in verdicts:
+            sample = round(verdict.time / self._period)
+            if not self.certain <= sample <= self._last:
+                continue
+            if verdict.satisfied:
+                self._ahead.add(sample)
+            elif self.violated is None or sample < self.violated:
+                self.violated = sample
+        while self.certain in self._ahead:
+            self._ahead.remove(self.certain)
+            self.certain += 1
+        if self.satisfied:
+            self.certain = sys.maxsize
+
+
+def _conjuncts(formula: Formula) -> Iterator[Formula]:
+    """Yield the parts of a formula that must all hold, each once."""
+    stack, seen = [formula], set[int]()
+    while stack:
+        node = stack.pop()
+        if id(node) in seen:
+            continue
+        seen.add(id(node))
+        if isinstance(node, Apply) and node.op.kernel == Pointwise("min"):
+            stack.extend(reversed(node.args))
+        else:
+            yield node
