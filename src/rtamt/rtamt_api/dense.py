@@ -391,3 +391,8 @@ def _split(samples: Any, name: str) -> Samples:
             variable=name,
         ) from None
     return [time for time, _ in pairs], [value for _, value in pairs]
+
+
+#: Spellings of older programs and of the paper's ROS code.
+STLCTSpecification = StlDenseTimeSpecification
+STLDenseTimeSpecification = StlDenseTimeSpecification

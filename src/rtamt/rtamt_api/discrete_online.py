@@ -267,3 +267,8 @@ class StlDiscreteTimeSpecificationCpp(StlDiscreteTimeSpecification):
     def __init__(self, semantics: Semantics = Semantics.STANDARD) -> None:
         require_core(type(self).__name__, StlDiscreteTimeSpecification.__name__)
         super().__init__(semantics, Language.CPP)
+
+
+#: Spellings of older programs and of the paper's ROS code.
+STLSpecification = StlDiscreteTimeSpecification
+STLDiscreteTimeSpecification = StlDiscreteTimeSpecification

@@ -36,7 +36,7 @@ def said(call, *args):
 
 def test_all_names_are_there():
     assert rtamt.STLCTSpecification is rtamt.STLDenseTimeSpecification is rtamt.StlDenseTimeSpecification
-    for name in specification.__all__:
+    for name in (name for name in vars(specification) if name[:3].lower() == "stl"):
         assert getattr(specification, name) is getattr(rtamt, name)
         assert name in rtamt.__all__
 

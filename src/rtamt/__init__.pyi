@@ -1,0 +1,108 @@
+"""The list of public names: type checkers read it, and ``__init__.py`` imports each name on first use."""
+
+from rtamt.batch import evaluate_all as evaluate_all
+from rtamt.batch import evaluate_batch as evaluate_batch
+from rtamt.engine.dense.monitor import DenseMonitor as DenseMonitor
+from rtamt.engine.discrete.monitor import Monitor as Monitor
+from rtamt.errors import BoundError as BoundError
+from rtamt.errors import EvaluationError as EvaluationError
+from rtamt.errors import NameInFormulaError as NameInFormulaError
+from rtamt.errors import ParseError as ParseError
+from rtamt.errors import RTAMTException as RTAMTException
+from rtamt.errors import SpecificationError as SpecificationError
+from rtamt.errors import StlError as StlError
+from rtamt.errors import STLParseException as STLParseException
+from rtamt.errors import TraceError as TraceError
+from rtamt.errors import UsageError as UsageError
+from rtamt.language.operators import STL as STL
+from rtamt.readers.read import read as read
+from rtamt.readers.read import scan as scan
+from rtamt.results import Result as Result
+from rtamt.results import first_violation as first_violation
+from rtamt.rtamt_api.dense import STLCTSpecification as STLCTSpecification
+from rtamt.rtamt_api.dense import StlDenseTimeOfflineSpecification as StlDenseTimeOfflineSpecification
+from rtamt.rtamt_api.dense import StlDenseTimeOnlineSpecification as StlDenseTimeOnlineSpecification
+from rtamt.rtamt_api.dense import STLDenseTimeSpecification as STLDenseTimeSpecification
+from rtamt.rtamt_api.dense import StlDenseTimeSpecification as StlDenseTimeSpecification
+from rtamt.rtamt_api.discrete import (
+    StlDiscreteTimeOfflineSpecification as StlDiscreteTimeOfflineSpecification,
+)
+from rtamt.rtamt_api.discrete_online import (
+    StlDiscreteTimeOnlineSpecification as StlDiscreteTimeOnlineSpecification,
+)
+from rtamt.rtamt_api.discrete_online import (
+    StlDiscreteTimeOnlineSpecificationCpp as StlDiscreteTimeOnlineSpecificationCpp,
+)
+from rtamt.rtamt_api.discrete_online import STLDiscreteTimeSpecification as STLDiscreteTimeSpecification
+from rtamt.rtamt_api.discrete_online import StlDiscreteTimeSpecification as StlDiscreteTimeSpecification
+from rtamt.rtamt_api.discrete_online import StlDiscreteTimeSpecificationCpp as StlDiscreteTimeSpecificationCpp
+from rtamt.rtamt_api.discrete_online import STLSpecification as STLSpecification
+from rtamt.rtamt_api.interface_aware import (
+    IAStlInputRobustnessDenseTimeOfflineSpecification as IAStlInputRobustnessDenseTimeOfflineSpecification,
+)
+from rtamt.rtamt_api.interface_aware import (
+    IAStlInputRobustnessDenseTimeOnlineSpecification as IAStlInputRobustnessDenseTimeOnlineSpecification,
+)
+from rtamt.rtamt_api.interface_aware import (
+    IAStlInputRobustnessDiscreteTimeOfflineSpecification as IAStlInputRobustnessDiscreteTimeOfflineSpecification,
+)
+from rtamt.rtamt_api.interface_aware import (
+    IAStlInputRobustnessDiscreteTimeOnlineSpecification as IAStlInputRobustnessDiscreteTimeOnlineSpecification,
+)
+from rtamt.rtamt_api.interface_aware import (
+    IAStlInputVacuityDenseTimeOfflineSpecification as IAStlInputVacuityDenseTimeOfflineSpecification,
+)
+from rtamt.rtamt_api.interface_aware import (
+    IAStlInputVacuityDenseTimeOnlineSpecification as IAStlInputVacuityDenseTimeOnlineSpecification,
+)
+from rtamt.rtamt_api.interface_aware import (
+    IAStlInputVacuityDiscreteTimeOfflineSpecification as IAStlInputVacuityDiscreteTimeOfflineSpecification,
+)
+from rtamt.rtamt_api.interface_aware import (
+    IAStlInputVacuityDiscreteTimeOnlineSpecification as IAStlInputVacuityDiscreteTimeOnlineSpecification,
+)
+from rtamt.rtamt_api.interface_aware import (
+    IAStlOutputRobustnessDenseTimeOfflineSpecification as IAStlOutputRobustnessDenseTimeOfflineSpecification,
+)
+from rtamt.rtamt_api.interface_aware import (
+    IAStlOutputRobustnessDenseTimeOnlineSpecification as IAStlOutputRobustnessDenseTimeOnlineSpecification,
+)
+from rtamt.rtamt_api.interface_aware import (
+    IAStlOutputRobustnessDiscreteTimeOfflineSpecification as IAStlOutputRobustnessDiscreteTimeOfflineSpecification,
+)
+from rtamt.rtamt_api.interface_aware import (
+    IAStlOutputRobustnessDiscreteTimeOnlineSpecification as IAStlOutputRobustnessDiscreteTimeOnlineSpecification,
+)
+from rtamt.rtamt_api.interface_aware import (
+    IAStlOutputVacuityDenseTimeOfflineSpecification as IAStlOutputVacuityDenseTimeOfflineSpecification,
+)
+from rtamt.rtamt_api.interface_aware import (
+    IAStlOutputVacuityDenseTimeOnlineSpecification as IAStlOutputVacuityDenseTimeOnlineSpecification,
+)
+from rtamt.rtamt_api.interface_aware import (
+    IAStlOutputVacuityDiscreteTimeOfflineSpecification as IAStlOutputVacuityDiscreteTimeOfflineSpecification,
+)
+from rtamt.rtamt_api.interface_aware import (
+    IAStlOutputVacuityDiscreteTimeOnlineSpecification as IAStlOutputVacuityDiscreteTimeOnlineSpecification,
+)
+from rtamt.rtamt_api.options import Language as Language
+from rtamt.rtamt_api.options import Semantics as Semantics
+from rtamt.rtamt_api.options import StlIOType as StlIOType
+from rtamt.rtamt_api.options import TimeInterpretation as TimeInterpretation
+from rtamt.signals.dense import Dense as Dense
+from rtamt.signals.discrete import Discrete as Discrete
+from rtamt.signals.outcomes import Interval as Interval
+from rtamt.signals.outcomes import Verdict as Verdict
+from rtamt.signals.outcomes import VerdictRun as VerdictRun
+from rtamt.signals.signal import Signal as Signal
+from rtamt.signals.trace import Channel as Channel
+from rtamt.signals.trace import Trace as Trace
+from rtamt.specification import Specification as Specification
+from rtamt.texts import load as load
+from rtamt.texts import parse as parse
+from rtamt.texts import robustness as robustness
+from rtamt.verdicts.streaming import StreamResult as StreamResult
+from rtamt.verdicts.streaming import check_stream as check_stream
+
+__version__: str
+__all__: list[str]
