@@ -14,11 +14,13 @@
 
 #include "../program/snapshot.hpp"
 #include "../values/monoid.hpp"
+#include "../values/vectors.hpp"
 #include "copy.hpp"
 #include "journal.hpp"
 #include "kernel.hpp"
 
 #include <algorithm>
+#include <concepts>
 #include <cstddef>
 
 namespace rtamt::discrete {
@@ -42,6 +44,10 @@ struct Operands {
 };
 
 // The loops between the ends of stretches. To be specialised where a monoid allows better ones.
+//
+// Each sample waits for the one before it, and this latency is what small elements of doubles cost:
+// four of them are combined with each other before they meet the total. The operation is
+// associative, so the results are the same. Other elements cost their instructions.
 template <Monoid M>
 struct Stretch {
     using Element = typename M::Element;
@@ -50,7 +56,21 @@ struct Stretch {
     // Replaces every cell by the total from there to the end.
     static void flip(Element* ring, std::size_t width) noexcept {
         Element tail = M::identity;
-        for (std::size_t i = width; i > 0; --i) {
+        std::size_t i = width;
+        if constexpr (small) {
+            for (; i >= 4; i -= 4) {
+                Element* cell = ring + (i - 4);
+                const Element two = M::prepend(cell[2], cell[3]);
+                const Element three = M::prepend(cell[1], two);
+                const Element four = M::prepend(cell[0], three);
+                cell[3] = M::prepend(cell[3], tail);
+                cell[2] = M::prepend(two, tail);
+                cell[1] = M::prepend(three, tail);
+                tail = M::prepend(four, tail);
+                cell[0] = tail;
+            }
+        }
+        for (; i > 0; --i) {
             tail = M::prepend(ring[i - 1], tail);
             ring[i - 1] = tail;
         }
@@ -59,22 +79,45 @@ struct Stretch {
     // In the first stretch of a trace: nothing is before it. Answers the new back.
     [[nodiscard]] static Element grow(Operands<M> in, Element* cells, Element back, Value* out,
                                       std::size_t count) noexcept {
-        for (std::size_t i = 0; i < count; ++i) {
-            const Element here = in[i];
-            back = M::append(back, here);
-            out[i] = M::result(back);
-            cells[i] = here;
-        }
-        return back;
+        return each(in, cells, back, count,
+                    [=](std::size_t i, const Element& total) { out[i] = M::result(total); });
     }
 
     // In any later stretch. A cell is read for the slot before the one that overwrites it.
     [[nodiscard]] static Element slide(Operands<M> in, Element* cells, Element back, Value* out,
                                        std::size_t count) noexcept {
-        for (std::size_t i = 0; i < count; ++i) {
+        return each(in, cells, back, count, [=](std::size_t i, const Element& total) {
+            out[i] = M::result(cells[i + 1], total);
+        });
+    }
+
+  private:
+    static constexpr bool small =
+        sizeof(Element) <= 2 * sizeof(double) && !std::integral<typename M::Value>;
+
+    // Hands over the total at each slot, then stores the slot's element. Answers the last total.
+    template <class Take>
+    [[nodiscard]] RTAMT_INLINE static Element each(Operands<M> in, Element* cells, Element back,
+                                                   std::size_t count, Take&& take) noexcept {
+        std::size_t i = 0;
+        if constexpr (small) {
+            for (; i + 4 <= count; i += 4) {
+                const Element here[] = {in[i], in[i + 1], in[i + 2], in[i + 3]};
+                const Element two = M::append(here[0], here[1]);
+                const Element four = M::append(two, M::append(here[2], here[3]));
+                const Element second = M::append(back, two);
+                take(i, M::append(back, here[0]));
+                take(i + 1, second);
+                take(i + 2, M::append(second, here[2]));
+                back = M::append(back, four);
+                take(i + 3, back);
+                std::copy_n(here, 4, cells + i);
+            }
+        }
+        for (; i < count; ++i) {
             const Element here = in[i];
             back = M::append(back, here);
-            out[i] = M::result(cells[i + 1], back);
+            take(i, back);
             cells[i] = here;
         }
         return back;
