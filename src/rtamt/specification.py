@@ -17,7 +17,7 @@ from rtamt.results import Result, requirements_of
 from rtamt.settings import watched_of
 from rtamt.signals.inexact import Uncertainty, fill_gaps
 from rtamt.specification_text import SpecificationText
-from rtamt.verdicts.modes import DELAYED, clock_of, mode_of, semantics_in
+from rtamt.verdicts.modes import DELAYED, mode_of, monitor_of, semantics_in
 from rtamt.verdicts.offline import by_start, judge, judge_apart
 from rtamt.verdicts.standalone import carried_program
 
@@ -35,6 +35,7 @@ if TYPE_CHECKING:
     from rtamt.signals.discrete import Discrete
     from rtamt.signals.domain_interface import DomainTrace, TimeDomain
     from rtamt.signals.signal import Signal
+    from rtamt.verdicts.dense_early import DenseEagerMonitor
     from rtamt.verdicts.eager import EagerMonitor
     from rtamt.verdicts.interval import IntervalMonitor
 
@@ -220,6 +221,7 @@ class Specification(SpecificationText):
         watch: Watch = (),
         time_unit: str | None = None,
         verdict: Literal["eager"],
+        ranges: Mapping[str, Any] | None = None,
     ) -> EagerMonitor: ...
 
     @overload
@@ -229,6 +231,35 @@ class Specification(SpecificationText):
         time: Literal["discrete"] | Discrete | None = None,
         period: Duration | None = None,
         tolerance: float | None = None,
+        semantics: Semantics | None = None,
+        watch: Watch = (),
+        time_unit: str | None = None,
+        verdict: Literal["interval"],
+        at: str | None = None,
+        ranges: Mapping[str, Any] | None = None,
+        lateness: Duration | None = None,
+        on_correction: str | None = None,
+    ) -> IntervalMonitor: ...
+
+    @overload
+    def monitor(
+        self,
+        *,
+        time: Literal["dense"] | Dense,
+        resolution: Duration | None = None,
+        semantics: Semantics | None = None,
+        watch: Watch = (),
+        time_unit: str | None = None,
+        verdict: Literal["eager"],
+        ranges: Mapping[str, Any] | None = None,
+    ) -> DenseEagerMonitor: ...
+
+    @overload
+    def monitor(
+        self,
+        *,
+        time: Literal["dense"] | Dense,
+        resolution: Duration | None = None,
         semantics: Semantics | None = None,
         watch: Watch = (),
         time_unit: str | None = None,
@@ -271,11 +302,12 @@ class Specification(SpecificationText):
 
         ``verdict``: what the monitor reports of each sample: ``"delayed"``, the robustness one horizon later;
         ``"eager"``, whether the formula holds, as soon as no later sample can change it; ``"interval"``, bounds
-        of the robustness from what is known by now. ``at``: of which instants ``"interval"`` reports: the
-        ``"start"`` of the trace, as by default for unbounded future, or ``"every"`` sample. ``ranges``: from a
-        variable to its least and greatest value (``"interval"``). ``lateness``: by how much a sample may come late
-        (``"interval"``). ``on_correction``: whether to ``"reject"`` or ``"replay"`` a sample that contradicts an
-        earlier one (``"interval"``).
+        of the robustness from what is known by now. In dense time these two report runs of instants, with unbounded
+        future too. ``at``: of which instants ``"interval"`` reports: the ``"start"`` of the trace, as by default
+        for unbounded future, or ``"every"`` one. ``ranges``: from a variable to its least and greatest value
+        (``"eager"``, ``"interval"``). ``lateness``: by how much a sample may come late (``"interval"``); without it,
+        each variable of dense time has its samples in order. ``on_correction``: whether to ``"reject"`` or
+        ``"replay"`` a sample that contradicts an earlier one (``"interval"``).
 
         >>> import rtamt
         >>> monitor = rtamt.parse("always[0:200ms](x >= 3)").monitor(period="100ms")
@@ -309,16 +341,18 @@ class Specification(SpecificationText):
             **settings,
         )
         domain = self.domain_for(time, period, tolerance, resolution).online
-        if mode.monitor is not None:
-            return mode.monitor(
+        requirements = [self._watched(name, semantics).formula for name in self.requirements]
+        if mode.monitors:
+            return monitor_of(mode, domain)(
                 formula,
-                clock_of(mode, domain),
+                domain,
                 text=self.text,
                 backend=self.backend,
                 declared=self.declared,
                 watch=watched,
                 factory=factory,
                 unit=time_unit,
+                requirements=requirements,
                 **settings,
             )
         return engine_of(domain).monitor(
@@ -330,7 +364,7 @@ class Specification(SpecificationText):
             watch=watched,
             factory=factory,
             unit=time_unit,
-            requirements=[self._watched(name, semantics).formula for name in self.requirements],
+            requirements=requirements,
         )
 
     def compile(

@@ -35,7 +35,7 @@ from rtamt.signals.dense import Dense
 from rtamt.signals.regular import TOLERANCE
 from rtamt.signals.signal import Signal
 from rtamt.signals.trace import in_seconds
-from rtamt.verdicts.eager import EagerMonitor
+from rtamt.verdicts.interval import IntervalMonitor
 from rtamt.verdicts.modes import DELAYED, MODES
 
 if TYPE_CHECKING:
@@ -74,7 +74,8 @@ and in the input. With --semantics boolean a line has the verdict too: {"time": 
 
 --verdict eager prints {"time": 0.0, "satisfied": false, "decided_at": 2.0} as soon as no later sample can
 change whether the formula holds; --verdict interval prints bounds of the robustness whenever they change:
-{"time": 0.0, "lower": -1.0, "upper": "inf", "final": false}. A formula of unbounded future is watched at the
+{"time": 0.0, "lower": -1.0, "upper": "inf", "final": false}. With "until" an object is about all samples up to that
+one, in dense time all instants before it. A formula of unbounded future is watched at the
 start of the trace, also without --verdict: {"time": 12.3, "lower": "-inf", "upper": -1.0, "status":
 "violated since 12.3 s"}; other states are "open" and "can no longer be violated".
 
@@ -170,14 +171,14 @@ def _follow(watched: Feed, samples: Samples, live: Live | None, *, keep_going: b
 def _early(spec: Specification, args: argparse.Namespace) -> EagerFeed | IntervalFeed | None:
     """Return what prints before the horizon, if that is asked for, or if there is no horizon."""
     verdict = args.verdict
-    if verdict is None and not spec.domain.continuous and unbounded_future(spec.formula) is not None:
+    if verdict is None and unbounded_future(spec.formula) is not None:
         verdict = "interval"
     if verdict in {None, DELAYED}:
         return None
     if args.live:
         raise CommandError(f"--live draws the robustness; leave it out, or use --verdict {DELAYED}")
     monitor = spec.monitor(verdict=verdict, tolerance=args.tolerance)
-    return EagerFeed(monitor) if isinstance(monitor, EagerMonitor) else IntervalFeed(monitor)
+    return IntervalFeed(monitor) if isinstance(monitor, IntervalMonitor) else EagerFeed(monitor)
 
 
 def _watched(spec: Specification, tolerance: float | None, told: Output, names: Sequence[str]) -> SampleFeed:

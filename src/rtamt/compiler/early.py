@@ -33,6 +33,8 @@ ITEMS = ("value", "all", "some", "until", "both", "either")
 
 #: Beyond every step, as the core has it.
 FOREVER = (2**63 - 1) // 4
+#: Before every step.
+NEVER = -FOREVER
 
 _LATTICE = {"min": "both", "max": "either"}
 

@@ -1,8 +1,8 @@
 """The definition of bounds in dense time: formula and partial knowledge of signals to [L, U] at every instant.
 
-As in discrete time (``discrete_bounds.py``), on step functions. A sample is known to hold its value up to the next
-one of its variable; the newest sample holds it for the tick of its own time, and after that only the
-declared range is known, until no more samples come: then the value is held for ever.
+As in discrete time (``discrete_bounds.py``), on step functions. A sample is known to hold its value for the tick of
+its own time, and from there up to the next sample of its variable, as far as no other sample can come between them.
+Elsewhere only the declared range is known, until no more samples come: then the last value is held for ever.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from rtamt.rewrite.desugar import desugar, written
 from rtamt.rewrite.horizon import horizons
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Collection, Mapping, Sequence
     from fractions import Fraction
 
     #: Times in ticks, and the lower and the upper bound of the value from each of them on.
@@ -48,19 +48,39 @@ class StepBounds(NamedTuple):
 class DenseKnowledge:
     """What is known of signals: the samples of every variable that have come, each with bounds of its value.
 
-    ``ranges`` are the declared ones, which hold after a variable's newest sample; without one it may be
-    anything. ``finished``: no more samples will come.
+    ``ranges`` are the declared ones, which hold where nothing else is known; without one a variable may be
+    anything. ``finished``: no more samples will come. ``closed``: of variables the tick up to which, inclusive,
+    no more samples will come; without one that of the newest sample.
     """
 
     samples: Mapping[str, Samples]
     ranges: Mapping[str, Range] = field(default_factory=dict)
     finished: bool = False
+    closed: Mapping[str, int] = field(default_factory=dict)
 
     @property
     def start(self) -> int | None:
-        """The tick at which the trace begins; None while a variable has no sample."""
-        firsts = [times[0] if len(times) else None for times, _, _ in self.samples.values()]
-        return None if None in firsts else max(int(first) for first in firsts if first is not None)
+        """The tick at which the trace begins; None while the first sample of a variable may still come."""
+        firsts = []
+        for name, (times, _, _) in self.samples.items():
+            if not len(times) or (int(times[0]) > self.until(name) and not self.finished):
+                return None
+            firsts.append(int(times[0]))
+        return max(firsts)
+
+    def until(self, name: str) -> int:
+        """Return the tick up to which a variable that has samples is as well known as it will ever be."""
+        return self.closed.get(name, int(self.samples[name][0][-1]))
+
+    @property
+    def complete(self) -> int:
+        """The same of all variables; they have samples."""
+        return min(map(self.until, self.samples))
+
+    def of(self, names: Collection[str]) -> DenseKnowledge:
+        """Return what is known of some of the variables."""
+        samples = {name: self.samples[name] for name in names}
+        return DenseKnowledge(samples, self.ranges, self.finished, self.closed)
 
 
 def bounds(formula: Formula, known: DenseKnowledge, tick: Fraction) -> StepBounds:
@@ -81,7 +101,7 @@ def bounds(formula: Formula, known: DenseKnowledge, tick: Fraction) -> StepBound
     origin = (0 if start is None else start) * QUARTERS
     signals = {name: _signal(name, known, origin, started=start is not None) for name in known.samples}
     ahead = horizons(core, tick)
-    complete = None if start is None else min(int(times[-1]) for times, _, _ in known.samples.values())
+    complete = None if start is None else known.complete
     last = None if start is None else max(int(times[-1]) for times, _, _ in known.samples.values())
 
     def step(node: Formula, below: tuple[_Signal, ...]) -> _Signal:
@@ -102,6 +122,22 @@ def bounds(formula: Formula, known: DenseKnowledge, tick: Fraction) -> StepBound
     )
 
 
+def least(parts: Sequence[StepBounds]) -> StepBounds:
+    """Return the bounds of a minimum: at each instant over those that have begun, each with its first time.
+
+    >>> least([StepBounds((0, 4), (1, 5), (1, 6)), StepBounds((2,), (3,), (3,))])
+    StepBounds(times=(0, 4), lower=(1, 3), upper=(1, 3))
+    """
+    rows: list[tuple[int, float, float]] = []
+    for t in sorted({t for part in parts for t in part.times}):
+        begun = [part.at(t) for part in parts if part.times[0] <= t]
+        pair = min(low for low, _ in begun), min(high for _, high in begun)
+        if not rows or rows[-1][1:] != pair:
+            rows.append((t, *pair))
+    times, lower, upper = zip(*rows, strict=True)
+    return StepBounds(times, lower, upper)
+
+
 class _Signal(NamedTuple):
     lower: Steps
     upper: Steps
@@ -112,19 +148,30 @@ def _signal(name: str, known: DenseKnowledge, origin: int, *, started: bool) -> 
     low, high = known.ranges.get(name, ANYTHING)
     if not started:
         return _Signal(Steps((origin,), (low,)), Steps((origin,), (high,)))
-    stamps, lower, upper = known.samples[name]
-    times = [int(t) * QUARTERS for t in stamps]
-    columns = [list(map(float, lower)), list(map(float, upper))]
+    samples = [
+        (int(t), float(lower), float(upper)) for t, lower, upper in zip(*known.samples[name], strict=True)
+    ]
     if not known.finished:
-        times.append(times[-1] + QUARTERS)
-        columns[0].append(low)
-        columns[1].append(high)
+        samples = _held(samples, known.until(name), (low, high))
     steps = []
-    for values in columns:
-        whole = Steps(tuple(times), tuple(values))
-        later = [t for t in times if t > origin]
+    for column in (1, 2):
+        whole = Steps(tuple(each[0] * QUARTERS for each in samples), tuple(each[column] for each in samples))
+        later = [t for t in whole.times if t > origin]
         steps.append(merged([origin, *later], [whole.at(t) for t in (origin, *later)]))
     return _Signal(*steps)
+
+
+def _held(
+    samples: Sequence[tuple[int, float, float]], until: int, range_: Range
+) -> list[tuple[int, float, float]]:
+    """Return samples with the range where they do not hold: each does for its own tick, and up to ``until``."""
+    held = []
+    for sample, after in zip(samples, [*(t for t, _, _ in samples[1:]), None], strict=True):
+        held.append(sample)
+        end = max(sample[0], until) + 1
+        if after is None or end < after:
+            held.append((end, *range_))
+    return held
 
 
 def _apply(

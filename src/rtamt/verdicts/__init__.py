@@ -12,10 +12,15 @@ offline               first violations in a finished trace
 streaming             ``check_stream``: check a recording in chunks with bounded memory
 robust_interval       stop a simulation as soon as its verdict is final
 modes                 the list of verdict modes of a monitor
+early                 what all monitors of verdicts and bounds before the horizon share
+discrete_early        what those of discrete time share
 eager                 the monitor of verdicts as soon as they are settled
-interval              the monitor of bounds of the robustness
-early                 what the monitors ``eager`` and ``interval`` share
+dense_early           what those of dense time share, and the monitor of such verdicts
+interval              bounds of the robustness: late samples and corrections
+discrete_interval     the monitor of bounds in discrete time
+dense_interval        the monitor of bounds in dense time
 caller_clock          times of early monitors in the format of the caller
+early_check           whether a recording can no longer change a verdict (``rtamt check --early``)
 standalone            compile a requirement to a program that runs without Python
 ====================  =================================================================
 """

@@ -52,10 +52,6 @@ class CallerClock:
         copy._limit = self._limit
         return copy
 
-    def cleared(self) -> CallerClock:
-        """Return a clock of a monitor without samples."""
-        return CallerClock(self._times.unit, self._period)
-
     def read(self, time: Any, samples: int) -> Stamp | None:
         """Return a time, None for a number of seconds; ``samples``: how many came before.
 

@@ -5,15 +5,16 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from rtamt.engine.gate import alone, in_use
+from rtamt.engine.native import EarlyMonitorBase
 from rtamt.signals.outcomes import Verdict
-from rtamt.verdicts.early import EarlyMonitor
+from rtamt.verdicts.discrete_early import DiscreteEarlyMonitor
 
 if TYPE_CHECKING:
     from rtamt.language.formula import Formula
     from rtamt.signals.domain_interface import TimeDomain
 
 
-class EagerMonitor(EarlyMonitor):
+class EagerMonitor(DiscreteEarlyMonitor, EarlyMonitorBase):
     """Reports whether a formula holds at each sample, each once, as soon as no later sample can change it.
 
     Built by ``Specification.monitor(verdict="eager")``.
@@ -28,6 +29,7 @@ class EagerMonitor(EarlyMonitor):
 
     def __init__(self, formula: Formula, domain: TimeDomain, **settings: Any) -> None:
         super().__init__(formula, domain, **settings)
+        self._forget()
         self._prepare()
 
     if TYPE_CHECKING:  # by the base

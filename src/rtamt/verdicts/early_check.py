@@ -16,8 +16,8 @@ from rtamt.rewrite.early import ends_differently
 from rtamt.signals import arrays
 from rtamt.signals.discrete import Discrete
 from rtamt.signals.regular import TOLERANCE, check_increasing, check_regular, infer_period
+from rtamt.verdicts.discrete_interval import DiscreteIntervalMonitor
 from rtamt.verdicts.eager import EagerMonitor
-from rtamt.verdicts.interval import IntervalMonitor
 from rtamt.verdicts.robustness_and_truth import align_inputs
 
 if TYPE_CHECKING:
@@ -149,7 +149,7 @@ class _Requirement:
             align_inputs(first, self._names), domain, watch=watch, backend=spec.backend
         )
         robustness = align_inputs(outputs.robustness, self._names)
-        self._bounds = IntervalMonitor(robustness, domain, at="start", backend=spec.backend)
+        self._bounds = DiscreteIntervalMonitor(robustness, domain, at="start", backend=spec.backend)
 
     @property
     def needed(self) -> int:

@@ -1,21 +1,18 @@
-"""Online in discrete time: bounds of the robustness, from whatever is known of the signals by now.
+"""Online: bounds of the robustness, from whatever is known of the signals by now, in all time domains.
 
-What is not a plain number in order is dealt with here: intervals, missing and late samples, corrections.
+Late samples and corrections are dealt with here; ``discrete_interval`` and ``dense_interval`` do the rest.
 """
 
 from __future__ import annotations
 
+from abc import abstractmethod
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
-from rtamt.compiler.early import FOREVER
-from rtamt.engine.gate import alone, in_use
+from rtamt.engine.gate import alone
 from rtamt.errors import BoundError, TraceError, UsageError, did_you_mean, shown
-from rtamt.language.units import duration, format_duration
+from rtamt.language.units import duration
 from rtamt.rewrite.check import unbounded_future
-from rtamt.signals import arrays
-from rtamt.signals.outcomes import Interval
-from rtamt.signals.regular import irregular
 from rtamt.verdicts.early import EarlyMonitor
 
 if TYPE_CHECKING:
@@ -24,6 +21,7 @@ if TYPE_CHECKING:
     from rtamt.language.formula import Formula
     from rtamt.language.units import Duration
     from rtamt.signals.domain_interface import TimeDomain
+    from rtamt.signals.outcomes import Interval
 
 #: How many samples come between two snapshots of a monitor that replays corrections.
 _SNAPSHOT_EVERY = 64
@@ -60,17 +58,6 @@ class IntervalMonitor(EarlyMonitor):
     (Interval(lower=4.5, upper=7.0), Interval(lower=4.5, upper=7.0))
     """
 
-    _remembered: ClassVar[tuple[str, ...]] = (
-        "_finished",
-        "_clock",
-        "_early",
-        "_rest",
-        "_open_at_end",
-        "_at_end",
-        "_events",
-        "_snapshots",
-        "_retracted",
-    )
     _verdict = None
 
     def __init__(
@@ -102,21 +89,18 @@ class IntervalMonitor(EarlyMonitor):
             raise UsageError(f"the lateness is {shown(lateness)}; it must not be negative")
         self._replays = on_correction == "replay"
         if self._lateness > 0 or self._replays:
-            self._late = int(self._lateness / self._period)
+            self._late = int(self._lateness / self._step)
         self._forget()
         self._prepare()
 
     def _forget(self) -> None:
-        self._rest: tuple[Any, ...] = ()
-        #: Of each output the samples whose bounds were open when the trace ended.
-        self._open_at_end: tuple[tuple[int, ...], ...] = ()
-        # Samples that came before it is known where the trace starts.
-        self._early: tuple[Any, ...] = ()
-        self._at_end: Interval | None = None
+        super()._forget()
         # What a correction is replayed on: samples, and the states before some of them.
         self._events: tuple[Any, ...] = ()
         self._snapshots: tuple[Any, ...] = ()
         self._retracted: tuple[Change, ...] | None = None
+        # The last watermark that was given, as the back end takes it.
+        self._mark: float | None = None
 
     # ---- samples ---------------------------------------------------------------------------------
 
@@ -136,74 +120,13 @@ class IntervalMonitor(EarlyMonitor):
         with self._gate:
             self._take(time, values)
 
-    @property
-    def _count(self) -> int:
-        return self.samples + len(self._early)
-
+    @abstractmethod
     def _take(self, time: Any, values: dict[str, Any]) -> None:
-        flat = self._read_by_formula(values)
-        if self._finished:
-            raise self._is_finished()
-        index = self.samples
-        stamp = self._stamp(time)
-        seconds = stamp.seconds
-        known = self._bounds_of(flat, index, seconds)
-        begun = self._late is None or self._backend.newest >= 0
-        try:
-            if self._late is None:
-                self._check_order(seconds)
-                self._backend.take(seconds, *self._row(known), index)
-            elif begun:
-                self._check_late(seconds)
-                self._learn(seconds, known)
-            else:
-                self._begin(seconds, known)
-        except self._refused:
-            raise in_use() from None
-        except self._undefined as error:
-            raise self._no_value(error) from None
-        self._remember(stamp, begun=begun)
+        """Take a sample."""
 
-    def _begin(self, time: float, known: dict[str, tuple[float, float] | None]) -> None:
-        """Keep the first samples until no earlier one can come: only then it is known where the trace starts."""
-        self._early = (*self._early, (time, known))
-        times = [time for time, _ in self._early]
-        assert self._late is not None
-        if round((max(times) - min(times)) / float(self._period)) > self._late:
-            self._start()
-
-    def _start(self) -> None:
-        early = sorted(self._early, key=lambda sample: sample[0])
-        kept = (self._events, self._snapshots)
-        try:
-            for time, known in early:
-                if self._backend.newest >= 0:
-                    self._check_late(time)
-                self._learn(time, known)
-        except BaseException as error:
-            self._connect(self._session.open())
-            self._early, (self._events, self._snapshots) = self._early[:-1], kept
-            if isinstance(error, self._undefined):
-                raise self._no_value(error) from None
-            raise
-        self._early = ()
-
-    def _check_late(self, time: float) -> None:
-        backend = self._backend
-        if backend.newest < 0:
-            return
-        place = backend.place(time)
-        last = backend.time(backend.newest)
-        if place is None:
-            raise irregular(self.samples, time, last, self._period, self._tolerance)
-        if place <= backend.closed:
-            raise TraceError(
-                f"sample {self.samples} is of time {time:.15g} s, later than the lateness of "
-                f"{format_duration(self._lateness)} allows: what was up to {backend.time(backend.closed):.15g} s "
-                f"is final; leave it out, or allow for more lateness",
-                variable=arrays.TIME,
-                index=self.samples,
-            )
+    @abstractmethod
+    def _moment(self, time: float) -> str:
+        """Return a time as the back end takes it for a message."""
 
     def _learn(self, time: float, known: Mapping[str, tuple[float, float] | None]) -> None:
         """Take a sample in whatever order; replay the trace from before where it corrects an earlier one."""
@@ -222,7 +145,7 @@ class IntervalMonitor(EarlyMonitor):
                 wrong.append((number, *bounds))
                 if not self._replays:
                     raise TraceError(
-                        f"'{name}' is {_text(bounds)} at time {time:.15g} s, which contradicts what was known of "
+                        f"'{name}' is {_text(bounds)} at {self._moment(time)}, which contradicts what was known of "
                         f"it, {_text((low, high))}: correct it, or make the monitor with on_correction='replay'",
                         variable=name,
                         index=self.samples,
@@ -263,131 +186,71 @@ class IntervalMonitor(EarlyMonitor):
         backend.restore(state)
         for then, _, taken in events[first:]:
             backend.learn(then, list(taken), backend.samples)
+        if self._mark is not None:
+            backend.watermark(self._mark)
         self._connect(backend)
         self._events = tuple(events)
         self._snapshots = tuple(usable)
         self._retracted = self._differences(before, backend)
 
+    @abstractmethod
     def _differences(self, before: Any, after: Any) -> tuple[Change, ...]:
-        if self._hidden:
-            return ()
-        changes: list[Change] = []
-        for sample in range(max(before.held(0), after.held(0)), after.newest + 1):
-            was, now = before.bounds(0, sample), after.bounds(0, sample)
-            if was != now:
-                retracted = not (was[0] <= now[0] and now[1] <= was[1])
-                changes.append(self._change(sample, sample, *now, retracted=retracted))
-        return tuple(changes)
+        """Return what a correction has changed, from two monitors of the back end."""
 
     @alone
     def watermark(self, time: Any) -> None:
-        """Say that nothing at or before a time will come: what is missing there stays unknown."""
-        if self._finished:
-            raise self._is_finished()
-        self._watermark(self._seconds(time))
+        """Say that nothing at or before a time will come.
+
+        In discrete time what is missing up to it stays unknown; in dense time every variable holds its value.
+        """
+        self._mark_at(time)
 
     @alone
     def advance(self, now: Any) -> None:
         """Say what time it is: nothing that is later than the lateness will come."""
-        if self._finished:
-            raise self._is_finished()
-        self._watermark(self._seconds(now) - float(self._lateness))
+        self._mark_at(now, late=True)
+
+    @abstractmethod
+    def _mark_at(self, time: Any, *, late: bool = False) -> None:
+        """Set the watermark; ``late``: that of samples which come by the lateness after a time."""
 
     def _watermark(self, time: float) -> None:
-        if self._early and time >= min(then for then, _ in self._early):
-            self._start()
         self._backend.watermark(time)
+        self._mark = time if self._mark is None else max(self._mark, time)
 
     # ---- answers ---------------------------------------------------------------------------------
 
+    @abstractmethod
     def interval(self, time: Any = None) -> Interval:
-        """Return the bounds at the start of the trace, or at a sample that is not long final (``at="every"``)."""
-        if time is None:
-            return Interval(*self._backend.origin()) if self._at_end is None else self._at_end
-        if self.at == "start":
-            raise UsageError(
-                "the monitor gives bounds at the start alone; make it with at='every' for others"
-            )
-        backend = self._backend
-        stamp = self._seconds(time)
-        sample = backend.place(stamp) if backend.newest >= 0 else round(Fraction(stamp) / self._period)
-        if sample is None or sample < 0:
-            raise UsageError(f"there is no sample at {stamp:.15g} s")
-        if self._rest:
-            first, values = self._rest[0]
-            found = values[sample - first] if first <= sample < first + len(values) else None
-        else:
-            found = backend.bounds(0, sample)
-        if found is None:
-            raise UsageError(
-                f"the bounds at {stamp:.15g} s are final and no longer kept; read them from changes() when they are"
-            )
-        return Interval(*found)
+        """Return the bounds at the start of the trace, or at an instant that is not long final (``at="every"``)."""
 
     def changes(self) -> list[Change]:
         """Return runs of samples up to the newest one whose bounds the last update changed, with what they are now."""
         if self.at == "start":
-            raise UsageError(
-                "the monitor gives bounds at the start alone; make it with at='every' for others"
-            )
+            raise self._start_only()
         return self._changes(0)
+
+    def _start_only(self) -> UsageError:
+        return UsageError("the monitor gives bounds at the start alone; make it with at='every' for others")
 
     def __getitem__(self, name: str | Formula) -> list[Change]:
         """Return the changes of a formula that is watched, as :meth:`changes` does for the formula itself."""
         return self._changes(self._output(name) - self._hidden)
 
     def _changes(self, output: int) -> list[Change]:
-        if self._rest:
-            first, values = self._rest[output]
-            return [self._change(t, t, *values[t - first], output=output) for t in self._open_at_end[output]]
         if self._retracted is not None and output == 0:
             return list(self._retracted)
         return [self._change(*run, output=output) for run in self._backend.changes(output)]
 
+    @abstractmethod
     def _change(
-        self, first: int, last: int, lower: float, upper: float, *, output: int = 0, retracted: bool = False
+        self, begin: int, end: int, lower: float, upper: float, *, output: int = 0, retracted: bool = False
     ) -> Change:
-        backend = self._backend
-        lag = max(0, self._graph.horizon(self._outputs[output]))
-        final = self._finished or lower == upper or (lag < FOREVER and last + lag <= backend.closed)
-        begin, end = (self._clock.time(backend.time(t)) for t in (first, last))
-        return Change(begin, end, Interval(lower, upper), final, retracted)
+        """Return a run of the back end as a change, with its bounds."""
 
-    @alone
+    @abstractmethod
     def finish(self) -> list[Change]:
         """Say that no more samples will come; return the bounds that were still open, which are final now."""
-        if not self._finished:
-            if self._early:
-                self._start()
-            backend = self._backend
-            before = [
-                {t: backend.bounds(output, t) for t in range(backend.held(output), backend.newest + 1)}
-                for output in range(len(self._outputs))
-            ]
-            rest, at_end = backend.finish()
-            self._at_end = None if at_end is None else Interval(*at_end)
-            self._rest = tuple(rest)
-            # In one class of formulas the end changes bounds that had met.
-            self._open_at_end = tuple(
-                tuple(
-                    t
-                    for t, ends in each.items()
-                    if t >= first and (ends[0] != ends[1] or ends != values[t - first])
-                )
-                for each, (first, values) in zip(before, rest, strict=True)
-            )
-            self._finished = True
-        if self.at == "start" or self._hidden:
-            return []
-        return self._changes(0)
-
-    @alone
-    def reset(self) -> None:
-        """Forget the trace; the next sample is the first."""
-        self._finished = False
-        self._clock = self._clock.cleared()
-        self._forget()
-        self._connect(self._session.open())
 
 
 def _text(bounds: tuple[float, float]) -> str:

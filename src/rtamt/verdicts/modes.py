@@ -5,28 +5,33 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import UsageError, did_you_mean, shown
+from rtamt.signals.dense import Dense
+from rtamt.signals.discrete import Discrete
+from rtamt.verdicts.dense_early import DenseEagerMonitor
+from rtamt.verdicts.dense_interval import DenseIntervalMonitor
+from rtamt.verdicts.discrete_interval import DiscreteIntervalMonitor
 from rtamt.verdicts.eager import EagerMonitor
-from rtamt.verdicts.interval import IntervalMonitor
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Callable, Mapping
 
     from rtamt.rewrite.semantics import PredicateSemantics
     from rtamt.signals.domain_interface import TimeDomain
+    from rtamt.verdicts.early import EarlyMonitor
 
 
 @dataclass(frozen=True, slots=True)
 class Mode:
-    """What a monitor reports; ``monitor`` is the class of discrete time, None for the robustness itself."""
+    """What a monitor reports; ``monitors`` by the name of the time domain, none for the robustness itself."""
 
     name: str
     doc: str
-    monitor: type[EagerMonitor] | type[IntervalMonitor] | None = None
+    monitors: Mapping[str, Callable[..., EarlyMonitor]] = field(default_factory=dict)
     #: The settings of the mode alone, by name, as ``Specification.monitor`` takes them.
     settings: tuple[str, ...] = ()
     #: Whether predicates are true or false, and not a distance.
@@ -41,14 +46,14 @@ MODES: Mapping[str, Mode] = MappingProxyType(
             Mode(
                 "eager",
                 "whether the formula holds at each sample, as soon as no later sample can change it",
-                EagerMonitor,
+                MappingProxyType({Discrete.name: EagerMonitor, Dense.name: DenseEagerMonitor}),
                 settings=("ranges",),
                 boolean=True,
             ),
             Mode(
                 "interval",
                 "bounds of the robustness, from what is known by now",
-                IntervalMonitor,
+                MappingProxyType({Discrete.name: DiscreteIntervalMonitor, Dense.name: DenseIntervalMonitor}),
                 settings=("at", "ranges", "lateness", "on_correction"),
             ),
         )
@@ -78,11 +83,12 @@ def mode_of(verdict: Any, settings: Mapping[str, Any]) -> Mode:
     return mode
 
 
-def clock_of(mode: Mode, domain: TimeDomain) -> TimeDomain:
-    """Return the time domain of a mode's monitor; raise :class:`UsageError` where there is none."""
-    if domain.continuous:
-        raise UsageError(f"verdict='{mode.name}' needs discrete time; use it, or verdict='{DELAYED}'")
-    return domain
+def monitor_of(mode: Mode, domain: TimeDomain) -> Callable[..., EarlyMonitor]:
+    """Return the monitor of a mode in a time domain; raise :class:`UsageError` where there is none."""
+    if domain.name not in mode.monitors:
+        choices = " or ".join(mode.monitors)
+        raise UsageError(f"verdict='{mode.name}' needs {choices} time; use it, or verdict='{DELAYED}'")
+    return mode.monitors[domain.name]
 
 
 def semantics_in(mode: Mode, semantics: str | PredicateSemantics) -> str | PredicateSemantics:

@@ -300,18 +300,20 @@ def dense_finished(case: DenseCase, made: Implementation) -> None:
     """At the end the bounds are the robustness of the samples, within all that was told before."""
     assert case.exact
     came: dict[str, tuple[list[int], list[float]]] = {name: ([], []) for name in case.names}
-    monitor = made.dense_interval(case.formula, case.names, case.ranges)
     for t, row in case.updates:
         for name, known in row.items():
             came[name][0].append(t)
             came[name][1].append(known[0])
-        monitor.update(t, **{name: _given(known) for name, known in row.items()})
     start, end = max(t[0] for t, _ in came.values()), max(t[-1] for t, _ in came.values())
     expected = _values(_dense_rho(case.formula, came), range(start, end + 1))
+    before = _dense_bounds(case, made)
+    monitor = made.dense_interval(case.formula, case.names, case.ranges)
+    for t, row in case.updates:
+        monitor.update(t, **{name: _given(known) for name, known in row.items()})
     monitor.finish()
     final = [monitor.interval(t) for t in range(start, end + 1)]
     assert [(each.lower, each.upper) for each in final] == [(value, value) for value in expected]
-    for bounds in _dense_bounds(case, made):
+    for bounds in before:
         for (lower, upper), value in zip(bounds, expected, strict=False):
             assert lower <= value <= upper
 
@@ -321,6 +323,24 @@ def dense_as_defined(case: DenseCase, made: Implementation) -> None:
     if made is DEFINITION:
         raise NothingToCheck
     assert _dense_bounds(case, made) == _dense_bounds(case, DEFINITION)
+
+
+def dense_start(case: DenseCase, made: Implementation) -> None:
+    """Before the first and after every update and at the end, the bounds at the start are those of the definition."""
+    if made is DEFINITION:
+        raise NothingToCheck
+    both = [each.dense_interval(case.formula, case.names, case.ranges) for each in (made, DEFINITION)]
+    try:
+        assert both[0].start() == both[1].start()
+        for t, row in case.updates:
+            for monitor in both:
+                monitor.update(t, **{name: _given(known) for name, known in row.items()})
+            assert both[0].start() == both[1].start()
+        for monitor in both:
+            monitor.finish()
+        assert both[0].start() == both[1].start()
+    except EvaluationError:
+        raise NothingToCheck from None
 
 
 def dense_eager(case: DenseCase, made: Implementation) -> None:

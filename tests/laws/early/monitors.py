@@ -17,18 +17,23 @@ from rtamt.language.enclosures import Enclosure
 from rtamt.reference import dense_bounds, discrete_bounds, earliest
 from rtamt.reference.discrete_bounds import ANYTHING, Knowledge
 from rtamt.rewrite.semantics import boolean
+from rtamt.signals.dense import Dense
 from rtamt.signals.discrete import DISCRETE
+from rtamt.verdicts.dense_early import DenseEagerMonitor
+from rtamt.verdicts.dense_interval import DenseIntervalMonitor
+from rtamt.verdicts.discrete_interval import DiscreteIntervalMonitor
 from rtamt.verdicts.eager import EagerMonitor
-from rtamt.verdicts.interval import IntervalMonitor
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
     from rtamt.language.formula import Formula
+    from rtamt.reference.dense_bounds import StepBounds
     from rtamt.verdicts.interval import Change
     from tests.laws.early.cases import Range
 
 PERIOD = TICK = Fraction(1)
+SECONDS = Dense(TICK)
 
 
 @dataclass(frozen=True)
@@ -43,9 +48,8 @@ class Implementation:
     name: str
     interval: Callable[[Formula, tuple[str, ...], Mapping[str, Range], int], Any]
     eager: Callable[[Formula, tuple[str, ...], Mapping[str, Range]], Any]
-    #: None where there are no monitors of dense time.
-    dense_interval: Callable[[Formula, tuple[str, ...], Mapping[str, Range]], Any] | None = None
-    dense_eager: Callable[[Formula, tuple[str, ...], Mapping[str, Range]], Any] | None = None
+    dense_interval: Callable[[Formula, tuple[str, ...], Mapping[str, Range]], Any]
+    dense_eager: Callable[[Formula, tuple[str, ...], Mapping[str, Range]], Any]
 
 
 def _bounds(value: Any, limits: Range) -> Range:
@@ -120,15 +124,28 @@ class _Dense:
 
 
 class _DenseIntervals(_Dense):
+    _found: StepBounds | None = None
+
     def update(self, t: int, **values: Any) -> None:
         self._take(t, values)
+        self._found = None
+
+    @property
+    def _bounds(self) -> StepBounds:
+        if self._found is None:
+            known = earliest.after(self._updates, self._names, self._ranges, finished=self._finished)
+            self._found = dense_bounds.bounds(self._formula, known, TICK)
+        return self._found
+
+    def start(self) -> Interval:
+        return Interval(*self._bounds.at(self._bounds.times[0]))
 
     def interval(self, t: int) -> Interval:
-        known = earliest.after(self._updates, self._names, self._ranges, finished=self._finished)
-        return Interval(*dense_bounds.bounds(self._formula, known, TICK).at(t))
+        return Interval(*self._bounds.at(t))
 
     def finish(self) -> None:
         self._finished = True
+        self._found = None
 
 
 class _DenseEager(_Dense):
@@ -159,7 +176,7 @@ class _Kept:
         self, formula: Formula, names: tuple[str, ...], ranges: Mapping[str, Range], lateness: int = 0
     ) -> None:
         declared = {name: limits for name, limits in ranges.items() if name in names}
-        self._monitor = IntervalMonitor(
+        self._monitor = DiscreteIntervalMonitor(
             formula, DISCRETE.online, at="every", ranges=declared, lateness=lateness
         )
         self._kept: dict[int, Interval] = {}
@@ -202,6 +219,61 @@ class _Settled:
         return self._samples(self._monitor.finish())
 
 
+class _DenseKept:
+    """The monitor of bounds in dense time, with what it reported as changes, which must be what it gives when asked."""
+
+    backend = "cpp"
+
+    def __init__(self, formula: Formula, names: tuple[str, ...], ranges: Mapping[str, Range]) -> None:
+        declared = {name: limits for name, limits in ranges.items() if name in names}
+        self._monitor = DenseIntervalMonitor(formula, SECONDS, ranges=declared, backend=self.backend)
+        self._kept: dict[int, Interval] = {}
+
+    def _keep(self, changes: list[Change]) -> None:
+        for change in changes:
+            for t in range(int(change.begin), int(change.end)):
+                assert self._kept.get(t) != change.interval or self._monitor._finished
+                self._kept[t] = change.interval
+
+    def update(self, t: int, **values: Any) -> None:
+        self._monitor.update(t, **values)
+        if self._monitor.at == "every":
+            self._keep(self._monitor.changes())
+
+    def start(self) -> Interval:
+        return self._monitor.interval()
+
+    def interval(self, t: int) -> Interval:
+        found = self._monitor.interval(t)
+        assert self._kept.get(t, found) == found
+        return found
+
+    def finish(self) -> None:
+        self._keep(self._monitor.finish())
+
+
+class _DenseSettled:
+    """The monitor of verdicts in dense time, whose times are seconds, here ticks."""
+
+    backend = "cpp"
+
+    def __init__(self, formula: Formula, names: tuple[str, ...], ranges: Mapping[str, Range]) -> None:
+        declared = {name: limits for name, limits in ranges.items() if name in names}
+        self._monitor = DenseEagerMonitor(boolean(formula), SECONDS, ranges=declared, backend=self.backend)
+
+    @staticmethod
+    def _ticks(runs: list[VerdictRun]) -> list[VerdictRun]:
+        return [
+            VerdictRun(int(each.begin), int(each.end), each.satisfied, int(each.decided_at)) for each in runs
+        ]
+
+    def update(self, t: int, **values: Any) -> list[VerdictRun]:
+        return self._ticks(self._monitor.update(t, **values))
+
+    def finish(self) -> list[VerdictRun]:
+        return self._ticks(self._monitor.finish())
+
+
 class _KeptByPython(_Kept):
     backend = "python"
 
@@ -210,7 +282,17 @@ class _SettledByPython(_Settled):
     backend = "python"
 
 
-ENGINE = Implementation("engine", _Kept, _Settled)
-PYTHON = Implementation("Python back end", _KeptByPython, _SettledByPython)
+class _DenseKeptByPython(_DenseKept):
+    backend = "python"
+
+
+class _DenseSettledByPython(_DenseSettled):
+    backend = "python"
+
+
+ENGINE = Implementation("engine", _Kept, _Settled, _DenseKept, _DenseSettled)
+PYTHON = Implementation(
+    "Python back end", _KeptByPython, _SettledByPython, _DenseKeptByPython, _DenseSettledByPython
+)
 
 IMPLEMENTATIONS = [DEFINITION, ENGINE, PYTHON]

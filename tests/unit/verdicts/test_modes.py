@@ -20,11 +20,6 @@ import rtamt
             {"lateness": 2},
             "lateness= belongs to verdict='interval', and this is verdict='delayed'",
         ),
-        (
-            "x",
-            {"verdict": "eager", "time": "dense"},
-            "verdict='eager' needs discrete time; use it, or verdict='delayed'",
-        ),
         ("x", {"verdict": "interval", "at": "end"}, "at is 'end'; choose from start, every"),
         (
             "x",

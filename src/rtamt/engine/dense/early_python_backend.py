@@ -1,0 +1,256 @@
+"""The definition of bounds and early verdicts behind the interface of the core's ``DenseEarlyMonitor``.
+
+Every question is answered from all samples that came, so that it is slow, and needs memory for the whole trace.
+Times are ticks; runs are half-open, from ``begin`` up to and without ``end``.
+"""
+
+from __future__ import annotations
+
+import pickle
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, TypeAlias
+
+from rtamt.compiler.early import FOREVER, NEVER
+from rtamt.engine.backend import Refused
+from rtamt.engine.dense.runs import clipped, compared, merged, without
+from rtamt.reference.dense_bounds import DenseKnowledge, StepBounds, bounds, least
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+    from fractions import Fraction
+
+    from rtamt.engine.dense.runs import Decided, Pair, Run
+    from rtamt.language.formula import Formula
+
+#: The minimum of formulas, each over the trace of some variables.
+Output: TypeAlias = "Sequence[tuple[Formula, tuple[str, ...]]]"
+
+
+@dataclass(frozen=True, slots=True)
+class _Came:
+    """All that came: of each input the bounds of its samples by tick, how many it had, and the newest tick of any."""
+
+    known: tuple[Mapping[int, Pair], ...]
+    counts: tuple[int, ...]
+    newest: int = NEVER
+    closed: int = NEVER
+    finished: bool = False
+
+    def after(self, tick: int, values: Sequence[tuple[int, float, float]]) -> _Came:
+        known, counts = list(self.known), list(self.counts)
+        for number, low, high in values:
+            known[number] = {**known[number], tick: (low, high)}
+            counts[number] += 1
+        newest = max(self.newest, tick) if values else self.newest
+        return replace(self, known=tuple(known), counts=tuple(counts), newest=newest)
+
+    def closed_up_to(self, tick: int) -> _Came:
+        return replace(self, closed=max(self.closed, tick))
+
+
+@dataclass(frozen=True, slots=True)
+class _Told:
+    """What was reported of an output: its bounds up to the newest sample, or what is decided of it."""
+
+    runs: tuple[Run, ...] = ()
+    decided: tuple[Decided, ...] = ()
+    until: int = NEVER
+    #: What the last call added to them.
+    changed: tuple[Run, ...] = ()
+    reached: tuple[Decided, ...] = ()
+
+
+class PythonDenseEarlyMonitor:
+    """Verdicts (``verdicts``) or bounds of some outputs, the first of which is that of the start.
+
+    ``hidden``: how many outputs are asked for at the start alone. ``lateness``: in ticks, by how much samples may come
+    late after the newest sample of any input; None where those of each input come in order.
+    """
+
+    def __init__(
+        self,
+        outputs: Sequence[Output],
+        hidden: int,
+        ranges: Sequence[Pair],
+        names: Sequence[str],
+        tick: Fraction,
+        lateness: int | None,
+        verdicts: bool,
+    ) -> None:
+        self._start, self._outputs = outputs[0], tuple(outputs[hidden:])
+        self._ranges = dict(zip(names, ranges, strict=True))
+        self._names = tuple(names)
+        self._tick, self._lateness, self._decides = tick, lateness, verdicts
+        self._came = _Came(({},) * len(self._names), (0,) * len(self._names))
+        self._told = (_Told(),) * len(self._outputs)
+        self._found: list[StepBounds | None] | None = None  # of the outputs, for all that came
+
+    # ---- samples ---------------------------------------------------------------------------------
+
+    def learn(self, tick: int, values: Sequence[tuple[int, float, float]], after: int) -> None:
+        """Take samples of some inputs, (input, lower, upper), at a tick; ``after``: how many the caller knows of.
+
+        Until every input has a sample, and earlier ones can no longer come, the trace has not started.
+        """
+        if after != self.samples or self.finished or tick <= self.closed:
+            raise Refused("order")
+        lasts = self.last_times
+        if self._lateness is None and any(tick <= lasts[number] for number, _, _ in values):
+            raise Refused("order")
+        came = self._came.after(tick, values)
+        if self._lateness is not None and values:
+            came = came.closed_up_to(came.newest - self._lateness - 1)
+        self._take(came, tick)
+
+    def watermark(self, tick: int) -> None:
+        """Nothing at or before a tick will come."""
+        self._take(self._came.closed_up_to(tick), tick)
+
+    def finish(self) -> None:
+        """End the trace: every input holds its last value for ever. Each has a sample."""
+        self._take(replace(self._came, finished=True), self.newest)
+
+    def _take(self, came: _Came, now: int) -> None:
+        """Go on with all that came; an operation without a value leaves everything as it was."""
+        found = [self._bounds(output, came) for output in self._outputs]
+        look = self._verdicts if self._decides else self._changes
+        self._told = tuple(
+            told if each is None else look(told, each, came, now)
+            for told, each in zip(self._told, found, strict=True)
+        )
+        self._came, self._found = came, found
+
+    def _knowledge(self, came: _Came) -> DenseKnowledge:
+        samples, closed = {}, {}
+        for name, known in zip(self._names, came.known, strict=True):
+            ticks = sorted(known)
+            samples[name] = ticks, [known[t][0] for t in ticks], [known[t][1] for t in ticks]
+            ordered = ticks[-1:] if self._lateness is None else []
+            closed[name] = max([came.closed, *ordered])
+        return DenseKnowledge(samples, self._ranges, came.finished, closed)
+
+    def _bounds(self, output: Output, came: _Came) -> StepBounds | None:
+        """Return the bounds of an output; None while the trace has not started."""
+        knowledge = self._knowledge(came)
+        parts = [(formula, knowledge.of(names)) for formula, names in output]
+        if any(known.start is None for _, known in parts):
+            return None
+        return least([bounds(formula, known, self._tick) for formula, known in parts])
+
+    def _now(self, output: int) -> StepBounds | None:
+        if self._found is None:
+            self._found = [self._bounds(each, self._came) for each in self._outputs]
+        return self._found[output]
+
+    def _verdicts(self, told: _Told, found: StepBounds, came: _Came, now: int) -> _Told:
+        newest = came.newest
+        signs = [(begin, end, low > 0, now) for begin, end, low, high in _runs(found) if low > 0 or high < 0]
+        fresh = list(without(signs, told.decided))
+        reached = [
+            *clipped(fresh, NEVER, newest + 1),
+            *clipped(told.decided, told.until + 1, newest + 1),
+        ]
+        decided = merged(sorted([*told.decided, *fresh]))
+        return _Told(decided=decided, until=newest, reached=merged(sorted(reached)))
+
+    def _changes(self, told: _Told, found: StepBounds, came: _Came, now: int) -> _Told:  # noqa: ARG002
+        newest = came.newest
+        runs = tuple(clipped(_runs(found), NEVER, newest + 1))
+        changed = ((begin, end, *now) for begin, end, was, now in compared(told.runs, runs) if was != now)
+        return _Told(runs=runs, until=newest, changed=merged(changed))
+
+    # ---- answers ---------------------------------------------------------------------------------
+
+    @property
+    def samples(self) -> int:
+        """How many samples of any input came."""
+        return sum(self._came.counts)
+
+    @property
+    def counts(self) -> tuple[int, ...]:
+        """The same of each input."""
+        return self._came.counts
+
+    @property
+    def last_times(self) -> tuple[int, ...]:
+        """The tick of the newest sample of each input, NEVER while there is none."""
+        return tuple(max(known, default=NEVER) for known in self._came.known)
+
+    @property
+    def newest(self) -> int:
+        """The tick of the newest sample of any input, NEVER while there is none."""
+        return self._came.newest
+
+    @property
+    def closed(self) -> int:
+        """The last tick at or before which no sample will come, NEVER while there is none."""
+        return self._came.closed
+
+    @property
+    def complete(self) -> int:
+        """The tick up to which all inputs are as well known as they will ever be, NEVER before the trace starts."""
+        knowledge = self._knowledge(self._came)
+        return NEVER if knowledge.start is None else knowledge.complete
+
+    def place(self, tick: int) -> int:
+        """The position of a time, which is the tick itself."""
+        return tick
+
+    @property
+    def finished(self) -> bool:
+        """Whether the trace has ended."""
+        return self._came.finished
+
+    @property
+    def state_bytes(self) -> int:
+        """Bytes of the samples."""
+        return 24 * sum(map(len, self._came.known))
+
+    def verdicts(self, output: int) -> list[Decided]:
+        """Runs (begin, end, satisfied, decided at) of an output that the last call decided or reached."""
+        return list(self._told[output].reached)
+
+    def changes(self, output: int) -> list[Run]:
+        """Runs (begin, end, lower, upper) of an output that the last call changed, up to the newest sample."""
+        return list(self._told[output].changed)
+
+    def runs(self, output: int) -> list[Run]:
+        """All runs of an output up to the newest sample that are held, as they are now."""
+        return list(self._told[output].runs)
+
+    def bounds(self, output: int, tick: int) -> Pair | None:
+        """The bounds of an output at a tick, None where the trace has not started or they are forgotten."""
+        found = self._now(output)
+        return None if found is None or tick < found.times[0] else found.at(tick)
+
+    def held(self, output: int) -> int | None:
+        """The first tick whose bounds are held; None before the trace has started."""
+        found = self._now(output)
+        return None if found is None else found.times[0]
+
+    def origin(self) -> Pair:
+        """The bounds at the start of the trace."""
+        found = self._bounds(self._start, self._came)
+        if found is not None:
+            return found.at(found.times[0])
+        unseen = DenseKnowledge(dict.fromkeys(self._names, ((), (), ())), self._ranges)
+        parts = [bounds(f, unseen.of(names), self._tick).at(0) for f, names in self._start]
+        return min(low for low, _ in parts), max(high for _, high in parts)
+
+    def known(self, number: int, tick: int) -> Pair:
+        """What is known of an input at the tick of a sample."""
+        return self._came.known[number].get(tick, self._ranges[self._names[number]])
+
+    def state(self) -> bytes:
+        """What the samples so far have left behind."""
+        return pickle.dumps((self._came, self._told))
+
+    def restore(self, state: bytes) -> None:
+        """Go on as the monitor of this state would, which was made like this one."""
+        self._came, self._told = pickle.loads(state)  # noqa: S301 - its own
+        self._found = None
+
+
+def _runs(found: StepBounds) -> list[Run]:
+    ends = [*found.times[1:], FOREVER]
+    return list(zip(found.times, ends, found.lower, found.upper, strict=True))

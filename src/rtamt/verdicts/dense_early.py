@@ -1,0 +1,217 @@
+"""Verdicts before the horizon in dense time, and what they share with bounds there."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+
+from rtamt.engine.backend import Session
+from rtamt.engine.dense.early_python_backend import PythonDenseEarlyMonitor
+from rtamt.engine.dense.groups import own_variables
+from rtamt.engine.gate import alone, in_use
+from rtamt.engine.native import EarlyMonitorBase
+from rtamt.errors import TraceError
+from rtamt.language.undefined_value import undefined
+from rtamt.language.units import check_unit
+from rtamt.rewrite.desugar import written
+from rtamt.signals import arrays, dense_arrays
+from rtamt.signals.outcomes import VerdictRun
+from rtamt.signals.ticks import TimeScale
+from rtamt.verdicts.early import EarlyMonitor
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping, Sequence
+
+    from rtamt.engine.dense.early_python_backend import Output
+    from rtamt.language.formula import Formula
+    from rtamt.signals.domain_interface import TimeDomain
+
+
+class DenseDefinition(Session):
+    """Outputs that are evaluated by definition; see ``PythonDenseEarlyMonitor`` for the other arguments."""
+
+    def __init__(self, fingerprint: bytes, *settings: Any) -> None:
+        self._fingerprint = fingerprint
+        self._settings = settings
+
+    def open(self) -> PythonDenseEarlyMonitor:
+        """See :class:`Session`."""
+        return PythonDenseEarlyMonitor(*self._settings)
+
+    @property
+    def fingerprint(self) -> bytes:
+        """See :class:`Session`."""
+        return self._fingerprint
+
+
+class DenseEarlyMonitor(EarlyMonitor):
+    """What both monitors of dense time share: samples in ticks, and the caller's times. Not instantiated by users."""
+
+    _base = EarlyMonitorBase
+
+    def __init__(
+        self,
+        formula: Formula,
+        domain: TimeDomain,
+        *,
+        unit: str | None = None,
+        requirements: Sequence[Formula] = (),
+        **settings: Any,
+    ) -> None:
+        # ``requirements``: the conjuncts of the formula, each with its own trace.
+        self._unit = None if unit is None else check_unit(unit)
+        self._requirements = tuple(requirements) or (formula,)
+        super().__init__(formula, domain, **settings)
+        domain.check_inputs(self.input_names)
+
+    def _prepare(self) -> None:
+        """Open the first monitor of the back end."""
+        self._session = DenseDefinition(
+            self._graph.fingerprint(),
+            [self._output_with_names(formula) for formula in self._formulas],
+            self._hidden,
+            self._known_ranges(),
+            self.input_names,
+            self._step,
+            self._late,
+            self._verdict is not None,
+        )
+        self._connect(self._session.open())
+
+    def _output_with_names(self, formula: Formula) -> Output:
+        """Return a formula with the variables of its trace; the result as its requirements, each with its own."""
+        if formula is self._formulas[0]:
+            return [(each, own_variables(each, self.input_names)) for each in self._requirements]
+        names = own_variables(formula, ()) if formula in self._requirements else self.input_names
+        return [(formula, names or self.input_names)]
+
+    def _forget(self) -> None:
+        super()._forget()
+        self._scale: TimeScale | None = None
+
+    def _no_value(self, error: Any) -> Exception:
+        """Name the sub-formula and the instant of a value that does not exist."""
+        formula = written(self._graph.origins[error.args[0]], self._formulas)
+        return undefined(formula, f"time {self._shown(error.args[1])}")
+
+    # ---- times -----------------------------------------------------------------------------------
+
+    def _scale_of(self, time: Any) -> TimeScale:
+        """Return the time scale after this time."""
+        if self._scale is None:
+            return TimeScale.of(self._step, [[time]], self._unit)
+        return self._scale.widened([[time]])
+
+    def _shown(self, tick: int) -> str:
+        scale = self._scale or TimeScale.of(self._step, [], self._unit)
+        return scale.show(tick)
+
+    def _times(self, ticks: Sequence[int]) -> list[Any]:
+        scale = self._scale or TimeScale.of(self._step, [], self._unit)
+        times = scale.times(np.array(ticks, np.int64))
+        return list(times) if times.dtype.kind in "mM" else times.tolist()
+
+    # ---- samples ---------------------------------------------------------------------------------
+
+    def _lessons(self, time: Any, values: Mapping[str, Any]) -> tuple[TimeScale, int, dict[str, Any]]:
+        """Return a checked sample: the time scale after it, its tick, and what is known of some variables."""
+        flat = self._read_by_formula(values)
+        if self._finished:
+            raise self._is_finished()
+        for name in flat:
+            if name not in self.input_names:
+                raise arrays.unknown_variable(name, self.input_names)
+        counts = dict(zip(self.input_names, self._backend.counts, strict=True))
+        scale = self._scale_of(time)
+        named = next(iter(flat), arrays.TIME)
+        tick = int(scale.ticks([time], named, counts.get(named, 0))[0])
+        moment = f"time {scale.show(tick)}"
+        return scale, tick, {name: self._known_of(name, flat[name], counts[name], moment) for name in flat}
+
+    def _check_in_order(self, tick: int, scale: TimeScale, names: Iterable[str]) -> None:
+        """Raise the error for a sample that is not later than the last one of its variable."""
+        counts, lasts = self._backend.counts, self._backend.last_times
+        for name in names:
+            number = self.input_names.index(name)
+            if lasts[number] is not None and tick <= lasts[number]:
+                raise dense_arrays.not_increasing(name, counts[number], tick, lasts[number], scale)
+
+    def _require_samples(self) -> None:
+        for name, count in zip(self.input_names, self._backend.counts, strict=True):
+            if not count:
+                raise TraceError(f"'{name}' has no samples; provide one before finish()", variable=name)
+
+    def _row_of(self, known: Mapping[str, Any]) -> list[tuple[int, float, float]]:
+        """Return samples as the back end takes them; of a missing one the range is known."""
+        ranges = self._known_ranges()
+        numbers = {name: self.input_names.index(name) for name in known}
+        return [(i, *(known[name] or ranges[i])) for name, i in numbers.items()]
+
+
+class DenseEagerMonitor(DenseEarlyMonitor, EarlyMonitorBase):
+    """Reports whether a formula holds at each instant, each once, as soon as no later sample can change it.
+
+    Built by ``Specification.monitor(verdict="eager", time="dense")``.
+
+    >>> import rtamt
+    >>> monitor = rtamt.parse("always[0:9](x >= 3)").monitor(verdict="eager", time="dense")
+    >>> monitor.update(0.5, x=4), monitor.update(1.5, x=2)
+    ([], [VerdictRun(begin=0.5, end=1.500000001, satisfied=False, decided_at=1.5)])
+    """
+
+    _remembered: ClassVar[tuple[str, ...]] = ("_finished", "_scale")
+    _verdict = VerdictRun
+
+    def __init__(self, formula: Formula, domain: TimeDomain, **settings: Any) -> None:
+        super().__init__(formula, domain, **settings)
+        self._forget()
+        self._prepare()
+
+    if TYPE_CHECKING:  # by the base
+
+        def update(self, time: Any, /, **values: Any) -> list[VerdictRun]:
+            """Take the values of any variables at one instant; return the runs of instants that became settled.
+
+            ``time``: seconds, numbers in ``time_unit=``, or a datetime. A value is a number, bounds
+            ``(lower, upper)``, or None if it is missing from here on.
+
+            Raises :class:`TraceError` for wrong data and :class:`EvaluationError` where an operation has no
+            value; the monitor is then as it was.
+            """
+
+    def _update_carefully(self, time: Any, /, **values: Any) -> list[VerdictRun]:
+        """Take an instant that the core did not take, or find out what is wrong with it."""
+        with self._gate:
+            scale, tick, known = self._lessons(time, values)
+            self._check_in_order(tick, scale, known)
+            try:
+                self._backend.learn(tick, self._row_of(known), self.samples)
+            except self._refused:
+                raise in_use() from None
+            except self._undefined as error:
+                raise self._no_value(error) from None
+            self._scale = scale
+            return self._news(0)
+
+    @alone
+    def finish(self) -> list[VerdictRun]:
+        """Say that no more samples will come, so that each variable holds its value; return what was still open."""
+        if self._finished:
+            return []
+        self._require_samples()
+        self._backend.finish()
+        self._finished = True
+        return self._news(0)
+
+    def __getitem__(self, name: str | Formula) -> list[VerdictRun]:
+        """Return the verdicts of a formula that is watched which the last call settled."""
+        return self._news(self._output(name))
+
+    def _news(self, output: int) -> list[VerdictRun]:
+        runs = self._backend.verdicts(output)
+        begins, ends, decided = (self._times([run[i] for run in runs]) for i in (0, 1, 3))
+        return [
+            VerdictRun(begin, end, run[2], at)
+            for begin, end, at, run in zip(begins, ends, decided, runs, strict=True)
+        ]

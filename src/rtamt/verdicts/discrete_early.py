@@ -1,0 +1,213 @@
+"""Verdicts and bounds before the horizon in discrete time: samples a period apart, and the caller's times."""
+
+from __future__ import annotations
+
+from math import isfinite
+from typing import TYPE_CHECKING, Any, ClassVar
+
+from rtamt.engine.backend import Session
+from rtamt.engine.discrete.apart import Apart
+from rtamt.engine.discrete.early_python_backend import PythonEarlyMonitor
+from rtamt.engine.native import EarlyMonitorBase, core
+from rtamt.errors import TraceError, shown
+from rtamt.language.undefined_value import at_sample, undefined
+from rtamt.language.units import check_unit
+from rtamt.rewrite.desugar import written
+from rtamt.signals import arrays
+from rtamt.signals.regular import irregular, not_increasing
+from rtamt.verdicts.caller_clock import CallerClock, Stamp
+from rtamt.verdicts.early import EarlyMonitor
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+    from fractions import Fraction
+
+    from rtamt.compiler.early import Graph
+    from rtamt.language.formula import Formula
+    from rtamt.signals.domain_interface import TimeDomain
+
+
+class GraphSession(Session):
+    """A graph that monitors of the core run; see ``_core.EarlyMonitor`` for the other arguments."""
+
+    def __init__(self, graph: Graph, *settings: Any) -> None:
+        self._graph = graph
+        self._settings = settings
+        self.refused = core().Refused
+        self.undefined = (core().Undefined,)
+
+    def open(self) -> Any:
+        """See :class:`Session`."""
+        return core().EarlyMonitor(*self._settings)
+
+    @property
+    def fingerprint(self) -> bytes:
+        """See :class:`Session`."""
+        return self._graph.fingerprint()
+
+
+class GraphDefinition(Session):
+    """Formulas that are evaluated by definition; see ``PythonEarlyMonitor`` for the other arguments."""
+
+    def __init__(self, graph: Graph, *settings: Any) -> None:
+        self._graph = graph
+        self._settings = settings
+
+    def open(self) -> PythonEarlyMonitor:
+        """See :class:`Session`."""
+        return PythonEarlyMonitor(*self._settings)
+
+    @property
+    def fingerprint(self) -> bytes:
+        """See :class:`Session`."""
+        return self._graph.fingerprint()
+
+
+class DiscreteEarlyMonitor(EarlyMonitor):
+    """What the monitors of discrete time share. Not instantiated by users."""
+
+    _clock: CallerClock
+
+    _remembered: ClassVar[tuple[str, ...]] = ("_finished", "_clock")
+    _base = EarlyMonitorBase
+
+    def __init__(
+        self,
+        formula: Formula,
+        domain: TimeDomain,
+        *,
+        unit: str | None = None,
+        requirements: Sequence[Formula] = (),  # noqa: ARG002 - in discrete time they start together
+        **settings: Any,
+    ) -> None:
+        self._unit = None if unit is None else check_unit(unit)
+        self._tolerance = domain.tolerance
+        super().__init__(formula, domain, **settings)
+
+    def _prepare(self) -> None:
+        """Open the first monitor of the back end."""
+        if self._backend_name == "python":
+            self._session = GraphDefinition(
+                self._graph,
+                self._formulas,
+                self._hidden,
+                self._known_ranges(),
+                self.input_names,
+                self._step,
+                self._tolerance,
+                self._late,
+                self._verdict,
+            )
+        else:
+            self._session = self._compiled()
+        self._connect(self._session.open())
+
+    def _compiled(self) -> GraphSession:
+        return GraphSession(
+            self._graph,
+            self._graph.nodes,
+            self._outputs,
+            self._graph.items,
+            self._known_ranges(),
+            list(self.input_names),
+            self._unread,
+            float(self._step),
+            self._tolerance,
+            self._late,
+            self._verdict,
+            self._replays,
+        )
+
+    def _connect(self, backend: Any) -> None:
+        super()._connect(backend if self._clock.plain else Apart(backend))
+
+    def _resume(self, state: tuple[Any, ...]) -> None:
+        super()._resume(state)
+        self._clock = self._clock.copied()
+
+    def _forget(self) -> None:
+        super()._forget()
+        self._clock = CallerClock(self._unit, self._step)
+
+    @property
+    def period(self) -> Fraction:
+        """Seconds from one sample to the next."""
+        return self._step
+
+    # ---- samples ---------------------------------------------------------------------------------
+
+    @property
+    def _count(self) -> int:
+        """How many samples came, also if they are not in the back end yet."""
+        return self.samples
+
+    def _stamp(self, time: Any) -> Stamp:
+        """Return a time in seconds and as it was given; raise :class:`TraceError` for what is none."""
+        stamp = self._clock.read(time, self._count)
+        if stamp is None:
+            return Stamp(self._number(time))
+        return Stamp(self._number(stamp.seconds), stamp.original)
+
+    def _seconds(self, time: Any) -> float:
+        return self._stamp(time).seconds
+
+    def _remember(self, stamp: Stamp, *, begun: bool = True) -> None:
+        """Remember the time of a sample that the back end has taken, if it was not given in seconds."""
+        if stamp.original is None:
+            return
+        plain = self._clock.plain
+        self._clock.take(stamp, begun=begun)
+        if plain != self._clock.plain:
+            self._connect(self._backend)
+        if self._clock.full and begun:
+            self._clock.forget(self._backend.earliest)
+
+    def _number(self, time: Any) -> float:
+        number = arrays.number_of(time)
+        if number is None:
+            raise TraceError(
+                f"time is {shown(time)} at sample {self.samples}, expected a number of seconds",
+                variable=arrays.TIME,
+            )
+        if not isfinite(number):
+            raise TraceError(f"time is {number} at sample {self.samples}: give a finite number of seconds")
+        return number
+
+    def _bounds_of(
+        self, values: Mapping[str, Any], index: int, time: float
+    ) -> dict[str, tuple[float, float] | None]:
+        """Return what a sample makes known, None where it is missing; raise :class:`TraceError` for wrong data."""
+        read: dict[str, tuple[float, float] | None] = {}
+        for name in values:
+            if name not in self.input_names:
+                raise arrays.unknown_variable(name, self.input_names)
+        for name in self.input_names:
+            if name not in values:
+                if self._late is None:
+                    raise arrays.missing_variable(name, tuple(values))
+                continue
+            read[name] = self._known_of(name, values[name], index, f"time {time:.15g} s")
+        return read
+
+    def _row(self, known: Mapping[str, tuple[float, float] | None]) -> tuple[list[float], list[float]]:
+        """Return the lower and the upper bounds of every variable at a sample."""
+        ranges = zip(self.input_names, self._known_ranges(), strict=True)
+        row = [known.get(name) or bounds for name, bounds in ranges]
+        return [low for low, _ in row], [high for _, high in row]
+
+    def _check_order(self, time: float) -> None:
+        """Raise the error for a time at which no sample of an ordered trace can come."""
+        backend = self._backend
+        if backend.newest < 0:
+            return
+        last = backend.time(backend.newest)
+        if time <= last:
+            raise not_increasing(self.samples, time, last)
+        place = backend.place(time)
+        if place is None or (place != backend.newest + 1 and place - 1 > backend.closed):
+            raise irregular(self.samples, time, last, self._step, self._tolerance)
+
+    def _no_value(self, error: Any) -> Exception:
+        """Name the sub-formula and the instant of a value that does not exist."""
+        formula = written(self._graph.origins[error.args[0]], self._formulas)
+        return undefined(formula, at_sample(error.args[1], error.time))

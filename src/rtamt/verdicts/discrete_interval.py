@@ -1,0 +1,206 @@
+"""Bounds of the robustness in discrete time: missing and late samples, and the end, which cuts windows."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import Any, ClassVar
+
+from rtamt.compiler.early import FOREVER
+from rtamt.engine.gate import alone, in_use
+from rtamt.engine.native import EarlyMonitorBase
+from rtamt.errors import TraceError, UsageError
+from rtamt.language.units import format_duration
+from rtamt.signals import arrays
+from rtamt.signals.outcomes import Interval
+from rtamt.signals.regular import irregular
+from rtamt.verdicts.discrete_early import DiscreteEarlyMonitor
+from rtamt.verdicts.interval import Change, IntervalMonitor
+
+
+class DiscreteIntervalMonitor(DiscreteEarlyMonitor, IntervalMonitor, EarlyMonitorBase):
+    """Bounds of the robustness at samples, built by ``Specification.monitor(verdict="interval")``."""
+
+    _remembered: ClassVar[tuple[str, ...]] = (
+        "_finished",
+        "_clock",
+        "_early",
+        "_rest",
+        "_open_at_end",
+        "_at_end",
+        "_events",
+        "_snapshots",
+        "_retracted",
+        "_mark",
+    )
+
+    def _forget(self) -> None:
+        super()._forget()
+        self._rest: tuple[Any, ...] = ()
+        #: Of each output the samples whose bounds were open when the trace ended.
+        self._open_at_end: tuple[tuple[int, ...], ...] = ()
+        # Samples that came before it is known where the trace starts.
+        self._early: tuple[Any, ...] = ()
+        self._at_end: Interval | None = None
+
+    # ---- samples ---------------------------------------------------------------------------------
+
+    @property
+    def _count(self) -> int:
+        return self.samples + len(self._early)
+
+    def _take(self, time: Any, values: dict[str, Any]) -> None:
+        flat = self._read_by_formula(values)
+        if self._finished:
+            raise self._is_finished()
+        index = self.samples
+        stamp = self._stamp(time)
+        seconds = stamp.seconds
+        known = self._bounds_of(flat, index, seconds)
+        begun = self._late is None or self._backend.newest >= 0
+        try:
+            if self._late is None:
+                self._check_order(seconds)
+                self._backend.take(seconds, *self._row(known), index)
+            elif begun:
+                self._check_late(seconds)
+                self._learn(seconds, known)
+            else:
+                self._begin(seconds, known)
+        except self._refused:
+            raise in_use() from None
+        except self._undefined as error:
+            raise self._no_value(error) from None
+        self._remember(stamp, begun=begun)
+
+    def _begin(self, time: float, known: dict[str, tuple[float, float] | None]) -> None:
+        """Keep the first samples until no earlier one can come: only then it is known where the trace starts."""
+        self._early = (*self._early, (time, known))
+        times = [time for time, _ in self._early]
+        assert self._late is not None
+        if round((max(times) - min(times)) / float(self._step)) > self._late:
+            self._start()
+
+    def _start(self) -> None:
+        early = sorted(self._early, key=lambda sample: sample[0])
+        kept = (self._events, self._snapshots)
+        try:
+            for time, known in early:
+                if self._backend.newest >= 0:
+                    self._check_late(time)
+                self._learn(time, known)
+        except BaseException as error:
+            self._connect(self._session.open())
+            self._early, (self._events, self._snapshots) = self._early[:-1], kept
+            if isinstance(error, self._undefined):
+                raise self._no_value(error) from None
+            raise
+        self._early = ()
+
+    def _check_late(self, time: float) -> None:
+        backend = self._backend
+        if backend.newest < 0:
+            return
+        place = backend.place(time)
+        last = backend.time(backend.newest)
+        if place is None:
+            raise irregular(self.samples, time, last, self._step, self._tolerance)
+        if place <= backend.closed:
+            raise TraceError(
+                f"sample {self.samples} is of time {time:.15g} s, later than the lateness of "
+                f"{format_duration(self._lateness)} allows: what was up to {backend.time(backend.closed):.15g} s "
+                f"is final; leave it out, or allow for more lateness",
+                variable=arrays.TIME,
+                index=self.samples,
+            )
+
+    def _moment(self, time: float) -> str:
+        """Return a time as the back end takes it for a message."""
+        return f"time {time:.15g} s"
+
+    def _differences(self, before: Any, after: Any) -> tuple[Change, ...]:
+        if self._hidden:
+            return ()
+        changes: list[Change] = []
+        for sample in range(max(before.held(0), after.held(0)), after.newest + 1):
+            was, now = before.bounds(0, sample), after.bounds(0, sample)
+            if was != now:
+                retracted = not (was[0] <= now[0] and now[1] <= was[1])
+                changes.append(self._change(sample, sample, *now, retracted=retracted))
+        return tuple(changes)
+
+    def _mark_at(self, time: Any, *, late: bool = False) -> None:
+        if self._finished:
+            raise self._is_finished()
+        self._watermark(self._seconds(time) - (float(self._lateness) if late else 0))
+
+    def _watermark(self, time: float) -> None:
+        if self._early and time >= min(then for then, _ in self._early):
+            self._start()
+        super()._watermark(time)
+
+    # ---- answers ---------------------------------------------------------------------------------
+
+    def interval(self, time: Any = None) -> Interval:
+        """Return the bounds at the start of the trace, or at a sample that is not long final (``at="every"``)."""
+        if time is None:
+            return Interval(*self._backend.origin()) if self._at_end is None else self._at_end
+        if self.at == "start":
+            raise self._start_only()
+        backend = self._backend
+        stamp = self._seconds(time)
+        sample = backend.place(stamp) if backend.newest >= 0 else round(Fraction(stamp) / self._step)
+        if sample is None or sample < 0:
+            raise UsageError(f"there is no sample at {stamp:.15g} s")
+        if self._rest:
+            first, values = self._rest[0]
+            found = values[sample - first] if first <= sample < first + len(values) else None
+        else:
+            found = backend.bounds(0, sample)
+        if found is None:
+            raise UsageError(
+                f"the bounds at {stamp:.15g} s are final and no longer kept; read them from changes() when they are"
+            )
+        return Interval(*found)
+
+    def _changes(self, output: int) -> list[Change]:
+        if self._rest:
+            first, values = self._rest[output]
+            return [self._change(t, t, *values[t - first], output=output) for t in self._open_at_end[output]]
+        return super()._changes(output)
+
+    def _change(
+        self, first: int, last: int, lower: float, upper: float, *, output: int = 0, retracted: bool = False
+    ) -> Change:
+        backend = self._backend
+        lag = max(0, self._graph.horizon(self._outputs[output]))
+        final = self._finished or lower == upper or (lag < FOREVER and last + lag <= backend.closed)
+        begin, end = (self._clock.time(backend.time(t)) for t in (first, last))
+        return Change(begin, end, Interval(lower, upper), final, retracted)
+
+    @alone
+    def finish(self) -> list[Change]:
+        """Say that no more samples will come; return the bounds that were still open, which are final now."""
+        if not self._finished:
+            if self._early:
+                self._start()
+            backend = self._backend
+            before = [
+                {t: backend.bounds(output, t) for t in range(backend.held(output), backend.newest + 1)}
+                for output in range(len(self._outputs))
+            ]
+            rest, at_end = backend.finish()
+            self._at_end = None if at_end is None else Interval(*at_end)
+            self._rest = tuple(rest)
+            # In one class of formulas the end changes bounds that had met.
+            self._open_at_end = tuple(
+                tuple(
+                    t
+                    for t, ends in each.items()
+                    if t >= first and (ends[0] != ends[1] or ends != values[t - first])
+                )
+                for each, (first, values) in zip(before, rest, strict=True)
+            )
+            self._finished = True
+        if self.at == "start":
+            return []
+        return self._changes(0)
