@@ -12,11 +12,12 @@ from typing import TYPE_CHECKING, Any
 
 from rtamt.engine.offline import Evaluators
 from rtamt.errors import StlError, UsageError, placed, shown
-from rtamt.results import Result
+from rtamt.results import Result, requirements_of
 from rtamt.signals.arrays import is_number
+from rtamt.verdicts.offline import judge
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Hashable, Iterator, Sequence
+    from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
 
     from typing_extensions import Unpack
 
@@ -147,7 +148,7 @@ def evaluate_all(
     queries = []
     for number, spec in enumerate(specs):
         with _place(number):
-            queries.append(spec.query(tolerance=tolerance, **reading))
+            queries.append(spec._query(tolerance=tolerance, **reading))
     # One program serves all queries that read the recording in the same way.
     alike: dict[Hashable, list[int]] = {}
     for number, (spec, query) in enumerate(zip(specs, queries, strict=True)):
@@ -157,6 +158,18 @@ def evaluate_all(
         asked = {number: (specs[number], queries[number]) for number in numbers}
         results.update(_evaluate_alike(asked, data))
     return [results[number] for number in range(len(specs))]
+
+
+def evaluate_requirements(spec: Specification, data: Any) -> Mapping[str, Result]:
+    """Evaluate each requirement of a specification: robustness and verdicts of all from one program.
+
+    ``data`` and errors as for :meth:`Specification.evaluate`, which computes verdicts when they are asked for.
+    """
+    query = spec._query()
+    recording = spec._with_units(query.record(data, spec.input_names))
+    spec._check(query, recording)
+    outputs = [one._outputs() for one in spec.requirements.values()]
+    return requirements_of(spec, judge(outputs, recording, spec._signals_of), query.semantics)
 
 
 _Asked = dict[int, tuple["Specification", "Query"]]
@@ -173,7 +186,7 @@ def _evaluate_alike(asked: _Asked, data: Any) -> Iterator[tuple[int, Result]]:
                 whole.check(query.formula, query.text)
     for number, (spec, query) in list(asked.items()):
         if len(spec.requirements) > 1 and query.domain.continuous:  # each may start at a different time
-            yield number, spec.result(query, whole.select(spec.input_names))
+            yield number, spec._result(query, whole.select(spec.input_names))
             del asked[number]
     if not asked:
         return
@@ -185,7 +198,7 @@ def _evaluate_alike(asked: _Asked, data: Any) -> Iterator[tuple[int, Result]]:
             spec, query = asked[number]
             yield (
                 number,
-                Result(spec, spec.with_units(whole.select(spec.input_names)), signal, query.semantics),
+                Result(spec, spec._with_units(whole.select(spec.input_names)), signal, query.semantics),
             )
 
 

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from rtamt.explain.report import Explanation
+    from rtamt.language.formula import Formula
     from rtamt.rewrite.semantics import PredicateSemantics
     from rtamt.signals.domain_interface import DomainTrace
     from rtamt.signals.signal import Signal
@@ -86,8 +87,8 @@ class Result:
         if isinstance(self.known, Mapping):
             return self.known
         spec = self.specification
-        outputs = [one.outputs(self.semantics) for one in specs.values()]
-        return requirements_of(spec, judge(outputs, self.trace, spec.signals_of), self.semantics)
+        outputs = [one._outputs(self.semantics) for one in specs.values()]
+        return requirements_of(spec, judge(outputs, self.trace, spec._signals_of), self.semantics)
 
     @property
     def robustness(self) -> float:
@@ -145,8 +146,7 @@ class Result:
     @property
     def _decided(self) -> bool:
         """The verdict at the first instant from partly known samples, if they decide it."""
-        spec = self.specification
-        truth = spec.signal_of(spec.outputs().truth, self.trace)
+        _, truth = signals_of(self)
         assert isinstance(truth, BoundedSignal)
         if truth.lower[0] > 0 or truth.upper[0] < 0:
             return bool(truth.lower[0] > 0)
@@ -163,7 +163,7 @@ class Result:
             return min((each for each in violations if each is not None), default=None)
         if isinstance(self.known, Judged) and self.known.violations:
             return self.known.violations[0]
-        return verdicts.first_violation(spec.outputs().truth, self.trace, spec.signals_of)
+        return verdicts.first_violation(spec._outputs().truth, self.trace, spec._signals_of)
 
     def explain(self, at: Any = None) -> Explanation:
         """Explain why the formula is satisfied or violated: which signals are responsible, and when.
@@ -195,7 +195,7 @@ class Result:
             backend=spec.backend,
             at=at,
             text=spec.text,
-            semantics=lambda predicate: spec.apply_semantics(predicate, self.semantics),
+            semantics=lambda predicate: spec._apply_semantics(predicate, self.semantics),
         )
 
     def plot(
@@ -269,7 +269,7 @@ class Result:
         """
         if len(self.specification.requirements) > 1 and name in self.specification.requirements:
             return self.requirements[name].signal
-        formula = self.specification.named(name)
+        formula = self.specification._named(name)
         names = tuple(self.trace.columns)
         for variable in variables(formula):
             if variable not in self.trace.columns:
@@ -279,8 +279,8 @@ class Result:
                 )
         self.trace.check(formula, name)
         if not is_number(formula):
-            formula = self.specification.apply_semantics(formula, self.semantics)
-        return self.specification.signal_of(formula, self.trace)
+            formula = self.specification._apply_semantics(formula, self.semantics)
+        return self.specification._signals_of((formula,), self.trace)[0]
 
     def _require_one_start(self, what: str) -> None:
         """Raise :class:`UsageError` if requirements have traces that start at different times, or only bounds."""
@@ -309,6 +309,16 @@ def requirements_of(
             for (name, one), each in zip(spec.requirements.items(), judged, strict=True)
         }
     )
+
+
+def signals_of(result: Result, formula: Formula | None = None) -> tuple[Signal, Signal]:
+    """Return the robustness and the truth of a formula over the recording of a result, by default of its own.
+
+    The robustness is that under the semantics of the result; the truth is +inf where the formula holds, else -inf.
+    """
+    spec = result.specification
+    robustness, truth = spec._signals_of(spec._outputs(result.semantics, formula), result.trace)
+    return robustness, truth
 
 
 def first_violation(result: Result) -> Any:

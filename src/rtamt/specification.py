@@ -18,7 +18,7 @@ from rtamt.settings import watched_of
 from rtamt.signals.inexact import Uncertainty, fill_gaps
 from rtamt.specification_text import SpecificationText
 from rtamt.verdicts.modes import DELAYED, mode_of, monitor_of, semantics_in
-from rtamt.verdicts.offline import by_start, judge, judge_apart
+from rtamt.verdicts.offline import by_start, judge_apart
 from rtamt.verdicts.standalone import carried_program
 
 if TYPE_CHECKING:
@@ -109,25 +109,25 @@ class Specification(SpecificationText):
         >>> spec.evaluate({"x": [5, None, 4]}, uncertainty={"x": 0.5}, ranges={"x": (0, 120)}).interval
         Interval(lower=-3.0, upper=1.5)
         """
-        query = self.query(time, period, tolerance, resolution, semantics, time_unit)
-        recording = self.with_units(self._recorded(query, data, uncertainty, ranges))
+        query = self._query(time, period, tolerance, resolution, semantics, time_unit)
+        recording = self._with_units(self._recorded(query, data, uncertainty, ranges))
         self._check(query, recording)
-        return self.result(query, recording)
+        return self._result(query, recording)
 
-    def result(self, query: Query, recording: DomainTrace) -> Result:
+    def _result(self, query: Query, recording: DomainTrace) -> Result:
         """Return the result on a normalised recording; the formula must have been checked."""
         if len(self.requirements) > 1 and recording.domain.continuous:
-            outputs = [one.outputs(query.semantics) for one in self.requirements.values()]
+            outputs = [one._outputs(query.semantics) for one in self.requirements.values()]
             if len(by_start(outputs, recording)) > 1:
                 if recording.bounds:
                     raise UsageError(
                         "the requirements start at different times, and samples are missing or uncertain; "
                         "evaluate each of spec.requirements alone"
                     )
-                signal, judged = judge_apart(outputs, recording, self.signals_of)
+                signal, judged = judge_apart(outputs, recording, self._signals_of)
                 parts = requirements_of(self, judged, query.semantics)
                 return Result(self, recording, signal, query.semantics, parts)
-        return Result(self, recording, self.signal_of(query.formula, recording), query.semantics)
+        return Result(self, recording, self._signals_of((query.formula,), recording)[0], query.semantics)
 
     def _recorded(self, query: Query, data: Any, uncertainty: Any, ranges: Any) -> DomainTrace:
         """Return a recording that may have missing and uncertain samples."""
@@ -145,22 +145,11 @@ class Specification(SpecificationText):
             recording = query.record(filled, self.input_names)
         return declared.applied(recording, missing)
 
-    def judge(self, data: Any) -> Mapping[str, Result]:
-        """Evaluate each requirement over a finished recording: robustness and verdicts of all from one program.
-
-        ``data`` and errors as for :meth:`evaluate`, which computes verdicts when they are asked for.
-        """
-        query = self.query()
-        recording = self.with_units(query.record(data, self.input_names))
-        self._check(query, recording)
-        outputs = [one.outputs() for one in self.requirements.values()]
-        return requirements_of(self, judge(outputs, recording, self.signals_of), query.semantics)
-
-    def with_units(self, recording: DomainTrace) -> DomainTrace:
+    def _with_units(self, recording: DomainTrace) -> DomainTrace:
         """Return a recording with the declared units of the variables whose source names none."""
         return recording.with_units({**self.units, **recording.units}) if self.units else recording
 
-    def query(
+    def _query(
         self,
         time: str | TimeDomain | None = None,
         period: Duration | None = None,
@@ -172,7 +161,7 @@ class Specification(SpecificationText):
         """Return what :meth:`evaluate` asks of a recording; arguments and errors are those of it."""
         if time is period is tolerance is resolution is semantics is time_unit is None:
             return self._own_query
-        return self._query_of(self.domain_for(time, period, tolerance, resolution), semantics, time_unit)
+        return self._query_of(self._domain_for(time, period, tolerance, resolution), semantics, time_unit)
 
     @cached_property
     def _own_query(self) -> Query:
@@ -181,7 +170,7 @@ class Specification(SpecificationText):
     def _query_of(self, domain: TimeDomain, semantics: Semantics | None, time_unit: str | None) -> Query:
         unit = None if time_unit is None else check_unit(time_unit)
         chosen = self._semantics(semantics)
-        formula = self.apply_semantics(self.formula, chosen)
+        formula = self._apply_semantics(self.formula, chosen)
         domain.check(formula, self.text)
         return Query(formula, self.text, domain, chosen, unit)
 
@@ -325,7 +314,7 @@ class Specification(SpecificationText):
         settings: dict[str, Any] = {name: setting for name, setting in given.items() if setting is not None}
         mode = mode_of(verdict, settings)
         asked, semantics = semantics, semantics_in(mode, self._semantics(semantics))
-        formula = self.apply_semantics(self.formula, semantics)
+        formula = self._apply_semantics(self.formula, semantics)
         given_watch = watched_of(watch)
         watched = [self._watched(each, semantics) for each in given_watch]
         factory = partial(
@@ -340,7 +329,7 @@ class Specification(SpecificationText):
             verdict=verdict,
             **settings,
         )
-        domain = self.domain_for(time, period, tolerance, resolution).online
+        domain = self._domain_for(time, period, tolerance, resolution).online
         requirements = [self._watched(name, semantics).formula for name in self.requirements]
         if mode.monitors:
             return monitor_of(mode, domain)(
@@ -348,7 +337,7 @@ class Specification(SpecificationText):
                 domain,
                 text=self.text,
                 backend=self.backend,
-                declared=self.declared,
+                declared=self._declared,
                 watch=watched,
                 factory=factory,
                 unit=time_unit,
@@ -360,7 +349,7 @@ class Specification(SpecificationText):
             domain,
             text=self.text,
             backend=self.backend,
-            declared=self.declared,
+            declared=self._declared,
             watch=watched,
             factory=factory,
             unit=time_unit,
@@ -387,24 +376,20 @@ class Specification(SpecificationText):
         >>> program.lags, len(program.to_bytes())
         ((2, 2), 459)
         """
-        domain = self.domain_for(time, period, None, resolution).online
+        domain = self._domain_for(time, period, None, resolution).online
         chosen = self._semantics(semantics)
         several = self.requirements if len(self.requirements) > 1 else {}
-        parts = {name: one.outputs(chosen) for name, one in several.items()}
+        parts = {name: one._outputs(chosen) for name, one in several.items()}
         return carried_program(
             self.formula,
-            applied=self.apply_semantics(self.formula, chosen),
+            applied=self._apply_semantics(self.formula, chosen),
             parts=parts,
             domain=domain,
             text=self.text,
             name=self.name,
         )
 
-    def signal_of(self, formula: Formula, trace: DomainTrace) -> Signal:
-        """Return the robustness signal of any formula over a normalised recording."""
-        return self.signals_of((formula,), trace)[0]
-
-    def signals_of(self, formulas: tuple[Formula, ...], trace: DomainTrace) -> list[Signal]:
+    def _signals_of(self, formulas: tuple[Formula, ...], trace: DomainTrace) -> list[Signal]:
         """Return the robustness signals of formulas over a normalised recording, all from one program."""
         return self._evaluators(formulas, trace)
 
@@ -430,6 +415,11 @@ class Specification(SpecificationText):
         names = ("domain", "period", "resolution", "unit", "backend", "language", "semantics")
         settings = {name: getattr(self, name) for name in names}
         return _factory, (self.text, given, {**settings, "roles": dict(self.roles)}, self.document.selected)
+
+
+def result_of(spec: Specification, recording: DomainTrace) -> Result:
+    """Return the result of a specification on a normalised recording."""
+    return spec._result(spec._query(), recording)
 
 
 def _factory(

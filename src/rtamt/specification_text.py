@@ -125,7 +125,7 @@ class SpecificationText:
     @property
     def horizon(self) -> float:
         """Seconds after t at which ρ at t is known online; inf if never. The paper's Definition 3."""
-        depth = horizon(self.apply_semantics(self.formula), self.period or Fraction(1))
+        depth = horizon(self._apply_semantics(self.formula), self.period or Fraction(1))
         return float("inf") if depth is None else float(depth)
 
     def pastified(self, period: Duration | None = None) -> Formula:
@@ -140,7 +140,9 @@ class SpecificationText:
         step = self.period if period is None else positive_period(period)
         return pastify(self.formula, step or Fraction(1), self.text, self.unit)
 
-    def apply_semantics(self, formula: Formula, semantics: str | PredicateSemantics | None = None) -> Formula:
+    def _apply_semantics(
+        self, formula: Formula, semantics: str | PredicateSemantics | None = None
+    ) -> Formula:
         """Return the formula whose robustness is the value of ``formula`` under a semantics.
 
         ``semantics``: by default that of the specification; see :func:`rtamt.rewrite.semantics.lower`.
@@ -153,7 +155,7 @@ class SpecificationText:
             applied = self._lowered[formula, chosen] = apply_semantics(formula, chosen, self.roles)
         return applied
 
-    def outputs(
+    def _outputs(
         self, semantics: str | PredicateSemantics | None = None, formula: Formula | None = None
     ) -> Outputs:
         """Return what is computed to judge the requirement: robustness under a semantics, and truth.
@@ -161,16 +163,10 @@ class SpecificationText:
         ``formula``: one that replaces that of the specification, such as its pastified form.
         """
         judged = self.formula if formula is None else formula
-        return outputs_of(judged, self.apply_semantics(judged, semantics))
+        return outputs_of(judged, self._apply_semantics(judged, semantics))
 
-    def named(self, name: str) -> Formula:
-        """Return a named sub-specification or requirement, or the formula of any other text, read in its place.
-
-        >>> import rtamt
-        >>> spec = rtamt.parse("asked = req >= 3; always(asked -> gnt >= 3)")
-        >>> print(spec.named("asked"), "|", spec.named("once asked"))
-        req >= 3 | once(req >= 3)
-        """
+    def _named(self, name: str) -> Formula:
+        """Return a named sub-specification or requirement, or the formula of any other text, read in its place."""
         known = self._known(name)
         if known is not None:
             return known
@@ -184,9 +180,9 @@ class SpecificationText:
         )
 
     def _watched(self, given: str | Formula, semantics: Semantics | None) -> Watched:
-        formula = self.named(given) if isinstance(given, str) else given
+        formula = self._named(given) if isinstance(given, str) else given
         if not is_number(formula):
-            formula = self.apply_semantics(formula, self._semantics(semantics))
+            formula = self._apply_semantics(formula, self._semantics(semantics))
         if not isinstance(given, str):  # its positions may be those of another text
             return Watched(given, formula, None)
         return Watched(given, formula, given if self._known(given) is None else self.text)
@@ -214,11 +210,11 @@ class SpecificationText:
         return MappingProxyType({name: declared[name] for name in self.input_names if name in declared})
 
     @cached_property
-    def declared(self) -> tuple[str, ...]:
+    def _declared(self) -> tuple[str, ...]:
         """The names that the text declares: data may have them, also where the formula reads none of them."""
         return tuple(declaration.name for declaration in self.document.declarations)
 
-    def domain_for(
+    def _domain_for(
         self,
         time: str | TimeDomain | None = None,
         period: Duration | None = None,

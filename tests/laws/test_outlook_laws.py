@@ -20,9 +20,10 @@ def outlook_of(spec, samples=None):
     """Return the outlook of a specification whose period or tick is 1 s."""
     return RobustInterval(
         spec.formula,
-        spec.signals_of,
-        applied=spec.apply_semantics,
-        domain=spec.domain_for(resolution=1).online,
+        semantics=spec.semantics,
+        roles=spec.roles,
+        backend=spec.backend,
+        domain=spec.domain.online,
         samples=samples,
     )
 

@@ -18,6 +18,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 import rtamt
+from rtamt.batch import evaluate_requirements
 from rtamt.cli import main
 from rtamt.errors import EvaluationError, UsageError
 from rtamt.language.grammar import is_number
@@ -72,7 +73,7 @@ def test_evaluate_judge_streams_and_each_requirement_alone(drawn: Any, data: st.
         assert told(parts[name]) == told(whole)
         inside = whole.signal.times
         np.testing.assert_array_equal(value_at(parts[name].signal, inside), whole.signal.values)
-    assert {name: told(part) for name, part in spec.judge(seconds(trace)).items()} == {
+    assert {name: told(part) for name, part in evaluate_requirements(spec, seconds(trace)).items()} == {
         name: told(part) for name, part in parts.items()
     }
     violations = [first_violation(part) for part in parts.values() if not part.satisfied]

@@ -5,6 +5,11 @@ import pytest
 import rtamt
 
 SPEC = rtamt.parse("asked = req >= 3; always[0:1](asked -> gnt >= 3)")
+FORMULAS = {
+    "asked": rtamt.parse("req >= 3").formula,
+    "once[0:1](asked)": rtamt.parse("once[0:1](req >= 3)").formula,
+    "gnt - req": rtamt.parse("gnt - req").formula,
+}
 SAMPLES = [(5.0, 2.0), (1.0, 4.0), (3.5, 3.0)]
 
 
@@ -29,12 +34,12 @@ def outcomes(verdict: str, watched: object, semantics: str) -> list[object]:
     + [("gnt - req", "delayed"), ("gnt - req", "interval")],
 )
 def test_a_formula_is_watched_as_its_text_is(text, verdict, semantics):
-    formula = SPEC.named(text)
+    formula = FORMULAS[text]
     assert outcomes(verdict, formula, semantics) == outcomes(verdict, text, semantics)
 
 
 def test_a_formula_is_watched_in_dense_time_as_its_text_is():
-    formula = SPEC.named("once[0:1](asked)")
+    formula = FORMULAS["once[0:1](asked)"]
     by_formula = SPEC.monitor(time="dense", watch=[formula])
     by_text = SPEC.monitor(time="dense", watch=["once[0:1](asked)"])
     for monitor in (by_formula, by_text):
@@ -44,6 +49,6 @@ def test_a_formula_is_watched_in_dense_time_as_its_text_is():
 
 
 def test_a_formula_is_found_by_an_equal_one_and_watched_once():
-    monitor = SPEC.monitor(watch=[SPEC.named("asked"), rtamt.parse("req >= 3").formula])
+    monitor = SPEC.monitor(watch=[FORMULAS["asked"], rtamt.parse("req >= 3").formula])
     monitor.update(0.0, req=5, gnt=2)
     assert monitor[rtamt.parse("req>=3").formula] == 2.0

@@ -9,6 +9,7 @@ from rtamt.cli.command import CommandError
 from rtamt.cli.runner import evaluate
 from rtamt.errors import UsageError
 from rtamt.readers.formats import is_bag
+from rtamt.results import signals_of
 from rtamt.ros.bags import Finding, write_mcap
 from rtamt.ros.binding import bind, topic_of
 
@@ -53,6 +54,5 @@ def _findings(
 
 
 def _finding(name: str, topic: str, result: Result) -> Finding:
-    spec = result.specification
-    truth = spec.signal_of(spec.outputs().truth, result.trace)
+    _, truth = signals_of(result)
     return Finding(name, topic, result.signal, truth)

@@ -29,7 +29,7 @@ from rtamt.rewrite.desugar import desugar
 from rtamt.rewrite.early import ends_differently, loose
 from rtamt.rewrite.horizon import horizon
 from rtamt.rewrite.pastify import pastify
-from rtamt.rewrite.semantics import boolean
+from rtamt.rewrite.semantics import apply_semantics, boolean
 from rtamt.signals.domains import DOMAINS
 
 if TYPE_CHECKING:
@@ -157,7 +157,7 @@ def gather(spec: Specification) -> Facts:
     step = domain.step
     assert step is not None
     facts = Facts(spec, step)
-    applied = spec.apply_semantics(spec.formula)
+    applied = _applied(spec)
     try:
         check_online(spec.formula, spec.text)
         facts = replace(facts, horizon=horizon(spec.formula, step), pastified=_pastified(spec, step))
@@ -216,10 +216,15 @@ def _requirements(facts: Facts) -> list[dict[str, Any]]:
     return rows
 
 
+def _applied(spec: Specification) -> Formula:
+    """Return the formula under its semantics."""
+    return apply_semantics(spec.formula, spec.semantics, spec.roles)
+
+
 def _loose(facts: Facts) -> str | None:
     """Return a variable that may make intervals wider than necessary."""
     period = None if facts.spec.domain.continuous else facts.step
-    return loose(facts.spec.apply_semantics(facts.spec.formula), period)
+    return loose(_applied(facts.spec), period)
 
 
 def _ending(facts: Facts) -> str | None:

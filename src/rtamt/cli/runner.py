@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from rtamt.batch import evaluate_requirements
 from rtamt.cli.command import NO_STAMPS, short, stamp_text
 from rtamt.cli.reading_options import choice_for, how_to_mend, is_resampled, on_clock, read_for
 from rtamt.errors import BoundError, StlError, TraceError
@@ -297,7 +298,11 @@ def _check(requirement: Requirement, trace: str, data: Trace | None, reading: Re
             raise TraceError(NO_STAMPS)
         whole = on_clock(whole, spec, trace, reading)
         alone = len(spec.requirements) == 1
-        parts = spec.judge(whole).values() if requirement.rows or alone else [spec.evaluate(whole)]
+        parts = (
+            evaluate_requirements(spec, whole).values()
+            if requirement.rows or alone
+            else [spec.evaluate(whole)]
+        )
     except StlError as error:
         if requirement.rows:
             return [o for row in requirement.rows for o in _check(row, trace, data, reading)]

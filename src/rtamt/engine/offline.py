@@ -41,6 +41,9 @@ class Evaluators:
         self._backend = backend
         self._evaluators: dict[Any, Callable[[Any], Sequence[Any]]] = {}
 
+    def __reduce__(self) -> tuple[type[Evaluators], tuple[str]]:
+        return Evaluators, (self._backend,)  # a copy compiles anew
+
     def __call__(self, formulas: tuple[Formula, ...], recording: DomainTrace) -> list[Signal]:
         """Return the robustness signal of each formula over a recording, all from one program."""
         step, inputs = recording.step, tuple(recording.columns)

@@ -6,6 +6,7 @@ from collections import deque
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from rtamt.engine.offline import Evaluators
 from rtamt.errors import UsageError
 from rtamt.explain.sentences import predicate_text
 from rtamt.language.formula import Apply, Var, variables
@@ -13,10 +14,11 @@ from rtamt.language.records import Bounds, Fixity
 from rtamt.plot.clock import Clock
 from rtamt.plot.lines import Line, Range, ranges
 from rtamt.plot.panels import groups
-from rtamt.rewrite.semantics import boolean, is_predicate
+from rtamt.rewrite.semantics import is_predicate
+from rtamt.verdicts.robustness_and_truth import outputs_under
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
 
     from rtamt.explain.report import Explanation, Stretch
     from rtamt.language.formula import Formula
@@ -173,17 +175,27 @@ class _Painter:
             self._clock,
             self._dense,
             self._panels(formulas),
-            tuple(self._node(formula, places) for formula in formulas),
+            tuple(
+                self._node(formula, places, signals)
+                for formula, signals in zip(formulas, self._signals(formulas), strict=True)
+            ),
             self._clock.position(self._explanation.time),
             critical,
         )
 
-    def _node(self, formula: Formula, places: dict[Formula, int]) -> Node:
-        spec, trace = self._spec, self._result.trace
+    def _signals(self, formulas: Sequence[Formula]) -> Iterator[tuple[Signal, Signal]]:
+        """Yield the robustness and the truth of each formula, all from one program."""
+        semantics, roles = self._result.semantics, self._spec.roles
+        outputs = [outputs_under(f, semantics, roles) for f in formulas]
+        every = tuple(output for both in outputs for output in both)
+        signals = iter(Evaluators(self._spec.backend)(every, self._result.trace))
+        return zip(signals, signals, strict=True)
+
+    def _node(self, formula: Formula, places: dict[Formula, int], signals: tuple[Signal, Signal]) -> Node:
+        spec = self._spec
         text = predicate_text(formula, spec.text)
         names = [a.name for a in spec.document.assertions if a.name and a.formula == formula]
-        line = self._line(text, spec.signal_of(spec.apply_semantics(formula, self._result.semantics), trace))
-        truth = self._line(text, spec.signal_of(boolean(formula), trace))
+        line, truth = (self._line(text, signal) for signal in signals)
         operands = _operands(formula)
         numbers = tuple(places[operand] for operand in operands if operand in places)
         return Node(

@@ -16,6 +16,7 @@ from rtamt.rewrite.horizon import horizon
 from rtamt.signals.dense import Dense
 from rtamt.signals.discrete import Discrete
 from rtamt.signals.ticks import NANOSECOND
+from rtamt.verdicts.robustness_and_truth import outputs_under
 
 if TYPE_CHECKING:
     from collections.abc import Container, Mapping, Sequence
@@ -128,7 +129,7 @@ def _watched(output: Output, period: Fraction | None) -> tuple[Watched, Watched]
         past = spec.pastified(period)
     except SpecificationError as error:
         raise type(error)(f"'{output.name}': {error.message}", error.text, error.span) from None
-    robustness, truth = spec.outputs(formula=past)
+    robustness, truth = outputs_under(past, spec.semantics, spec.roles)
     return (
         Watched(output.name, robustness, spec.text),
         Watched(f"truth of {output.name}", truth, spec.text),

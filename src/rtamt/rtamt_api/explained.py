@@ -9,13 +9,12 @@ from rtamt.errors import UsageError
 from rtamt.language.document import Requirement
 from rtamt.language.formula import Var, variables
 from rtamt.language.printer import canonical
-from rtamt.results import Result
 from rtamt.rewrite.semantics import apply_semantics, semantics_of
 from rtamt.rtamt_api.backends import backend
 from rtamt.rtamt_api.declarations import UNNAMED
 from rtamt.rtamt_api.failures import raises_rtamt
 from rtamt.rtamt_api.formulas import Formulas
-from rtamt.specification import Specification
+from rtamt.specification import Specification, result_of
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -108,8 +107,7 @@ class ExplainedSpecification(Formulas):
         spec = Specification(
             document, recording.domain, backend=backend(), semantics=semantics, roles=self.var_io_dict
         )
-        signal = spec.signal_of(spec.apply_semantics(formula, semantics), recording)
-        return Result(spec, recording, signal, semantics).plot(at, figure=figure)
+        return result_of(spec, recording).plot(at, figure=figure)
 
 
 def _places(formula: Formula, recording: DomainTrace, explanation: Explanation) -> dict[str, list[list[Any]]]:

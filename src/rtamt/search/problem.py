@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from math import inf
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from rtamt.batch import evaluate_requirements
 from rtamt.errors import StlError, UsageError, did_you_mean, shown
 from rtamt.search.inputs import Range
 from rtamt.search.log import Evaluation
@@ -123,15 +125,14 @@ class Problem:
         provided = data if isinstance(data, Mapping) else getattr(data, "columns", ())
         if all(name in provided for name in self.spec.input_names):  # a plant may return additional signals
             data = {name: data[name] for name in (TIME, *self.spec.input_names) if name in provided}
-        results = self.spec.judge(data).values()
+        results = evaluate_requirements(self.spec, data).values()
         robustness = min(result.robustness for result in results)
         return Evaluation(number, dict(point), robustness, all(result.satisfied for result in results))
 
     def _stepwise(
         self, samples: Iterable[Any], point: Mapping[str, float], number: int, whole: bool
     ) -> Evaluation:
-        total = self._total()
-        outlook = self._outlook(total)
+        total, outlook = self._total, self._outlook
         watched = not whole and outlook.able and (total is not None or self.spec.domain.continuous)
         # In dense time the number of samples is unknown: check again after one percent more.
         look = max(1, (total or LOOKS) // LOOKS)
@@ -161,16 +162,19 @@ class Problem:
             close()
         return self._whole({TIME: times, **columns}, point, number)
 
-    def _outlook(self, samples: int | None) -> RobustInterval:
+    @cached_property
+    def _outlook(self) -> RobustInterval:
         spec = self.spec
         return RobustInterval(
             spec.formula,
-            spec.signals_of,
-            applied=spec.apply_semantics,
+            semantics=spec.semantics,
+            roles=spec.roles,
+            backend=spec.backend,
             domain=spec.domain.online,
-            samples=samples,
+            samples=self._total,
         )
 
+    @property
     def _total(self) -> int | None:
         """Return the number of samples of a simulation in discrete time; None if unknown."""
         period = self.spec.domain.period

@@ -13,12 +13,13 @@ from rtamt.language.formula import Apply, Formula
 from rtamt.language.operators import Pointwise, Tense, Window
 from rtamt.rewrite.check import check_bounds
 from rtamt.rewrite.early import ends_differently
+from rtamt.rewrite.semantics import boolean
 from rtamt.signals import arrays
 from rtamt.signals.discrete import Discrete
 from rtamt.signals.regular import TOLERANCE, check_increasing, check_regular, infer_period
 from rtamt.verdicts.discrete_interval import DiscreteIntervalMonitor
 from rtamt.verdicts.eager import EagerMonitor
-from rtamt.verdicts.robustness_and_truth import align_inputs
+from rtamt.verdicts.robustness_and_truth import align_inputs, outputs_under
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -50,7 +51,7 @@ def holds_at_end(spec: Specification) -> bool:
     >>> [holds_at_end(rtamt.parse(text)) for text in ("always(x > 0)", "eventually[1:2] once[0:5](x > 0)")]
     [True, False]
     """
-    return not spec.domain.continuous and ends_differently(spec.outputs().truth, {}) is None
+    return not spec.domain.continuous and ends_differently(boolean(spec.formula), {}) is None
 
 
 class EarlyCheck:
@@ -138,7 +139,7 @@ class _Requirement:
     """The parts of a requirement that must all hold, watched from sample to sample."""
 
     def __init__(self, spec: Specification, period: Fraction) -> None:
-        outputs = spec.outputs()
+        outputs = outputs_under(spec.formula, spec.semantics, spec.roles)
         domain = Discrete(period).online
         self._names = spec.input_names
         self._step = float(period)

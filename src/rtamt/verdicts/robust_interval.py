@@ -15,19 +15,20 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from rtamt.engine.offline import Evaluators
 from rtamt.language.formula import Apply, Formula, postorder
 from rtamt.language.records import Tense
 from rtamt.reference import discrete as reference
 from rtamt.rewrite.structure import Structure, literal
 from rtamt.signals import arrays
-from rtamt.verdicts.robustness_and_truth import outputs_of
+from rtamt.verdicts.robustness_and_truth import outputs_under
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping
+    from collections.abc import Iterator, Mapping
 
+    from rtamt.rewrite.semantics import PredicateSemantics
     from rtamt.signals.arrays import FloatArray
     from rtamt.signals.domain_interface import DomainTrace, TimeDomain
-    from rtamt.verdicts.robustness_and_truth import Evaluate
 
     #: Stamps (seconds) and a column of values for each variable, all of one length.
     Columns = Mapping[str, FloatArray]
@@ -57,8 +58,8 @@ class Settled:
 class RobustInterval:
     """Determines whether the first samples of a simulation settle the verdict of a formula.
 
-    ``applied`` returns a predicate under the semantics of the robustness. ``domain`` is a time domain
-    with a known step. ``samples`` is how many there are at the end in discrete time
+    ``semantics`` and ``roles`` are those of the robustness. ``domain`` is a time domain with a known step.
+    ``samples`` is how many there are at the end in discrete time
     (dense time needs none). A formula with arithmetic over temporal operators, or with an operator that cannot
     be taken apart, is never settled before the end: :attr:`able` is false.
     """
@@ -66,14 +67,16 @@ class RobustInterval:
     def __init__(
         self,
         formula: Formula,
-        evaluate: Evaluate,
         *,
-        applied: Callable[[Formula], Formula],
+        semantics: str | PredicateSemantics,
+        roles: Mapping[str, str],
+        backend: str,
         domain: TimeDomain,
         samples: int | None,
     ) -> None:
-        self._evaluate = evaluate
-        self._applied = applied
+        self._evaluate = Evaluators(backend)
+        self._semantics = semantics
+        self._roles = roles
         assert domain.step is not None
         self._domain = domain
         self._step = domain.step
@@ -110,7 +113,8 @@ class RobustInterval:
     def _over(self, times: FloatArray, columns: Columns) -> Iterator[dict[str, FloatArray]]:
         """Yield each predicate's distance, then its truth (+inf, -inf), at every sample: both from one program."""
         outputs = {
-            name: outputs_of(leaf.formula, self._applied(leaf.formula)) for name, leaf in self._leaves.items()
+            name: outputs_under(leaf.formula, self._semantics, self._roles)
+            for name, leaf in self._leaves.items()
         }
         read = tuple(f for name, both in outputs.items() if not self._leaves[name].fixed for f in both)
         recording = self._recording(times, columns, tuple(columns))

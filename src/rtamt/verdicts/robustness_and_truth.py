@@ -7,12 +7,14 @@ from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
 from rtamt.language.formula import Const, Formula, Var
 from rtamt.language.operators import STL
-from rtamt.rewrite.semantics import boolean
+from rtamt.rewrite.semantics import apply_semantics, boolean
 from rtamt.signals.domain_interface import DomainTrace
 from rtamt.signals.signal import Signal
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
+
+    from rtamt.rewrite.semantics import PredicateSemantics
 
 #: Returns the signal of each formula over a trace, all from one program: an ``Evaluators`` of the engine.
 Evaluate: TypeAlias = Callable[[tuple[Formula, ...], DomainTrace], list[Signal]]
@@ -37,6 +39,11 @@ def outputs_of(formula: Formula, applied: Formula | None = None) -> Outputs:
     x >= 3, x >= 3
     """
     return Outputs(formula if applied is None else applied, boolean(formula))
+
+
+def outputs_under(formula: Formula, semantics: str | PredicateSemantics, roles: Mapping[str, str]) -> Outputs:
+    """Return the outputs of a requirement under a semantics."""
+    return outputs_of(formula, apply_semantics(formula, semantics, roles))
 
 
 def align_inputs(formula: Formula, names: Sequence[str]) -> Formula:

@@ -14,6 +14,7 @@ import numpy as np
 from rtamt.engine.dense.groups import own_variables
 from rtamt.engine.dense.monitor import DenseMonitor
 from rtamt.engine.discrete.monitor import Monitor
+from rtamt.engine.offline import Evaluators
 from rtamt.engine.online import Watched
 from rtamt.errors import TraceError, UsageError
 from rtamt.language.formula import Const
@@ -30,7 +31,7 @@ from rtamt.signals.signal import Signal
 from rtamt.signals.ticks import TimeScale
 from rtamt.verdicts.decompose import Leaf, anchor, check_in_chunks
 from rtamt.verdicts.offline import end_of
-from rtamt.verdicts.robustness_and_truth import align_inputs
+from rtamt.verdicts.robustness_and_truth import align_inputs, outputs_under
 from rtamt.verdicts.trackers import Tracker, Trackers
 
 if TYPE_CHECKING:
@@ -104,7 +105,8 @@ def check_stream(
 def check_streamable(spec: Specification) -> None:
     """Raise :class:`BoundError` where a formula needs the whole recording at once."""
     for alone in spec.requirements.values():
-        check_in_chunks(anchor(alone.apply_semantics(alone.formula)), alone.text)
+        outputs = outputs_under(alone.formula, alone.semantics, alone.roles)
+        check_in_chunks(anchor(outputs.robustness), alone.text)
 
 
 class _Requirement:
@@ -112,7 +114,7 @@ class _Requirement:
 
     def __init__(self, spec: Specification, semantics: str | PredicateSemantics | None) -> None:
         self.spec = spec
-        outputs = spec.outputs(semantics)
+        outputs = outputs_under(spec.formula, semantics or spec.semantics, spec.roles)
         self._robust = anchor(outputs.robustness)
         check_in_chunks(self._robust, spec.text)
         self._truth = anchor(outputs.truth)
@@ -149,7 +151,7 @@ class _Requirement:
 
     def result(self, time: Callable[[int], Any], samples: int, period: Fraction | None) -> StreamResult:
         """Return what came of all chunks; ``time``: from a position to a time as the caller tells it."""
-        evaluate = self.spec.signals_of
+        evaluate = Evaluators(self.spec.backend)
         self._robustness.finish()
         self._verdict.finish()
         violated = self._verdict.violation(evaluate)
@@ -216,7 +218,7 @@ class _Stream(ABC):
         chosen = None if semantics is None else semantics_of(semantics)
         self.spec = spec
         self.unit = None if unit is None else check_unit(unit)
-        self.declared = spec.declared
+        self.declared = tuple(declaration.name for declaration in spec.document.declarations)
         self.requirements = {name: _Requirement(one, chosen) for name, one in spec.requirements.items()}
         self.samples = 0
 

@@ -17,6 +17,7 @@ from hypothesis import strategies as st
 from pyarrow import feather, parquet
 
 import rtamt
+from rtamt.batch import evaluate_requirements
 from rtamt.cli import main
 from rtamt.engine.native import core
 from rtamt.language.operators import STL
@@ -250,7 +251,7 @@ def test_law_parts_that_read_no_variable_are_parts_like_others(time, data):
     violated = first_violation(result)
     assert (violated is None) == result.satisfied
     assert result.satisfied == spec.evaluate(recording, semantics="boolean").satisfied
-    (judged,) = spec.judge(recording).values()
+    (judged,) = evaluate_requirements(spec, recording).values()
     assert (judged.robustness, judged.satisfied, first_violation(judged)) == (
         result.robustness,
         result.satisfied,
@@ -343,7 +344,7 @@ def test_robustness_and_verdicts_of_all_requirements_come_from_one_program(time,
     runs = []
     run = getattr(core(), name)
     monkeypatch.setattr(core(), name, lambda *args: runs.append(args) or run(*args))
-    found = spec.judge({"time": [0, 1, 2], "x": [5, 4, 2], "y": [0, 0, 4]})
+    found = evaluate_requirements(spec, {"time": [0, 1, 2], "x": [5, 4, 2], "y": [0, 0, 4]})
     assert {key: (part.robustness, part.satisfied) for key, part in found.items()} == {
         "A": (-1.0, False),
         "B": (2.0, True),
@@ -358,5 +359,5 @@ def test_a_value_that_does_not_exist_after_all_that_is_read_is_no_error():
     data = {"x": ([0.0, 1.0, 4.0], [2, 0, 0])}
     result = spec.evaluate(data)
     assert (result.satisfied, first_violation(result)) == (True, None)
-    (part,) = spec.judge(data).values()
+    (part,) = evaluate_requirements(spec, data).values()
     assert (part.robustness, part.satisfied) == (result.robustness, True)
