@@ -13,8 +13,10 @@ from hypothesis import strategies as st
 
 import rtamt
 from rtamt.cli import main
+from rtamt.cli.reading_options import Reading, on_clock, read_for
 from rtamt.ros import Robustness, RosMonitor, bind
 from rtamt.ros.message_definitions import SATISFIED
+from rtamt.verdicts.at_start import StartMonitor
 from tests.unit.readers.bags import SECOND, Bag
 
 pytest.importorskip("rosbags")
@@ -210,3 +212,42 @@ def test_a_node_in_dense_time_gives_what_check_finds_in_a_bag_bit_for_bit(folder
             for stamp in {stamp for stamp, _ in node} | {stamp + standing.lag for stamp, _ in bag}:
                 if begin <= stamp <= end:
                     assert value_at(node, stamp) == value_at(bag, stamp - standing.lag)
+
+
+EARLY = (
+    "always(a.value >= b.value)",
+    "eventually(a.value - c.data >= 1)",
+    "always(a.value >= 0 -> eventually[0:{p}](c.data >= 0))",
+    "(a.value >= b.value) until (c.data >= 2)",
+)
+
+
+@settings(max_examples=20)
+@given(st.data(), st.sampled_from(PERIODS), st.sampled_from(EARLY))
+def test_a_node_before_the_end_agrees_with_the_monitor_and_with_check_on_the_bag(
+    folders, data, period, formula
+):
+    sent = data.draw(traffic(period))
+    text = f"{HEAD} rob.value = {formula.format(p=f'{2 * period}ns')}"
+    spec = rtamt.parse(text)
+    monitor = RosMonitor(bind(spec), period=Fraction(period, 10**9), stale=0)
+    records = delivered(monitor, sent)
+    records += monitor.tick(max(one.arrival for one in sent))
+    (watch,) = monitor.watches
+    last = max(one.at for one in sent if one.topic in watch.topics)
+    records = [record for record in records if record.stamp <= last]
+    bag = recorded(folders(), sent)
+    reading = Reading(resample=f"{period}ns")
+    samples = on_clock(read_for([spec], str(bag), reading), spec, str(bag), reading)
+    start = StartMonitor(spec, period=Fraction(period, 10**9))
+    rows = zip(*(samples[name].values.tolist() for name in spec.input_names), strict=True)
+    for i, (record, row) in enumerate(zip(records, rows, strict=True)):
+        start.update(i * period / 10**9, **dict(zip(spec.input_names, row, strict=True)))
+        assert (record.lower, record.upper) == (start.interval().lower, start.interval().upper)
+        assert record.satisfied == start.satisfied
+        decided = next((r.stamp for r in records if r.satisfied is not None), None)
+        assert record.decided_at == (None if record.satisfied is None else decided)
+    _, truth = checked(folders(), text, sent, "--period", f"{period}ns")["/rob"]
+    start.finish()
+    assert start.satisfied == truth[0][1]
+    assert records[-1].satisfied in (None, truth[0][1])

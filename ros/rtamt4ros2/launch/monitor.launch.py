@@ -13,6 +13,7 @@ ARGUMENTS = {
     "unit": "s",
     "time": "discrete",
     "stale": "",
+    "verdict": "",
     "reliability": "reliable",
     "durability": "volatile",
 }

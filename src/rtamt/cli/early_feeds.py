@@ -12,12 +12,14 @@ from rtamt.cli.stdin_reader import STDIN
 from rtamt.cli.terminal import say
 from rtamt.errors import StlError, TraceError
 from rtamt.signals.outcomes import VerdictRun
+from rtamt.verdicts.at_start import SAFE
 from rtamt.verdicts.discrete_early import DiscreteEarlyMonitor
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from rtamt.signals.outcomes import Interval, Verdict
+    from rtamt.verdicts.at_start import StartMonitor
     from rtamt.verdicts.dense_early import DenseEagerMonitor
     from rtamt.verdicts.eager import EagerMonitor
     from rtamt.verdicts.early import EarlyMonitor
@@ -52,59 +54,62 @@ class EagerFeed:
             say(f'{{"time": {time}, "satisfied": {satisfied}, "decided_at": {decided}}}', flush=True)
 
 
-class IntervalFeed:
-    """Prints bounds whenever they change: those at the start of the trace, or of every instant."""
+class StartFeed:
+    """Prints bounds and verdict at the start of the trace whenever they change."""
 
-    def __init__(self, monitor: IntervalMonitor) -> None:
-        self.monitor = monitor
-        self._last: Interval | None = None
-        self._since: Any = None  # the sample that settled the verdict at the start
+    def __init__(self, start: StartMonitor) -> None:
+        self.start = start
+        self.monitor = start.bounds
+        self._last: tuple[Interval, str] | None = None
 
     def take(self, stamp: Any, values: dict[str, float], line: int) -> str:
         """Take a sample and print what it changes; return what is wrong with it, if anything is."""
         try:
             time = _time(self.monitor, stamp)
-            self.monitor.update(time, **values)
+            self.start.update(time, **values)
         except StlError as error:
             return f"{STDIN}, line {line}: {error}"
-        if self.monitor.at == "start":
-            self._print_start(time)
-        else:
-            self._print(self.monitor.changes())
+        now = self.start.interval(), self._status()
+        if now != self._last:
+            self._last = now
+            say(f'{{"time": {_json(time)}, {self._members(*now)}}}', flush=True)
+        return ""
+
+    def finish(self) -> None:
+        """End the trace; print what is known at its end."""
+        self.start.finish()
+        say(f'{{{self._members(self.start.interval(), self._status())}, "final": true}}', flush=True)
+
+    def _members(self, interval: Interval, status: str) -> str:
+        return f'{_ends(interval)}, "status": {json.dumps(status)}'
+
+    def _status(self) -> str:
+        """Return what is known of the verdict, and since when."""
+        status, since = self.start.status, self.start.decided_at
+        if since is None or status == SAFE:
+            return status
+        unit = "" if isinstance(since, np.datetime64) else " s"
+        return f"{status} since {stamp_text(since)}{unit}"
+
+
+class IntervalFeed:
+    """Prints the bounds of every instant whenever they change."""
+
+    def __init__(self, monitor: IntervalMonitor) -> None:
+        self.monitor = monitor
+
+    def take(self, stamp: Any, values: dict[str, float], line: int) -> str:
+        """Take a sample and print what it changes; return what is wrong with it, if anything is."""
+        try:
+            self.monitor.update(_time(self.monitor, stamp), **values)
+        except StlError as error:
+            return f"{STDIN}, line {line}: {error}"
+        self._print(self.monitor.changes())
         return ""
 
     def finish(self) -> None:
         """End the trace; print what was still open."""
-        rest = self.monitor.finish()
-        if self.monitor.at == "start":
-            self._print_start(None)
-        else:
-            self._print(rest)
-
-    def _print_start(self, time: Any) -> None:
-        now = self.monitor.interval()
-        settled = now.lower > 0 or now.upper < 0
-        if settled and self._since is None:
-            self._since = time
-        if now == self._last and time is not None:
-            return
-        self._last = now
-        final = ', "final": true' if time is None else ""
-        stamp = "" if time is None else f'"time": {_json(time)}, '
-        say(
-            f"{{{stamp}{_ends(now)}, {json.dumps('status')}: {json.dumps(self._status(now))}{final}}}",
-            flush=True,
-        )
-
-    def _status(self, now: Interval) -> str:
-        """Say what is settled of the formula at the start of the trace."""
-        since = "" if self._since is None else f" since {stamp_text(self._since)}"
-        unit = "" if self._since is None or isinstance(self._since, np.datetime64) else " s"
-        if now.upper < 0:
-            return f"violated{since}{unit}"
-        if now.lower > 0:
-            return f"satisfied{since}{unit}" if now.lower == now.upper else "can no longer be violated"
-        return "open"
+        self._print(self.monitor.finish())
 
     def _print(self, changes: list[Change]) -> None:
         for change in changes:

@@ -25,7 +25,7 @@ from rtamt.cli.command import (
     read_specification,
     stamp_text,
 )
-from rtamt.cli.early_feeds import EagerFeed, IntervalFeed
+from rtamt.cli.early_feeds import EagerFeed, IntervalFeed, StartFeed
 from rtamt.cli.live_view import Live
 from rtamt.cli.stdin_reader import STDIN, Samples
 from rtamt.cli.terminal import printed, say
@@ -35,6 +35,7 @@ from rtamt.signals.dense import Dense
 from rtamt.signals.regular import TOLERANCE
 from rtamt.signals.signal import Signal
 from rtamt.signals.trace import in_seconds
+from rtamt.verdicts.at_start import StartMonitor
 from rtamt.verdicts.interval import IntervalMonitor
 from rtamt.verdicts.modes import DELAYED, MODES
 
@@ -168,15 +169,16 @@ def _follow(watched: Feed, samples: Samples, live: Live | None, *, keep_going: b
     return code
 
 
-def _early(spec: Specification, args: argparse.Namespace) -> EagerFeed | IntervalFeed | None:
+def _early(spec: Specification, args: argparse.Namespace) -> EagerFeed | IntervalFeed | StartFeed | None:
     """Return what prints before the horizon, if that is asked for, or if there is no horizon."""
     verdict = args.verdict
-    if verdict is None and unbounded_future(spec.formula) is not None:
-        verdict = "interval"
-    if verdict in {None, DELAYED}:
+    at_start = verdict in {None, "interval"} and unbounded_future(spec.formula) is not None
+    if not at_start and verdict in {None, DELAYED}:
         return None
     if args.live:
         raise CommandError(f"--live draws the robustness; leave it out, or use --verdict {DELAYED}")
+    if at_start:
+        return StartFeed(StartMonitor(spec, tolerance=args.tolerance))
     monitor = spec.monitor(verdict=verdict, tolerance=args.tolerance)
     return IntervalFeed(monitor) if isinstance(monitor, IntervalMonitor) else EagerFeed(monitor)
 
@@ -328,6 +330,6 @@ class EventFeed:
 
 
 #: What takes the samples, and prints what becomes known.
-Feed: TypeAlias = SampleFeed | EventFeed | EagerFeed | IntervalFeed
+Feed: TypeAlias = SampleFeed | EventFeed | EagerFeed | IntervalFeed | StartFeed
 
 COMMAND = Command("monitor", "watch a stream: samples on stdin, robustness on stdout", configure, run)

@@ -9,7 +9,9 @@ module               purpose
 binding              annotations of a specification to topics, types and fields
 fields               read a number from a message: ``pose.position.x``, ``ranges[3]``; its timestamp
 monitor              messages and ticks to robustness, verdicts and conditions
-output_group         outputs that are monitored together
+watch                what is monitored together: its samples, and what is reported of it
+output_group         outputs whose robustness is reported
+early_watch          outputs that are monitored before their horizon
 diagnostics          conditions as ROS diagnostics
 publisher            output as messages
 message_definitions  the definitions of ``rtamt_msgs``
@@ -20,6 +22,16 @@ options              the arguments of all nodes
 """
 
 from rtamt.ros.binding import Binding, Input, MessageType, Output, bind
-from rtamt.ros.monitor import Robustness, RosMonitor, Verdict
+from rtamt.ros.monitor import Bounds, Robustness, RosMonitor, Verdict
 
-__all__ = ["Binding", "Input", "MessageType", "Output", "Robustness", "RosMonitor", "Verdict", "bind"]
+__all__ = [
+    "Binding",
+    "Bounds",
+    "Input",
+    "MessageType",
+    "Output",
+    "Robustness",
+    "RosMonitor",
+    "Verdict",
+    "bind",
+]

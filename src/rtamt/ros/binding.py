@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
-from rtamt.errors import UsageError, with_article
+from rtamt.errors import UsageError, shown, with_article
 from rtamt.extras import message_class
 from rtamt.language.formula import variables
 from rtamt.language.grammar import is_number
+from rtamt.rewrite.check import unbounded_future
 from rtamt.ros.fields import Path, check_path, path_of
 
 if TYPE_CHECKING:
@@ -37,6 +38,9 @@ class MessageType:
         return message_class(self.module, self.name)
 
 
+#: What may be published of an output; see :func:`bind`.
+DELAYED, INTERVAL = VERDICTS = ("delayed", "interval")
+
 #: The default message type of a requirement.
 NUMBER = MessageType("rtamt_msgs.msg", "FloatStamped")
 
@@ -62,6 +66,8 @@ class Output:
     type: MessageType
     #: The requirement as a specification of its own.
     specification: Specification
+    #: Whether bounds and verdict at the start of the trace are published, and not the robustness of every sample.
+    early: bool = False
 
     @property
     def variable(self) -> str:
@@ -77,6 +83,11 @@ class Output:
     def verdicts(self) -> str:
         """The topic on which its verdicts are published."""
         return f"{self.topic}/verdict"
+
+    @property
+    def bounds(self) -> str:
+        """The topic on which bounds and verdict at the start of the trace are published."""
+        return f"{self.topic}/bounds"
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,8 +114,11 @@ class Binding:
         return classes
 
 
-def bind(spec: Specification) -> Binding:
+def bind(spec: Specification, verdict: str | None = None) -> Binding:
     """Return the topics, types and fields that a specification names.
+
+    ``verdict``: what is published of every output: ``"delayed"``, its robustness and verdict of every sample; or
+    ``"interval"``, bounds and verdict at the start of the trace. By default the latter for unbounded future.
 
     Every assertion whose name is a field of a declared variable is published on that variable's topic. A
     variable without an annotation uses the topic ``rtamt/<name>``; so does a requirement with any other name, as
@@ -123,7 +137,12 @@ def bind(spec: Specification) -> Binding:
     """
     document = spec.document
     types = _types(document)
-    outputs = tuple(_outputs(spec, types))
+    if verdict not in {None, *VERDICTS}:
+        raise UsageError(f"the verdict is {shown(verdict)}; choose from {', '.join(VERDICTS)}")
+    outputs = tuple(
+        replace(output, early=verdict == INTERVAL or (verdict is None and _is_open(output)))
+        for output in _outputs(spec, types)
+    )
     if not outputs:
         raise UsageError(
             "the specification publishes nothing: give the requirement the name of a field of a declared "
@@ -133,6 +152,10 @@ def bind(spec: Specification) -> Binding:
     inputs = tuple(_inputs(formulas, document, types))
     _check_topics(inputs, outputs)
     return Binding(document.name or "rtamt", inputs, outputs)
+
+
+def _is_open(output: Output) -> bool:
+    return unbounded_future(output.specification.formula) is not None
 
 
 def _types(document: Document) -> dict[str, MessageType]:

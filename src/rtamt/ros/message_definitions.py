@@ -6,8 +6,9 @@ from types import MappingProxyType
 
 FLOAT_STAMPED = "rtamt_msgs/msg/FloatStamped"
 VERDICT = "rtamt_msgs/msg/Verdict"
+BOUNDS = "rtamt_msgs/msg/Bounds"
 
-#: The values of ``Verdict.verdict``.
+#: The values of ``Verdict.verdict`` and ``Bounds.verdict``.
 UNKNOWN, SATISFIED, VIOLATED = 0, 1, 2
 
 #: From a type to its definition, equal to the files in ``ros/rtamt_msgs/msg``.
@@ -28,6 +29,19 @@ std_msgs/Header header
 string name        # of the requirement in its specification, such as rob.value
 uint8 verdict
 float64 horizon    # seconds
+""",
+        BOUNDS: """\
+# What is known at header.stamp of a requirement at the start of the trace: its robustness and its verdict.
+uint8 OPEN=0
+uint8 SATISFIED=1
+uint8 VIOLATED=2
+
+std_msgs/Header header
+string name        # of the requirement in its specification, such as rob.value
+float64 lower      # bounds of the robustness, whatever is still to come
+float64 upper
+uint8 verdict
+int64 decided_at   # nanoseconds, as header.stamp: the sample that decided the verdict; 0 while it is open
 """,
     }
 )

@@ -8,8 +8,10 @@ from typing import TYPE_CHECKING, Any
 from rtamt.errors import StlError, UsageError
 from rtamt.language.units import duration, positive_period
 from rtamt.ros.diagnostics import Condition, Level, Notice
+from rtamt.ros.early_watch import Bounds, EarlyWatch
 from rtamt.ros.fields import reader, stamp_of
-from rtamt.ros.output_group import DenseWatch, DiscreteWatch, Robustness, Verdict, group_outputs
+from rtamt.ros.output_group import DenseWatch, DiscreteWatch, delayed, group_outputs
+from rtamt.ros.watch import Robustness, Verdict
 from rtamt.signals.domains import DEFAULT, time_domain
 
 if TYPE_CHECKING:
@@ -17,7 +19,9 @@ if TYPE_CHECKING:
 
     from rtamt.language.units import Duration
     from rtamt.ros.binding import Binding
-    from rtamt.ros.output_group import Record, Standing, Watch
+    from rtamt.ros.early_watch import EarlyStanding
+    from rtamt.ros.output_group import Standing
+    from rtamt.ros.watch import Record, SampledWatch, Watch
 
 #: The default number of silent periods after which a topic is stale; in dense time, seconds.
 STALE_PERIODS = 10
@@ -48,7 +52,9 @@ class RosMonitor:
     of ``rtamt check --period`` on a bag with these messages.
 
     Bounded future is pastified (the paper's Definition 4): robustness is reported from the first sample on
-    and refers to the instant one horizon ago; verdicts are unknown until the horizon has passed.
+    and refers to the instant one horizon ago; verdicts are unknown until the horizon has passed. Of outputs that are
+    bound early, such as those of unbounded future, bounds and verdict at the start of the trace are reported with
+    every sample (:class:`Bounds`).
 
     Samples are never invented. An output is silent until each of its topics has had
     a message, and while one is stale. It restarts when timestamps go back, when a stale topic resumes,
@@ -94,13 +100,19 @@ class RosMonitor:
             self._readers.setdefault(known.topic, []).extend((name, reader(name)) for name in known.fields)
         topic_of = {name: known.topic for known in binding.inputs for name in known.fields}
         self._dense: list[DenseWatch] = []
-        self._discrete: list[DiscreteWatch] = []
+        self._discrete: list[SampledWatch] = []
         if self._domain.continuous:
-            self._dense = [DenseWatch(outputs, topic_of) for outputs in group_outputs(binding.outputs)]
+            self._dense = [
+                DenseWatch(outputs, topic_of) for outputs in group_outputs(delayed(binding.outputs))
+            ]
         else:
             assert self.period is not None
             self._discrete = [
-                DiscreteWatch(outputs, topic_of, self.period) for outputs in group_outputs(binding.outputs)
+                *(
+                    DiscreteWatch(outputs, topic_of, self.period)
+                    for outputs in group_outputs(binding.outputs)
+                ),
+                *(EarlyWatch(output, topic_of, self.period) for output in binding.outputs if output.early),
             ]
         #: Topics for which records are created, such as those with subscribers; None: all.
         self.wanted: Container[str] | None = None
@@ -116,7 +128,7 @@ class RosMonitor:
         self._timeless = False  # whether messages before the simulated clock is set have been reported
 
     @property
-    def watches(self) -> Sequence[DiscreteWatch | DenseWatch]:
+    def watches(self) -> Sequence[Watch]:
         """The outputs, grouped by the numbers that they read."""
         return self._dense or self._discrete
 
@@ -200,7 +212,7 @@ class RosMonitor:
             records += self._sample(watch, now)
         return records
 
-    def _sample(self, watch: DiscreteWatch, until: int) -> list[Record]:
+    def _sample(self, watch: SampledWatch, until: int) -> list[Record]:
         """Take the samples due up to an instant, unless a topic is silent."""
         records: list[Record] = []
         if self._all_speak(watch):
@@ -231,9 +243,7 @@ class RosMonitor:
     def _all_speak(self, watch: Watch) -> bool:
         return watch.topics <= self._heard.keys() and not watch.topics & self._silent
 
-    def _tell(
-        self, watch: DiscreteWatch | DenseWatch, stamp: int, values: Mapping[str, float]
-    ) -> list[Record]:
+    def _tell(self, watch: Watch, stamp: int, values: Mapping[str, float]) -> list[Record]:
         """Feed a sample to a group; a rejected sample leaves a gap, so that the group restarts."""
         try:
             records = watch.take(stamp, values, self.wanted)
@@ -349,15 +359,14 @@ class RosMonitor:
         }
         return [told[output.name] for output in self.binding.outputs]
 
-    def _condition(self, watch: Watch, standing: Standing, now: int) -> Condition:
+    def _condition(self, watch: Watch, standing: Standing | EarlyStanding, now: int) -> Condition:
         output = standing.output
         inputs = ((name, self._values[name]) for name in watch.names if name in self._values)
         values = (
             *((name, f"{value:.6g}") for name, value in inputs),
             ("topic", output.topic),
             ("samples", str(watch.samples)),
-            ("robustness", "none" if standing.latest is None else f"{standing.latest:.6g}"),
-            ("horizon", f"{standing.horizon:.6g} s"),
+            *standing.facts,
         )
         missing = sorted(topic for topic in watch.topics if topic not in self._heard)
         faulty = [self._faults[topic] for topic in missing if topic in self._faults]
@@ -372,9 +381,9 @@ class RosMonitor:
         elif missing:
             level, text = Level.WARN, f"waiting for the first message on {', '.join(missing)}"
         elif standing.satisfied is False:
-            level, text = Level.ERROR, "violated"
+            level, text = Level.ERROR, standing.text
         else:
-            level, text = Level.OK, "satisfied" if standing.satisfied else "no verdict yet"
+            level, text = Level.OK, standing.text
         return Condition(f"{self.binding.name}: {output.name}", level, text, values)
 
 
@@ -389,4 +398,4 @@ def _seconds(nanoseconds: int) -> str:
     return f"{nanoseconds / 1e9:.6g} s"
 
 
-__all__ = ["Robustness", "RosMonitor", "Verdict"]
+__all__ = ["Bounds", "Robustness", "RosMonitor", "Verdict"]

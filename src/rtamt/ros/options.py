@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 
 from rtamt.errors import UsageError
 from rtamt.language.units import UNITS
-from rtamt.ros.binding import bind
+from rtamt.ros.binding import VERDICTS, bind
 from rtamt.ros.monitor import RosMonitor
 from rtamt.signals.domains import DEFAULT, DOMAINS, time_domain
 from rtamt.texts import load
@@ -17,7 +17,14 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
 #: The names of parameters, and their defaults.
-DEFAULTS: Mapping[str, str] = {"spec": "", "period": "", "unit": "s", "time": DEFAULT, "stale": ""}
+DEFAULTS: Mapping[str, str] = {
+    "spec": "",
+    "period": "",
+    "unit": "s",
+    "time": DEFAULT,
+    "stale": "",
+    "verdict": "",
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,6 +36,7 @@ class Options:
     unit: str
     time: str
     stale: str
+    verdict: str
 
     def monitor(self) -> RosMonitor:
         """Load the specification and create its monitor; raise :class:`StlError` on failure."""
@@ -45,7 +53,7 @@ class Options:
         period = self._duration(self.period) if self.period else None
         spec = load(self.spec, time=self.time, period=period)
         stale = self._duration(self.stale) if self.stale else None
-        return RosMonitor(bind(spec), period=period, time=self.time, stale=stale)
+        return RosMonitor(bind(spec, self.verdict or None), period=period, time=self.time, stale=stale)
 
     def _duration(self, text: str) -> str:
         """Return a duration with its unit: ``--unit`` is that of a plain number, as in the paper's listing 5.
@@ -97,6 +105,12 @@ def add_options(made: argparse.ArgumentParser) -> None:
         "--stale",
         metavar="DURATION",
         help="how long a topic may be silent; 0: for ever (default: ten periods, in dense time 5 s)",
+    )
+    made.add_argument(
+        "--verdict",
+        metavar=f"{{{','.join(VERDICTS)}}}",
+        help="delayed: robustness and verdict of every sample, one horizon later; interval: bounds and verdict at "
+        "the start of the trace, whatever is still to come (default: interval for unbounded future, else delayed)",
     )
 
 

@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 from collections import deque
+from dataclasses import replace
 from fractions import Fraction
-from typing import TYPE_CHECKING, NamedTuple, TypeAlias
+from typing import TYPE_CHECKING
 
 from rtamt.engine.dense.monitor import DenseMonitor
 from rtamt.engine.discrete.monitor import Monitor
 from rtamt.engine.online import Watched
-from rtamt.errors import SpecificationError
+from rtamt.errors import SpecificationError, UsageError
 from rtamt.language.formula import variables
-from rtamt.rewrite.check import always_has_a_value
+from rtamt.rewrite.check import always_has_a_value, unbounded_future
 from rtamt.rewrite.horizon import horizon
+from rtamt.ros.binding import INTERVAL
+from rtamt.ros.watch import HELD, Robustness, SampledWatch, Verdict, Watch
 from rtamt.signals.dense import Dense
 from rtamt.signals.discrete import Discrete
 from rtamt.signals.ticks import NANOSECOND
@@ -22,33 +25,7 @@ if TYPE_CHECKING:
     from collections.abc import Container, Mapping, Sequence
 
     from rtamt.ros.binding import Output
-
-
-class Robustness(NamedTuple):
-    """The robustness of an output's pastified formula at ``stamp`` (nanoseconds)."""
-
-    output: Output
-    stamp: int
-    value: float
-
-
-class Verdict(NamedTuple):
-    """Whether an output's formula held at ``stamp - horizon``.
-
-    ``stamp``: nanoseconds. ``horizon``: seconds. ``satisfied`` is None while that instant lies before
-    the first sample.
-    """
-
-    output: Output
-    stamp: int
-    horizon: float
-    satisfied: bool | None
-
-
-#: The number of messages kept while another topic is silent.
-HELD = 1000
-
-Record: TypeAlias = Robustness | Verdict
+    from rtamt.ros.watch import Record
 
 
 class Standing:
@@ -77,45 +54,41 @@ class Standing:
         self.truth = 0.0
         self.undecided = True
 
-
-class Watch:
-    """Outputs that read the same numbers, in either time domain: one program with shared sub-formulas.
-
-    ``outputs``: as grouped by :func:`group_outputs`. ``topic_of``: from the name of a number to its topic.
-    """
-
-    _monitor: Monitor | DenseMonitor
-
-    def __init__(
-        self, outputs: Sequence[Output], topic_of: Mapping[str, str], period: Fraction | None
-    ) -> None:
-        self.names = variables(outputs[0].specification.formula)
-        self.topics = frozenset(topic_of[name] for name in self.names)
-        self.formulas = tuple(_watched(output, period) for output in outputs)
-        self.standings = tuple(Standing(output, period) for output in outputs)
-        #: Why the last sample was rejected.
-        self.fault: str | None = None
+    @property
+    def text(self) -> str:
+        """What is known of the verdict."""
+        return "satisfied" if self.satisfied else "no verdict yet" if self.satisfied is None else "violated"
 
     @property
-    def samples(self) -> int:
-        """The number of samples (in dense time, of numbers) since the beginning or the last reset."""
-        return self._monitor.samples
+    def facts(self) -> tuple[tuple[str, str], ...]:
+        """What diagnostics show of the output."""
+        return (
+            ("robustness", "none" if self.latest is None else f"{self.latest:.6g}"),
+            ("horizon", f"{self.horizon:.6g} s"),
+        )
 
-    def reset(self) -> None:
-        """Forget all samples."""
-        self._monitor.reset()
-        for standing in self.standings:
-            standing.forget()
+
+def delayed(outputs: Sequence[Output]) -> list[Output]:
+    """Return outputs as dense time has them; unbounded future is refused later, with its place."""
+    for output in outputs:
+        if output.early and unbounded_future(output.specification.formula) is None:
+            raise UsageError(
+                f"'{output.name}': bounds at the start of the trace need discrete time: leave out the verdict "
+                f"{INTERVAL}, or dense time"
+            )
+    return [replace(output, early=False) if output.early else output for output in outputs]
 
 
 def group_outputs(outputs: Sequence[Output]) -> list[list[Output]]:
-    """Return the outputs in groups that one program can monitor.
+    """Return the outputs whose robustness is reported in groups that one program can monitor.
 
     The outputs of a group read the same numbers, so that they begin and end together. An output that may
     be undefined at a sample, such as the logarithm of -1, is a group by itself: it must not stop the others.
     """
     groups: dict[object, list[Output]] = {}
     for output in outputs:
+        if output.early:
+            continue
         formula = output.specification.formula
         key = frozenset(variables(formula)) if always_has_a_value(formula) else output.name
         groups.setdefault(key, []).append(output)
@@ -136,84 +109,29 @@ def _watched(output: Output, period: Fraction | None) -> tuple[Watched, Watched]
     )
 
 
-class DiscreteWatch(Watch):
-    """Samples one period apart, each with the latest message of every topic at its instant.
-
-    The first sample is at the first message of the topic that starts last; ``due`` is the instant of the
-    next sample, None before the first. Messages wait until the sample at their instant has been taken, so that
-    no sample uses a newer message, as ``Trace.resample`` does for a bag.
-    """
+class DiscreteWatch(SampledWatch):
+    """Outputs whose robustness is reported with every sample, from one program with shared sub-formulas."""
 
     def __init__(self, outputs: Sequence[Output], topic_of: Mapping[str, str], period: Fraction) -> None:
         super().__init__(outputs, topic_of, period)
+        self.formulas = tuple(_watched(output, period) for output in outputs)
+        self.standings: tuple[Standing, ...] = tuple(Standing(output, period) for output in outputs)
         first, *_ = every = [watched for pair in self.formulas for watched in pair]
         backend = outputs[0].specification.backend
         self._monitor: Monitor = Monitor(
             first.formula, Discrete(period), text=first.text, backend=backend, watch=every
         )
-        self._step = int(period / NANOSECOND)
-        self.due: int | None = None
-        self._channels = {topic: _Channel() for topic in self.topics}
-        self._earliest = 0  # no sample is earlier
 
-    def hold(self, topic: str, instant: int, values: Mapping[str, float]) -> None:
-        """Keep a message until the sample at its instant is due."""
-        mine = {name: values[name] for name in self.names if name in values}
-        self._channels[topic].hold(instant, mine)
-        if self.due is None:
-            self._begin()
+    @property
+    def samples(self) -> int:
+        """The number of samples since the beginning or the last reset."""
+        return self._monitor.samples
 
-    def _begin(self) -> None:
-        firsts = [channel.first for channel in self._channels.values()]
-        known = [first for first in firsts if first is not None]
-        if len(known) == len(firsts):
-            self.due = max(*known, self._earliest)
-            return
-        for channel in self._channels.values():
-            channel.trim()
-
-    def complete(self) -> int | None:
-        """Return the instant up to which every topic has messages; None before that."""
-        latest = [channel.latest for channel in self._channels.values()]
-        known = [instant for instant in latest if instant is not None]
-        return min(known) if len(known) == len(latest) else None
-
-    def sample(self, until: int) -> tuple[int, Mapping[str, float]] | None:
-        """Return the instant and the values of the next sample; None if it is later than ``until``."""
-        if self.due is None or self.due > until:
-            return None
-        due, self.due = self.due, self.due + self._step
-        values: dict[str, float] = {}
-        for channel in self._channels.values():
-            values |= channel.at(due)
-        return due, values
-
-    def drop(self, topic: str) -> None:
-        """Restart when a stale topic resumes, since its old messages are no current values."""
-        self._channels[topic] = _Channel()
-        self._earliest = self.due or self._earliest
-        self.due = None
-        self.reset()
-
-    def leap(self, now: int) -> None:
-        """Restart at ``now``, with the existing messages."""
-        self._earliest, self.due = now, None
-        self.reset()
-        self._begin()
-
-    def clock_begins(self, now: int) -> None:
-        """Treat messages before the simulated clock was set as arriving ``now``."""
-        if self.due:  # samples were taken at 0, so that it was a valid instant
-            return
-        for channel in self._channels.values():
-            channel.move(now)
-        self.leap(now)
-
-    def forget(self) -> None:
-        """Be as before the first message."""
-        self._channels = {topic: _Channel() for topic in self.topics}
-        self._earliest, self.due = 0, None
-        self.reset()
+    def reset(self) -> None:
+        """Forget all samples."""
+        self._monitor.reset()
+        for standing in self.standings:
+            standing.forget()
 
     def take(
         self, stamp: int, values: Mapping[str, float], wanted: Container[str] | None = None
@@ -249,52 +167,13 @@ class DiscreteWatch(Watch):
             standing.satisfied = self._held(standing, truth)
 
 
-class _Channel:
-    """The messages of a topic for one group: the current one, and those that wait for their sample."""
-
-    __slots__ = ("_held", "_since", "_waiting", "latest")
-
-    def __init__(self) -> None:
-        self._since: int | None = None
-        self._held: Mapping[str, float] = {}
-        self._waiting: deque[tuple[int, Mapping[str, float]]] = deque()
-        #: The time of the last message.
-        self.latest: int | None = None
-
-    @property
-    def first(self) -> int | None:
-        """The earliest instant with a value."""
-        return self._waiting[0][0] if self._since is None and self._waiting else self._since
-
-    def hold(self, instant: int, values: Mapping[str, float]) -> None:
-        """Keep a message; times never decrease, even if timestamps and arrivals are mixed."""
-        self.latest = instant if self.latest is None else max(self.latest, instant)
-        self._waiting.append((self.latest, values))
-
-    def at(self, instant: int) -> Mapping[str, float]:
-        """Return the value at an instant; instants must increase from call to call."""
-        while self._waiting and self._waiting[0][0] <= instant:
-            self._since, self._held = self._waiting.popleft()
-        return self._held
-
-    def trim(self) -> None:
-        """Drop all but so many messages while another topic is silent."""
-        while len(self._waiting) > HELD:
-            self._since, self._held = self._waiting.popleft()
-
-    def move(self, now: int) -> None:
-        """Treat all messages as arriving ``now``."""
-        while self._waiting:
-            self._since, self._held = self._waiting.popleft()
-        if self._since is not None:
-            self._since = self.latest = now
-
-
 class DenseWatch(Watch):
     """Samples at the times in the messages' headers, each topic on its own time base."""
 
     def __init__(self, outputs: Sequence[Output], topic_of: Mapping[str, str]) -> None:
-        super().__init__(outputs, topic_of, None)
+        super().__init__(outputs, topic_of)
+        self.formulas = tuple(_watched(output, None) for output in outputs)
+        self.standings: tuple[Standing, ...] = tuple(Standing(output, None) for output in outputs)
         first, *_ = every = [watched for pair in self.formulas for watched in pair]
         backend = outputs[0].specification.backend
         # Timestamps and ticks are both integer nanoseconds: results need no conversion.
@@ -378,9 +257,16 @@ class DenseWatch(Watch):
         """Be as before the first message."""
         self.reset()
 
+    @property
+    def samples(self) -> int:
+        """The number of numbers since the beginning or the last reset."""
+        return self._monitor.samples
+
     def reset(self) -> None:
         """Forget all samples."""
-        super().reset()
+        self._monitor.reset()
+        for standing in self.standings:
+            standing.forget()
         self._held.clear()
         self._points = []
         self._start = None

@@ -5,18 +5,20 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from rtamt.ros.binding import MessageType
+from rtamt.ros.early_watch import Bounds
 from rtamt.ros.fields import write
 from rtamt.ros.message_definitions import SATISFIED, UNKNOWN, VIOLATED
-from rtamt.ros.output_group import Robustness
+from rtamt.ros.watch import Robustness
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable, Mapping, Sequence
 
-    from rtamt.ros.binding import Binding
+    from rtamt.ros.binding import Binding, Output
     from rtamt.ros.diagnostics import Condition, Level
-    from rtamt.ros.output_group import Record
+    from rtamt.ros.watch import Record
 
 VERDICT = MessageType("rtamt_msgs.msg", "Verdict")
+BOUNDS = MessageType("rtamt_msgs.msg", "Bounds")
 DIAGNOSTICS = "/diagnostics"
 _VERDICTS = {None: UNKNOWN, True: SATISFIED, False: VIOLATED}
 
@@ -37,22 +39,26 @@ class Publisher:
     ) -> None:
         self.classes = binding.check(load)
         self._verdict = load(VERDICT)
+        self._bounds = load(BOUNDS)
         self._stamp = stamp
         self._level = level
         self._load = load
-        #: From every robustness and verdict topic to its class.
+        #: From every topic that is published to its class.
         self.topics: Mapping[str, Any] = {
-            topic: cls
-            for output in binding.outputs
-            for topic, cls in (
-                (output.topic, self.classes[output.type]),
-                (output.verdicts, self._verdict),
-            )
+            topic: cls for output in binding.outputs for topic, cls in self._topics(output)
         }
+
+    def _topics(self, output: Output) -> Sequence[tuple[str, Any]]:
+        if output.early:
+            return [(output.bounds, self._bounds)]
+        return [(output.topic, self.classes[output.type]), (output.verdicts, self._verdict)]
 
     def topic(self, record: Record) -> str:
         """Return the topic of a record."""
-        return record.output.topic if isinstance(record, Robustness) else record.output.verdicts
+        output = record.output
+        if isinstance(record, Bounds):
+            return output.bounds
+        return output.topic if isinstance(record, Robustness) else output.verdicts
 
     def message(self, record: Record) -> Any:
         """Return the message of a record, with its timestamp in the header."""
@@ -61,6 +67,11 @@ class Publisher:
             write(message, record.output.path, record.value)
             if not hasattr(message, "header"):
                 return message
+        elif isinstance(record, Bounds):
+            message = self._bounds()
+            message.name, message.lower, message.upper = record.output.name, record.lower, record.upper
+            message.verdict = _VERDICTS[record.satisfied]
+            message.decided_at = record.decided_at or 0
         else:
             message = self._verdict()
             message.name, message.horizon = record.output.name, record.horizon

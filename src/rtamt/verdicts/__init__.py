@@ -21,6 +21,7 @@ discrete_interval     the monitor of bounds in discrete time
 dense_interval        the monitor of bounds in dense time
 caller_clock          times of early monitors in the format of the caller
 early_check           whether a recording can no longer change a verdict (``rtamt check --early``)
+at_start              bounds and verdict at the start of the trace
 standalone            compile a requirement to a program that runs without Python
 ====================  =================================================================
 """

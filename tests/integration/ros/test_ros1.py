@@ -15,6 +15,7 @@ from tests.integration.ros.processes import wait_for
 LISTING_8 = (Path(__file__).parents[3] / "ros/rtamt4ros/specs/spec.stl").read_text()
 FLOAT = "rtamt_msgs/FloatStamped"
 VERDICT = "rtamt_msgs/Verdict"
+BOUNDS = "rtamt_msgs/Bounds"
 DIAGNOSTICS = "diagnostic_msgs/DiagnosticArray"
 LEVELS = ("OK", "WARN", "ERROR", "STALE")
 UNKNOWN, SATISFIED, VIOLATED = 0, 1, 2
@@ -297,3 +298,23 @@ def test_a_specification_that_cannot_be_watched_ends_the_node_with_a_sentence(ro
     wait_for(lambda: node.popen.poll() is not None, "the node's end")
     assert node.stop() == 2
     assert "Traceback" not in node.output
+
+
+def test_bounds_and_verdict_at_the_start_of_the_trace(ros, puppet):
+    puppet.ask(do="subscribe", topic="rtamt/rob/bounds", kind=BOUNDS)
+    text = LISTING_8[: LISTING_8.index("rob.value =")] + "rob.value = always(req.value >= 3)"
+    ros.monitor(text, "--period", "100ms", "--stale", "0")
+    connected(puppet, "rtamt/req", "rtamt/rob/bounds")
+
+    def last(verdict):
+        return puppet.wait_for(
+            "rtamt/rob/bounds", lambda messages: messages and messages[-1]["verdict"] == verdict
+        )[-1]
+
+    publish(puppet, "rtamt/req", 5)
+    assert (last(UNKNOWN)["upper"], last(UNKNOWN)["decided_at"]) == (2.0, 0)
+    publish(puppet, "rtamt/req", 1)
+    found = last(VIOLATED)
+    assert (found["name"], found["upper"]) == ("rob.value", -2.0)
+    assert found["decided_at"] > 0
+    said(puppet, "violated")

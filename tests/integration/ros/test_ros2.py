@@ -15,6 +15,7 @@ from tests.integration.ros.processes import Process, Puppet, free_port, stop_all
 
 FLOAT = "rtamt_msgs/msg/FloatStamped"
 VERDICT = "rtamt_msgs/msg/Verdict"
+BOUNDS = "rtamt_msgs/msg/Bounds"
 SATISFIED = 1
 LOOPBACK = """<CycloneDDS><Domain><General><Interfaces><NetworkInterface name="lo" multicast="false"/></Interfaces>
 <AllowMulticast>false</AllowMulticast></General>
@@ -184,3 +185,35 @@ def test_a_type_that_is_not_known_is_said(dds):
     node.wait_for_output("rtamt: unknown distribution 'hummble' of ROS 2; did you mean 'humble'? ")
     wait_for(lambda: node.popen.poll() is not None, "the end of the command")
     assert node.stop() == 2
+
+
+def test_bounds_and_verdict_at_the_start_of_the_trace_on_dds_alone(dds, tmp_path):
+    (tmp_path / "spec.stl").write_text(
+        """
+        from rtamt_msgs.msg import FloatStamped
+        input FloatStamped req  output FloatStamped rob
+        rob.value = always(req.value >= 2)
+        """
+    )
+    puppet = dds.puppet()
+    puppet.ask(do="advertise", topic="rtamt/req", kind=FLOAT)
+    puppet.ask(do="subscribe", topic="rtamt/rob/bounds", kind=BOUNDS)
+    dds.node("--period", "100ms", "--stale", "0")
+    for topic in ("rtamt/req", "rtamt/rob/bounds"):
+        wait_for(lambda topic=topic: puppet.ask(do="peers", topic=topic)["answer"], f"the node on {topic}")
+
+    def send(value):
+        puppet.ask(do="publish", topic="rtamt/req", fields={"value": value})
+
+    def last(verdict):
+        return puppet.wait_for(
+            "rtamt/rob/bounds", lambda messages: messages and messages[-1]["verdict"] == verdict
+        )[-1]
+
+    send(5.0)
+    assert (last(0)["upper"], last(0)["decided_at"]) == (3.0, 0)
+    send(-1.0)
+    found = last(2)
+    assert (found["name"], found["upper"]) == ("rob.value", -3.0)
+    stamp = found["header"]["stamp"]
+    assert 0 < found["decided_at"] <= stamp["sec"] * 10**9 + stamp["nanosec"]

@@ -10,9 +10,10 @@ from rtamt.ros import RosMonitor, bind
 from tests.unit.ros.messages import monitor, numbers
 
 
-def test_unbounded_future_is_refused_with_the_place():
+@pytest.mark.parametrize(("settings", "verdict"), [({"time": "dense"}, None), ({}, "delayed")])
+def test_unbounded_future_is_refused_with_the_place(settings, verdict):
     with pytest.raises(BoundError) as caught:
-        monitor("rob.value = always(req.value >= 0)")
+        monitor("rob.value = always(req.value >= 0)", verdict=verdict, **settings)
     assert str(caught.value).startswith("'rob.value': ")
     assert "^^^" in str(caught.value)
 

@@ -1,0 +1,110 @@
+"""Outputs that are monitored before their horizon: bounds and verdict at the start of the trace."""
+
+from __future__ import annotations
+
+from math import inf
+from types import SimpleNamespace
+
+import pytest
+
+import rtamt
+from rtamt.errors import UsageError
+from rtamt.ros import Bounds, bind
+from rtamt.ros.diagnostics import Level
+from rtamt.ros.message_definitions import SATISFIED, UNKNOWN, VIOLATED
+from rtamt.ros.publisher import Publisher
+from tests.unit.ros.messages import HEAD, SECOND, message, monitor, numbers, said
+
+
+def follow(watched, values):
+    """Feed a value a second from 1 s on; return the records."""
+    records = []
+    for i, value in enumerate(values, 1):
+        records += watched.message("/req", message(value, at=i), i * SECOND)
+    return records
+
+
+def test_unbounded_future_is_watched_at_the_start_of_the_trace():
+    watched = monitor("rob.value = always(req.value >= 0)")
+    records = follow(watched, [4, -1, 5])
+    assert [(r.stamp // SECOND, r.lower, r.upper, r.satisfied, r.decided_at) for r in records] == [
+        (1, -inf, 4.0, None, None),
+        (2, -inf, -1.0, False, 2 * SECOND),
+        (3, -inf, -1.0, False, 2 * SECOND),
+    ]
+    (condition,) = watched.conditions(3 * SECOND)
+    assert (condition.level, condition.message) == (Level.ERROR, "violated")
+    assert ("decided", "at 2 s") in condition.values
+
+
+def test_what_can_no_longer_be_violated_is_in_order():
+    watched = monitor("rob.value = eventually(req.value >= 0)")
+    assert watched.conditions(0)[0].message == "waiting for the first message on /req"
+    follow(watched, [-1])
+    assert watched.conditions(SECOND)[0].message == "open"
+    follow(watched, [-1, 3])
+    condition = watched.conditions(2 * SECOND)[0]
+    assert (condition.level, condition.message) == (Level.OK, "can no longer be violated")
+
+
+def test_bounded_future_is_watched_at_the_start_where_that_is_asked_for():
+    watched = monitor("rob.value = eventually[0,1](req.value >= 0)", verdict="interval")
+    assert [(r.lower, r.upper) for r in follow(watched, [-1, 2, 5])] == [(-1, inf), (2, 2), (2, 2)]
+
+
+def test_early_and_delayed_outputs_are_watched_side_by_side():
+    watched = monitor("rob.value = always(req.value >= 0); all.value = historically(req.value >= 0)")
+    records = follow(watched, [4, -1])
+    assert numbers(records) == [(1, 4), (2, -1)]
+    assert [r.satisfied for r in records if isinstance(r, Bounds)] == [None, False]
+
+
+def test_a_trace_that_begins_anew_has_a_new_verdict():
+    watched = monitor("rob.value = always(req.value >= 0)", stale="2s")
+    follow(watched, [4, -1])
+    watched.tick(20 * SECOND)
+    records = watched.message("/req", message(3, at=20), 20 * SECOND)
+    records += watched.message("/req", message(3, at=21), 21 * SECOND)
+    assert [(r.stamp // SECOND, r.satisfied) for r in records] == [(20, None), (21, None)]
+
+
+def test_a_sample_that_cannot_be_used_begins_anew():
+    watched = monitor("rob.value = always(ln(req.value) >= 0)")
+    follow(watched, [4, -1])
+    assert any("samples cannot be used" in sentence for sentence in said(watched))
+    assert [r.satisfied for r in watched.message("/req", message(5, at=3), 3 * SECOND)] == [None]
+
+
+def test_only_topics_that_somebody_hears_have_records():
+    watched = monitor("rob.value = always(req.value >= 0)")
+    watched.wanted = {"rtamt/rob"}
+    assert follow(watched, [4]) == []
+    watched.wanted = {"rtamt/rob/bounds"}
+    assert len(watched.message("/req", message(4, at=2), 2 * SECOND)) == 1
+
+
+def test_bounds_are_messages_on_a_topic_of_their_own():
+    watched = monitor("rob.value = always(req.value >= 0)")
+
+    def load(kind):
+        fields = {"value": 0.0} if kind.name == "FloatStamped" else {}
+        return lambda: SimpleNamespace(header=SimpleNamespace(stamp=0), **fields)
+
+    outbox = Publisher(watched.binding, load, lambda stamp: stamp)
+    assert list(outbox.topics) == ["rtamt/rob/bounds"]
+    sent = [outbox.message(record) for record in follow(watched, [4, -1])]
+    assert [(m.header.stamp, m.name, m.lower, m.upper, m.verdict, m.decided_at) for m in sent] == [
+        (SECOND, "rob.value", -inf, 4.0, UNKNOWN, 0),
+        (2 * SECOND, "rob.value", -inf, -1.0, VIOLATED, 2 * SECOND),
+    ]
+    assert SATISFIED != VIOLATED
+
+
+def test_dense_time_has_no_bounds_at_the_start():
+    with pytest.raises(UsageError, match="need discrete time: leave out the verdict interval, or dense time"):
+        monitor("rob.value = req.value >= 0", time="dense", verdict="interval")
+
+
+def test_unknown_verdict_is_refused():
+    with pytest.raises(UsageError, match="the verdict is 'soon'; choose from delayed, interval"):
+        bind(rtamt.parse(HEAD + "rob.value = req.value >= 0"), "soon")
