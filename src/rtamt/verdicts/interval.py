@@ -33,7 +33,8 @@ CORRECTIONS = ("reject", "replay")
 class Change(NamedTuple):
     """The bounds that samples from ``begin`` to ``end`` have now, which changed; ``final`` if they stay.
 
-    ``retracted``: whether they are outside what they were, after a correction.
+    In dense time: instants from ``begin`` up to, and without, ``end``. ``retracted``: whether the bounds are
+    outside what they were, after a correction.
     """
 
     begin: Any
