@@ -191,8 +191,8 @@ TASKS: dict[str, tuple[str, tuple[str, ...]]] = {
     "Verdicts": (
         "What the monitors of the [verdict modes](../how-to/early-verdicts.md) report.",
         (
-            "rtamt.verdicts.eager.EagerMonitor", "Verdict", "rtamt.verdicts.dense_early.DenseEagerMonitor", "VerdictRun",
-            "rtamt.verdicts.interval.IntervalMonitor", "rtamt.verdicts.interval.Change", "Interval",
+            "rtamt.verdicts.eager.EagerMonitor", "Verdict", "rtamt.verdicts.dense_early.DenseEagerMonitor",
+            "VerdictRun", "rtamt.verdicts.interval.IntervalMonitor", "rtamt.verdicts.interval.Change", "Interval",
         ),
     ),
     "Explain": ("", ("Result.explain", "rtamt.explain.report.Explanation")),
