@@ -26,6 +26,17 @@ def nearest_file(path: str) -> str:
     return f"; did you mean '{os.path.join(folder, close[0])}'?" if close else ""
 
 
+def same_file(first: str, second: str) -> bool:
+    """Return whether two paths lead to one regular file, which need not exist yet."""
+    try:
+        known, other = _status(first), _status(second)
+    except (OSError, ValueError):  # texts that are no paths
+        return False
+    if known is None or other is None:
+        return known is other and os.path.realpath(first) == os.path.realpath(second)
+    return stat.S_ISREG(known.st_mode) and os.path.samestat(known, other)
+
+
 @contextmanager
 def replacing(path: str | os.PathLike[str]) -> Iterator[str]:
     """Yield a temporary file in the folder of ``path``, which replaces ``path`` on success.

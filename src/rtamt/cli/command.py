@@ -21,7 +21,7 @@ from rtamt.cli.language import add_language_option, read_language
 from rtamt.cli.terminal import say
 from rtamt.engine.native import core
 from rtamt.errors import SpecificationError, StlError, UsageError, did_you_mean, readable
-from rtamt.files import nearest_file, write_bytes, write_text
+from rtamt.files import nearest_file, same_file, write_bytes, write_text
 from rtamt.language.lexer import NAME
 from rtamt.language.lint import CODES
 from rtamt.language.units import UNITS, decimal
@@ -68,6 +68,10 @@ class Help(argparse.HelpFormatter):
         return "\n\n".join(p if "\n " in p else textwrap.fill(p, width) for p in paragraphs)
 
 
+#: How options call a file that they write.
+WRITTEN = "FILE"
+
+
 class Parser(argparse.ArgumentParser):
     """An argument parser whose errors are one sentence, like all others."""
 
@@ -88,7 +92,27 @@ class Parser(argparse.ArgumentParser):
         found, rest = self.parse_known_intermixed_args(marked)
         if rest:
             self.error(f"unexpected argument '{rest[0]}'")
-        return argparse.Namespace(**{name: _unmarked(value) for name, value in vars(found).items()})
+        args = argparse.Namespace(**{name: _unmarked(value) for name, value in vars(found).items()})
+        self._refuse_overwriting(args)
+        return args
+
+    def _refuse_overwriting(self, args: argparse.Namespace) -> None:
+        """Raise :class:`UsageError` if an output file is also read, or written twice."""
+        inputs: list[str] = []
+        outputs: list[tuple[str, str]] = []
+        for action in self._actions:
+            value = getattr(args, action.dest, None)
+            if not action.option_strings:
+                texts = value if isinstance(value, list) else [value]
+                inputs += [text for text in texts if text and os.path.exists(text)]
+            elif action.metavar == WRITTEN and value:
+                outputs.append((action.option_strings[0], value))
+        for number, (option, path) in enumerate(outputs):
+            if any(same_file(text, path) for text in inputs):
+                self.error(f"{option} would overwrite '{path}', which is read: name another file")
+            for other, second in outputs[:number]:
+                if same_file(path, second):
+                    self.error(f"{other} and {option} would both write '{path}': name another file")
 
     def _refuse_unknown(self, argv: Sequence[str]) -> None:
         """Raise :class:`UsageError` at an option that does not exist; argparse names all that it does not know."""

@@ -294,7 +294,7 @@ def _check(requirement: Requirement, trace: str, data: Trace | None, reading: Re
         place = ""
         whole = whole or read_for([spec], trace, reading)
         place = f"{shown(trace)}: "
-        if spec.domain.continuous and whole.start is None:
+        if spec.domain.continuous and any(whole.channel(name).times is None for name in whole):
             raise TraceError(NO_STAMPS)
         whole = on_clock(whole, spec, trace, reading)
         alone = len(spec.requirements) == 1

@@ -210,7 +210,8 @@ def test_in_dense_time_a_variable_has_no_sample_where_its_cell_is_empty(run, wri
         2,
         "",
         "rtamt: 'x' is missing at sample 1 of events.csv, but discrete time needs a value at every sample: "
-        "fill the gap, use dense time (--time dense), or put all on one clock (--resample PERIOD)\n",
+        "fill the gap, hold the value before it (--hold-for DURATION), use dense time (--time dense), or put all on "
+        "one clock (--resample PERIOD)\n",
     )
 
 
@@ -512,3 +513,15 @@ def test_early_reports_name_what_is_known_of_the_robustness(run, write):
     (result,) = json.loads(Path("r.sarif").read_text())["runs"][0]["results"]
     assert result["properties"]["upper"] == -1.0
     assert result["properties"]["robustness"] is None
+
+
+@pytest.mark.parametrize("command", ["check", "explain"])
+def test_a_signal_without_samples_in_dense_time_is_not_reported_as_a_missing_column_of_timestamps(
+    run, command
+):
+    Path("empty.csv").write_text("time,x\n0,nan\n1,nan\n")
+    answer = run(command, "x >= 3", "empty.csv", "--time", "dense", "--skip-nan", "x")
+    assert answer.code == 2
+    assert answer.err.splitlines()[-1] == "rtamt: empty.csv: 'x' has no samples: give at least one"
+    Path("plain.csv").write_text("x\n1\n2\n")
+    assert "needs a column of timestamps" in run(command, "x >= 3", "plain.csv", "--time", "dense").err

@@ -300,7 +300,9 @@ def test_an_empty_cell_in_discrete_time_is_rejected_by_one_sentence_at_every_ent
     (tmp_path / "x.stl").write_text("historically(x >= 0)")
     monkeypatch.chdir(tmp_path)
     expected = MISSING.format(
-        " of log.csv", "use dense time (--time dense), or put all on one clock (--resample PERIOD)"
+        " of log.csv",
+        "hold the value before it (--hold-for DURATION), use dense time (--time dense), or put all on one clock "
+        "(--resample PERIOD)",
     )
     for command in (("check",), ("explain",), ("report", "-o", "r.html"), ("plot", "-o", "p.png")):
         answer = invoke(capsys, monkeypatch, [command[0], "x.stl", "log.csv", *command[1:]])
