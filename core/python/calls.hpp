@@ -8,7 +8,10 @@
 
 #include <nanobind/nanobind.h>
 
+#include <cstdint>
 #include <memory>
+#include <stdexcept>
+#include <utility>
 #include <vector>
 
 namespace rtamt::python {
@@ -44,5 +47,22 @@ class Calls {
     std::vector<std::unique_ptr<Driven, Drop>> driven_;
     std::vector<CallSite> sites_;
 };
+
+// Calls `work`; what a Python operator raised when it was made goes before what the core threw.
+template <class Work>
+auto making(Calls& calls, Work&& work) {
+    try {
+        return std::forward<Work>(work)();
+    } catch (const std::runtime_error&) {
+        calls.rethrow();
+        throw;
+    }
+}
+
+[[nodiscard]] inline Program parse(const nb::bytes& bytes, Domain domain = Domain::discrete,
+                                   std::vector<CallSite> calls = {}) {
+    return Program::parse({static_cast<const std::uint8_t*>(bytes.data()), bytes.size()}, domain,
+                          std::move(calls));
+}
 
 } // namespace rtamt::python

@@ -194,7 +194,10 @@ bool DenseMonitor::read(PyObject* time, const Values& values) noexcept {
     own.clear();
     // A time of any other kind may have run Python code.
     const bool plain = PyFloat_Check(time) || PyLong_CheckExact(time);
-    const char* wrong = plain ? read_values(values, PlainNumbers{}, own) : not_plain;
+    const char* wrong = not_plain;
+    if (plain) {
+        wrong = usage_.briefly([&] { return read_values(values, PlainNumbers{}, own); });
+    }
     if (wrong != nullptr && wrong != not_plain) return usage_.refuse(wrong) != nullptr;
     if (wrong != nullptr) {
         Row row(row_.size());

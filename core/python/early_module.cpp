@@ -1,5 +1,6 @@
 // The class EarlyMonitor of the extension module.
 #include "early_monitor.hpp"
+#include "locked_class.hpp"
 
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>
@@ -38,8 +39,8 @@ std::vector<early::Item> items_of(const std::vector<EarlyItem>& items) {
 } // namespace
 
 void add_early_monitor(const nb::module_& module, const Exceptions& exceptions) {
-    nb::class_<EarlyMonitor>(module, "EarlyMonitor",
-                             "Verdicts or bounds before the horizon, in discrete time.")
+    LockedClass<EarlyMonitor>(module, "EarlyMonitor",
+                              "Verdicts or bounds before the horizon, in discrete time.")
         .def(
             "__init__",
             [exceptions](EarlyMonitor* self, const std::vector<EarlyNode>& nodes,

@@ -18,10 +18,16 @@ namespace {
     return static_cast<std::size_t>(program.latest()) + 1;
 }
 
-// What a list holds: where reading numbers runs Python code that may change the list, kept alive.
+// What a list holds, kept alive where the list may change meanwhile: reading numbers that are not
+// plain runs Python code, and without a GIL other threads run at any time.
 template <bool plain>
 [[nodiscard]] auto held(PyObject* object) noexcept {
-    if constexpr (plain) {
+#ifdef NB_FREE_THREADED
+    constexpr bool stays = false;
+#else
+    constexpr bool stays = plain;
+#endif
+    if constexpr (stays) {
         return nb::handle(object);
     } else {
         return nb::borrow(object);
@@ -62,7 +68,8 @@ PyObject* Monitor::sample(const Read& read) noexcept {
             std::ranges::copy(previous_, row_.begin());
         }
     }
-    if (const char* wrong = read(PlainNumbers{}, time, places)) [[unlikely]] {
+    const char* wrong = usage_.briefly([&] { return read(PlainNumbers{}, time, places); });
+    if (wrong != nullptr) [[unlikely]] {
         return wrong == not_plain ? sample_carefully<timed, keeps>(read) : usage_.refuse(wrong);
     }
     if (timed && !clock_.accepts(time)) return usage_.refuse("time");
@@ -117,6 +124,7 @@ PyObject* Monitor::update_pairs(PyObject* time, PyObject* pairs) noexcept {
             std::size_t guess = 0;
             for (Py_ssize_t i = 0; i < PySequence_Fast_GET_SIZE(pairs); ++i) {
                 const auto pair = held<plain>(PySequence_Fast_GET_ITEM(pairs, i));
+                const nb::ft_object_guard guard(pair);
                 if ((!PyTuple_Check(pair.ptr()) && !PyList_Check(pair.ptr())) ||
                     PySequence_Fast_GET_SIZE(pair.ptr()) != 2) {
                     return "pairs";

@@ -2,6 +2,7 @@
 
 #include "dense_monitor.hpp"
 #include "early_monitor.hpp"
+#include "locked_class.hpp"
 #include "method_table.hpp"
 #include "monitor.hpp"
 
@@ -69,9 +70,9 @@ PyObject* sample(PyObject* self, const char* method, std::span<PyObject* const> 
                  const Named& named, Take&& take) noexcept {
     const auto* online = self_of<Online<Backend>>(self);
     if (online == nullptr) return nullptr;
-    if (Backend* native = online->native(); native != nullptr) [[likely]] {
-        const nb::object held = online->backend(); // reading a value may connect another one
-        const auto [taken, result] = take(*native);
+    const auto [native, held] = online->connected(self);
+    if (native != nullptr) [[likely]] {
+        const auto [taken, result] = take(*native, held);
         if (taken && (result != nullptr || !goes_on(self))) return result;
     }
     return carefully(self, method, positional, named);
@@ -87,17 +88,23 @@ PyObject* update(PyObject* self, PyObject* const* args, Py_ssize_t count,
                  PyObject* names) noexcept {
     const std::span positional(args, static_cast<std::size_t>(count));
     const Named named{names, args + count};
-    return sample<Backend>(self, "_update_carefully", positional, named, [&](Backend& native) {
-        return count == 1 ? Taken{true, native.update(args[0], named)} : Taken{false};
-    });
+    return sample<Backend>(self, "_update_carefully", positional, named,
+                           [&](Backend& native, nb::handle lock) {
+                               if (count != 1) return Taken{false};
+                               const nb::ft_object_guard guard(lock);
+                               return Taken{true, native.update(args[0], named)};
+                           });
 }
 
 PyObject* step(PyObject* self, PyObject* const* args, Py_ssize_t count, PyObject* names) noexcept {
     const std::span positional(args, static_cast<std::size_t>(count));
     const Named named{names, args + count};
-    return sample<Monitor>(self, "_step_carefully", positional, named, [&](Monitor& native) {
-        return names == nullptr ? Taken{true, native.step(positional)} : Taken{false};
-    });
+    return sample<Monitor>(self, "_step_carefully", positional, named,
+                           [&](Monitor& native, nb::handle lock) {
+                               if (names != nullptr) return Taken{false};
+                               const nb::ft_object_guard guard(lock);
+                               return Taken{true, native.step(positional)};
+                           });
 }
 
 PyMethodDef methods[] = {
@@ -149,7 +156,7 @@ PyType_Slot* slots(PyMethodDef* table) {
 
 template <class Backend>
 void add(nb::module_& module, const char* name, const char* doc, PyMethodDef* table) {
-    nb::class_<Online<Backend>>(module, name, nb::type_slots(slots<Backend>(table)), doc)
+    LockedClass<Online<Backend>>(module, name, nb::type_slots(slots<Backend>(table)), doc)
         .def(nb::init<>())
         .def_prop_rw("_backend", &Online<Backend>::backend, &Online<Backend>::connect,
                      nb::for_setter(nb::arg("backend").none()), "What takes the samples.");

@@ -25,8 +25,16 @@ class Online {
         backend_ = std::move(backend);
     }
 
-    // Null where Python has to take the sample.
-    [[nodiscard]] Backend* native() const noexcept { return native_; }
+    // The compiled monitor, null where Python has to take the sample, and the object that holds it:
+    // reading a value may connect another one.
+    struct Connected {
+        Backend* native;
+        nb::object held;
+    };
+    [[nodiscard]] Connected connected([[maybe_unused]] nb::handle self) const noexcept {
+        const nb::ft_object_guard guard(self);
+        return {native_, backend_};
+    }
 
     int traverse(visitproc visit, void* arg) const {
         Py_VISIT(backend_.ptr());

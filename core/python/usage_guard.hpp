@@ -1,8 +1,9 @@
 // Who may use a monitor: one thread at a time, and nobody brings samples after the end.
 //
-// A thread that is inside may have given up the GIL, or be in a Python operator that calls back.
-// Values are read before the guard is asked: reading them may run Python code, too. What is
-// refused is refused with a Python exception set.
+// A thread that is inside may have released the GIL, or run a Python operator that calls back. All
+// methods of a monitor hold the GIL or, without one, a critical section of the monitor's object
+// (locked_class.hpp), which protects the flag. Values are read before the guard is asked: reading
+// them may run Python code, too. A rejected call has a Python exception set.
 #pragma once
 
 #include "arrays.hpp"
@@ -55,7 +56,7 @@ class UsageGuard {
         return without_gil(count, std::forward<Work>(work));
     }
 
-    // The same at once, with the GIL.
+    // The same with the GIL. A critical section may be suspended even where no Python code runs.
     template <class Work>
     auto briefly(Work&& work) {
         const Closed closed(busy_);

@@ -7,8 +7,11 @@ is an error of the library's.
 from __future__ import annotations
 
 import copy
+import os
 import pickle
+import subprocess
 import sys
+import sysconfig
 import threading
 from contextlib import suppress
 from itertools import count, product
@@ -383,3 +386,40 @@ def test_threads_that_share_a_specification_of_rtamts_classes_never_mix_their_sa
     assert set(taken) == {0.0}
     assert {value for _, value in points} == {0.0}
     assert spec._stream.monitor.samples == len(taken)
+
+
+@pytest.mark.usefixtures("hasty")
+def test_lists_that_another_thread_changes_are_read_pair_by_pair() -> None:
+    spec = rtamt.StlDiscreteTimeSpecification()
+    for name in ("x", "y"):
+        spec.declare_var(name, "float")
+    spec.spec = "x - y"
+    spec.parse()
+    spec.update(0, [("x", 1.0), ("y", 1.0)])
+    pair: list[Any] = ["x", 1.0]
+    sample: list[Any] = [pair, ["y", 1.0]]
+    clock = count(1)
+    taken: list[float] = []
+
+    def work(k: int) -> None:
+        for i in range(1000):
+            if k == 1:
+                pair[1] = float(2 + i % 2)
+                sample.append(["y", float(2 + i % 2)])
+                sample.pop()
+            else:
+                with suppress(rtamt.RTAMTException):
+                    taken.append(spec.update(next(clock), sample))
+
+    at_once(work)
+    assert taken
+    assert set(taken) <= {x - y for x in (1.0, 2.0, 3.0) for y in (1.0, 2.0, 3.0)}
+
+
+def test_the_core_leaves_the_gil_of_a_free_threaded_python_off() -> None:
+    code = "import sys, rtamt.engine._core; print(getattr(sys, '_is_gil_enabled', lambda: True)())"
+    environment = {name: value for name, value in os.environ.items() if name != "PYTHON_GIL"}
+    ran = subprocess.run(
+        [sys.executable, "-c", code], env=environment, capture_output=True, text=True, check=True
+    )
+    assert ran.stdout.strip() == str(not sysconfig.get_config_var("Py_GIL_DISABLED"))

@@ -1,0 +1,211 @@
+#include "offline.hpp"
+
+#include "../dense/executor.hpp"
+#include "../dense/scan.hpp"
+#include "../discrete/executor.hpp"
+#include "../discrete/scan.hpp"
+#include "../program/program.hpp"
+#include "../values/interval.hpp"
+#include "arrays.hpp"
+#include "calls.hpp"
+#include "dense_monitor.hpp"
+
+#include <nanobind/ndarray.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
+#include <nanobind/stl/string_view.h>
+#include <nanobind/stl/vector.h>
+
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace rtamt::python {
+
+using dense::EventList;
+using discrete::Executor;
+
+namespace {
+
+std::vector<Result> evaluate(const nb::bytes& bytes, const std::vector<Column>& columns,
+                             std::size_t count, const nb::list& calls,
+                             const Exceptions& exceptions) {
+    Calls held(calls);
+    Program program = parse(bytes, Domain::discrete, held.sites());
+    const auto pointers = pointers_of(columns, program.inputs, count);
+    Results results;
+    for (std::size_t i = 0; i < program.outputs.size(); ++i)
+        results.add(count);
+    const auto failure = making(held, [&] {
+        return without_gil(count, [&] {
+            return Executor::evaluate(std::move(program), pointers, count, results.pointers());
+        });
+    });
+    if (failure) {
+        raise_undefined(exceptions, held, failure->instruction, failure->sample, failure->fault);
+    }
+    return results.hand_over();
+}
+
+// The same of bounds: columns of (lower, upper), n of each.
+nb::list evaluate_bounds(const nb::bytes& bytes, const std::vector<BoundsColumn>& columns,
+                         std::size_t count, const Exceptions& exceptions) {
+    const nb::list none;
+    Calls held(none);
+    Program program = parse(bytes, Domain::discrete);
+    if (columns.size() != program.inputs) {
+        throw std::invalid_argument("Got " + std::to_string(columns.size()) +
+                                    " columns for a program with " +
+                                    std::to_string(program.inputs) + " inputs.");
+    }
+    std::vector<std::vector<Bounds>> inputs;
+    std::vector<const Bounds*> columns_of;
+    for (const BoundsColumn& column : columns) {
+        if (column.shape(0) != count) {
+            throw std::invalid_argument("A column has " + std::to_string(column.shape(0)) +
+                                        " samples where " + std::to_string(count) +
+                                        " are expected.");
+        }
+        auto& input = inputs.emplace_back(count);
+        for (std::size_t i = 0; i < count; ++i)
+            input[i] = {column(i, 0), column(i, 1)};
+        columns_of.push_back(input.data());
+    }
+    std::vector<std::vector<Bounds>> outputs(program.outputs.size());
+    std::vector<Bounds*> results_of;
+    for (auto& output : outputs) {
+        output.resize(count);
+        results_of.push_back(output.data());
+    }
+    const auto failure = without_gil(count, [&] {
+        return discrete::BasicExecutor<Interval>::evaluate(std::move(program), columns_of, count,
+                                                           results_of);
+    });
+    if (failure) {
+        raise_undefined(exceptions, held, failure->instruction, failure->sample, failure->fault);
+    }
+    nb::list found;
+    for (const auto& output : outputs) {
+        Results bounds;
+        bounds.add(count);
+        bounds.add(count);
+        const auto pointers = bounds.pointers();
+        for (std::size_t i = 0; i < count; ++i) {
+            pointers[0][i] = output[i].lower;
+            pointers[1][i] = output[i].upper;
+        }
+        auto ends = bounds.hand_over();
+        found.append(nb::make_tuple(std::move(ends[0]), std::move(ends[1])));
+    }
+    return found;
+}
+
+Result scan(std::string_view kind, const Column& a, const std::optional<Column>& b) {
+    const std::span<const double> first(a.data(), a.shape(0));
+    Results results;
+    results.add(first.size());
+    const std::span<double> out(results.pointers().front(), first.size());
+    if (kind == "run_max") {
+        discrete::scan<Max>(first, out);
+    } else if (kind == "run_min") {
+        discrete::scan<Min>(first, out);
+    } else if (kind == "until") {
+        if (!b || b->shape(0) != first.size()) {
+            throw std::invalid_argument("The scan 'until' takes two columns of the same length.");
+        }
+        discrete::scan_until<Real>(first, {b->data(), b->shape(0)}, out);
+    } else {
+        throw std::invalid_argument("There is no scan '" + std::string(kind) +
+                                    "': it is run_max, run_min or until.");
+    }
+    return std::move(results.hand_over().front());
+}
+
+nb::list dense_evaluate(const nb::bytes& bytes, const std::vector<EventColumn>& columns,
+                        std::int64_t extra, const nb::list& calls, const Exceptions& exceptions) {
+    Calls held(calls);
+    Program program = parse(bytes, Domain::dense, held.sites());
+    const auto inputs = events_of(columns, program.inputs);
+    if (extra < 0) throw std::invalid_argument("The extra ticks cannot be fewer than 0.");
+    std::size_t count = 0;
+    for (const auto& events : inputs)
+        count += events.count;
+    std::vector<EventList> outputs(program.outputs.size());
+    const auto failure = making(held, [&] {
+        return without_gil(count, [&] {
+            return dense::Executor::evaluate(std::move(program), inputs, extra, outputs);
+        });
+    });
+    if (failure) {
+        raise_undefined(exceptions, held, failure->instruction, failure->time, failure->fault);
+    }
+    return hand_over(outputs);
+}
+
+nb::tuple dense_scan(std::string_view kind, const EventColumn& a,
+                     const std::optional<EventColumn>& b) {
+    std::vector<EventColumn> columns{a};
+    if (b) columns.push_back(*b);
+    const auto events = events_of(columns, columns.size());
+    if (kind == "until" && !b) {
+        throw std::invalid_argument("The scan 'until' takes two signals.");
+    }
+    EventList result;
+    if (kind == "run_max") {
+        result = dense::scan<Max>(events[0]);
+    } else if (kind == "run_min") {
+        result = dense::scan<Min>(events[0]);
+    } else if (kind == "until") {
+        result = dense::scan_until<Real>(events[0], events[1]);
+    } else {
+        throw std::invalid_argument("There is no scan '" + std::string(kind) +
+                                    "': it is run_max, run_min or until.");
+    }
+    return hand_over(result);
+}
+
+} // namespace
+
+void add_offline(nanobind::module_& m, const Exceptions& exceptions) {
+    m.def(
+        "evaluate",
+        [exceptions](const nb::bytes& program, const std::vector<Column>& columns, std::size_t n,
+                     const nb::list& calls) {
+            return evaluate(program, columns, n, calls, exceptions);
+        },
+        nb::arg("program"), nb::arg("columns"), nb::arg("n"), nb::arg("calls") = nb::list(),
+        "Run a program over a whole trace of n samples; return n values an output.");
+    m.def(
+        "evaluate_bounds",
+        [exceptions](const nb::bytes& program, const std::vector<BoundsColumn>& columns,
+                     std::size_t n) { return evaluate_bounds(program, columns, n, exceptions); },
+        nb::arg("program"), nb::arg("columns"), nb::arg("n"),
+        "Run a program without calls over bounds of a whole trace, an array of shape (n, 2) an "
+        "input; "
+        "return lower and upper bounds of each output.");
+    m.def("scan", &scan, nb::arg("kind"), nb::arg("a"), nb::arg("b") = nb::none(),
+          "Unbounded future over a whole column: run_max, run_min, or until.");
+    m.def(
+        "memory",
+        [](const nb::bytes& program, const nb::list& calls) {
+            const Calls held(calls);
+            return Executor::memory(parse(program, Domain::discrete, held.sites()));
+        },
+        nb::arg("program"), nb::arg("calls") = nb::list(),
+        "Bytes of state of a new monitor of this program, but for the calls in it.");
+    m.def(
+        "dense_evaluate",
+        [exceptions](const nb::bytes& program, const std::vector<EventColumn>& columns,
+                     std::int64_t extra, const nb::list& calls) {
+            return dense_evaluate(program, columns, extra, calls, exceptions);
+        },
+        nb::arg("program"), nb::arg("columns"), nb::arg("extra") = 0, nb::arg("calls") = nb::list(),
+        "Run a program over whole signals, times and values of each, up to their last time and "
+        "extra ticks more; return the events of each output.");
+    m.def("dense_scan", &dense_scan, nb::arg("kind"), nb::arg("a"), nb::arg("b") = nb::none(),
+          "Unbounded future over whole step functions: run_max, run_min, or until.");
+}
+
+} // namespace rtamt::python
