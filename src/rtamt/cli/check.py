@@ -34,6 +34,7 @@ from rtamt.cli.runner import Outcome, Requirement, outcomes
 from rtamt.cli.terminal import Progress, printed, say, table, use_color
 from rtamt.errors import escaped
 from rtamt.language.units import format_duration
+from rtamt.signals.regular import merged
 
 if TYPE_CHECKING:
     import argparse
@@ -256,7 +257,7 @@ def _write(requirements: Sequence[Requirement], results: Sequence[Result], path:
     names = [requirement.written.name for requirement in requirements]
     if len(names) == 1:
         names = ["robustness"]
-    times = np.unique(np.concatenate([result.signal.times for result in results]))
+    times = merged([result.signal.times for result in results])
     rows = zip(map(stamp_text, times), *(_cells(result.signal, times) for result in results), strict=True)
     lines = [",".join(["time", *names]), *(",".join(row) for row in rows)]
     write_output(path, "".join(f"{line}\n" for line in lines))

@@ -151,7 +151,7 @@ class _Drawing:
     # ---- signals -----------------------------------------------------------------------------------
 
     def _panel(self, panel: Panel, axis: Any) -> None:
-        lines = [self._seen(line) for line in panel.lines]
+        lines = [self._seen(line).decimated(_COLUMNS) for line in panel.lines]
         finite = [line.values[np.isfinite(line.values)] for line in lines]
         edges = _Edges(axis, np.concatenate([*finite, panel.thresholds]), lines)
         self._because(axis, panel.because)
@@ -204,13 +204,12 @@ class _Drawing:
 
     def _row(self, number: int, axis: Any) -> None:
         node = self._scene.nodes[number]
-        seen = self._seen(node.line)
-        finite = seen.values[np.isfinite(seen.values)]
-        edges = _Edges(axis, np.append(finite, 0.0), [seen])
+        line = self._seen(node.line).decimated(_COLUMNS)
+        finite = line.values[np.isfinite(line.values)]
+        edges = _Edges(axis, np.append(finite, 0.0), [line])
         self._fails(axis, node)
         self._because(axis, node.because)
         axis.axhline(0.0, color=style.QUIET, linewidth=0.9)
-        line = seen.decimated(_COLUMNS)
         values = edges.shown(line.values)
         step = "post" if self._scene.dense else None
         for end, color in ((1, style.HOLDS), (0, style.FAILS)):
@@ -221,7 +220,7 @@ class _Drawing:
                 (0, 0), 1, axis.get_ylim()[end], transform=axis.get_yaxis_transform()
             )
             area.set_clip_path(half)
-        self._trace(axis, seen, edges, style.INK)
+        self._trace(axis, line, edges, style.INK)
         title = f"{node.name} = {node.text}" if node.name else node.text
         axis.set_title(
             _shortened(title, 92),
@@ -320,13 +319,12 @@ class _Drawing:
 
     def _trace(self, axis: Any, line: Line, edges: _Edges, color: str) -> FloatArray:
         """Draw values; those in dense time hold, samples in discrete time have dots if there is room."""
-        small = line.decimated(_COLUMNS)
-        width = 0.7 if small is not line else 1.4
-        values = edges.shown(small.values)
+        width = 0.7 if len(line.positions) > 2 * _COLUMNS else 1.4
+        values = edges.shown(line.values)
         style_of = {"drawstyle": "steps-post"} if self._scene.dense else {}
-        if len(small.positions) <= _DOTS:
+        if len(line.positions) <= _DOTS:
             style_of |= {"marker": "o", "markersize": "3.2"}
-        axis.plot(self._places(small.positions), values, color=color, linewidth=width, **style_of)
+        axis.plot(self._places(line.positions), values, color=color, linewidth=width, **style_of)
         return values
 
     def _seen(self, line: Line) -> Line:

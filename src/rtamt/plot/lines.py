@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from rtamt.signals.regular import merged
+
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
@@ -72,13 +74,13 @@ class Line:
         highest = self._first(
             self.values == np.repeat(np.maximum.reduceat(self.values, starts), sizes), starts
         )
-        kept = np.unique(np.concatenate([starts, stops - 1, lowest, highest]))
+        kept = merged([starts, stops - 1, lowest, highest])
         return Line(self.name, self.positions[kept], self.values[kept], self.unit)
 
     def columns(self, count: int) -> NDArray[np.int64]:
         """Return the index of the first point in each of ``count`` equal parts of the time that has points."""
         edges = np.linspace(self.positions[0], self.positions[-1], count + 1)[:-1]
-        return np.unique(np.searchsorted(self.positions, edges))
+        return merged([np.searchsorted(self.positions, edges)])
 
     @staticmethod
     def _first(wanted: NDArray[np.bool_], starts: NDArray[np.int64]) -> NDArray[np.int64]:

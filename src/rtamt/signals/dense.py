@@ -12,6 +12,7 @@ from rtamt.language.units import positive_period
 from rtamt.rewrite.check import TICKS, check_bounds, check_dense
 from rtamt.signals import arrays, dense_arrays
 from rtamt.signals.domain_interface import DomainTrace, TimeDomain
+from rtamt.signals.regular import merged
 from rtamt.signals.signal import Signal
 from rtamt.signals.ticks import NANOSECOND, TimeScale
 
@@ -119,7 +120,7 @@ class DenseTrace(DomainTrace):
     @property
     def samples(self) -> int:
         """See :class:`DomainTrace`."""
-        return len(np.unique(np.concatenate([ticks for ticks, _ in self.columns.values()])))
+        return len(merged([ticks for ticks, _ in self.columns.values()]))
 
     @property
     def size(self) -> int:

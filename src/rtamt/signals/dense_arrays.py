@@ -11,7 +11,7 @@ import numpy as np
 from rtamt.errors import TraceError
 from rtamt.language.units import format_duration
 from rtamt.signals import arrays
-from rtamt.signals.regular import never_set
+from rtamt.signals.regular import merged, never_set
 from rtamt.signals.signal import Signal
 from rtamt.signals.ticks import sequence_of
 from rtamt.signals.time_columns import check_frame
@@ -183,7 +183,7 @@ def minimum(signals: Sequence[Samples], before: Sequence[float]) -> Samples:
     >>> minimum([(np.array([0, 4]), np.array([2.0, 5.0])), (np.array([3]), np.array([1.0]))], [np.inf, np.inf])
     (array([0, 3, 4]), array([2., 1., 1.]))
     """
-    ticks = np.unique(np.concatenate([own for own, _ in signals]))
+    ticks = merged([own for own, _ in signals])
     values = np.full(len(ticks), np.inf)
     for (own, of), first in zip(signals, before, strict=True):
         places = own.searchsorted(ticks, "right")

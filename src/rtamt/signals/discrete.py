@@ -13,7 +13,8 @@ import numpy as np
 from rtamt.errors import BoundError, StlError, TraceError, UsageError, shown
 from rtamt.language.units import UNITS, decimal, positive_period
 from rtamt.rewrite.check import PERIODS, check_bounds
-from rtamt.signals.arrays import check_numbers, columns_of, is_number, plain, stamps, units_of
+from rtamt.signals.arrays import Stamps, check_numbers, columns_of, is_number, plain, stamps, units_of
+from rtamt.signals.counting import quotients
 from rtamt.signals.datetimes import nanoseconds_of
 from rtamt.signals.domain_interface import DomainTrace, TimeDomain
 from rtamt.signals.regular import TOLERANCE, check_increasing, check_regular, check_tolerance, infer_period
@@ -237,13 +238,21 @@ class DiscreteTrace(DomainTrace):
 
     def seconds(self, times: Any, *, elapsed: bool) -> FloatArray:
         """See :class:`DomainTrace`."""
-        seconds = stamps(times, self.unit).seconds
-        return seconds - self.times[0] if elapsed else seconds
+        own = isinstance(times, np.ndarray) and _same(times, self.stamps)  # of a signal over this recording
+        if own and not elapsed:
+            return self.times
+        given = Stamps(self.times, self.stamps) if own else stamps(times, self.unit)
+        if not elapsed:
+            return given.seconds
+        if given.original.dtype.kind in "mM":  # exact, while seconds since 1970 are rounded to 0.2 µs
+            return quotients((given.original - self.stamps[0]).view(np.int64), 1, 10**9)
+        since: FloatArray = given.seconds - self.times[0]
+        return since
 
     def ends(self, *, elapsed: bool) -> tuple[float, float]:
         """See :class:`DomainTrace`."""
-        first, last = float(self.times[0]), float(self.times[-1])
-        return (0.0, last - first) if elapsed else (first, last)
+        first, last = self.seconds(self.stamps[[0, -1]], elapsed=elapsed).tolist()
+        return first, last
 
     def points(self, name: str, *, elapsed: bool) -> tuple[FloatArray, FloatArray]:
         """See :class:`DomainTrace`."""
@@ -283,3 +292,13 @@ def record_discrete(
     for name, column in columns.items():
         check_numbers(name, column, times)
     return DiscreteTrace(times, columns, period, inferred, original, unit, units_of(data))
+
+
+def _same(one: NDArray[Any], other: NDArray[Any]) -> bool:
+    """Return whether two arrays are views of the same numbers."""
+    return (one.ctypes.data, one.dtype, one.shape, one.strides) == (
+        other.ctypes.data,
+        other.dtype,
+        other.shape,
+        other.strides,
+    )

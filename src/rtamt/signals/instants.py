@@ -165,11 +165,18 @@ class StepFunction:
 
     def changed(self, begin: int, end: int, value: float) -> StepFunction:
         """Return the function with another value on [begin, end), which is not empty."""
-        cuts = [cut for cut in (begin, end) if cut < self.end]
-        changes = np.union1d(self.changes, np.array(cuts, np.int64))
-        values = self.values[np.searchsorted(self.changes, changes, side="right") - 1]
-        values[(begin <= changes) & (changes < end)] = value
-        return StepFunction(changes, values, self.end)
+        if begin >= self.end:
+            return self
+        first, last = (int(i) for i in np.searchsorted(self.changes, (begin, end), side="left"))
+        changes, values = [begin], [value]
+        if end < self.end and (last == len(self.changes) or self.changes[last] > end):
+            changes.append(end)
+            values.append(float(self.values[last - 1]))
+        return StepFunction(
+            np.concatenate((self.changes[:first], np.array(changes, np.int64), self.changes[last:])),
+            np.concatenate((self.values[:first], values, self.values[last:])),
+            self.end,
+        )
 
     def positive(self) -> Cells:
         """Return where the value is above 0."""

@@ -12,10 +12,26 @@ from rtamt.language.units import format_duration
 from rtamt.signals.arrays import TIME, is_number
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import NDArray
+
     from rtamt.signals.arrays import FloatArray
 
 #: How far, as a fraction of the period, the gap between two samples may be from the period.
 TOLERANCE = 0.1
+
+
+def merged(times: Sequence[NDArray[Any]]) -> NDArray[Any]:
+    """Return all timestamps of arrays that are in order, each once, in order.
+
+    A stable sort merges such arrays in linear time; ``numpy.unique`` of a million integers takes seconds.
+
+    >>> merged([np.array([0, 3, 4]), np.array([3, 3, 5])])
+    array([0, 3, 4, 5])
+    """
+    together = np.sort(np.concatenate(times), kind="stable")
+    return together[np.concatenate(([True], together[1:] != together[:-1]))[: len(together)]]
 
 
 def check_tolerance(tolerance: Any) -> None:

@@ -21,6 +21,7 @@ from rtamt.errors import TraceError, UsageError, choices, shown
 from rtamt.language.units import duration
 from rtamt.signals.arrays import TIME, Clocked, missing_sample, stamps
 from rtamt.signals.listing import extent, html, listing
+from rtamt.signals.regular import merged
 from rtamt.signals.signal import Signal
 
 if TYPE_CHECKING:
@@ -320,7 +321,7 @@ class Trace(Clocked):
         Signal(times=array([0. , 0.5, 1. ]), values=array([ 0.,  0., 10.]))
         """
         timed = self._all_timed()
-        grid = np.unique(np.concatenate(timed))
+        grid = merged(timed)
         return self._at(grid[grid >= max(times[0] for times in timed)], "hold")
 
     def _at(self, grid: Times, how: str) -> Trace:
@@ -404,7 +405,7 @@ def _bound(end: Any, dtype: np.dtype[Any]) -> Any:
 
 def _passed_over(name: str, places: NDArray[np.intp], count: int) -> list[str]:
     """Return the note on samples that were skipped by resampling, after the first one used."""
-    read = np.unique(places)
+    read = merged([places])
     left_out = count - int(read[0]) - len(read)
     if not left_out:
         return []

@@ -53,6 +53,8 @@ class DiscreteTimeline(Timeline):
         return self._backend.evaluator(tuple(formulas), self.period, names)
 
     def _samples(self, steps: StepFunction) -> np.ndarray[Any, Any]:
+        if len(steps.changes) == self.end:  # it changes with every sample
+            return steps.values
         return np.repeat(steps.values, np.diff(steps.changes, append=self.end))
 
     def cell(self, at: Any) -> int:
