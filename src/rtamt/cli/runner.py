@@ -193,7 +193,9 @@ def _early(requirement: Requirement, trace: str, reading: Reading) -> list[Outco
     begin = time.perf_counter()
     rows = requirement.rows or (requirement,)
     specs = [row.spec for row in rows]
-    if is_resampled(requirement.spec, trace, reading) or not all(map(holds_at_end, specs)):
+    if requirement.spec.domain.continuous or is_resampled(requirement.spec, trace, reading):
+        return None
+    if not all(map(holds_at_end, specs)):
         return None
     check = EarlyCheck(specs)
     try:

@@ -4,27 +4,23 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
-from functools import cached_property
-from math import inf
+from math import inf, isfinite
 from typing import TYPE_CHECKING, Any
-
-import numpy as np
 
 from rtamt.batch import evaluate_requirements
 from rtamt.errors import StlError, UsageError, did_you_mean, shown
 from rtamt.search.inputs import Range
 from rtamt.search.log import Evaluation
 from rtamt.signals.arrays import TIME, is_number
-from rtamt.verdicts.robust_interval import RobustInterval
+from rtamt.verdicts.at_start import StartMonitor
+from rtamt.verdicts.early_check import holds_at_end
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from rtamt.search.inputs import Input
+    from rtamt.signals.outcomes import Interval
     from rtamt.specification import Specification
-
-#: The number of times that the verdict is checked during a simulation.
-LOOKS = 100
 
 
 @dataclass(frozen=True)
@@ -132,10 +128,8 @@ class Problem:
     def _stepwise(
         self, samples: Iterable[Any], point: Mapping[str, float], number: int, whole: bool
     ) -> Evaluation:
-        total, outlook = self._total, self._outlook
-        watched = not whole and outlook.able and (total is not None or self.spec.domain.continuous)
-        # In dense time the number of samples is unknown: check again after one percent more.
-        look = max(1, (total or LOOKS) // LOOKS)
+        total = self._total
+        start = None if whole else self._start_monitor()
         names = self.spec.input_names
         times: list[float] = []
         columns: dict[str, list[float]] = {name: [] for name in names}
@@ -151,28 +145,44 @@ class Problem:
                 columns[name].append(values[name])
             if len(times) == total:
                 break
-            if watched and len(times) % look == 0:
-                arrays = {name: np.asarray(column, float) for name, column in columns.items()}
-                settled = outlook.after(np.asarray(times, float), arrays)
-                if settled is not None:
-                    stopped = float(times[settled.samples - 1])
-                    return Evaluation(number, dict(point), settled.robustness, settled.satisfied, stopped)
+            if start is not None:
+                start.update(time, **{name: values[name] for name in names})
+                if start.satisfied is not None:
+                    known = start.interval() if total is None else self._bounds(times, columns, total)
+                    return Evaluation(number, dict(point), _nearest(known), start.satisfied, time)
         close = getattr(samples, "close", None)
         if close is not None:
             close()
         return self._whole({TIME: times, **columns}, point, number)
 
-    @cached_property
-    def _outlook(self) -> RobustInterval:
+    def _start_monitor(self) -> StartMonitor | None:
+        """Return what decides the verdict as samples come; None where only the end of a simulation does.
+
+        That is so where the end may cut windows that decide, and for operators with code of their own.
+        """
         spec = self.spec
-        return RobustInterval(
-            spec.formula,
-            semantics=spec.semantics,
-            roles=spec.roles,
-            backend=spec.backend,
-            domain=spec.domain.online,
-            samples=self._total,
-        )
+        if not spec.domain.continuous:
+            if self._total is None:
+                return None
+            period = spec.domain.period
+            assert period is not None
+            whole = spec.horizon <= float((self._total - 1) * period)
+            if not whole and not holds_at_end(spec):
+                return None
+        try:
+            return StartMonitor(spec)
+        except UsageError:
+            return None
+
+    def _bounds(self, times: list[float], columns: Mapping[str, list[float]], total: int) -> Interval:
+        """Return what is known of the robustness of a simulation that ends after ``total`` samples."""
+        period = self.spec.domain.period
+        assert period is not None
+        rest = range(1, total - len(times) + 1)
+        data: dict[str, list[Any]] = {TIME: times + [times[-1] + float(k * period) for k in rest]}
+        for name, column in columns.items():
+            data[name] = column + [None] * len(rest)
+        return self.spec.evaluate(data).interval
 
     @property
     def _total(self) -> int | None:
@@ -193,6 +203,15 @@ def _sample(given: Any) -> tuple[float, Mapping[str, float]]:
     raise UsageError(
         f"the plant yielded {shown(given)}; a sample is (time, {{variable: value}}), such as (0.1, {{'x': 2.5}})"
     )
+
+
+def _nearest(known: Interval) -> float:
+    """Return the robustness as far as it was seen: the upper bound, or the lower one where only that is finite.
+
+    The lower one alone would mislead an optimizer: a requirement that is just met is as low as one that was
+    decided early.
+    """
+    return known.upper if isfinite(known.upper) else known.lower
 
 
 def _where(number: int, point: Mapping[str, float]) -> str:

@@ -16,6 +16,7 @@ from rtamt.rewrite.early import ends_differently
 from rtamt.rewrite.semantics import boolean
 from rtamt.signals import arrays
 from rtamt.signals.discrete import Discrete
+from rtamt.signals.outcomes import Interval
 from rtamt.signals.regular import TOLERANCE, check_increasing, check_regular, infer_period
 from rtamt.verdicts.discrete_interval import DiscreteIntervalMonitor
 from rtamt.verdicts.eager import EagerMonitor
@@ -24,7 +25,7 @@ from rtamt.verdicts.robustness_and_truth import align_inputs, outputs_under
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
-    from rtamt.signals.outcomes import Interval, Verdict
+    from rtamt.signals.outcomes import Verdict
     from rtamt.specification import Specification
 
 
@@ -45,13 +46,15 @@ class Decided:
 
 
 def holds_at_end(spec: Specification) -> bool:
-    """Return whether verdicts that are decided early also hold at the end of a recording.
+    """Return whether verdicts that are decided early also hold at the end of a trace.
+
+    In dense time they do: signals hold their last values.
 
     >>> import rtamt
     >>> [holds_at_end(rtamt.parse(text)) for text in ("always(x > 0)", "eventually[1:2] once[0:5](x > 0)")]
     [True, False]
     """
-    return not spec.domain.continuous and ends_differently(boolean(spec.formula), {}) is None
+    return spec.domain.continuous or ends_differently(boolean(spec.formula), {}) is None
 
 
 class EarlyCheck:
@@ -143,6 +146,8 @@ class _Requirement:
         domain = Discrete(period).online
         self._names = spec.input_names
         self._step = float(period)
+        #: Whether bounds hold at the end too; otherwise the verdict tells the sign.
+        self._bounded = ends_differently(outputs.robustness, {}) is None
         self._parts = [_Part(part, period) for part in _conjuncts(outputs.truth)]
         first, *others = (part.formula for part in self._parts)
         watch = [Watched(str(i), formula, None) for i, formula in enumerate(others, 1)]
@@ -164,8 +169,10 @@ class _Requirement:
 
     @property
     def bounds(self) -> Interval:
-        """What is known of the robustness."""
-        return self._bounds.interval()
+        """What is known of the robustness once the requirement is decided."""
+        if self._bounded:
+            return self._bounds.interval()
+        return Interval(0.0, inf) if self.violated is None else Interval(-inf, 0.0)
 
     def take(self, sample: int, row: Mapping[str, float]) -> bool:
         """Take a sample; return whether the requirement is decided, and where it is violated first."""

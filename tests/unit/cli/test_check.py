@@ -525,3 +525,11 @@ def test_a_signal_without_samples_in_dense_time_is_not_reported_as_a_missing_col
     assert answer.err.splitlines()[-1] == "rtamt: empty.csv: 'x' has no samples: give at least one"
     Path("plain.csv").write_text("x\n1\n2\n")
     assert "needs a column of timestamps" in run(command, "x >= 3", "plain.csv", "--time", "dense").err
+
+
+def test_early_bounds_are_those_of_a_recording_that_may_end_at_once(run, write):
+    # Were the trace to go on, the robustness of eventually would be 0 at least; at the end it is -inf.
+    write("a.csv", "time,x,y\n0,5,-1\n1,5,5\n")
+    answer = run("check", "eventually[5:10](abs(x) > 0) and y > 0", "a.csv", "--early", "--json")
+    row = json.loads(answer.out)
+    assert (row["satisfied"], row["lower"], row["upper"]) == (False, "-inf", 0.0)
