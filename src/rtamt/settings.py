@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 from enum import Enum
 from math import isnan
 from types import MappingProxyType
-from typing import TYPE_CHECKING, TypeAlias, TypedDict
+from typing import TYPE_CHECKING, Any, TypeAlias, TypedDict
 
 from rtamt.engine.backend import BACKENDS
 from rtamt.errors import UsageError, choices, did_you_mean, shown
@@ -49,6 +49,36 @@ class EvaluationSettings(TypedDict, total=False):
     resolution: Duration | None
     semantics: Semantics | None
     time_unit: str | None
+
+
+class OnlineSettings(TypedDict, total=False):
+    """The settings of every monitor, see :meth:`Specification.monitor`."""
+
+    semantics: Semantics | None
+    watch: Watch
+    time_unit: str | None
+
+
+class DiscreteSettings(OnlineSettings, total=False):
+    """Those of a monitor of discrete time."""
+
+    period: Duration | None
+    tolerance: float | None
+
+
+class DenseSettings(OnlineSettings, total=False):
+    """Those of a monitor of dense time."""
+
+    resolution: Duration | None
+
+
+class IntervalSettings(DiscreteSettings, DenseSettings, total=False):
+    """Those of a monitor of bounds in either time domain."""
+
+    at: str | None
+    ranges: Mapping[str, Any] | None
+    lateness: Duration | None
+    on_correction: str | None
 
 
 def check_language(language: Language) -> None:

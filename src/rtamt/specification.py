@@ -24,13 +24,15 @@ from rtamt.verdicts.standalone import carried_program
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+    from typing_extensions import Unpack
+
     from rtamt.compiler.program import Program
     from rtamt.engine.dense.monitor import DenseMonitor
     from rtamt.engine.discrete.monitor import Monitor
     from rtamt.engine.online import OnlineMonitor
     from rtamt.language.formula import Formula
     from rtamt.language.units import Duration
-    from rtamt.settings import Semantics, Watch
+    from rtamt.settings import DenseSettings, DiscreteSettings, IntervalSettings, Semantics, Watch
     from rtamt.signals.dense import Dense
     from rtamt.signals.discrete import Discrete
     from rtamt.signals.domain_interface import DomainTrace, TimeDomain
@@ -179,12 +181,8 @@ class Specification(SpecificationText):
         self,
         *,
         time: Literal["discrete"] | Discrete | None = None,
-        period: Duration | None = None,
-        tolerance: float | None = None,
-        semantics: Semantics | None = None,
-        watch: Watch = (),
-        time_unit: str | None = None,
         verdict: Literal["delayed"] = "delayed",
+        **settings: Unpack[DiscreteSettings],
     ) -> Monitor: ...
 
     @overload
@@ -192,11 +190,8 @@ class Specification(SpecificationText):
         self,
         *,
         time: Literal["dense"] | Dense,
-        resolution: Duration | None = None,
-        semantics: Semantics | None = None,
-        watch: Watch = (),
-        time_unit: str | None = None,
         verdict: Literal["delayed"] = "delayed",
+        **settings: Unpack[DenseSettings],
     ) -> DenseMonitor: ...
 
     @overload
@@ -204,59 +199,28 @@ class Specification(SpecificationText):
         self,
         *,
         time: Literal["discrete"] | Discrete | None = None,
-        period: Duration | None = None,
-        tolerance: float | None = None,
-        semantics: Semantics | None = None,
-        watch: Watch = (),
-        time_unit: str | None = None,
         verdict: Literal["eager"],
         ranges: Mapping[str, Any] | None = None,
+        **settings: Unpack[DiscreteSettings],
     ) -> EagerMonitor: ...
 
     @overload
     def monitor(
         self,
         *,
-        time: Literal["discrete"] | Discrete | None = None,
-        period: Duration | None = None,
-        tolerance: float | None = None,
-        semantics: Semantics | None = None,
-        watch: Watch = (),
-        time_unit: str | None = None,
-        verdict: Literal["interval"],
-        at: str | None = None,
-        ranges: Mapping[str, Any] | None = None,
-        lateness: Duration | None = None,
-        on_correction: str | None = None,
-    ) -> IntervalMonitor: ...
-
-    @overload
-    def monitor(
-        self,
-        *,
         time: Literal["dense"] | Dense,
-        resolution: Duration | None = None,
-        semantics: Semantics | None = None,
-        watch: Watch = (),
-        time_unit: str | None = None,
         verdict: Literal["eager"],
         ranges: Mapping[str, Any] | None = None,
+        **settings: Unpack[DenseSettings],
     ) -> DenseEagerMonitor: ...
 
     @overload
     def monitor(
         self,
         *,
-        time: Literal["dense"] | Dense,
-        resolution: Duration | None = None,
-        semantics: Semantics | None = None,
-        watch: Watch = (),
-        time_unit: str | None = None,
+        time: Literal["discrete", "dense"] | TimeDomain | None = None,
         verdict: Literal["interval"],
-        at: str | None = None,
-        ranges: Mapping[str, Any] | None = None,
-        lateness: Duration | None = None,
-        on_correction: str | None = None,
+        **settings: Unpack[IntervalSettings],
     ) -> IntervalMonitor: ...
 
     def monitor(

@@ -19,7 +19,7 @@ import numpy as np
 
 from rtamt.cli.language import add_language_option, read_language
 from rtamt.cli.terminal import say
-from rtamt.engine.native import core
+from rtamt.engine.domains import engine_of
 from rtamt.errors import SpecificationError, StlError, UsageError, did_you_mean, readable
 from rtamt.files import nearest_file, same_file, write_bytes, write_text
 from rtamt.language.lexer import NAME
@@ -27,6 +27,7 @@ from rtamt.language.lint import CODES
 from rtamt.language.units import UNITS, decimal
 from rtamt.readers.formats import METADATA, SUFFIXES
 from rtamt.rewrite.semantics import SEMANTICS
+from rtamt.settings import check_backend
 from rtamt.signals.datetimes import nanoseconds_of
 from rtamt.signals.domains import DEFAULT, DOMAINS, time_domain
 from rtamt.texts import load, parse
@@ -226,12 +227,13 @@ def _is_called_like_a_trace(path: str) -> bool:
 def read_specification(args: argparse.Namespace, time: str) -> Specification:
     """Read SPEC: the file of that name, else the text itself; ``time``: the name of a time domain."""
     spec: str = args.spec
-    if args.backend == "cpp":
-        try:
-            core()
-        except UsageError as error:
-            raise CommandError(f"{error}; on the command line: --backend python") from None
-    if args.period is not None and time_domain(time, args.period).period is None:
+    domain = time_domain(time, args.period)
+    check_backend(args.backend)
+    try:
+        engine_of(domain).backends[args.backend].require()
+    except UsageError as error:
+        raise CommandError(f"{error}; on the command line: --backend python") from None
+    if args.period is not None and domain.period is None:
         raise CommandError(f"{time} time has no sampling period: leave out --period, or --time {time}")
     options: Settings = {
         "period": args.period,

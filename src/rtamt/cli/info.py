@@ -19,8 +19,7 @@ from rtamt.cli.compiled import compiled, listing
 from rtamt.cli.reading_options import add_reading_options, recording
 from rtamt.cli.terminal import printed, say
 from rtamt.compiler.plan import compile_program
-from rtamt.engine.native import core
-from rtamt.engine.user_operators import SampleDriver, calls_of
+from rtamt.engine.domains import engine_of
 from rtamt.errors import BoundError, SpecificationError, UsageError, choices
 from rtamt.language.printer import excerpt
 from rtamt.language.units import format_duration
@@ -165,8 +164,7 @@ def gather(spec: Specification) -> Facts:
     except BoundError as error:
         return replace(facts, offline_only=error.message)
     program = compile_program((desugar(applied),), step, spec.input_names, domain=type(spec.domain))
-    unknown = domain.continuous or spec.backend == "python"
-    memory = None if unknown else int(core().memory(program.code(), calls_of(program, SampleDriver)))
+    memory = engine_of(domain).backends[spec.backend].memory(program)
     return replace(facts, program=program, memory=memory)
 
 

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 BACKENDS = ("cpp", "python")
 
 
-class Refused(Exception):  # noqa: N818 - the compiled monitor's word
+class RefusedError(Exception):
     """An update cannot be taken; nothing has changed."""
 
 
@@ -43,6 +43,14 @@ class Backend(ABC):
         """Return the same for traces that are known in part: the bounds of each formula, as signals."""
 
     @abstractmethod
+    def require(self) -> None:
+        """Raise :class:`UsageError` where this back end cannot run."""
+
+    @abstractmethod
+    def memory(self, program: Program) -> int | None:
+        """Return the bytes of state of a monitor that runs a program; None where that depends on the samples."""
+
+    @abstractmethod
     def session(
         self,
         formulas: Sequence[Formula],
@@ -60,7 +68,7 @@ class Session(ABC):
     """Formulas that a back end has prepared for monitors."""
 
     #: What a monitor raises for an update that it cannot take; nothing has changed then.
-    refused: type[Exception] = Refused
+    refused: type[Exception] = RefusedError
     #: What it raises where an operation has no value, for :meth:`culprit`. The definition raises the final error.
     undefined: tuple[type[Exception], ...] = ()
     #: Whether its monitors check whatever an update gives them, so that nobody has to do it before.
@@ -100,6 +108,25 @@ class Session(ABC):
 
 C = TypeVar("C", bound=Backend)
 D = TypeVar("D", bound=Backend)
+
+
+class Compiled(Backend):
+    """A back end that is the compiled core."""
+
+    def require(self) -> None:
+        """See :class:`Backend`."""
+        core()
+
+
+class Defined(Backend):
+    """A back end that is the definition in Python."""
+
+    def require(self) -> None:
+        """See :class:`Backend`: it runs everywhere."""
+
+    def memory(self, program: Program) -> None:  # noqa: ARG002 - its monitors keep samples
+        """See :class:`Backend`."""
+        return
 
 
 class CompiledSession(Session):

@@ -222,7 +222,8 @@ class EventDriver(_Driver):
         if self._fault is not None:
             raise self._fault
         given = self._asked(self._object.push, *operands, until=until)
-        return self._asked(self._events, given)  # type: ignore[no-any-return]
+        events: Events = self._asked(self._events, given)
+        return events
 
     def _events(self, given: Any) -> Events:
         times, values = given

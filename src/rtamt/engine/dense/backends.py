@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from rtamt.compiler.plan import compile_program
 from rtamt.engine import offline_bounds
-from rtamt.engine.backend import Backend, CompiledSession, Session, named
+from rtamt.engine.backend import Backend, Compiled, CompiledSession, Defined, Session, named
 from rtamt.engine.dense.evaluate import Evaluator
 from rtamt.engine.dense.python_backend import PythonDenseMonitor
 from rtamt.engine.native import core, not_made
@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Sequence
     from fractions import Fraction
 
+    from rtamt.compiler.program import Program
     from rtamt.language.formula import Formula
     from rtamt.signals.dense import DenseTrace
     from rtamt.signals.dense_arrays import Samples
@@ -32,19 +33,22 @@ class _DenseBackend(Backend):
     def bounds(
         self,
         formulas: tuple[Formula, ...],
-        step: Fraction,  # noqa: ARG002
-        inputs: tuple[str, ...],  # noqa: ARG002
+        step: Fraction,
+        inputs: tuple[str, ...],
     ) -> Callable[[DenseTrace], list[BoundedSignal]]:
         """See :class:`Backend`."""
         return lambda trace: [offline_bounds.dense(formula, trace) for formula in formulas]
 
 
-class CompiledDense(_DenseBackend):
+class CompiledDense(_DenseBackend, Compiled):
     """The compiled core."""
 
     def evaluator(self, formulas: tuple[Formula, ...], step: Fraction, inputs: tuple[str, ...]) -> Evaluator:
         """See :class:`Backend`."""
         return Evaluator(formulas, step, inputs)
+
+    def memory(self, program: Program) -> None:
+        """See :class:`Backend`: windows keep as many changes as there are."""
 
     def session(
         self,
@@ -59,14 +63,14 @@ class CompiledDense(_DenseBackend):
         return EventProgram(formulas, inputs, domain, ignored, parts=parts)
 
 
-class DefinedDense(_DenseBackend):
+class DefinedDense(_DenseBackend, Defined):
     """The definition."""
 
     def evaluator(
         self,
         formulas: tuple[Formula, ...],
         step: Fraction,
-        inputs: tuple[str, ...],  # noqa: ARG002
+        inputs: tuple[str, ...],
     ) -> Callable[[DenseTrace], list[Samples]]:
         """See :class:`Backend`."""
 
@@ -81,9 +85,9 @@ class DefinedDense(_DenseBackend):
         formulas: Sequence[Formula],
         inputs: tuple[str, ...],
         domain: Dense,
-        ignored: Collection[str] = (),  # noqa: ARG002 - its monitors never read what a formula does not
+        ignored: Collection[str] = (),
         *,
-        parts: bool = False,  # noqa: ARG002 - there is always a part
+        parts: bool = False,
     ) -> EventDefinition:
         """See :class:`Backend`."""
         return EventDefinition(formulas, inputs, domain)
@@ -118,7 +122,8 @@ class EventProgram(CompiledSession):
 
     def part(self, monitor: Any, formula: Formula) -> Samples:
         """See :class:`Session`; for sessions with ``parts``."""
-        return monitor.last_output(self._outputs + self.program.value_of[desugar(formula)])  # type: ignore[no-any-return]
+        known: Samples = monitor.last_output(self._outputs + self.program.value_of[desugar(formula)])
+        return known
 
 
 class EventDefinition(Session):

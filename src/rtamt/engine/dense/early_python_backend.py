@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, TypeAlias
 
 from rtamt.compiler.early import FOREVER, NEVER
-from rtamt.engine.backend import Refused
+from rtamt.engine.backend import RefusedError
 from rtamt.engine.dense.runs import clipped, compared, merged, without
 from rtamt.reference.dense_bounds import DenseKnowledge, StepBounds, bounds, least
 
@@ -93,10 +93,10 @@ class PythonDenseEarlyMonitor:
         Until every input has a sample, and earlier ones can no longer come, the trace has not started.
         """
         if after != self.samples or self.finished or tick <= self.closed:
-            raise Refused("order")
+            raise RefusedError("order")
         lasts = self.last_times
         if self._lateness is None and any(tick <= lasts[number] for number, _, _ in values):
-            raise Refused("order")
+            raise RefusedError("order")
         came = self._came.after(tick, values)
         if self._lateness is not None and values:
             came = came.closed_up_to(came.newest - self._lateness - 1)

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
-from rtamt.engine.backend import Refused, Session
+from rtamt.engine.backend import RefusedError, Session
 from rtamt.engine.gate import Gate, alone
 from rtamt.engine.online import depth_of
 from rtamt.errors import UsageError
@@ -124,7 +124,8 @@ class GroupSession(Session):
 
     def culprit(self, error: Any) -> Formula:
         """See :class:`Session`."""
-        return error.part.session.culprit(error.error)  # type: ignore[no-any-return]
+        formula: Formula = error.part.session.culprit(error.error)
+        return formula
 
     @property
     def fingerprint(self) -> bytes:
@@ -171,7 +172,7 @@ class DenseGroups:
 
     def update(self, *_: Any) -> Any:
         """Refuse: there is no fast path."""
-        raise Refused("time")
+        raise RefusedError("time")
 
     def set_time_scale(self, signal: type, scale: TimeScale, rate: float, whole: bool = False) -> None:
         """Ignore the time scale: every update takes the slow path."""

@@ -161,14 +161,16 @@ class DenseMonitor(DenseMonitorBase, OnlineMonitor):
 
     def known(self, name: str | Formula) -> Samples:
         """Return the same as ticks and values."""
-        return self._backend.last_output(self._output(name))  # type: ignore[no-any-return]
+        known: Samples = self._backend.last_output(self._output(name))
+        return known
 
     def points(self) -> list[list[tuple[int, float]]]:
         """Return what the last update made known as pairs of tick and value, for loops in which a microsecond counts.
 
         A list for the result, empty where :meth:`update` has returned it, then one for each watched formula.
         """
-        return self._backend.points()  # type: ignore[no-any-return]
+        known: list[list[tuple[int, float]]] = self._backend.points()
+        return known
 
     def part(self, formula: Formula) -> Signal:
         """Return what the last update made known of any part of the formulas; they have no future operators.

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rtamt.engine.backend import Refused
+from rtamt.engine.backend import RefusedError
 from rtamt.engine.gate import Gate, alone
 from rtamt.reference.dense import DenseReferenceMonitor
 
@@ -62,14 +62,14 @@ class PythonDenseMonitor:
 
     def update(self, *_: Any) -> Any:
         """Refuse: there is no fast path."""
-        raise Refused("time")
+        raise RefusedError("time")
 
     @alone
     def push(self, columns: Sequence[Events]) -> Samples:
         """Take a chunk, checked by the caller; return what became known of the first output."""
         for (ticks, _), last in zip(columns, self._last, strict=True):
             if len(ticks) and last is not None and ticks[0] <= last:
-                raise Refused("time")
+                raise RefusedError("time")
         given = dict(zip(self._names, columns, strict=True))
         before = self._monitor.kept
         self._told = self._closed(self._monitor.push(given))

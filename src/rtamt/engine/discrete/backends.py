@@ -7,10 +7,11 @@ from typing import TYPE_CHECKING, Any
 
 from rtamt.compiler.plan import compile_program
 from rtamt.engine import offline_bounds
-from rtamt.engine.backend import Backend, CompiledSession, Session, named
+from rtamt.engine.backend import Compiled, CompiledSession, Defined, Session, named
 from rtamt.engine.discrete.evaluate import BoundsEvaluator, Evaluator, is_built_in
 from rtamt.engine.discrete.python_backend import PythonMonitor
-from rtamt.engine.native import core_monitor
+from rtamt.engine.native import core, core_monitor
+from rtamt.engine.user_operators import SampleDriver, calls_of
 from rtamt.language.formula import postorder
 from rtamt.reference import discrete as reference
 from rtamt.rewrite.desugar import desugar
@@ -19,6 +20,7 @@ from rtamt.signals.outcomes import BoundedSignal
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Sequence
 
+    from rtamt.compiler.program import Program
     from rtamt.language.formula import Formula
     from rtamt.signals.arrays import FloatArray
     from rtamt.signals.discrete import Discrete, DiscreteTrace
@@ -26,10 +28,10 @@ if TYPE_CHECKING:
 _SECOND = Fraction(1)
 
 
-class CompiledDiscrete(Backend):
+class CompiledDiscrete(Compiled):
     """The compiled core."""
 
-    def evaluator(self, formulas: tuple[Formula, ...], step: Fraction, inputs: tuple[str, ...]) -> Evaluator:  # noqa: ARG002
+    def evaluator(self, formulas: tuple[Formula, ...], step: Fraction, inputs: tuple[str, ...]) -> Evaluator:
         """See :class:`Backend`."""
         return Evaluator(formulas, step)
 
@@ -37,7 +39,7 @@ class CompiledDiscrete(Backend):
         self,
         formulas: tuple[Formula, ...],
         step: Fraction,
-        inputs: tuple[str, ...],  # noqa: ARG002
+        inputs: tuple[str, ...],
     ) -> Callable[[DiscreteTrace], list[BoundedSignal]]:
         """See :class:`Backend`. What the core can only call is left to the definition."""
         if not all(map(is_built_in, postorder(*map(desugar, formulas)))):
@@ -58,15 +60,19 @@ class CompiledDiscrete(Backend):
         """See :class:`Backend`; the other arguments are those of :class:`SampleDefinition`."""
         return SampleProgram(formulas, inputs, domain, ignored, strict=strict, unit=unit)
 
+    def memory(self, program: Program) -> int:
+        """See :class:`Backend`."""
+        return int(core().memory(program.code(), calls_of(program, SampleDriver)))
 
-class DefinedDiscrete(Backend):
+
+class DefinedDiscrete(Defined):
     """The definition."""
 
     def evaluator(
         self,
         formulas: tuple[Formula, ...],
         step: Fraction,
-        inputs: tuple[str, ...],  # noqa: ARG002
+        inputs: tuple[str, ...],
     ) -> Callable[[DiscreteTrace], list[FloatArray]]:
         """See :class:`Backend`."""
 
@@ -79,8 +85,8 @@ class DefinedDiscrete(Backend):
     def bounds(
         self,
         formulas: tuple[Formula, ...],
-        step: Fraction,  # noqa: ARG002
-        inputs: tuple[str, ...],  # noqa: ARG002
+        step: Fraction,
+        inputs: tuple[str, ...],
     ) -> Callable[[DiscreteTrace], list[BoundedSignal]]:
         """See :class:`Backend`."""
         return lambda trace: [offline_bounds.discrete(formula, trace) for formula in formulas]
@@ -90,7 +96,7 @@ class DefinedDiscrete(Backend):
         formulas: Sequence[Formula],
         inputs: tuple[str, ...],
         domain: Discrete,
-        ignored: Collection[str] = (),  # noqa: ARG002 - its monitors never read what a formula does not
+        ignored: Collection[str] = (),
         *,
         strict: bool = True,
         unit: Fraction = _SECOND,

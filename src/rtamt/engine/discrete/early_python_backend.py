@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rtamt.engine.backend import Refused
+from rtamt.engine.backend import RefusedError
 from rtamt.language.enclosures import Enclosure
 from rtamt.reference.discrete_bounds import Knowledge, bounds
 
@@ -67,7 +67,7 @@ class PythonEarlyMonitor:
     def _take(self, time: float, values: Sequence[tuple[int, float, float]], after: int) -> Any:
         index = self.place(time)
         if index is None or after != self.samples:
-            raise Refused("order")
+            raise RefusedError("order")
         before = self.state()
         known = self._known.setdefault(index, {})
         known.update({self._names[number]: (low, high) for number, low, high in values})

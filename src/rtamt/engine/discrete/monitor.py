@@ -164,11 +164,12 @@ class Monitor(MonitorBase, OnlineMonitor):
         stamp = read_time(time, self.samples, self._last_time)
         numbers = read_values(flat, self.input_names, self.samples, stamp)
         try:
-            return self._update(stamp, numbers)  # type: ignore[no-any-return]
+            robustness: float | None = self._update(stamp, numbers)
         except self._refused:
             raise self._refusal(stamp) from None
         except self._undefined as error:
             raise self._no_value(error) from None
+        return robustness
 
     def _step_carefully(self, *values: Any) -> float | None:
         """Take a sample by position that the core did not take, or find out what is wrong with it."""
@@ -195,11 +196,12 @@ class Monitor(MonitorBase, OnlineMonitor):
         named = dict(zip(self.input_names, values, strict=True))
         numbers = read_values(named, self.input_names, self.samples, self._next_time())
         try:
-            return self._step(*numbers.values())  # type: ignore[no-any-return]
+            robustness: float | None = self._step(*numbers.values())
         except self._refused:
             raise self._refusal(self._next_time()) from None
         except self._undefined as error:
             raise self._no_value(error) from None
+        return robustness
 
     @alone
     def update_many(self, data: Any) -> Signal:
@@ -273,7 +275,8 @@ class Monitor(MonitorBase, OnlineMonitor):
         samples, news = self._news
         if news and samples == self.samples:
             return news[output]
-        return self._backend.latest(output)  # type: ignore[no-any-return]
+        value: float | None = self._backend.latest(output)
+        return value
 
     @alone
     def reset(self) -> None:
@@ -296,7 +299,8 @@ class Monitor(MonitorBase, OnlineMonitor):
 
     @property
     def _last_time(self) -> float | None:
-        return self._backend.last_time  # type: ignore[no-any-return]
+        last: float | None = self._backend.last_time
+        return last
 
     def _next_time(self) -> float:
         last = self._last_time

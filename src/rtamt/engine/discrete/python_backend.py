@@ -1,7 +1,7 @@
 """The Python back end of a monitor: the definition behind the interface of the compiled monitor.
 
 Slow and simple: for machines without a compiled core, and for operators that have only a
-definition. It raises :class:`Refused` in the same cases as the compiled monitor.
+definition. It raises :class:`RefusedError` in the same cases as the compiled monitor.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rtamt.engine.backend import Refused
+from rtamt.engine.backend import RefusedError
 from rtamt.engine.gate import Gate, alone, in_use
 from rtamt.reference.discrete import ReferenceMonitor, history
 from rtamt.rewrite.horizon import horizon
@@ -109,10 +109,10 @@ class PythonMonitor:
     def update(self, time: float, values: Mapping[str, float]) -> float | None:
         """Take one sample with a value for every variable."""
         if set(values) != set(self._names):
-            raise Refused("variables")
+            raise RefusedError("variables")
         number = _number(time)
         if is_implausible(number):
-            raise Refused("time")
+            raise RefusedError("time")
         return self._take(number, {name: _number(values[name]) for name in self._names})
 
     def update_pairs(self, time: float, pairs: Sequence[tuple[str, float]]) -> float | None:
@@ -120,14 +120,14 @@ class PythonMonitor:
         values = {}
         for name, value in pairs:
             if name not in self._names:
-                raise Refused("unknown variable")
+                raise RefusedError("unknown variable")
             values[name] = _number(value)
         return self._take(_number(time), values)
 
     def step(self, *values: float) -> float | None:
         """Take one sample, values in the order of the inputs, one period after the last."""
         if len(values) != len(self._names):
-            raise Refused("number of values")
+            raise RefusedError("number of values")
         return self._take(None, {n: _number(v) for n, v in zip(self._names, values, strict=True)})
 
     @alone
@@ -180,19 +180,19 @@ class PythonMonitor:
     def _take(self, time: float | None, given: Mapping[str, float]) -> float | None:
         """Take a sample; variables left out keep their values, and the default time is one period after the last."""
         if self._finished:
-            raise Refused("finished")
+            raise RefusedError("finished")
         last = self._last_time
         if time is None:
             time = 0.0 if last is None else last + self._period
         late = last is not None and (time < last or (self._strict and time == last))
         if not isfinite(time) or late:
-            raise Refused("time")
+            raise RefusedError("time")
         off = self._off(last, time)
         if off and self._strict:
-            raise Refused("period")
+            raise RefusedError("period")
         values = {**self._values, **given}
         if len(values) != len(self._names):
-            raise Refused("missing variable")
+            raise RefusedError("missing variable")
         columns = [np.array([values[name]]) for name in self._names] or [np.zeros(1)]
         self._begin(time)
         self._news = self._monitor.push(columns)
@@ -235,5 +235,5 @@ class _Questioned(ReferenceMonitor):
 def _number(value: Any) -> float:
     number = arrays.number_of(value)
     if number is None or isnan(number):
-        raise Refused("not a number")
+        raise RefusedError("not a number")
     return number
