@@ -11,7 +11,7 @@
 
 namespace rtamt::early {
 
-// Ticks [l, r] that were decided when the newest sample was `at`.
+// Ticks [l, r], decided by the sample at `at`.
 struct Decision {
     Tick l;
     Tick r;
@@ -21,7 +21,7 @@ struct Decision {
 
 class Decisions {
   public:
-    // What is decided before any sample came is decided by the first.
+    // What is decided before any sample came; the first is to date it.
     void begin(const Engine& engine, std::uint32_t ref) {
         for (Tick t = 0; t < forever;) {
             const Run lower = engine.runs(ref, 0).at(t);
@@ -35,12 +35,19 @@ class Decisions {
         }
     }
 
-    // Takes what the last change of the engine decided; gives what is decided up to `newest`.
-    void collect(const Engine& engine, std::uint32_t ref, Tick newest, std::vector<Decision>& out) {
+    void date(Tick at) noexcept {
+        for (Decision& decision : waiting_)
+            decision.at = at;
+    }
+
+    // Takes what the last change of the engine decided, by the sample at `at`; gives what is
+    // decided up to `newest`.
+    void collect(const Engine& engine, std::uint32_t ref, Tick newest, Tick at,
+                 std::vector<Decision>& out) {
         for (const bool satisfied : {true, false}) {
             for (const Piece& piece : engine.news(ref, satisfied ? 0 : 1)) {
                 if (piece.old > 0 || !(piece.now > 0)) continue;
-                const Decision decision{piece.l, piece.r, std::max<Tick>(newest, 0), satisfied};
+                const Decision decision{piece.l, piece.r, at, satisfied};
                 if (piece.r <= newest) {
                     out.push_back(decision);
                 } else {

@@ -11,14 +11,19 @@ namespace rtamt::early {
 
 Engine::Engine(Graph graph, std::vector<Bounds> ranges, bool late)
     : graph_(std::move(graph)), ranges_(std::move(ranges)), late_(late),
-      nodes_(graph_.nodes.size()), results_(graph_.nodes.size()), row_(graph_.inputs) {
+      nodes_(graph_.nodes.size()), settled_(graph_.inputs, -1), readers_(graph_.inputs),
+      results_(graph_.nodes.size()), row_(graph_.inputs) {
     graph_.check();
     ranges_.resize(graph_.inputs, bounds::anything);
     std::size_t steps = 0;
-    for (const Node& node : graph_.nodes) {
-        steps = std::max(steps, node.steps.size());
-        for (const Step& step : node.steps)
+    for (std::uint32_t i = 0; i < graph_.nodes.size(); ++i) {
+        steps = std::max(steps, node(i).steps.size());
+        for (const Step& step : node(i).steps) {
             partial_ = partial_ || info(step.opcode).partial;
+            if (node(i).kind != Kind::atom || step.opcode != Opcode::input) continue;
+            auto& readers = readers_[step.a];
+            if (readers.empty() || readers.back() != i) readers.push_back(i);
+        }
     }
     exact_.resize(steps);
     bounds_.resize(steps);
@@ -112,12 +117,7 @@ std::optional<Engine::Failure> Engine::learn(std::span<const Lesson> lessons) {
         }
     }
     for (const Lesson& lesson : lessons) {
-        for (std::uint32_t i = 0; i < nodes_.size(); ++i) {
-            if (node(i).kind != Kind::atom) continue;
-            const bool reads = std::ranges::any_of(node(i).steps, [&](const Step& step) {
-                return step.opcode == Opcode::input && step.a == lesson.input;
-            });
-            if (!reads) continue;
+        for (const std::uint32_t i : readers_[lesson.input]) {
             const auto failure = relearn(i, lesson.l, lesson.r);
             if (failure) return attempt(failure);
         }
@@ -125,8 +125,19 @@ std::optional<Engine::Failure> Engine::learn(std::span<const Lesson> lessons) {
     return attempt(propagate(false));
 }
 
+std::optional<Engine::Failure> Engine::wrong_constant() {
+    for (std::uint32_t i = 0; i < nodes_.size(); ++i) {
+        const auto reads = [](const Step& step) { return step.opcode == Opcode::input; };
+        if (node(i).kind != Kind::atom || std::ranges::any_of(node(i).steps, reads)) continue;
+        const std::uint32_t wrong = run<Bounds>(node(i).steps, row_, bounds_);
+        if (wrong != none) return Failure{i, wrong, 0};
+    }
+    return std::nullopt;
+}
+
 // Computes an atom again wherever its inputs may have changed. It fails where its operands are
-// known exactly; what has no value for operands within bounds may still get one.
+// known exactly, or will not be known better; what has no value for other operands may still get
+// one.
 std::optional<Engine::Failure> Engine::relearn(std::uint32_t index, Tick l, Tick r) {
     State& state = nodes_[index];
     const auto& steps = node(index).steps;
@@ -143,15 +154,18 @@ std::optional<Engine::Failure> Engine::relearn(std::uint32_t index, Tick l, Tick
                 value = {lower.value, -upper.value};
                 end = std::min({end, lower.end, upper.end});
             }
-            exact = exact && value.lower == value.upper;
+            const Tick settled = settled_[step.a];
+            if (t <= settled) {
+                end = std::min(end, settled);
+            } else {
+                exact = exact && value.lower == value.upper;
+            }
         }
-        const std::uint32_t wrong = run<Bounds>(steps, row_, bounds_);
+        const std::uint32_t wrong = enclose(steps, row_, bounds_);
         if (wrong != none && exact) return Failure{index, wrong, t};
-        if (wrong == none) {
-            const Bounds result = bounds_[steps.size() - 1];
-            lift(state, 0, t, end, result.lower);
-            lift(state, 1, t, end, -result.upper);
-        }
+        const Bounds result = bounds_[steps.size() - 1];
+        lift(state, 0, t, end, result.lower);
+        lift(state, 1, t, end, -result.upper);
         if (end >= forever) break;
         t = end + 1;
     }

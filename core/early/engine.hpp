@@ -46,7 +46,14 @@ class Engine {
     [[nodiscard]] std::optional<Failure> row(Tick t, std::span<const double> values);
     [[nodiscard]] std::optional<Failure> row(Tick t, std::span<const Bounds> values);
 
-    // Knowledge of inputs at [l, r], within what was known before; applied by apply().
+    // Up to which tick each input is known as well as it will ever be, from the next change on;
+    // where only learn() is called.
+    void settle_inputs(std::span<const Tick> ticks) { settled_.assign(ticks.begin(), ticks.end()); }
+
+    // The first operation without a value in what reads no input.
+    [[nodiscard]] std::optional<Failure> wrong_constant();
+
+    // Knowledge of inputs at [l, r], within what was known before.
     struct Lesson {
         std::uint32_t input;
         Tick l;
@@ -72,6 +79,7 @@ class Engine {
         return graph_.nodes[ref / 2].horizon;
     }
     [[nodiscard]] std::size_t size() const noexcept { return nodes_.size(); }
+    [[nodiscard]] std::size_t inputs() const noexcept { return graph_.inputs; }
 
     // Nothing more will come at or before `closed`. `wanted`: by node, the first tick that is still
     // asked for by others than nodes. Drops what nobody needs.
@@ -108,8 +116,10 @@ class Engine {
     bool late_;
     bool partial_ = false; // an operation may have no value
     std::vector<State> nodes_;
-    std::vector<Registers> inputs_; // where knowledge may be late
-    std::vector<Undo> journal_;     // of a change that may fail
+    std::vector<Registers> inputs_;                   // where knowledge may be late
+    std::vector<Tick> settled_;                       // by input
+    std::vector<std::vector<std::uint32_t>> readers_; // the atoms that read an input
+    std::vector<Undo> journal_;                       // of a change that may fail
     bool journaling_ = false;
     std::vector<double> exact_;   // results of steps
     std::vector<Bounds> bounds_;  // results of steps

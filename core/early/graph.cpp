@@ -85,6 +85,15 @@ template <class Value>
     return Interval::of(x);
 }
 
+template <class Value>
+[[nodiscard]] Value value_of(const Step& step, std::span<const Value> inputs,
+                             std::span<Value> results) noexcept {
+    if (step.opcode == Opcode::input) return inputs[step.a];
+    if (step.opcode == Opcode::constant) return constant(step.x, Value{});
+    const Value& a = results[step.a];
+    return apply(step.opcode, a, step.b == none ? a : results[step.b]);
+}
+
 } // namespace
 
 double compute(Opcode opcode, double a, double b) noexcept {
@@ -99,17 +108,8 @@ template <class Value>
 std::uint32_t run(std::span<const Step> steps, std::span<const Value> inputs,
                   std::span<Value> results) noexcept {
     for (std::size_t i = 0; i < steps.size(); ++i) {
-        const Step& step = steps[i];
-        Value& result = results[i];
-        if (step.opcode == Opcode::input) {
-            result = inputs[step.a];
-        } else if (step.opcode == Opcode::constant) {
-            result = constant(step.x, result);
-        } else {
-            const Value& a = results[step.a];
-            result = apply(step.opcode, a, step.b == none ? a : results[step.b]);
-            if (undefined(result)) return static_cast<std::uint32_t>(i);
-        }
+        results[i] = value_of(steps[i], inputs, results);
+        if (undefined(results[i])) return static_cast<std::uint32_t>(i);
     }
     return none;
 }
@@ -118,6 +118,18 @@ template std::uint32_t run(std::span<const Step>, std::span<const double>,
                            std::span<double>) noexcept;
 template std::uint32_t run(std::span<const Step>, std::span<const Bounds>,
                            std::span<Bounds>) noexcept;
+
+std::uint32_t enclose(std::span<const Step> steps, std::span<const Bounds> inputs,
+                      std::span<Bounds> results) noexcept {
+    std::uint32_t wrong = none;
+    for (std::size_t i = 0; i < steps.size(); ++i) {
+        results[i] = value_of(steps[i], inputs, results);
+        if (!undefined(results[i])) continue;
+        if (wrong == none) wrong = static_cast<std::uint32_t>(i);
+        results[i] = bounds::anything;
+    }
+    return wrong;
+}
 
 void Graph::check() const {
     const auto require = [](bool holds) {

@@ -1,5 +1,6 @@
 // The extension module rtamt.engine._core: what Python may call, and nothing else.
 #include "../program/opcodes.hpp"
+#include "dense_early_monitor.hpp"
 #include "early_monitor.hpp"
 #include "failures.hpp"
 #include "monitor_module.hpp"
@@ -55,6 +56,7 @@ NB_MODULE(_core, m) {
 
     rtamt::python::add_monitors(m, exceptions);
     rtamt::python::add_early_monitor(m, exceptions);
+    rtamt::python::add_dense_early_monitor(m, exceptions);
     rtamt::python::add_online(m);
     rtamt::python::add_offline(m, exceptions);
 

@@ -1,7 +1,8 @@
 #include "dense_monitor.hpp"
 
+#include "ticks.hpp"
+
 #include <algorithm>
-#include <cmath>
 #include <cstring>
 #include <initializer_list>
 #include <memory>
@@ -22,34 +23,6 @@ template <class Item>
                                                               const nb::capsule& owner) {
     static Item none{}; // an empty array points somewhere, too
     return {items == nullptr ? &none : items, std::initializer_list<std::size_t>{count}, owner};
-}
-
-// Times stay this far from the ends of their range, so that bounds can be added to them.
-constexpr double farthest = 0x1p62;
-
-// Up to here a product of doubles is within half a tick of the truth; NEAR in ticks.py.
-constexpr double near = 0x1p50;
-
-// Up to here every integer is a double.
-constexpr double exact = 0x1p53;
-
-// The tick of a time far from 0, where doubles are further apart than ticks: that of the shortest
-// decimal that prints it (tick_of in ticks.py says why).
-[[nodiscard]] std::int64_t far_tick(double seconds, std::int64_t rate) noexcept {
-    const double whole = std::trunc(seconds);
-    const double rest = seconds - whole;
-    const std::int64_t begin = static_cast<std::int64_t>(whole) * rate;
-    if (rate % 1000 == 0) {
-        for (const std::int64_t step : {1000, 100, 10}) {
-            const std::int64_t steps_in_one = rate / step;
-            const auto grid = static_cast<double>(steps_in_one);
-            const double steps = std::nearbyint(rest * grid);
-            if (whole + steps / grid == seconds) {
-                return begin + static_cast<std::int64_t>(steps) * step;
-            }
-        }
-    }
-    return begin + static_cast<std::int64_t>(std::nearbyint(rest * static_cast<double>(rate)));
 }
 
 // The descriptor of an attribute that objects of a class have, so that nothing is looked up later.
@@ -188,7 +161,7 @@ bool DenseMonitor::read(PyObject* time, const Values& values) noexcept {
     const bool ready_before = has_time_scale_;
     const double rate = rate_;
     const bool whole = whole_;
-    const auto tick = ready_before ? read_time(time) : std::nullopt;
+    const auto tick = ready_before ? tick_of(time, rate, whole) : std::nullopt;
     if (!tick) return usage_.refuse("time") != nullptr;
     const Places own = places();
     own.clear();
@@ -214,35 +187,6 @@ bool DenseMonitor::read(PyObject* time, const Values& values) noexcept {
     return (ready_before == has_time_scale_ && rate == rate_ && whole == whole_ &&
             bind_buffers()) ||
            usage_.refuse("time") != nullptr;
-}
-
-// The tick of a plain time: of a float or an int, rounded to the nearest and halves to the even
-// one; where times are whole, of an integer of any kind, without a double in between.
-std::optional<std::int64_t> DenseMonitor::read_time(PyObject* time) const noexcept {
-    const double rate = rate_; // a time may run Python code
-    if (whole_) {
-        if (PyBool_Check(time) || PyIndex_Check(time) == 0) return std::nullopt;
-        const nb::object index = nb::steal(PyNumber_Index(time));
-        const std::int64_t number = index.is_valid() ? PyLong_AsLongLong(index.ptr()) : -1;
-        if (number == -1 && PyErr_Occurred() != nullptr && !forget_no_number()) return std::nullopt;
-        if (!(std::fabs(static_cast<double>(number)) * rate < farthest)) return std::nullopt;
-        return number * static_cast<std::int64_t>(rate);
-    }
-    double number = 0.0;
-    if (PyFloat_Check(time)) {
-        number = PyFloat_AS_DOUBLE(time);
-    } else if (PyLong_CheckExact(time)) {
-        number = PyLong_AsDouble(time);
-        if (PyErr_Occurred() != nullptr && !forget_no_number()) return std::nullopt;
-        if (!(std::fabs(number) < exact)) return std::nullopt;
-    } else {
-        return std::nullopt;
-    }
-    const double tick = std::nearbyint(number * rate);
-    if (!(std::fabs(tick) < farthest)) return std::nullopt;
-    if (!(std::fabs(number) < implausible)) return std::nullopt;
-    return std::fabs(tick) < near ? static_cast<std::int64_t>(tick)
-                                  : far_tick(number, static_cast<std::int64_t>(rate));
 }
 
 // Answers what is wrong, or null.

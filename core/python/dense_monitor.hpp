@@ -113,7 +113,6 @@ class DenseMonitor {
     void require_output(std::size_t output) const;
     [[nodiscard]] PyObject* fail(const dense::Failure& failure) const noexcept;
     [[nodiscard]] bool ready() const noexcept { return usage_.open(executor_.finished()); }
-    [[nodiscard]] std::optional<std::int64_t> read_time(PyObject* time) const noexcept;
     template <class Values, class Numbers>
     [[nodiscard]] const char* read_values(const Values& values, const Numbers& numbers,
                                           const Places& places) const noexcept;

@@ -1,4 +1,4 @@
-// The class EarlyMonitor of the extension module.
+// The class EarlyMonitor of the extension module, and what it shares with that of dense time.
 #include "early_monitor.hpp"
 #include "locked_class.hpp"
 
@@ -12,8 +12,6 @@
 namespace rtamt::python {
 
 using early::Tick;
-
-namespace {
 
 early::Graph graph_of(const std::vector<EarlyNode>& nodes, std::uint32_t inputs) {
     early::Graph graph;
@@ -36,11 +34,29 @@ std::vector<early::Item> items_of(const std::vector<EarlyItem>& items) {
     return result;
 }
 
-} // namespace
+std::vector<Bounds> bounds_of(const std::vector<std::pair<double, double>>& pairs) {
+    std::vector<Bounds> result;
+    result.reserve(pairs.size());
+    for (const auto& [lower, upper] : pairs)
+        result.push_back({lower, upper});
+    return result;
+}
+
+std::vector<std::uint32_t> steps_before(const early::Graph& graph) {
+    std::vector<std::uint32_t> result;
+    std::uint32_t before = 0;
+    for (const early::Node& node : graph.nodes) {
+        result.push_back(before);
+        before += static_cast<std::uint32_t>(node.steps.size());
+    }
+    return result;
+}
 
 void add_early_monitor(const nb::module_& module, const Exceptions& exceptions) {
-    LockedClass<EarlyMonitor>(module, "EarlyMonitor",
-                              "Verdicts or bounds before the horizon, in discrete time.")
+    const nb::class_<EarlyBackend> base(module, "_EarlyBackend",
+                                        "Takes samples for early verdicts.");
+    LockedClass<EarlyMonitor, EarlyBackend>(
+        module, "EarlyMonitor", "Verdicts or bounds before the horizon, in discrete time.")
         .def(
             "__init__",
             [exceptions](EarlyMonitor* self, const std::vector<EarlyNode>& nodes,
@@ -49,16 +65,15 @@ void add_early_monitor(const nb::module_& module, const Exceptions& exceptions) 
                          const std::vector<nb::str>& names, const nb::object& ignored,
                          double period, double tolerance, std::optional<Tick> lateness,
                          const nb::object& verdict, bool replays) {
-                std::vector<Bounds> known;
-                known.reserve(ranges.size());
-                for (const auto& [lower, upper] : ranges)
-                    known.push_back({lower, upper});
                 EarlySettings settings{
                     period,  tolerance,   lateness.has_value(), lateness.value_or(0),
                     replays, std::nullopt};
-                if (!verdict.is_none()) settings.verdict.emplace(verdict);
+                if (!verdict.is_none()) {
+                    settings.verdict.emplace(verdict,
+                                             std::array{"time", "satisfied", "decided_at"});
+                }
                 new (self) EarlyMonitor(graph_of(nodes, static_cast<std::uint32_t>(names.size())),
-                                        std::move(outputs), items_of(origin), std::move(known),
+                                        std::move(outputs), items_of(origin), bounds_of(ranges),
                                         names, ignored, std::move(settings), exceptions);
             },
             nb::arg("nodes"), nb::arg("outputs"), nb::arg("origin"), nb::arg("ranges"),

@@ -37,14 +37,10 @@ EarlyMonitor::EarlyMonitor(const early::Graph& graph, std::vector<std::uint32_t>
       times_(settings.period, settings.tolerance), ranges_(std::move(ranges)),
       settings_(std::move(settings)), exceptions_(std::move(exceptions)),
       guard_(exceptions_.refused, exceptions_.in_use), names_(names, graph.inputs, ignored),
-      row_(graph.inputs), given_(graph.inputs), news_(outputs_.size()), changed_(outputs_.size()),
+      row_(graph.inputs), given_(graph.inputs), news_(outputs_.size()), changes_(outputs_.size()),
       open_(outputs_.size(), 0), wanted_(engine_.size()) {
     ranges_.resize(graph.inputs, bounds::anything);
-    std::uint32_t before = 0;
-    for (const early::Node& node : graph.nodes) {
-        steps_before_.push_back(before);
-        before += static_cast<std::uint32_t>(node.steps.size());
-    }
+    steps_before_ = steps_before(graph);
     for (const std::uint32_t output : outputs_) {
         if (output / 2 >= engine_.size()) throw std::invalid_argument("There is no such output.");
     }
@@ -184,17 +180,10 @@ void EarlyMonitor::note(Tick before) {
     for (std::size_t i = 0; i < outputs_.size(); ++i) {
         if (settings_.verdict) {
             news_[i].clear();
-            decisions_[i].collect(engine_, outputs_[i], newest, news_[i]);
+            decisions_[i].collect(engine_, outputs_[i], newest, newest, news_[i]);
             continue;
         }
-        auto& changed = changed_[i];
-        changed.clear();
-        for (int reg = 0; reg < 2; ++reg) {
-            for (const early::Piece& piece : engine_.news(outputs_[i], reg)) {
-                if (piece.l <= newest) changed.emplace_back(piece.l, std::min(piece.r, newest));
-            }
-        }
-        if (newest > before) changed.emplace_back(before + 1, newest);
+        changes_[i].collect(engine_, outputs_[i], before, newest);
     }
     if (origin_) origin_->look(engine_);
 }
@@ -208,10 +197,12 @@ void EarlyMonitor::settle() {
     Tick oldest = closed_;
     for (std::size_t i = 0; i < outputs_.size(); ++i) {
         Tick& wanted = wanted_[outputs_[i] / 2];
-        Tick from = std::max<Tick>(0, early::plus(closed_ + 1, -lag(i)));
+        Tick from = 0;
         if (settings_.verdict) {
             open_[i] = early::Decisions::open(engine_, outputs_[i], open_[i]);
-            from = std::max(from, open_[i]);
+            from = std::max(early::plus(closed_ + 1, -lag(i)), open_[i]);
+        } else {
+            from = std::min(held(i), changes_[i].first());
         }
         wanted = std::min(wanted, from);
         oldest = std::min(oldest, wanted);
@@ -256,20 +247,6 @@ nb::object EarlyMonitor::finish() {
     return nb::make_tuple(all, start);
 }
 
-PyObject* VerdictClass::make(double time, bool satisfied, double decided_at) const noexcept {
-    auto* type = reinterpret_cast<PyTypeObject*>(type_.ptr());
-    auto made = nb::steal(type->tp_alloc(type, 0));
-    if (!made.is_valid()) return nullptr;
-    const auto fill = [&](const nb::object& slot, const nb::object& value) {
-        return value.is_valid() &&
-               Py_TYPE(slot.ptr())->tp_descr_set(slot.ptr(), made.ptr(), value.ptr()) == 0;
-    };
-    const bool filled = fill(time_, nb::steal(PyFloat_FromDouble(time))) &&
-                        fill(satisfied_, nb::borrow(satisfied ? Py_True : Py_False)) &&
-                        fill(decided_at_, nb::steal(PyFloat_FromDouble(decided_at)));
-    return filled ? made.release().ptr() : nullptr;
-}
-
 // ---- answers ------------------------------------------------------------------------------------
 
 PyObject* EarlyMonitor::answer() noexcept {
@@ -289,7 +266,9 @@ PyObject* EarlyMonitor::news(std::size_t output) noexcept {
     for (const Decision& decision : decisions) {
         for (Tick t = decision.l; t <= decision.r; ++t) {
             PyObject* one =
-                settings_.verdict->make(times_.at(t), decision.satisfied, times_.at(decision.at));
+                settings_.verdict->make({nb::steal(PyFloat_FromDouble(times_.at(t))),
+                                         nb::borrow(decision.satisfied ? Py_True : Py_False),
+                                         nb::steal(PyFloat_FromDouble(times_.at(decision.at)))});
             if (one == nullptr) return nullptr;
             PyList_SET_ITEM(list.ptr(), place++, one);
         }
@@ -323,26 +302,10 @@ Tick EarlyMonitor::held(std::size_t output) const {
 
 std::vector<std::tuple<Tick, Tick, double, double>>
 EarlyMonitor::changes(std::size_t output) const {
-    auto ranges = changed_.at(output);
-    std::ranges::sort(ranges);
+    if (output >= outputs_.size()) throw std::out_of_range("There is no such output.");
     std::vector<std::tuple<Tick, Tick, double, double>> result;
-    Tick next = 0;
-    for (const auto& [first, last] : ranges) {
-        for (Tick t = std::max(first, next); t <= last;) {
-            const early::Run lower = engine_.runs(outputs_[output], 0).at(t);
-            const early::Run upper = engine_.runs(outputs_[output], 1).at(t);
-            const Tick end = std::min({last, lower.end, upper.end});
-            if (!result.empty() && std::get<1>(result.back()) == t - 1 &&
-                std::get<2>(result.back()) == lower.value &&
-                std::get<3>(result.back()) == -upper.value) {
-                std::get<1>(result.back()) = end;
-            } else {
-                result.emplace_back(t, end, lower.value, -upper.value);
-            }
-            t = end + 1;
-        }
-        next = std::max(next, last + 1);
-    }
+    for (const early::Change& run : changes_[output].runs(engine_, outputs_[output]))
+        result.emplace_back(run.l, run.r, run.bounds.lower, run.bounds.upper);
     return result;
 }
 

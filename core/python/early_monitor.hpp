@@ -4,10 +4,12 @@
 // caller brings it in the form of take() or learn().
 #pragma once
 
+#include "../early/changes.hpp"
 #include "../early/decisions.hpp"
 #include "../early/engine.hpp"
 #include "../early/origin.hpp"
 #include "../early/times.hpp"
+#include "early_backend.hpp"
 #include "failures.hpp"
 #include "names.hpp"
 #include "numbers.hpp"
@@ -24,42 +26,16 @@
 
 namespace rtamt::python {
 
-// (opcode, a, b, x); operands that are not there are `early::none`.
-using EarlyStep = std::tuple<int, std::uint32_t, std::uint32_t, double>;
-// (kind, a, b, low, high, horizon, steps)
-using EarlyNode = std::tuple<int, std::uint32_t, std::uint32_t, early::Tick, early::Tick,
-                             early::Tick, std::vector<EarlyStep>>;
-// (kind, negated, a, b, c, tick)
-using EarlyItem = std::tuple<int, bool, std::uint32_t, std::uint32_t, std::uint32_t, early::Tick>;
-
-// A class of objects with the slots time, satisfied and decided_at, which are filled without a call
-// of Python code.
-class VerdictClass {
-  public:
-    explicit VerdictClass(const nb::object& type)
-        : type_(type), time_(type.attr("time")), satisfied_(type.attr("satisfied")),
-          decided_at_(type.attr("decided_at")) {}
-
-    // Null, with a Python exception set, where that fails.
-    [[nodiscard]] PyObject* make(double time, bool satisfied, double decided_at) const noexcept;
-
-  private:
-    nb::object type_;
-    nb::object time_; // descriptors
-    nb::object satisfied_;
-    nb::object decided_at_;
-};
-
 struct EarlySettings {
     double period;
     double tolerance;
-    bool late;                           // samples may come in any order
-    early::Tick lateness;                // by how many samples at most
-    bool replays;                        // update() takes nothing by itself
-    std::optional<VerdictClass> verdict; // of what update() returns; none: bounds
+    bool late;                             // samples may come in any order
+    early::Tick lateness;                  // by how many samples at most
+    bool replays;                          // update() takes nothing by itself
+    std::optional<ResultClass<3>> verdict; // of what update() returns; none: bounds
 };
 
-class EarlyMonitor {
+class EarlyMonitor : public EarlyBackend {
   public:
     EarlyMonitor(const early::Graph& graph, std::vector<std::uint32_t> outputs,
                  std::vector<early::Item> origin, std::vector<Bounds> ranges,
@@ -67,7 +43,7 @@ class EarlyMonitor {
                  EarlySettings settings, Exceptions exceptions);
 
     // A list of verdicts, or None; null, with a Python exception set, is a refusal.
-    [[nodiscard]] PyObject* update(PyObject* time, const Named& values) noexcept;
+    [[nodiscard]] PyObject* update(PyObject* time, const Named& values) noexcept override;
 
     // All inputs at one time, in order; `after`: how many samples the caller knows of.
     [[nodiscard]] nb::object take(double time, const std::vector<double>& lower,
@@ -121,8 +97,8 @@ class EarlyMonitor {
     std::vector<double> row_;
     std::vector<bool> given_;
     std::vector<std::vector<early::Decision>> news_; // by output
-    std::vector<std::vector<std::pair<early::Tick, early::Tick>>> changed_;
-    std::vector<early::Tick> open_; // by output, the first tick without a verdict
+    std::vector<early::Changes> changes_;            // by output
+    std::vector<early::Tick> open_;                  // by output, the first tick without a verdict
     std::vector<early::Tick> wanted_;
     std::vector<early::Engine::Lesson> lessons_;
     early::Tick closed_ = -1; // nothing up to here will come

@@ -1,7 +1,7 @@
 #include "online.hpp"
 
 #include "dense_monitor.hpp"
-#include "early_monitor.hpp"
+#include "early_backend.hpp"
 #include "locked_class.hpp"
 #include "method_table.hpp"
 #include "monitor.hpp"
@@ -125,7 +125,7 @@ PyMethodDef dense_methods[] = {
 };
 
 PyMethodDef early_methods[] = {
-    {"update", erased(update<EarlyMonitor>), METH_FASTCALL | METH_KEYWORDS,
+    {"update", erased(update<EarlyBackend>), METH_FASTCALL | METH_KEYWORDS,
      "update($self, time, /, **values)\n--\n\n"
      "Take what is known of the variables at one time; return what became known."},
     {nullptr, nullptr, 0, nullptr},
@@ -168,7 +168,7 @@ void add_online(nb::module_& module) {
     known() = {module.attr("Refused").ptr(), module.attr("Undefined").ptr()};
     add<Monitor>(module, "MonitorBase", "Takes samples in discrete time.", methods);
     add<DenseMonitor>(module, "DenseMonitorBase", "Takes samples in dense time.", dense_methods);
-    add<EarlyMonitor>(module, "EarlyMonitorBase", "Takes samples for early verdicts.",
+    add<EarlyBackend>(module, "EarlyMonitorBase", "Takes samples for early verdicts.",
                       early_methods);
 }
 

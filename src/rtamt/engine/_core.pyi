@@ -241,6 +241,84 @@ class EarlyMonitor:
     @property
     def state_bytes(self) -> int: ...
 
+class DenseEarlyMonitor:
+    """The same in dense time. Times are ticks, and runs reach from ``begin`` up to, and without, ``end``.
+
+    ``lateness``: by how many ticks a sample may come late after the newest one of any input; None where those of each
+    input come in order. ``verdicts``: verdicts, not bounds. What stands for no tick is ``compiler.early.NEVER``.
+    """
+
+    def __init__(
+        self,
+        nodes: Sequence[tuple[Any, ...]],
+        outputs: Sequence[int],
+        origin: Sequence[tuple[Any, ...]],
+        ranges: Sequence[tuple[float, float]],
+        names: Sequence[str],
+        ignored: Collection[str] | None,
+        lateness: int | None,
+        verdicts: bool,
+        replays: bool = False,
+    ) -> None: ...
+    def set_time_scale(self, verdict: type, rate: float) -> None:
+        """Let update() take times in numbers of ``rate`` ticks each, and return objects of a class like VerdictRun."""
+
+    def learn(self, tick: int, values: Sequence[tuple[int, float, float]], after: int) -> None:
+        """Take bounds (input, lower, upper) of some inputs at one tick."""
+
+    def watermark(self, tick: int) -> None:
+        """Nothing at or before a tick will come."""
+
+    def finish(self) -> None:
+        """End the trace: every input holds its value."""
+
+    def verdicts(self, output: int) -> list[tuple[int, int, bool, int]]:
+        """Runs (begin, end, satisfied, decided at) that the last call decided or reached."""
+
+    def changes(self, output: int) -> list[tuple[int, int, float, float]]:
+        """Runs (begin, end, lower, upper) that the last call changed."""
+
+    def runs(self, output: int) -> list[tuple[int, int, float, float]]:
+        """All runs that are held, up to the newest sample."""
+
+    def origin(self) -> tuple[float, float] | None:
+        """The bounds at the start of the trace."""
+
+    def bounds(self, output: int, tick: int) -> tuple[float, float] | None:
+        """The bounds of an output at a tick, None where they are not held."""
+
+    def known(self, number: int, tick: int) -> tuple[float, float]:
+        """What is known of an input at a tick."""
+
+    def place(self, tick: int) -> int:
+        """The position of a time, which is the tick itself."""
+
+    def held(self, output: int) -> int | None:
+        """The first tick that is held, None before the trace has started."""
+
+    def state(self) -> bytes:
+        """What the samples so far have left behind."""
+
+    def restore(self, state: bytes) -> None:
+        """Go on as the monitor of this state would, which was made like this one."""
+
+    @property
+    def samples(self) -> int: ...
+    @property
+    def counts(self) -> list[int]: ...
+    @property
+    def last_times(self) -> list[int]: ...
+    @property
+    def newest(self) -> int: ...
+    @property
+    def closed(self) -> int: ...
+    @property
+    def complete(self) -> int: ...
+    @property
+    def finished(self) -> bool: ...
+    @property
+    def state_bytes(self) -> int: ...
+
 def opcode_names() -> list[str]:
     """The names of the opcodes, in the order of their codes."""
 

@@ -18,7 +18,7 @@ from rtamt.rewrite.desugar import written
 from rtamt.signals import arrays, dense_arrays
 from rtamt.signals.outcomes import VerdictRun
 from rtamt.signals.ticks import TimeScale
-from rtamt.verdicts.early import EarlyMonitor
+from rtamt.verdicts.early import EarlyMonitor, GraphSession
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -67,7 +67,27 @@ class DenseEarlyMonitor(EarlyMonitor):
 
     def _prepare(self) -> None:
         """Open the first monitor of the back end."""
-        self._session = DenseDefinition(
+        traces = {frozenset(own_variables(each, self.input_names)) for each in self._requirements}
+        if self._backend_name == "cpp" and len(traces) == 1:
+            self._session = GraphSession(
+                self._graph,
+                "DenseEarlyMonitor",
+                self._graph.nodes,
+                self._outputs,
+                self._graph.items,
+                self._known_ranges(),
+                list(self.input_names),
+                self._unread,
+                self._late,
+                self._verdict is not None,
+                self._replays,
+            )
+        else:  # requirements whose traces start at different instants are left to the definition
+            self._session = self._defined()
+        self._connect(self._session.open())
+
+    def _defined(self) -> DenseDefinition:
+        return DenseDefinition(
             self._graph.fingerprint(),
             [self._output_with_names(formula) for formula in self._formulas],
             self._hidden,
@@ -77,7 +97,20 @@ class DenseEarlyMonitor(EarlyMonitor):
             self._late,
             self._verdict is not None,
         )
-        self._connect(self._session.open())
+
+    def _connect(self, backend: Any) -> None:
+        super()._connect(backend)
+        self._told: TimeScale | None = None
+        self._tell()
+
+    def _tell(self) -> None:
+        """Set the time scale of the core, so that it reads plain times itself."""
+        scale = self._scale
+        if scale is None or scale is self._told or not isinstance(self._session, GraphSession):
+            return
+        self._told = scale
+        if scale.rate is not None and scale.ticks_in_1 is not None:
+            self._backend.set_time_scale(VerdictRun, float(scale.rate))
 
     def _output_with_names(self, formula: Formula) -> Output:
         """Return a formula with the variables of its trace; the result as its requirements, each with its own."""
@@ -192,6 +225,7 @@ class DenseEagerMonitor(DenseEarlyMonitor, EarlyMonitorBase):
             except self._undefined as error:
                 raise self._no_value(error) from None
             self._scale = scale
+            self._tell()
             return self._news(0)
 
     @alone
@@ -200,7 +234,10 @@ class DenseEagerMonitor(DenseEarlyMonitor, EarlyMonitorBase):
         if self._finished:
             return []
         self._require_samples()
-        self._backend.finish()
+        try:
+            self._backend.finish()
+        except self._undefined as error:
+            raise self._no_value(error) from None
         self._finished = True
         return self._news(0)
 

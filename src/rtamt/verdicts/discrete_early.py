@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 from rtamt.engine.backend import Session
 from rtamt.engine.discrete.apart import Apart
 from rtamt.engine.discrete.early_python_backend import PythonEarlyMonitor
-from rtamt.engine.native import EarlyMonitorBase, core
+from rtamt.engine.native import EarlyMonitorBase
 from rtamt.errors import TraceError, shown
 from rtamt.language.undefined_value import at_sample, undefined
 from rtamt.language.units import check_unit
@@ -16,7 +16,7 @@ from rtamt.rewrite.desugar import written
 from rtamt.signals import arrays
 from rtamt.signals.regular import irregular, not_increasing
 from rtamt.verdicts.caller_clock import CallerClock, Stamp
-from rtamt.verdicts.early import EarlyMonitor
+from rtamt.verdicts.early import EarlyMonitor, GraphSession
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -25,25 +25,6 @@ if TYPE_CHECKING:
     from rtamt.compiler.early import Graph
     from rtamt.language.formula import Formula
     from rtamt.signals.domain_interface import TimeDomain
-
-
-class GraphSession(Session):
-    """A graph that monitors of the core run; see ``_core.EarlyMonitor`` for the other arguments."""
-
-    def __init__(self, graph: Graph, *settings: Any) -> None:
-        self._graph = graph
-        self._settings = settings
-        self.refused = core().Refused
-        self.undefined = (core().Undefined,)
-
-    def open(self) -> Any:
-        """See :class:`Session`."""
-        return core().EarlyMonitor(*self._settings)
-
-    @property
-    def fingerprint(self) -> bytes:
-        """See :class:`Session`."""
-        return self._graph.fingerprint()
 
 
 class GraphDefinition(Session):
@@ -105,6 +86,7 @@ class DiscreteEarlyMonitor(EarlyMonitor):
     def _compiled(self) -> GraphSession:
         return GraphSession(
             self._graph,
+            "EarlyMonitor",
             self._graph.nodes,
             self._outputs,
             self._graph.items,

@@ -10,7 +10,9 @@ from math import inf, isnan
 from typing import TYPE_CHECKING, Any
 
 from rtamt.compiler.early import compile_graph
+from rtamt.engine.backend import Session
 from rtamt.engine.gate import alone
+from rtamt.engine.native import core
 from rtamt.engine.online import OnlineMonitor, Watched
 from rtamt.errors import TraceError, UsageError, did_you_mean, shown
 from rtamt.rewrite.desugar import desugar
@@ -20,8 +22,29 @@ from rtamt.signals.outcomes import Interval
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Mapping, Sequence
 
+    from rtamt.compiler.early import Graph
     from rtamt.language.formula import Formula
     from rtamt.signals.domain_interface import TimeDomain
+
+
+class GraphSession(Session):
+    """A graph that monitors of the core run: ``monitor`` is their class in ``_core``, the rest are its arguments."""
+
+    def __init__(self, graph: Graph, monitor: str, *settings: Any) -> None:
+        self._graph = graph
+        self._monitor = getattr(core(), monitor)
+        self._settings = settings
+        self.refused = core().Refused
+        self.undefined = (core().Undefined,)
+
+    def open(self) -> Any:
+        """See :class:`Session`."""
+        return self._monitor(*self._settings)
+
+    @property
+    def fingerprint(self) -> bytes:
+        """See :class:`Session`."""
+        return self._graph.fingerprint()
 
 
 class EarlyMonitor(OnlineMonitor):

@@ -244,6 +244,9 @@ class _DenseKept:
         return self._monitor.interval()
 
     def interval(self, t: int) -> Interval:
+        held = self._monitor._backend.held(0)
+        if held is not None and t < held:
+            return self._kept[t]
         found = self._monitor.interval(t)
         assert self._kept.get(t, found) == found
         return found

@@ -145,3 +145,13 @@ def test_contradiction_is_rejected_with_one_sentence():
 def test_unbounded_future_at_every_sample_is_an_error_that_points_at_it():
     with pytest.raises(rtamt.BoundError, match="ask for the start of the trace with at='start'"):
         interval("always x", at="every")
+
+
+def test_bounds_of_every_sample_are_reported_when_old_ones_are_dropped():
+    # Every 64th sample was reported as open, because it had been dropped with those before it.
+    monitor = interval("x >= 3", at="every")
+    for t in range(200):
+        monitor.update(t, x=t % 10)
+        exact = Interval(t % 10 - 3, t % 10 - 3)
+        assert monitor.interval(t) == exact
+        assert [change[:3] for change in monitor.changes()] == [(t, t, exact)]

@@ -1,0 +1,102 @@
+// Verdicts or bounds before the horizon in dense time: samples of any inputs in, runs of ticks out.
+//
+// Times are ticks of the caller; the engine counts from the start of the trace. An instant of which
+// something is known is reported when a sample of any input has reached it.
+//
+// Cost: that of the engine. Memory: its runs, and samples as Samples keeps them.
+#pragma once
+
+#include "changes.hpp"
+#include "decisions.hpp"
+#include "engine.hpp"
+#include "origin.hpp"
+#include "samples.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace rtamt::early {
+
+struct DenseSettings {
+    std::vector<std::uint32_t> outputs; // references
+    std::vector<Item> origin;           // of the bounds at the start; none: nobody asks
+    std::vector<Bounds> ranges;         // of the inputs
+    std::optional<Tick> lateness;       // see Samples
+    bool decides = false;               // verdicts; if not, bounds
+};
+
+class DenseMonitor {
+  public:
+    using Failure = Engine::Failure;
+
+    DenseMonitor(Graph graph, DenseSettings settings);
+
+    // The sample of an input.
+    struct Given {
+        std::uint32_t input;
+        Bounds bounds;
+    };
+    // Samples at one time, which they may have. What fails changes nothing.
+    [[nodiscard]] std::optional<Failure> take(Tick time, std::span<const Given> given);
+    // Nothing at or before a time will come.
+    [[nodiscard]] std::optional<Failure> watermark(Tick time);
+    // Nothing will come: every signal holds its last value.
+    [[nodiscard]] std::optional<Failure> finish();
+
+    [[nodiscard]] const Samples& samples() const noexcept { return samples_; }
+    [[nodiscard]] bool finished() const noexcept { return finished_; }
+    [[nodiscard]] std::size_t outputs() const noexcept { return outputs_.size(); }
+
+    // Of an output, what the last call decided, or changed: in order, and in the caller's ticks.
+    [[nodiscard]] const std::vector<Decision>& decisions(std::size_t output) const noexcept {
+        return decided_[output];
+    }
+    [[nodiscard]] std::vector<Change> changes(std::size_t output) const;
+
+    // The bounds at the start, where there is an origin.
+    [[nodiscard]] std::optional<Bounds> at_start() const;
+
+    // The bounds of an output at a tick; none before the first that is held, or before the trace
+    // has started. All of them, up to the newest sample. What is final is held for some more calls.
+    [[nodiscard]] std::optional<Bounds> at(std::size_t output, Tick time) const;
+    [[nodiscard]] std::vector<Change> runs(std::size_t output) const;
+    [[nodiscard]] std::optional<Tick> held(std::size_t output) const noexcept;
+
+    // The last tick up to which all inputs are as well known as they will ever be.
+    [[nodiscard]] std::optional<Tick> complete() const noexcept;
+
+    [[nodiscard]] std::size_t bytes() const noexcept;
+
+    void transfer(Snapshot& snapshot);
+
+  private:
+    Engine engine_;
+    std::vector<std::uint32_t> outputs_;
+    bool decides_;
+    Samples samples_;
+    std::optional<Origin> origin_;
+    std::vector<Decisions> decisions_;           // by output
+    std::vector<std::vector<Decision>> decided_; // by output
+    std::vector<Changes> changes_;               // by output
+    std::vector<Tick> open_;                     // by output, the first tick without a verdict
+    std::vector<Tick> held_;                     // by output, the first tick that is held
+    std::vector<Tick> next_held_;                // and that after the next look
+    std::vector<Tick> wanted_;                   // by node
+    std::vector<Engine::Lesson> lessons_;
+    std::int64_t calls_ = 0;
+    Tick closed_ = -1; // the last tick of the trace before its end that is final
+    bool begun_ = false;
+    bool finished_ = false;
+
+    [[nodiscard]] Tick start() const noexcept { return samples_.start().value_or(0); }
+    [[nodiscard]] Tick first_open(std::size_t output) const noexcept;
+    [[nodiscard]] std::optional<Failure> learn(Tick at, std::optional<Tick> before);
+    [[nodiscard]] std::vector<Change> timed(std::vector<Change> runs) const;
+    void collect(std::size_t output, Tick at, Tick before, bool begins);
+    void settle();
+};
+
+} // namespace rtamt::early

@@ -1,0 +1,194 @@
+#include "samples.hpp"
+
+#include "../program/snapshot.hpp"
+
+#include <algorithm>
+#include <iterator>
+#include <ranges>
+#include <utility>
+
+namespace rtamt::early {
+
+Samples::Samples(std::vector<Bounds> ranges, std::optional<Tick> lateness)
+    : ranges_(std::move(ranges)), lateness_(lateness), inputs_(ranges_.size()),
+      settled_(ranges_.size(), -1), committed_settled_(settled_) {}
+
+// The index of the first sample later than a time.
+std::size_t Samples::after(const Column& column, Tick time) noexcept {
+    if (column.empty() || column.back().time <= time) return column.size();
+    const auto found = std::ranges::upper_bound(column, time, {}, &Sample::time);
+    return static_cast<std::size_t>(found - column.begin());
+}
+
+bool Samples::may_come(std::uint32_t input, Tick time) const noexcept {
+    if (time <= now_.closed || time >= farthest || time <= -farthest) return false;
+    const Tick from = now_.start ? *now_.start : now_.newest.value_or(time);
+    if (time - from >= longest) return false;
+    return lateness_ || inputs_[input].empty() || time > inputs_[input].back().time;
+}
+
+void Samples::add(std::uint32_t input, Tick time, const Bounds& bounds) {
+    Column& column = inputs_[input];
+    const std::size_t place = after(column, time);
+    added_.reserve(added_.size() + 1);
+    if (place > 0 && column[place - 1].time == time) {
+        added_.push_back({input, time, column[place - 1].bounds});
+        column[place - 1].bounds = bounds;
+    } else {
+        column.insert(column.begin() + static_cast<std::ptrdiff_t>(place), {time, bounds});
+        added_.push_back({input, time, std::nullopt});
+    }
+    now_.newest = std::max(now_.newest.value_or(time), time);
+    if (lateness_) now_.closed = std::max(now_.closed, *now_.newest - *lateness_ - 1);
+    find_start();
+}
+
+void Samples::close(Tick time) noexcept {
+    now_.closed = std::max(now_.closed, time);
+    find_start();
+}
+
+// Behind what is closed no sample can come, so that a first one there is the first of all.
+void Samples::find_start() noexcept {
+    if (now_.start || inputs_.empty()) return;
+    Tick start = -forever;
+    for (const Column& column : inputs_) {
+        if (column.empty()) return;
+        const Tick first = column.front().time;
+        if (lateness_ && first > now_.closed) return;
+        start = std::max(start, first);
+    }
+    now_.start = start;
+}
+
+Tick Samples::relative(Tick time) const noexcept {
+    return time == at_end ? forever : time - *now_.start;
+}
+
+Tick Samples::absolute(Tick tick) const noexcept {
+    return tick >= forever ? at_end : tick + *now_.start;
+}
+
+// Up to which time an input is known.
+Tick Samples::certain(std::size_t input) const noexcept {
+    const Column& column = inputs_[input];
+    if (lateness_ || column.empty()) return now_.closed;
+    return std::max(now_.closed, column.back().time);
+}
+
+void Samples::collect(std::vector<Engine::Lesson>& lessons) {
+    lessons.clear();
+    if (!now_.start) return;
+    const bool starts = !committed_.start;
+    const auto learn = [&](std::size_t input, Tick l, Tick r, const Bounds& bounds) {
+        l = std::max<Tick>(0, relative(l));
+        r = relative(r);
+        if (l <= r) lessons.push_back({static_cast<std::uint32_t>(input), l, r, bounds});
+    };
+    for (std::size_t i = 0; i < inputs_.size(); ++i) {
+        const Column& column = inputs_[i];
+        const Tick before = absolute(settled_[i]);
+        const Tick now = std::max(before, certain(i));
+        for (std::size_t k = before < now ? after(column, before + 1) - 1 : column.size();
+             k < column.size() && column[k].time <= now; ++k) {
+            Tick end = now;
+            if (k + 1 < column.size()) end = std::min(end, column[k + 1].time - 1);
+            learn(i, std::max(column[k].time, before + 1), end, column[k].bounds);
+        }
+        settled_[i] = relative(now);
+        for (std::size_t k = starts ? after(column, now) : column.size(); k < column.size(); ++k)
+            learn(i, column[k].time, column[k].time, column[k].bounds);
+    }
+    if (starts) return;
+    for (const Added& added : added_) {
+        if (added.time <= absolute(settled_[added.input])) continue; // it is among them
+        const Column& column = inputs_[added.input];
+        learn(added.input, added.time, added.time, column[after(column, added.time) - 1].bounds);
+    }
+}
+
+void Samples::rollback() noexcept {
+    for (const Added& added : std::views::reverse(added_)) {
+        Column& column = inputs_[added.input];
+        const std::size_t place = after(column, added.time) - 1;
+        if (added.before) {
+            column[place].bounds = *added.before;
+        } else {
+            column.erase(column.begin() + static_cast<std::ptrdiff_t>(place));
+        }
+    }
+    added_.clear();
+    now_ = committed_;
+    std::ranges::copy(committed_settled_, settled_.begin());
+}
+
+// Drops samples that end before what is not known yet, once they are as many as the others.
+void Samples::commit() {
+    added_.clear();
+    committed_ = now_;
+    std::ranges::copy(settled_, committed_settled_.begin());
+    if (!now_.start) return;
+    for (std::size_t i = 0; i < inputs_.size(); ++i) {
+        Column& column = inputs_[i];
+        const std::size_t known = after(column, absolute(settled_[i]));
+        if (known > 1 && 2 * (known - 1) >= column.size()) {
+            column.erase(column.begin(), column.begin() + static_cast<std::ptrdiff_t>(known - 1));
+        }
+    }
+}
+
+Bounds Samples::known(std::uint32_t input, Tick time) const noexcept {
+    const Column& column = inputs_[input];
+    const std::size_t place = after(column, time);
+    if (place == 0) return ranges_[input];
+    const Sample& sample = column[place - 1];
+    return sample.time == time || time <= certain(input) ? sample.bounds : ranges_[input];
+}
+
+std::optional<Tick> Samples::newest(std::uint32_t input) const noexcept {
+    if (inputs_[input].empty()) return std::nullopt;
+    return inputs_[input].back().time;
+}
+
+std::optional<Tick> Samples::closed() const noexcept {
+    if (now_.closed == never) return std::nullopt;
+    return now_.closed;
+}
+
+std::size_t Samples::bytes() const noexcept {
+    std::size_t sum = 0;
+    for (const Column& column : inputs_)
+        sum += column.size() * sizeof(Sample);
+    return sum;
+}
+
+void Samples::transfer(Snapshot& snapshot) {
+    snapshot.item(now_.start);
+    snapshot.item(now_.newest);
+    snapshot.item(now_.closed);
+    snapshot.require(!now_.start || (*now_.start < farthest && *now_.start > -farthest));
+    for (std::size_t i = 0; i < inputs_.size(); ++i) {
+        Column& column = inputs_[i];
+        std::size_t size = column.size();
+        snapshot.count(size, sizeof(Sample));
+        column.resize(size);
+        for (std::size_t k = 0; k < size; ++k) {
+            snapshot.item(column[k].time);
+            snapshot.item(column[k].bounds.lower);
+            snapshot.item(column[k].bounds.upper);
+            snapshot.require(column[k].time < farthest && column[k].time > -farthest);
+            snapshot.require(k == 0 || column[k - 1].time < column[k].time);
+            snapshot.require(column[k].bounds.lower <= column[k].bounds.upper);
+        }
+        snapshot.item(settled_[i]);
+        snapshot.require(settled_[i] >= -1 && settled_[i] <= forever);
+        snapshot.require(!now_.start ||
+                         (size > 0 && (settled_[i] == forever ||
+                                       column.front().time <= absolute(settled_[i]) + 1)));
+    }
+    added_.clear();
+    committed_ = now_;
+    committed_settled_ = settled_;
+}
+
+} // namespace rtamt::early

@@ -1,0 +1,100 @@
+// Samples of step signals, each with its own times, and what of the signals they make known.
+//
+// A sample holds its value until the next one of its input. Its own tick is known at once; what
+// follows, as far as no other sample of the input can come any more: up to its newest sample where
+// samples of an input come in order, else up to what is closed. The trace starts at the latest
+// first sample of an input, when no earlier one can come; samples are kept until then.
+//
+// Cost: a search for each sample; samples that come late move those after them. Memory: the samples
+// behind what is known, and one more for each input.
+#pragma once
+
+#include "engine.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <vector>
+
+namespace rtamt::early {
+
+class Samples {
+  public:
+    // `lateness`: by how many ticks a sample may be older than the newest one of any input; none:
+    // the samples of an input come in order.
+    Samples(std::vector<Bounds> ranges, std::optional<Tick> lateness);
+
+    // Times are less far from 0, and a trace is shorter.
+    static constexpr Tick farthest = std::numeric_limits<Tick>::max() / 2;
+    static constexpr Tick longest = forever / 2;
+
+    // The sample of an input, at a time that it may have.
+    [[nodiscard]] bool may_come(std::uint32_t input, Tick time) const noexcept;
+    void add(std::uint32_t input, Tick time, const Bounds& bounds);
+
+    // Nothing at or before a time will come; nothing at all.
+    void close(Tick time) noexcept;
+    void finish() noexcept { close(at_end); }
+    [[nodiscard]] bool ended() const noexcept { return now_.closed == at_end; }
+
+    // Takes everything back since the last commit, or forgets how.
+    void rollback() noexcept;
+    void commit();
+
+    // What has become known since the last commit; ticks count from the start of the trace.
+    void collect(std::vector<Engine::Lesson>& lessons);
+
+    // The bounds of an input at a time, as far as they are known.
+    [[nodiscard]] Bounds known(std::uint32_t input, Tick time) const noexcept;
+
+    [[nodiscard]] std::optional<Tick> start() const noexcept { return now_.start; }
+    // The newest sample of any input, and of one.
+    [[nodiscard]] std::optional<Tick> newest() const noexcept { return now_.newest; }
+    [[nodiscard]] std::optional<Tick> newest(std::uint32_t input) const noexcept;
+    // Nothing at or before this time will come.
+    [[nodiscard]] std::optional<Tick> closed() const noexcept;
+    // Up to which tick of the trace each input is known.
+    [[nodiscard]] const std::vector<Tick>& settled() const noexcept { return settled_; }
+
+    [[nodiscard]] std::size_t inputs() const noexcept { return inputs_.size(); }
+    [[nodiscard]] std::size_t bytes() const noexcept;
+
+    void transfer(Snapshot& snapshot);
+
+  private:
+    struct Sample {
+        Tick time;
+        Bounds bounds;
+    };
+    struct Added {
+        std::uint32_t input = 0;
+        Tick time = 0;
+        std::optional<Bounds> before; // of a sample that was there
+    };
+    static constexpr Tick never = std::numeric_limits<Tick>::min();
+    static constexpr Tick at_end = std::numeric_limits<Tick>::max();
+    struct State {
+        std::optional<Tick> start;
+        std::optional<Tick> newest;
+        Tick closed = never;
+    };
+    using Column = std::vector<Sample>; // by time
+
+    std::vector<Bounds> ranges_;
+    std::optional<Tick> lateness_;
+    std::vector<Column> inputs_;
+    std::vector<Tick> settled_;
+    State now_;
+    State committed_;
+    std::vector<Tick> committed_settled_;
+    std::vector<Added> added_;
+
+    [[nodiscard]] static std::size_t after(const Column& column, Tick time) noexcept;
+    [[nodiscard]] Tick relative(Tick time) const noexcept;
+    [[nodiscard]] Tick absolute(Tick tick) const noexcept;
+    [[nodiscard]] Tick certain(std::size_t input) const noexcept;
+    void find_start() noexcept;
+};
+
+} // namespace rtamt::early

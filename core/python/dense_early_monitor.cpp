@@ -1,0 +1,328 @@
+#include "dense_early_monitor.hpp"
+
+#include "arrays.hpp"
+#include "locked_class.hpp"
+#include "numbers.hpp"
+#include "ticks.hpp"
+
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
+#include <nanobind/stl/tuple.h>
+#include <nanobind/stl/vector.h>
+
+#include <algorithm>
+#include <new>
+#include <stdexcept>
+
+namespace rtamt::python {
+
+using early::forever;
+using early::Tick;
+
+namespace {
+
+// What stands for no tick; NEVER in compiler/early.py.
+constexpr Tick never = -forever;
+
+[[nodiscard]] std::vector<std::tuple<Tick, Tick, double, double>>
+tuples_of(const std::vector<early::Change>& runs) {
+    std::vector<std::tuple<Tick, Tick, double, double>> result;
+    result.reserve(runs.size());
+    for (const early::Change& run : runs)
+        result.emplace_back(run.l, run.r + 1, run.bounds.lower, run.bounds.upper);
+    return result;
+}
+
+[[nodiscard]] std::pair<double, double> pair_of(const Bounds& bounds) {
+    return {bounds.lower, bounds.upper};
+}
+
+} // namespace
+
+DenseEarlyMonitor::DenseEarlyMonitor(const early::Graph& graph,
+                                     const early::DenseSettings& settings,
+                                     const std::vector<nb::str>& names, const nb::object& ignored,
+                                     bool replays, Exceptions exceptions)
+    : monitor_(graph, settings), ranges_(settings.ranges), late_(settings.lateness.has_value()),
+      decides_(settings.decides), replays_(replays), exceptions_(std::move(exceptions)),
+      guard_(exceptions_.refused, exceptions_.in_use), names_(names, graph.inputs, ignored),
+      steps_before_(steps_before(graph)), counts_(graph.inputs) {
+    ranges_.resize(graph.inputs, bounds::anything);
+}
+
+void DenseEarlyMonitor::set_time_scale(const nb::object& verdict, double rate) {
+    guard_.require_idle();
+    verdict_.emplace(verdict, std::array{"begin", "end", "satisfied", "decided_at"});
+    rate_ = rate;
+}
+
+// ---- samples ------------------------------------------------------------------------------------
+
+// Reads plain numbers, which runs no Python code; if not, a Python exception is set.
+bool DenseEarlyMonitor::takes(PyObject* time, const Named& values, Tick& tick) noexcept {
+    if (!guard_.open(finished())) return false;
+    if (replays_) return guard_.refuse("replays") != nullptr;
+    const auto read = rate_ > 0 ? tick_of(time, rate_, false) : std::nullopt;
+    if (!read || std::fabs(static_cast<double>(*read)) >= near) {
+        return guard_.refuse("time") != nullptr;
+    }
+    tick = *read;
+    given_.clear();
+    std::size_t guess = 0;
+    const char* wrong = values.each([&](PyObject* name, PyObject* value) -> const char* {
+        const auto place = names_.place(name, guess, true);
+        if (!place) return names_.ignored(name, true) ? nullptr : "names";
+        guess = *place + 1;
+        double x = 0;
+        if (!PlainNumbers::read(value, x)) return "value";
+        const auto input = static_cast<std::uint32_t>(*place);
+        const auto& samples = monitor_.samples();
+        const Bounds known = late_ ? samples.known(input, tick) : ranges_[input];
+        if (!samples.may_come(input, tick)) return "time";
+        if (known.lower > x || x > known.upper) return "range";
+        given_.push_back({input, {x, x}});
+        return nullptr;
+    });
+    if (wrong == nullptr && given_.empty()) wrong = "time"; // which Python checks
+    return wrong == nullptr || guard_.refuse(wrong) != nullptr;
+}
+
+PyObject* DenseEarlyMonitor::update(PyObject* time, const Named& values) noexcept {
+    Tick tick = 0;
+    if (!takes(time, values, tick)) return nullptr;
+    try {
+        if (const auto failure = monitor_.take(tick, given_)) return fail(*failure);
+        for (const auto& each : given_)
+            ++counts_[each.input];
+    } catch (const std::bad_alloc&) {
+        return PyErr_NoMemory();
+    }
+    if (decides_) return news();
+    Py_RETURN_NONE;
+}
+
+void DenseEarlyMonitor::learn(Tick tick,
+                              const std::vector<std::tuple<std::uint32_t, double, double>>& values,
+                              std::int64_t after) {
+    guard_.require_idle();
+    guard_.require(after == samples() && !finished());
+    given_.clear();
+    for (const auto& [input, lower, upper] : values) {
+        if (input >= ranges_.size()) throw std::out_of_range("There is no such input.");
+        if (!monitor_.samples().may_come(input, tick)) {
+            (void)guard_.refuse("order");
+            throw nb::python_error();
+        }
+        given_.push_back({input, {lower, upper}});
+    }
+    check(monitor_.take(tick, given_));
+    for (const auto& each : given_)
+        ++counts_[each.input];
+}
+
+void DenseEarlyMonitor::watermark(Tick tick) {
+    guard_.require_idle();
+    guard_.require(!finished());
+    check(monitor_.watermark(tick));
+}
+
+void DenseEarlyMonitor::finish() {
+    guard_.require_idle();
+    guard_.require(!finished());
+    check(monitor_.finish());
+}
+
+// The operation of a step by its number in the whole graph, and the tick.
+PyObject* DenseEarlyMonitor::fail(const Failure& failure) const noexcept {
+    const auto when = static_cast<long long>(failure.tick);
+    const auto raised = nb::steal(PyObject_CallFunction(
+        exceptions_.undefined.ptr(), "IL", steps_before_[failure.node] + failure.step, when));
+    if (raised.is_valid()) PyErr_SetObject(exceptions_.undefined.ptr(), raised.ptr());
+    return nullptr;
+}
+
+void DenseEarlyMonitor::check(const std::optional<Failure>& failure) const {
+    if (!failure) return;
+    (void)fail(*failure);
+    throw nb::python_error();
+}
+
+// ---- answers ------------------------------------------------------------------------------------
+
+// The verdicts of the first output, in the times of the caller.
+PyObject* DenseEarlyMonitor::news() const noexcept {
+    const auto& decisions = monitor_.decisions(0);
+    auto list = nb::steal(PyList_New(static_cast<Py_ssize_t>(decisions.size())));
+    if (!list.is_valid()) return nullptr;
+    const auto time = [&](Tick tick) {
+        return nb::steal(PyFloat_FromDouble(static_cast<double>(tick) / rate_));
+    };
+    Py_ssize_t place = 0;
+    for (const early::Decision& each : decisions) {
+        PyObject* made =
+            verdict_->make({time(each.l), time(each.r + 1),
+                            nb::borrow(each.satisfied ? Py_True : Py_False), time(each.at)});
+        if (made == nullptr) return nullptr;
+        PyList_SET_ITEM(list.ptr(), place++, made);
+    }
+    return list.release().ptr();
+}
+
+void DenseEarlyMonitor::require_output(std::size_t output) const {
+    guard_.require_idle();
+    if (output >= monitor_.outputs()) throw std::out_of_range("There is no such output.");
+}
+
+std::vector<std::tuple<Tick, Tick, bool, Tick>>
+DenseEarlyMonitor::verdicts(std::size_t output) const {
+    require_output(output);
+    std::vector<std::tuple<Tick, Tick, bool, Tick>> result;
+    for (const early::Decision& each : monitor_.decisions(output))
+        result.emplace_back(each.l, each.r + 1, each.satisfied, each.at);
+    return result;
+}
+
+DenseEarlyMonitor::Runs DenseEarlyMonitor::changes(std::size_t output) const {
+    require_output(output);
+    return tuples_of(monitor_.changes(output));
+}
+
+DenseEarlyMonitor::Runs DenseEarlyMonitor::runs(std::size_t output) const {
+    require_output(output);
+    return tuples_of(monitor_.runs(output));
+}
+
+std::optional<std::pair<double, double>> DenseEarlyMonitor::origin() const {
+    const auto bounds = monitor_.at_start();
+    if (!bounds) return std::nullopt;
+    return pair_of(*bounds);
+}
+
+std::optional<std::pair<double, double>> DenseEarlyMonitor::bounds(std::size_t output,
+                                                                   Tick tick) const {
+    require_output(output);
+    const auto bounds = monitor_.at(output, tick);
+    if (!bounds) return std::nullopt;
+    return pair_of(*bounds);
+}
+
+std::pair<double, double> DenseEarlyMonitor::known(std::uint32_t input, Tick tick) const {
+    if (input >= ranges_.size()) throw std::out_of_range("There is no such input.");
+    return pair_of(monitor_.samples().known(input, tick));
+}
+
+std::optional<Tick> DenseEarlyMonitor::held(std::size_t output) const {
+    require_output(output);
+    return monitor_.held(output);
+}
+
+std::int64_t DenseEarlyMonitor::samples() const {
+    std::int64_t sum = 0;
+    for (const std::int64_t count : counts_)
+        sum += count;
+    return sum;
+}
+
+std::vector<Tick> DenseEarlyMonitor::last_times() const {
+    std::vector<Tick> times;
+    times.reserve(counts_.size());
+    for (std::uint32_t input = 0; input < counts_.size(); ++input)
+        times.push_back(monitor_.samples().newest(input).value_or(never));
+    return times;
+}
+
+Tick DenseEarlyMonitor::newest() const {
+    return monitor_.samples().newest().value_or(never);
+}
+
+Tick DenseEarlyMonitor::closed() const {
+    return monitor_.samples().closed().value_or(never);
+}
+
+Tick DenseEarlyMonitor::complete() const {
+    return monitor_.complete().value_or(never);
+}
+
+// ---- state --------------------------------------------------------------------------------------
+
+nb::bytes DenseEarlyMonitor::state() {
+    guard_.require_idle();
+    Snapshot snapshot;
+    transfer(snapshot);
+    return bytes_of(snapshot);
+}
+
+void DenseEarlyMonitor::restore(const nb::bytes& state) {
+    guard_.require_idle();
+    Snapshot snapshot = snapshot_of(state);
+    transfer(snapshot);
+    snapshot.end();
+}
+
+void DenseEarlyMonitor::transfer(Snapshot& snapshot) {
+    monitor_.transfer(snapshot);
+    snapshot.values(counts_.data(), counts_.size());
+}
+
+// ---- the class ----------------------------------------------------------------------------------
+
+void add_dense_early_monitor(const nb::module_& module, const Exceptions& exceptions) {
+    LockedClass<DenseEarlyMonitor, EarlyBackend>(
+        module, "DenseEarlyMonitor", "Verdicts or bounds before the horizon, in dense time.")
+        .def(
+            "__init__",
+            [exceptions](DenseEarlyMonitor* self, const std::vector<EarlyNode>& nodes,
+                         std::vector<std::uint32_t> outputs, const std::vector<EarlyItem>& origin,
+                         const std::vector<std::pair<double, double>>& ranges,
+                         const std::vector<nb::str>& names, const nb::object& ignored,
+                         std::optional<Tick> lateness, bool verdicts, bool replays) {
+                const early::DenseSettings settings{std::move(outputs), items_of(origin),
+                                                    bounds_of(ranges), lateness, verdicts};
+                new (self)
+                    DenseEarlyMonitor(graph_of(nodes, static_cast<std::uint32_t>(names.size())),
+                                      settings, names, ignored, replays, exceptions);
+            },
+            nb::arg("nodes"), nb::arg("outputs"), nb::arg("origin"), nb::arg("ranges"),
+            nb::arg("names"), nb::arg("ignored").none(), nb::arg("lateness").none(),
+            nb::arg("verdicts"), nb::arg("replays") = false)
+        .def("set_time_scale", &DenseEarlyMonitor::set_time_scale, nb::arg("verdict"),
+             nb::arg("rate"), "Let update() take numbers of so many ticks each.")
+        .def("learn", &DenseEarlyMonitor::learn, nb::arg("tick"), nb::arg("values"),
+             nb::arg("after"), "Take bounds (input, lower, upper) of some inputs at one tick.")
+        .def("watermark", &DenseEarlyMonitor::watermark, nb::arg("tick"),
+             "Nothing at or before a tick will come.")
+        .def("finish", &DenseEarlyMonitor::finish, "End the trace: every input holds its value.")
+        .def("verdicts", &DenseEarlyMonitor::verdicts, nb::arg("output"),
+             "Runs (begin, end, satisfied, decided at) that the last call decided or reached.")
+        .def("changes", &DenseEarlyMonitor::changes, nb::arg("output"),
+             "Runs (begin, end, lower, upper) that the last call changed.")
+        .def("runs", &DenseEarlyMonitor::runs, nb::arg("output"),
+             "All runs that are held, up to the newest sample.")
+        .def("origin", &DenseEarlyMonitor::origin, "The bounds at the start of the trace.")
+        .def("bounds", &DenseEarlyMonitor::bounds, nb::arg("output"), nb::arg("tick"),
+             "The bounds of an output at a tick, None where they are not held.")
+        .def("known", &DenseEarlyMonitor::known, nb::arg("number"), nb::arg("tick"),
+             "What is known of an input at a tick.")
+        .def(
+            "place", [](const DenseEarlyMonitor& /*self*/, Tick tick) { return tick; },
+            nb::arg("tick"), "The position of a time, which is the tick itself.")
+        .def("held", &DenseEarlyMonitor::held, nb::arg("output"),
+             "The first tick that is held, None before the trace has started.")
+        .def("state", &DenseEarlyMonitor::state, "What the samples so far have left behind.")
+        .def("restore", &DenseEarlyMonitor::restore, nb::arg("state"),
+             "Go on as the monitor of this state would, which was made like this one.")
+        .def_prop_ro("samples", &DenseEarlyMonitor::samples, "How many samples of any input came.")
+        .def_prop_ro("counts", &DenseEarlyMonitor::counts, "The same of each input.")
+        .def_prop_ro("last_times", &DenseEarlyMonitor::last_times,
+                     "The tick of the newest sample of each input.")
+        .def_prop_ro("newest", &DenseEarlyMonitor::newest,
+                     "The tick of the newest sample of any input.")
+        .def_prop_ro("closed", &DenseEarlyMonitor::closed,
+                     "The last tick at or before which no sample will come.")
+        .def_prop_ro("complete", &DenseEarlyMonitor::complete,
+                     "The tick up to which all inputs are as well known as they will ever be.")
+        .def_prop_ro("finished", &DenseEarlyMonitor::finished, "Whether the trace has ended.")
+        .def_prop_ro("state_bytes", &DenseEarlyMonitor::state_bytes, "Bytes of state by now.");
+}
+
+} // namespace rtamt::python
