@@ -265,7 +265,7 @@ std::string Monitor::undefined(const Undefined& failure) const {
                                  ? "'" + found->second + "'"
                                  : "Instruction " + std::to_string(failure.instruction);
     return what + " has no value at " + time_of(failure.step) +
-           ": it is 0/0, inf - inf, 0 * inf, or a root or logarithm of a negative number; change "
+           ": it is 0/0, inf - inf, 0 * inf, or a function outside its domain; change "
            "the formula or the data so that this cannot happen.";
 }
 

@@ -1,5 +1,7 @@
 #include "graph.hpp"
 
+#include "../program/number_functions.hpp"
+
 #include <cmath>
 #include <stdexcept>
 #include <type_traits>
@@ -33,40 +35,24 @@ using DomainOf = std::conditional_t<std::is_same_v<Value, double>, Real, Interva
 
 template <class Value>
 [[nodiscard]] Value apply(Opcode opcode, const Value& a, const Value& b) noexcept {
-    switch (opcode) {
-    case Opcode::neg:
-        return of<f::Neg>(a, b);
-    case Opcode::abs:
-        return of<f::Abs>(a, b);
-    case Opcode::sqrt:
-        return of<f::Sqrt>(a, b);
-    case Opcode::exp:
-        return of<f::Exp>(a, b);
-    case Opcode::ln:
-        return of<f::Ln>(a, b);
-    case Opcode::add:
-        return of<f::Add>(a, b);
-    case Opcode::sub:
-        return of<f::Sub>(a, b);
-    case Opcode::mul:
-        return of<f::Mul>(a, b);
-    case Opcode::div:
-        return of<f::Div>(a, b);
-    case Opcode::pow:
-        return of<f::Pow>(a, b);
-    case Opcode::log:
-        return of<f::Log>(a, b);
-    case Opcode::min:
-        return DomainOf<Value>::meet(a, b);
-    case Opcode::max:
-        return DomainOf<Value>::join(a, b);
-    case Opcode::holds_gt:
-        return of<f::HoldsGreater>(a, b);
-    case Opcode::holds_ge:
-        return of<f::HoldsGreaterEqual>(a, b);
-    default:
-        return of<f::HoldsEqual>(a, b);
-    }
+    const auto other = [&] {
+        switch (opcode) {
+        case Opcode::neg:
+            return of<f::Neg>(a, b);
+        case Opcode::min:
+            return DomainOf<Value>::meet(a, b);
+        case Opcode::max:
+            return DomainOf<Value>::join(a, b);
+        case Opcode::holds_gt:
+            return of<f::HoldsGreater>(a, b);
+        case Opcode::holds_ge:
+            return of<f::HoldsGreaterEqual>(a, b);
+        default:
+            return of<f::HoldsEqual>(a, b);
+        }
+    };
+    return with_function(
+        opcode, [&]<class Function>(Function) { return of<Function>(a, b); }, other);
 }
 
 [[nodiscard]] bool undefined(double value) noexcept {
@@ -148,7 +134,9 @@ void Graph::check() const {
         require(node.low <= node.high && node.high > -forever && node.low < forever);
         for (std::size_t s = 0; s < node.steps.size(); ++s) {
             const Step& step = node.steps[s];
-            require(step.opcode <= Opcode::holds_eq);
+            require(step.opcode < static_cast<Opcode>(opcodes.size()) &&
+                    (info(step.opcode).pointwise || step.opcode == Opcode::input ||
+                     step.opcode == Opcode::constant));
             if (node.kind == Kind::map) continue;
             if (step.opcode == Opcode::input) {
                 require(step.a < inputs);

@@ -8,6 +8,7 @@
 #include "../values/algebra.hpp"
 #include "../values/functions.hpp"
 #include "../values/operations.hpp"
+#include "number_functions.hpp"
 #include "opcodes.hpp"
 
 namespace rtamt {
@@ -43,32 +44,17 @@ template <ValueDomain D, class Make>
 
 template <ValueDomain N, class Make>
 [[nodiscard]] typename Make::Pointer make_number(Opcode opcode, const Make& make) {
-    using namespace functions;
-    using operations::Map;
-    switch (opcode) {
-    case Opcode::abs:
-        return make.template unary<Map<N, Abs>>();
-    case Opcode::sqrt:
-        return make.template unary<Map<N, Sqrt>>();
-    case Opcode::exp:
-        return make.template unary<Map<N, Exp>>();
-    case Opcode::ln:
-        return make.template unary<Map<N, Ln>>();
-    case Opcode::add:
-        return make.template binary<Map<N, Add>>();
-    case Opcode::sub:
-        return make.template binary<Map<N, Sub>>();
-    case Opcode::mul:
-        return make.template binary<Map<N, Mul>>();
-    case Opcode::div:
-        return make.template binary<Map<N, Div>>();
-    case Opcode::pow:
-        return make.template binary<Map<N, Pow>>();
-    case Opcode::log:
-        return make.template binary<Map<N, Log>>();
-    default:
-        return make_either<N>(opcode, make);
-    }
+    return with_function(
+        opcode,
+        [&]<class Function>(Function) -> typename Make::Pointer {
+            using Operation = operations::Map<N, Function>;
+            if constexpr (requires { Function::of(0.0, 0.0); }) {
+                return make.template binary<Operation>();
+            } else {
+                return make.template unary<Operation>();
+            }
+        },
+        [&] { return make_either<N>(opcode, make); });
 }
 
 template <ValueDomain D, class Make>

@@ -38,6 +38,25 @@ enum class Opcode : std::uint8_t {
     since,
     until,
     call,
+    sin,
+    cos,
+    tan,
+    asin,
+    acos,
+    atan,
+    atan2,
+    hypot,
+    sinh,
+    cosh,
+    tanh,
+    degrees,
+    radians,
+    floor,
+    ceil,
+    round,
+    sign,
+    mod,
+    at_least,
 };
 
 // What the number n of an instruction means.
@@ -56,7 +75,7 @@ struct OpcodeInfo {
     Sort gives;
 };
 
-inline constexpr std::array<OpcodeInfo, 26> opcodes{{
+inline constexpr std::array<OpcodeInfo, 45> opcodes{{
     {"input", 0, false, false, Count::input, Sort::either, Sort::either},
     {"const", 0, false, false, Count::none, Sort::either, Sort::either},
     {"neg", 1, true, false, Count::none, Sort::either, Sort::either},
@@ -83,9 +102,29 @@ inline constexpr std::array<OpcodeInfo, 26> opcodes{{
     {"since", 2, false, false, Count::none, Sort::formula, Sort::formula},
     {"until", 2, false, false, Count::width, Sort::formula, Sort::formula},
     {"call", 0, false, true, Count::call, Sort::number, Sort::number},
+    {"sin", 1, true, true, Count::none, Sort::number, Sort::number},
+    {"cos", 1, true, true, Count::none, Sort::number, Sort::number},
+    {"tan", 1, true, true, Count::none, Sort::number, Sort::number},
+    {"asin", 1, true, true, Count::none, Sort::number, Sort::number},
+    {"acos", 1, true, true, Count::none, Sort::number, Sort::number},
+    {"atan", 1, true, false, Count::none, Sort::number, Sort::number},
+    {"atan2", 2, true, false, Count::none, Sort::number, Sort::number},
+    {"hypot", 2, true, false, Count::none, Sort::number, Sort::number},
+    {"sinh", 1, true, false, Count::none, Sort::number, Sort::number},
+    {"cosh", 1, true, false, Count::none, Sort::number, Sort::number},
+    {"tanh", 1, true, false, Count::none, Sort::number, Sort::number},
+    {"degrees", 1, true, false, Count::none, Sort::number, Sort::number},
+    {"radians", 1, true, false, Count::none, Sort::number, Sort::number},
+    {"floor", 1, true, false, Count::none, Sort::number, Sort::number},
+    {"ceil", 1, true, false, Count::none, Sort::number, Sort::number},
+    {"round", 1, true, false, Count::none, Sort::number, Sort::number},
+    {"sign", 1, true, false, Count::none, Sort::number, Sort::number},
+    {"mod", 2, true, true, Count::none, Sort::number, Sort::number},
+    {"at_least", 2, true, true, Count::none, Sort::number, Sort::number},
 }};
 
 static_assert(opcodes[static_cast<std::size_t>(Opcode::call)].name == "call");
+static_assert(opcodes[static_cast<std::size_t>(Opcode::at_least)].name == "at_least");
 
 [[nodiscard]] constexpr const OpcodeInfo& info(Opcode opcode) noexcept {
     return opcodes[static_cast<std::size_t>(opcode)];

@@ -13,7 +13,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <concepts>
 #include <limits>
+#include <numbers>
 
 namespace rtamt {
 
@@ -145,6 +147,138 @@ template <class F>
     const bool possible = a.lower <= b.upper && b.lower <= a.upper;
     const bool certain = a.lower == a.upper && b.lower == b.upper && f.holds(a.lower, b.lower);
     return {certain ? infinity : -infinity, possible ? infinity : -infinity};
+}
+
+// ---- trigonometry and its relatives
+// --------------------------------------------------------------
+
+[[nodiscard]] inline Bounds limited(Bounds a, Bounds to) noexcept {
+    return {std::max(a.lower, to.lower), std::min(a.upper, to.upper)};
+}
+
+[[nodiscard]] inline bool finite(Bounds a) noexcept {
+    return std::isfinite(a.lower) && std::isfinite(a.upper);
+}
+
+// Whether one of the points offset + k * period lies within bounds; also where rounding may hide
+// it.
+[[nodiscard]] inline bool reaches(Bounds a, double offset, double period) noexcept {
+    const double from = (a.lower - offset) / period;
+    const double to = (a.upper - offset) / period;
+    const double slack = 0x1p-48 * (1 + std::max(std::fabs(from), std::fabs(to)));
+    return std::ceil(from - slack) <= to + slack;
+}
+
+// Of a wave between -1 and 1 with its crests and troughs at these points.
+template <class Function>
+[[nodiscard]] Bounds wave(Function f, Bounds a, double crest, double trough) noexcept {
+    constexpr Bounds all{-1, 1};
+    constexpr double turn = 2 * std::numbers::pi;
+    if (!finite(a)) return all;
+    const Bounds of{f.of(a.lower), f.of(a.upper)};
+    const Bounds ends =
+        limited(widened({std::min(of.lower, of.upper), std::max(of.lower, of.upper)}), all);
+    return {reaches(a, trough, turn) ? -1 : ends.lower, reaches(a, crest, turn) ? 1 : ends.upper};
+}
+
+[[nodiscard]] inline Bounds extension(functions::Sin f, Bounds a) noexcept {
+    return wave(f, a, std::numbers::pi / 2, -std::numbers::pi / 2);
+}
+
+[[nodiscard]] inline Bounds extension(functions::Cos f, Bounds a) noexcept {
+    return wave(f, a, 0, std::numbers::pi);
+}
+
+[[nodiscard]] inline Bounds extension(functions::Tan f, Bounds a) noexcept {
+    if (!finite(a) || reaches(a, std::numbers::pi / 2, std::numbers::pi)) return anything;
+    return widened({f.of(a.lower), f.of(a.upper)});
+}
+
+[[nodiscard]] inline Bounds extension(functions::Asin f, Bounds a) noexcept {
+    if (a.upper < -1 || a.lower > 1) return nothing;
+    a = limited(a, {-1, 1});
+    return widened({f.of(a.lower), f.of(a.upper)});
+}
+
+[[nodiscard]] inline Bounds extension(functions::Acos f, Bounds a) noexcept {
+    if (a.upper < -1 || a.lower > 1) return nothing;
+    a = limited(a, {-1, 1});
+    return not_negative(widened({f.of(a.upper), f.of(a.lower)}));
+}
+
+[[nodiscard]] inline Bounds extension(functions::Atan f, Bounds a) noexcept {
+    return widened({f.of(a.lower), f.of(a.upper)});
+}
+
+// The angle jumps where the point crosses the negative axis.
+[[nodiscard]] inline Bounds extension(functions::Atan2 f, Bounds a, Bounds b) noexcept {
+    constexpr Bounds all{-std::numbers::pi, std::numbers::pi};
+    if (b.lower < 0 && a.lower < 0 && a.upper >= 0) return all;
+    return limited(widened(corners(f.of, a, b, 0.0)), all);
+}
+
+[[nodiscard]] inline Bounds extension(functions::Hypot f, Bounds a, Bounds b) noexcept {
+    a = extension(functions::Abs{}, a);
+    b = extension(functions::Abs{}, b);
+    return not_negative(widened({f.of(a.lower, b.lower), f.of(a.upper, b.upper)}));
+}
+
+[[nodiscard]] inline Bounds extension(functions::Sinh f, Bounds a) noexcept {
+    return widened({f.of(a.lower), f.of(a.upper)});
+}
+
+[[nodiscard]] inline Bounds extension(functions::Cosh f, Bounds a) noexcept {
+    a = extension(functions::Abs{}, a);
+    return limited(widened({f.of(a.lower), f.of(a.upper)}), {1, infinity});
+}
+
+[[nodiscard]] inline Bounds extension(functions::Tanh f, Bounds a) noexcept {
+    return limited(widened({f.of(a.lower), f.of(a.upper)}), {-1, 1});
+}
+
+// ---- rounding and remainders
+// -----------------------------------------------------------------------
+
+template <class Function>
+concept Rising =
+    std::same_as<Function, functions::Degrees> || std::same_as<Function, functions::Radians> ||
+    std::same_as<Function, functions::Floor> || std::same_as<Function, functions::Ceil> ||
+    std::same_as<Function, functions::Round> || std::same_as<Function, functions::Sign>;
+
+template <Rising Function>
+[[nodiscard]] Bounds extension(Function f, Bounds a) noexcept {
+    return {f.of(a.lower), f.of(a.upper)};
+}
+
+// Where x lies between two multiples of m > 0: fmod is exact, and negative numbers count from
+// above.
+[[nodiscard]] inline double phase(double x, double m) noexcept {
+    const double rest = std::fmod(x, m);
+    return x < 0 && rest == 0 ? -m : rest;
+}
+
+[[nodiscard]] inline Bounds extension(functions::Mod f, Bounds a, Bounds b) noexcept {
+    if (b.upper < 0) {
+        const Bounds mirrored =
+            extension(f, Bounds{-a.upper, -a.lower}, Bounds{-b.upper, -b.lower});
+        return {-mirrored.upper, -mirrored.lower};
+    }
+    if ((b.lower == 0 && b.upper == 0) || (a.lower == a.upper && std::isinf(a.lower)))
+        return nothing;
+    if (b.lower <= 0) return {std::min(b.lower, 0.0), b.upper};
+    if (a.lower >= 0 && a.upper < b.lower) return a;
+    const double m = b.lower;
+    const bool same_side = (a.lower < 0) == (a.upper < 0);
+    if (m == b.upper && finite(a) && same_side && a.upper - a.lower < m &&
+        phase(a.lower, m) <= phase(a.upper, m)) {
+        return {f.of(a.lower, m), f.of(a.upper, m)};
+    }
+    return {0.0, b.upper};
+}
+
+[[nodiscard]] inline Bounds extension(functions::AtLeast /*f*/, Bounds a, Bounds b) noexcept {
+    if (a.upper < b.lower) return nothing;
+    return {std::max(a.lower, b.lower), a.upper};
 }
 
 } // namespace bounds

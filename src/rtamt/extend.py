@@ -5,10 +5,10 @@ returns a language with it, for ``language=`` of :func:`rtamt.parse` and ``--lan
 
 >>> from rtamt.extend import STL, Fixity, Operator, Sort
 >>> import rtamt
->>> clip = Operator("clip", ("clip",), Fixity.FUNCTION, 200, (Sort.NUMBER,) * 3, Sort.NUMBER,
-...     "The first operand, held between the others.", "clip(x, 0, 1) >= 1",
+>>> between = Operator("between", ("between",), Fixity.FUNCTION, 200, (Sort.NUMBER,) * 3, Sort.NUMBER,
+...     "The first operand, held between the others.", "between(x, 0, 1) >= 1",
 ...     definition=lambda x, low, high: x.clip(low, high))
->>> spec = rtamt.parse("always(clip(x, 0, 1) >= y)", language=STL.extend(clip))
+>>> spec = rtamt.parse("always(between(x, 0, 1) >= y)", language=STL.extend(between))
 >>> spec.evaluate({"x": [5, 0.5], "y": [0, 0]}).robustness
 0.5
 """

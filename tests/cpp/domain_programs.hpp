@@ -2,6 +2,7 @@
 #pragma once
 
 #include "discrete/oracle.hpp"
+#include "program/number_functions.hpp"
 #include "programs.hpp"
 
 #include <algorithm>
@@ -43,18 +44,14 @@ inline Program corners(const Program& program) {
 inline bool monotone(const Program& program) {
     return std::ranges::none_of(program.instructions, [](const Instruction& instruction) {
         switch (instruction.opcode) {
-        case Opcode::abs:
-        case Opcode::sqrt:
-        case Opcode::exp:
-        case Opcode::ln:
-        case Opcode::mul:
-        case Opcode::div:
-        case Opcode::pow:
-        case Opcode::log:
+        case Opcode::add:
+        case Opcode::sub:
+            return false;
         case Opcode::holds_eq:
             return true;
         default:
-            return false;
+            return rtamt::with_function(
+                instruction.opcode, [](auto) { return true; }, [] { return false; });
         }
     });
 }

@@ -147,8 +147,8 @@ def test_a_finished_monitor_takes_no_sample(backend: str) -> None:
 def test_a_value_that_does_not_exist_is_named_offline() -> None:
     spec = rtamt.parse("always(sqrt(x) >= 1)")
     assert said(rtamt.EvaluationError, spec.evaluate, {"time": [5, 6, 7], "x": [1, 4, -1]}) == (
-        "'sqrt(x)' has no value at sample 2, time 7 s: it is 0/0, inf - inf, 0 * inf, or a root or logarithm of a "
-        "negative number; change the formula or the data so that this cannot happen"
+        "'sqrt(x)' has no value at sample 2, time 7 s: it is 0/0, inf - inf, 0 * inf, "
+        "or a function outside its domain; change the formula or the data so that this cannot happen"
     )
 
 
@@ -156,12 +156,12 @@ def test_a_value_that_does_not_exist_is_named_online() -> None:
     monitor = rtamt.parse("eventually[0:1](x / y >= 1)").monitor(period=0.5)
     assert monitor.update(3.0, x=1, y=1) is None
     assert said(rtamt.EvaluationError, monitor.update, 3.5, x=0, y=0) == (
-        "'x / y' has no value at sample 1, time 3.5 s: it is 0/0, inf - inf, 0 * inf, or a root or logarithm of a "
-        "negative number; change the formula or the data so that this cannot happen"
+        "'x / y' has no value at sample 1, time 3.5 s: it is 0/0, inf - inf, 0 * inf, "
+        "or a function outside its domain; change the formula or the data so that this cannot happen"
     )
     assert said(rtamt.EvaluationError, monitor.update_many, {"x": [1, 0], "y": [1, 0]}) == (
-        "'x / y' has no value at sample 2, time 4 s: it is 0/0, inf - inf, 0 * inf, or a root or logarithm of a "
-        "negative number; change the formula or the data so that this cannot happen"
+        "'x / y' has no value at sample 2, time 4 s: it is 0/0, inf - inf, 0 * inf, "
+        "or a function outside its domain; change the formula or the data so that this cannot happen"
     )
     assert monitor.update(3.5, x=1, y=0) is None
     assert monitor.update(4.0, x=2, y=1) == INF

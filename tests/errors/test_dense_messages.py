@@ -189,8 +189,8 @@ def test_a_value_that_does_not_exist_leaves_the_monitor_as_it_was() -> None:
         with pytest.raises(rtamt.EvaluationError) as info:
             monitor.update(1.5, x=0.0, y=0.0)
         assert str(info.value) == (
-            "'x / y' has no value at time 1.5 s: it is 0/0, inf - inf, 0 * inf, or a root or logarithm of a "
-            "negative number; change the formula or the data so that this cannot happen"
+            "'x / y' has no value at time 1.5 s: it is 0/0, inf - inf, 0 * inf, "
+            "or a function outside its domain; change the formula or the data so that this cannot happen"
         )
     np.testing.assert_array_equal(monitor.update(1.5, x=1.0, y=1.0).values, [3.0])
 

@@ -386,8 +386,8 @@ ONLINE = {
     "no value": (
         2,
         [("x", 0.0)],
-        "'0 / x' has no value at sample 1, time 2 s: it is 0/0, inf - inf, 0 * inf, or a root or "
-        "logarithm of a negative number; change the formula or the data so that this cannot happen",
+        "'0 / x' has no value at sample 1, time 2 s: it is 0/0, inf - inf, 0 * inf, "
+        "or a function outside its domain; change the formula or the data so that this cannot happen",
     ),
 }
 

@@ -61,16 +61,18 @@ FORMULAS = [
     ("x > 3 # fast", "      ^", ParseError, "unexpected character '#'; a comment begins with //"),
     ("[0:5]", "^", ParseError, "expected a formula, got '['"),
     (
-        "foo(x)",
-        "^^^",
+        "zigzag(x)",
+        "^^^^^^",
         ParseError,
-        "'foo' is not a function; functions: abs, sqrt, exp, pow, log, ln, min, max, rise, fall",
+        "'zigzag' is not a function; functions: abs, sqrt, exp, pow, log, ln, min, max, sin, cos, tan, asin, acos, "
+        "atan, atan2, hypot and 14 more",
     ),
     (
         "abz(x)",
         "^^^",
         ParseError,
-        "'abz' is not a function; did you mean 'abs'? (functions: abs, sqrt, exp, pow, log, ln, min, max, rise, fall)",
+        "'abz' is not a function; did you mean 'abs'? (functions: abs, sqrt, exp, pow, log, ln, min, max, sin, cos, "
+        "tan, asin, acos, atan, atan2, hypot and 14 more)",
     ),
     ("min(x)", "^^^^^^", ParseError, "'min' takes 2 or more operands, got 1"),
     ("abs(x, y)", "^^^^^^^^^", ParseError, "'abs' takes 1 operand, got 2"),

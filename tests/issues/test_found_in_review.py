@@ -184,8 +184,8 @@ def test_an_inner_name_in_a_message(time: str) -> None:
         rtamt.parse("always(sqrt(eventually x) >= 0)").evaluate(data, time=time)
     where = "sample 0, time 0 s" if time == "discrete" else "time 0 s"
     assert str(info.value) == (
-        f"'sqrt(eventually x)' has no value at {where}: it is 0/0, inf - inf, 0 * inf, or a root or logarithm of "
-        "a negative number; change the formula or the data so that this cannot happen"
+        f"'sqrt(eventually x)' has no value at {where}: it is 0/0, inf - inf, 0 * inf, "
+        f"or a function outside its domain; change the formula or the data so that this cannot happen"
     )
 
 
@@ -235,8 +235,8 @@ def test_both_back_ends_say_the_same_of_an_operation_that_has_no_value(time: str
         with pytest.raises(rtamt.EvaluationError) as info:
             rtamt.parse("always(x >= y)", backend=backend, time=time).evaluate(data)
         assert str(info.value) == (
-            f"'x >= y' has no value at {where}: it is 0/0, inf - inf, 0 * inf, or a root or logarithm of a negative "
-            f"number; change the formula or the data so that this cannot happen"
+            f"'x >= y' has no value at {where}: it is 0/0, inf - inf, 0 * inf, "
+            f"or a function outside its domain; change the formula or the data so that this cannot happen"
         )
 
 

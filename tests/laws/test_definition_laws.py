@@ -10,7 +10,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from rtamt.errors import EvaluationError
-from rtamt.language.formula import Apply, Formula, Interval, Var, children, fold, postorder
+from rtamt.language.formula import Apply, Const, Formula, Interval, Var, children, fold, postorder
 from rtamt.language.operators import STL, Bounds, Operator, Sort, Tense
 from rtamt.reference.discrete import ReferenceMonitor, evaluate, evaluate_all, history
 from rtamt.rewrite.horizon import horizon
@@ -32,6 +32,8 @@ def value(formula, trace, period=PERIOD):
 
 
 def operands(op: Operator) -> tuple[Formula, ...]:
+    if len(op.operands) > 2:  # limits that are not reversed
+        return (Var("x"), Const(-1.0), Const(1.5))
     return tuple(Var(name) for name, _ in zip("xy", op.operands, strict=False))
 
 

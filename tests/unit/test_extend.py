@@ -52,8 +52,8 @@ FLIPS = Operator(
     ),
     dense=flips, tense=Tense.PAST, bounds=Bounds.REQUIRED,
 )  # fmt: skip
-CLIP = Operator(
-    "clip", ("clip",), Fixity.FUNCTION, 200, (N, N, N), N, "Held between two.", "clip(x, 0, 1) > 0",
+BETWEEN = Operator(
+    "between", ("between",), Fixity.FUNCTION, 200, (N, N, N), N, "Held between two.", "between(x, 0, 1) > 0",
     definition=lambda x, low, high: x.clip(low, high),
 )  # fmt: skip
 
@@ -73,7 +73,7 @@ def test_a_definition_alone_runs_beside_compiled_operators() -> None:
 
 
 def test_a_function_of_three_numbers_runs_in_dense_time() -> None:
-    spec = parsed("once[0:1](clip(x, 0, y) >= 1)", CLIP, time="dense")
+    spec = parsed("once[0:1](between(x, 0, y) >= 1)", BETWEEN, time="dense")
     data = {"x": ([0, 2.0, 4.0], [5, -5, 5]), "y": ([0, 3.0], [2, 3])}
     signal = spec.evaluate(data).signal
     assert list(zip(signal.times, signal.values, strict=True)) == [(0, 1), (3, -1), (4, 2)]
@@ -185,42 +185,42 @@ def test_a_class_over_blocks_keeps_its_state_and_a_failed_update_takes_it_back()
 @pytest.mark.parametrize("backend", ["cpp", "python"])
 @pytest.mark.parametrize("time", ["discrete", "dense"])
 def test_what_a_definition_raises_is_told_with_its_cause(backend: str, time: str) -> None:
-    broken = replace(CLIP, definition=lambda x, _low, _high: x[99])
-    spec = parsed("clip(x, 0, 1)", broken, backend=backend, time=time)
+    broken = replace(BETWEEN, definition=lambda x, _low, _high: x[99])
+    spec = parsed("between(x, 0, 1)", broken, backend=backend, time=time)
     data: Any = {"x": [1.0, 2.0]} if time == "discrete" else {"x": ([0.0, 1.0], [1.0, 2.0])}
     with pytest.raises(rtamt.EvaluationError) as info:
         spec.evaluate(data)
     assert str(info.value).startswith(
-        "the operator 'clip' failed in 'clip(x, 0, 1)': IndexError: index 99 is out"
+        "the operator 'between' failed in 'between(x, 0, 1)': IndexError: index 99 is out"
     )
     assert isinstance(info.value.__cause__, IndexError)
 
 
 @pytest.mark.parametrize("backend", ["cpp", "python"])
 def test_a_definition_of_the_wrong_shape_is_told(backend: str) -> None:
-    broken = replace(CLIP, definition=lambda x, _low, _high: x[:1])
+    broken = replace(BETWEEN, definition=lambda x, _low, _high: x[:1])
     with pytest.raises(rtamt.UsageError) as info:
-        parsed("clip(x, 0, 1)", broken, backend=backend).evaluate({"x": [1.0, 2.0]})
+        parsed("between(x, 0, 1)", broken, backend=backend).evaluate({"x": [1.0, 2.0]})
     assert str(info.value) == (
-        "the definition of 'clip' returned an array of shape (1,) for 2 samples; it must return one value a "
+        "the definition of 'between' returned an array of shape (1,) for 2 samples; it must return one value a "
         "sample, shape (2,)"
     )
 
 
 def test_nan_from_an_operator_names_it_and_the_time() -> None:
-    broken = replace(CLIP, definition=lambda x, _low, _high: np.where(x > 1, np.nan, x))
+    broken = replace(BETWEEN, definition=lambda x, _low, _high: np.where(x > 1, np.nan, x))
     with pytest.raises(rtamt.EvaluationError) as info:
-        parsed("always clip(x, 0, 1)", broken).evaluate({"time": [0, 0.5], "x": [1.0, 2.0]})
+        parsed("always between(x, 0, 1)", broken).evaluate({"time": [0, 0.5], "x": [1.0, 2.0]})
     assert str(info.value) == (
-        "the operator 'clip' gave NaN: 'clip(x, 0, 1)' has no value at sample 1, time 0.5 s; mend the operator, "
+        "the operator 'between' gave NaN: 'between(x, 0, 1)' has no value at sample 1, time 0.5 s; mend the operator, "
         "or change the formula or the data so that this cannot happen"
     )
-    monitor = parsed("clip(x, 0, 1)", broken, time="dense").monitor()
+    monitor = parsed("between(x, 0, 1)", broken, time="dense").monitor()
     monitor.update(0.0, x=1.0)
     with pytest.raises(rtamt.EvaluationError) as info:
         monitor.update(0.5, x=2.0)
     assert str(info.value).startswith(
-        "the operator 'clip' gave NaN: 'clip(x, 0, 1)' has no value at time 0.5 s;"
+        "the operator 'between' gave NaN: 'between(x, 0, 1)' has no value at time 0.5 s;"
     )
 
 
@@ -229,24 +229,24 @@ def test_nan_from_an_operator_names_it_and_the_time() -> None:
 def test_complex_numbers_and_text_from_an_operator_are_not_taken_for_numbers(backend: str, time: str) -> None:
     data: Any = {"x": [1.0, -4.0]} if time == "discrete" else {"x": ([0.0, 1.0], [1.0, -4.0])}
     for gives, kind in ((np.emath.sqrt, "complex128"), (lambda x: x.astype(str), "<U32")):
-        broken = replace(CLIP, definition=lambda x, _low, _high, gives=gives: gives(x))
+        broken = replace(BETWEEN, definition=lambda x, _low, _high, gives=gives: gives(x))
         with pytest.raises(rtamt.EvaluationError) as info:
-            parsed("clip(x, 0, 1)", broken, backend=backend, time=time).evaluate(data)
+            parsed("between(x, 0, 1)", broken, backend=backend, time=time).evaluate(data)
         assert str(info.value) == (
-            f"the operator 'clip' gave values of type {kind} in 'clip(x, 0, 1)', "
+            f"the operator 'between' gave values of type {kind} in 'between(x, 0, 1)', "
             f"expected real numbers; mend the operator"
         )
 
 
 @pytest.mark.parametrize("backend", ["cpp", "python"])
 def test_a_verdict_that_an_operator_does_not_give_names_the_predicate_as_it_was_written(backend: str) -> None:
-    broken = replace(CLIP, operands=(F, N, N), result=F, definition=lambda x, _low, _high: x - x)
-    for text in ("clip(x < 3, 0, 1)", "clip(3 != x, 0, 1)", "clip(x >= 3, 0, 1)"):
+    broken = replace(BETWEEN, operands=(F, N, N), result=F, definition=lambda x, _low, _high: x - x)
+    for text in ("between(x < 3, 0, 1)", "between(3 != x, 0, 1)", "between(x >= 3, 0, 1)"):
         spec = parsed(text, broken, backend=backend, semantics="boolean")
         with pytest.raises(rtamt.EvaluationError) as info:
             spec.monitor().update(0, x=1)
         assert str(info.value).startswith(
-            f"the operator 'clip' gave NaN: '{text}' has no value at sample 0, time 0 s"
+            f"the operator 'between' gave NaN: '{text}' has no value at sample 0, time 0 s"
         )
 
 

@@ -39,6 +39,8 @@ OPCODES = (
     "neg", "abs", "sqrt", "exp", "ln",
     "add", "sub", "mul", "div", "pow", "log", "min", "max", "holds_gt", "holds_ge", "holds_eq",
     "shift", "slide_max", "slide_min", "run_max", "run_min", "since", "until", "call",
+    "sin", "cos", "tan", "asin", "acos", "atan", "atan2", "hypot", "sinh", "cosh", "tanh",
+    "degrees", "radians", "floor", "ceil", "round", "sign", "mod", "at_least",
 )  # fmt: skip
 
 #: Time domains, in the order of their codes.

@@ -61,7 +61,7 @@ def extended(
     return Enclosure(np.where(exact, point, lower), np.where(exact, point, upper))
 
 
-def _each(function: Callable[..., tuple[float, float]], *operands: Enclosure) -> Enclosure:
+def each(function: Callable[..., tuple[float, float]], *operands: Enclosure) -> Enclosure:
     """Apply a function of (lower, upper) pairs of floats at every sample."""
     pairs = [list(zip(x.lower.tolist(), x.upper.tolist(), strict=True)) for x in operands]
     found = [function(*sample) for sample in zip(*pairs, strict=True)]
@@ -73,7 +73,8 @@ def _otherwise(values: Array, instead: float) -> Array:
     return np.where(np.isnan(values), instead, values)
 
 
-def _widened(low: float, high: float) -> tuple[float, float]:
+def widened(low: float, high: float) -> tuple[float, float]:
+    """Return bounds four units in the last place wider."""
     for _ in range(4):
         low, high = math.nextafter(low, -inf), math.nextafter(high, inf)
     return low, high
@@ -83,7 +84,7 @@ def _not_negative(low: float, high: float) -> tuple[float, float]:
     return (0.0 if low < 0.0 else low), high
 
 
-def _hull(ends: list[float]) -> tuple[float, float]:
+def hull(ends: list[float]) -> tuple[float, float]:
     """Return the least and the greatest of some numbers; among equal ones (0.0, -0.0) the first and the last."""
     low = high = ends[0]
     for end in ends[1:]:
@@ -97,11 +98,11 @@ def _corners(
 ) -> Enclosure:
     """Return the hull of a function at the four corners; a corner without a value counts as ``instead``."""
     ends = [_otherwise(function(a, b), instead).tolist() for a in x for b in y]
-    found = [_hull(list(sample)) for sample in zip(*ends, strict=True)]
+    found = [hull(list(sample)) for sample in zip(*ends, strict=True)]
     return Enclosure(np.array([low for low, _ in found], float), np.array([high for _, high in found], float))
 
 
-def _one(function: Callable[..., Array], *values: float) -> float:
+def one(function: Callable[..., Array], *values: float) -> float:
     """Return a definition's value for single numbers."""
     return float(function(*(np.array([value]) for value in values))[0])
 
@@ -129,18 +130,18 @@ def sqrt(x: Enclosure) -> Enclosure:
 
 def exp(x: Enclosure) -> Enclosure:
     """``exp(x)``: increasing, widened, never negative."""
-    return _each(lambda a: _not_negative(*_widened(_one(d.exp, a[0]), _one(d.exp, a[1]))), x)
+    return each(lambda a: _not_negative(*widened(one(d.exp, a[0]), one(d.exp, a[1]))), x)
 
 
 def _ln(a: tuple[float, float]) -> tuple[float, float]:
     if a[1] < 0:
         return nan, nan
-    return _widened(_one(d.ln, max(a[0], 0.0)), _one(d.ln, a[1]))
+    return widened(one(d.ln, max(a[0], 0.0)), one(d.ln, a[1]))
 
 
 def ln(x: Enclosure) -> Enclosure:
     """``ln(x)``: of the nonnegative part; increasing, widened."""
-    return _each(_ln, x)
+    return each(_ln, x)
 
 
 # ---- two operands -------------------------------------------------------------------------------
@@ -175,11 +176,11 @@ def log(x: Enclosure, base: Enclosure) -> Enclosure:
     above, below = (
         Enclosure(
             *(
-                np.where(each.lower == each.upper, d.ln(ends), wide)
-                for ends, wide in zip(each, ln(each), strict=True)
+                np.where(operand.lower == operand.upper, d.ln(ends), wide)
+                for ends, wide in zip(operand, ln(operand), strict=True)
             )
         )
-        for each in (x, base)
+        for operand in (x, base)
     )
     nothing = np.isnan(above.lower) | np.isnan(below.lower)
     quotient = div(above, below)
@@ -193,8 +194,8 @@ def _power(a: tuple[float, float], n: float) -> tuple[float, float]:
     across = low < 0 <= high
     if not even and n < 0 and across:
         return -inf, inf  # a pole
-    ends = _one(d.pow_, low, n), _one(d.pow_, high, n)
-    lower, upper = _widened(min(ends), max(ends))
+    ends = one(d.pow_, low, n), one(d.pow_, high, n)
+    lower, upper = widened(min(ends), max(ends))
     if not even:
         return lower, upper
     if across:
@@ -220,14 +221,14 @@ def _pow(a: tuple[float, float], b: tuple[float, float]) -> tuple[float, float]:
     if a[0] == 0 and b[0] < 0:
         return -inf, inf  # a pole
     # x^y = exp(y ln x) is bilinear in y and ln x, so that its extrema are at corners.
-    ends = [_one(d.pow_, x, y) for x in a for y in b]
-    low, high = _hull([1.0 if math.isnan(end) else end for end in ends])
-    return _not_negative(*_widened(low, high))
+    ends = [one(d.pow_, x, y) for x in a for y in b]
+    low, high = hull([1.0 if math.isnan(end) else end for end in ends])
+    return _not_negative(*widened(low, high))
 
 
 def pow_(x: Enclosure, y: Enclosure) -> Enclosure:
     """``pow(x, y)``: the corners, widened; if the base may be negative, depending on the kind of exponent."""
-    return _each(_pow, x, y)
+    return each(_pow, x, y)
 
 
 def and_(x: Enclosure, y: Enclosure) -> Enclosure:

@@ -21,6 +21,8 @@ from typing import Any
 from rtamt.language import definitions as d
 from rtamt.language import dense_definitions as dense
 from rtamt.language import enclosures as e
+from rtamt.language import function_enclosures as fe
+from rtamt.language import functions as f
 from rtamt.language.formula import Const, Formula, Interval
 from rtamt.language.records import (
     Blocks,
@@ -147,6 +149,46 @@ def holds(number: Formula) -> Formula:
     return _GT(number, Const(0.0))
 
 
+# The first operand where it is at least the second, else undefined; not part of the language either.
+_AT_LEAST = _function(
+    "at_least", 2, "The first operand, which must be at least the second.", "at_least(x, 3) > 5",
+    definition=f.at_least, kernel=Pointwise("at_least", partial=True), extension=fe.at_least,
+    slopes=e.slopes(1, 0),
+)  # fmt: skip
+
+
+def choice(truth: Formula, a: Formula, b: Formula) -> Formula:
+    """Return the number that is ``a`` where ``truth`` is +inf and ``b`` where it is -inf.
+
+    Where bounds leave the truth open, those of the result are the hull of both numbers: hence the third part.
+    """
+    both = STL["min"](a, b)
+    return STL["max"](STL["max"](STL["min"](truth, a), STL["min"](STL["neg"](truth), b)), both)
+
+
+def _clip(x: Formula, lo: Formula, hi: Formula, _i: Interval | None) -> Formula:
+    return STL["min"](STL["max"](x, lo), _AT_LEAST(hi, lo))
+
+
+def _wrap(x: Formula, lo: Formula, hi: Formula, _i: Interval | None) -> Formula:
+    inside = STL["and"](_GE(x, lo), _GT(hi, x))
+    # What is inside stays as it is; its difference from lo, which may overflow, is not computed.
+    zero = Const(0.0)
+    outside = STL["sub"](choice(inside, zero, x), choice(inside, zero, lo))
+    turned = STL["add"](lo, STL["mod"](outside, _AT_LEAST(STL["sub"](hi, lo), zero)))
+    return choice(inside, x, choice(_GE(turned, hi), lo, turned))
+
+
+def _math(
+    name: str, doc: str, example: str, *slopes: int | None, definition: Any = None, **more: Any
+) -> Operator:
+    """Return a mathematical function; its definition, extension and opcode have its name."""
+    definition = definition or getattr(f, name)
+    more["extension"] = getattr(fe, name, None) or fe.rising(definition)
+    more["kernel"] = Pointwise(name, more.pop("partial", False))
+    return _function(name, len(slopes), doc, example, definition=definition, slopes=e.slopes(*slopes), **more)
+
+
 STL: Language = Language.of((
     # ---- atoms -------------------------------------------------------------------------------
     Operator("true", ("true",), Fixity.ATOM, 200, (), F, "Always holds: +inf.", "true", r"\top",
@@ -172,6 +214,32 @@ STL: Language = Language.of((
               definition=d.and_, kernel=Pointwise("min"), extension=e.and_, slopes=e.slopes(1, 1), folds=True),
     _function("max", 2, "The largest operand.", "max(x, y) >= 0", latex=r"\max({0}, {1})",
               definition=d.or_, kernel=Pointwise("max"), extension=e.or_, slopes=e.slopes(1, 1), folds=True),
+    _math("sin", "Sine of an angle in radians.", "sin(x) <= 1", 0, partial=True, latex=r"\sin({0})"),
+    _math("cos", "Cosine of an angle in radians.", "cos(x) <= 1", 0, partial=True, latex=r"\cos({0})"),
+    _math("tan", "Tangent of an angle in radians.", "tan(x) <= 1", 0, partial=True, latex=r"\tan({0})"),
+    _math("asin", "Arc sine in radians.", "asin(x) <= 1", 1, partial=True, latex=r"\arcsin({0})"),
+    _math("acos", "Arc cosine in radians.", "acos(x) <= 1", -1, partial=True, latex=r"\arccos({0})"),
+    _math("atan", "Arc tangent in radians.", "atan(x) <= 1", 1, latex=r"\arctan({0})"),
+    _math("atan2", "Angle of the point (second, first operand) in radians.", "atan2(y, x) <= 1", 0, 0),
+    _math("hypot", "Length of a vector with two components.", "hypot(x, y) <= 5", 0, 0,
+          latex=r"\sqrt{{{0}^2 + {1}^2}}"),
+    _math("sinh", "Hyperbolic sine.", "sinh(x) <= 1", 1, latex=r"\sinh({0})"),
+    _math("cosh", "Hyperbolic cosine.", "cosh(x) <= 2", 0, latex=r"\cosh({0})"),
+    _math("tanh", "Hyperbolic tangent.", "tanh(x) <= 1", 1, latex=r"\tanh({0})"),
+    _math("degrees", "Radians as degrees.", "degrees(x) <= 90", 1),
+    _math("radians", "Degrees as radians.", "sin(radians(x)) <= 1", 1),
+    _math("floor", "The greatest whole number that is not above the operand.", "floor(x) == 3", 1,
+          latex=r"\lfloor {0} \rfloor"),
+    _math("ceil", "The least whole number that is not below the operand.", "ceil(x) == 3", 1,
+          latex=r"\lceil {0} \rceil"),
+    _math("round", "The nearest whole number; halves away from zero.", "round(x) == 3", 1, definition=f.round_),
+    _math("sign", "-1, 0 or 1: the sign of the operand.", "sign(x) == 1", 1),
+    _math("mod", "The remainder of a division, with the sign of the divisor.", "mod(x, 360) <= 180", 0, None,
+          partial=True),
+    _function("clip", 3, "The number of [second, third operand] next to the first; an error where they are reversed.",
+              "clip(x, -1, 1) >= 0", definition=f.clip, expansion=_clip),
+    _function("wrap", 3, "The first operand moved into [second, third) by whole multiples of their difference.",
+              "wrap(x, -180, 180) <= 90", definition=f.wrap, expansion=_wrap),
     _prefix("neg", "-", 120, "Minus.", "-x >= 2", operands=(N,), result=N, latex="-{0}",
             definition=d.neg, kernel=Pointwise("neg"), extension=e.neg, slopes=e.slopes(-1)),
     _infix("mul", "*", 110, "Product.", "2 * x <= 3", operands=(N, N), result=N, latex=r"{0} \cdot {1}",

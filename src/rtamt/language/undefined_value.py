@@ -28,8 +28,8 @@ def undefined(formula: Formula, where: str) -> EvaluationError:
             f"mend the operator, or change the formula or the data so that this cannot happen"
         )
     return EvaluationError(
-        f"'{excerpt(formula)}' has no value at {where}: it is 0/0, inf - inf, 0 * inf, or a root "
-        f"or logarithm of a negative number; change the formula or the data so that this cannot happen"
+        f"'{excerpt(formula)}' has no value at {where}: it is 0/0, inf - inf, 0 * inf, "
+        f"or a function outside its domain; change the formula or the data so that this cannot happen"
     )
 
 

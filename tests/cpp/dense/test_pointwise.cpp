@@ -14,7 +14,8 @@ TEST_CASE("every function is its definition at every instant") {
     for (int round = 0; round < 60; ++round) {
         for (const Opcode opcode :
              {Opcode::neg, Opcode::abs, Opcode::exp, Opcode::add, Opcode::sub, Opcode::mul,
-              Opcode::min, Opcode::max, Opcode::holds_gt, Opcode::holds_ge, Opcode::holds_eq}) {
+              Opcode::min, Opcode::max, Opcode::holds_gt, Opcode::holds_ge, Opcode::holds_eq,
+              Opcode::atan2, Opcode::hypot, Opcode::floor, Opcode::round, Opcode::sign}) {
             Builder builder;
             const auto a = builder.input();
             const auto b = builder.input();

@@ -54,6 +54,44 @@ inline double pointwise(Opcode opcode, double a, double b) {
         return std::pow(a == 0 ? 0.0 : a, b);
     case Opcode::log:
         return std::log(a) / std::log(b);
+    case Opcode::sin:
+        return std::sin(a);
+    case Opcode::cos:
+        return std::cos(a);
+    case Opcode::tan:
+        return std::tan(a);
+    case Opcode::asin:
+        return std::asin(a);
+    case Opcode::acos:
+        return std::acos(a);
+    case Opcode::atan:
+        return std::atan(a);
+    case Opcode::atan2:
+        return std::atan2(a == 0 ? 0.0 : a, b == 0 ? 0.0 : b);
+    case Opcode::hypot:
+        return std::hypot(a, b);
+    case Opcode::sinh:
+        return std::sinh(a);
+    case Opcode::cosh:
+        return std::cosh(a);
+    case Opcode::tanh:
+        return std::tanh(a);
+    case Opcode::degrees:
+        return a * 57.29577951308232;
+    case Opcode::radians:
+        return a * 0.017453292519943295;
+    case Opcode::floor:
+        return a - std::fmod(a, 1) - (std::fmod(a, 1) < 0 ? 1 : 0);
+    case Opcode::ceil:
+        return a - std::fmod(a, 1) + (std::fmod(a, 1) > 0 ? 1 : 0);
+    case Opcode::round:
+        return std::trunc(a) + (std::fabs(std::fmod(a, 1)) >= 0.5 ? std::copysign(1.0, a) : 0.0);
+    case Opcode::sign:
+        return a > 0 ? 1 : a < 0 ? -1 : 0;
+    case Opcode::mod:
+        return std::fmod(a, b) * b < 0 ? std::fmod(a, b) + b : std::fmod(a, b);
+    case Opcode::at_least:
+        return a < b ? std::numeric_limits<double>::quiet_NaN() : a;
     case Opcode::min:
         return std::min(a, b);
     case Opcode::max:

@@ -14,11 +14,14 @@ using ways::Executor;
 using ways::Random;
 using ways::Signal;
 
-static const std::vector<Opcode> unary{Opcode::neg, Opcode::abs, Opcode::sqrt, Opcode::exp,
-                                       Opcode::ln};
+static const std::vector<Opcode> unary{
+    Opcode::neg,     Opcode::abs,     Opcode::sqrt,  Opcode::exp,  Opcode::ln,    Opcode::sin,
+    Opcode::cos,     Opcode::tan,     Opcode::atan,  Opcode::sinh, Opcode::cosh,  Opcode::tanh,
+    Opcode::degrees, Opcode::radians, Opcode::floor, Opcode::ceil, Opcode::round, Opcode::sign};
 static const std::vector<Opcode> binary{
-    Opcode::add, Opcode::sub, Opcode::mul,      Opcode::div,      Opcode::pow,     Opcode::log,
-    Opcode::min, Opcode::max, Opcode::holds_gt, Opcode::holds_ge, Opcode::holds_eq};
+    Opcode::add,      Opcode::sub,   Opcode::mul,   Opcode::div,      Opcode::pow,
+    Opcode::log,      Opcode::min,   Opcode::max,   Opcode::holds_gt, Opcode::holds_ge,
+    Opcode::holds_eq, Opcode::atan2, Opcode::hypot, Opcode::mod};
 
 // Above 1, where no operation makes NaN.
 static Signal tame(Random& random, std::size_t count) {
@@ -96,14 +99,17 @@ TEST_CASE("every partial operation reports the sample where it makes nan") {
     for (const Case& example :
          {Case{Opcode::sqrt, -1, 0}, Case{Opcode::ln, -1, 0}, Case{Opcode::add, inf, -inf},
           Case{Opcode::sub, inf, inf}, Case{Opcode::mul, 0, inf}, Case{Opcode::div, 0, 0},
-          Case{Opcode::pow, -1, 0.5}, Case{Opcode::log, -1, 2}}) {
+          Case{Opcode::pow, -1, 0.5}, Case{Opcode::log, -1, 2}, Case{Opcode::sin, inf, 0},
+          Case{Opcode::cos, -inf, 0}, Case{Opcode::tan, inf, 0}, Case{Opcode::asin, 1.5, 0},
+          Case{Opcode::acos, -2, 0}, Case{Opcode::mod, 1, 0}, Case{Opcode::mod, inf, 2},
+          Case{Opcode::at_least, 1, 2}}) {
         const bool two = rtamt::info(example.opcode).operands == 2;
         for (const std::size_t bad : std::initializer_list<std::size_t>{0, 5, 299, 599}) {
             Builder builder;
             const auto a = builder.input();
             const auto b = builder.input();
             builder.output(builder.pointwise(example.opcode, a, two ? b : rtamt::no_operand));
-            std::vector<Signal> columns{Signal(600, 2.0), Signal(600, 3.0)};
+            std::vector<Signal> columns{Signal(600, 0.5), Signal(600, 0.25)};
             columns[0][bad] = example.a;
             columns[1][bad] = example.b;
             std::vector<Signal> outputs;

@@ -196,8 +196,8 @@ def test_after_an_error_the_monitor_is_as_it_was(octave):
     )
     assert said.splitlines() == [
         "'x' is NaN at sample 1, time 1 s: fill the gap or leave the sample out.",
-        "'x / y' has no value at sample 1, time 1 s: it is 0/0, inf - inf, 0 * inf, or a root or logarithm of a "
-        "negative number; change the formula or the data so that this cannot happen.",
+        "'x / y' has no value at sample 1, time 1 s: it is 0/0, inf - inf, 0 * inf, "
+        "or a function outside its domain; change the formula or the data so that this cannot happen.",
         "1",
     ]
 

@@ -8,7 +8,7 @@ from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from rtamt.language.formula import Apply, Const, Formula, Interval, Var, variables
-from rtamt.language.operators import STL, Bounds, Operator, Sort, Tense
+from rtamt.language.operators import STL, Bounds, Fixity, Operator, Sort, Tense
 from rtamt.rewrite.horizon import horizon
 
 if TYPE_CHECKING:
@@ -20,7 +20,11 @@ Known = Range | None
 
 ANYTHING: Range = (-math.inf, math.inf)
 #: Functions that have no value everywhere, or whose bounds are widened: drawn seldom.
-ODD = ("sqrt", "exp", "pow", "log", "ln", "div")
+ODD = frozenset(op.name for op in STL if op.fixity is Fixity.FUNCTION and op.result is Sort.NUMBER) - {
+    "abs",
+    "min",
+    "max",
+} | {"div"}
 
 
 def formula(

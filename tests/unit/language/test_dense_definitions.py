@@ -192,24 +192,24 @@ def test_zeros_of_both_signs_are_one_value():
             "sqrt(x) >= 1",
             "4@0 -1@0.3 1@0.4",
             "0@0",
-            "'sqrt(x)' has no value at time 0.3 s: it is 0/0, inf - inf, 0 * inf, or a root or "
-            "logarithm of a negative number; "
+            "'sqrt(x)' has no value at time 0.3 s: it is 0/0, inf - inf, 0 * inf, "
+            "or a function outside its domain; "
             "change the formula or the data so that this cannot happen",
         ),
         (
             "always[0:1](x / y)",
             "1@0 0@2.5",
             "1@0 0@1.5",
-            "'x / y' has no value at time 2.5 s: it is 0/0, inf - inf, 0 * inf, or a root or "
-            "logarithm of a negative number; "
+            "'x / y' has no value at time 2.5 s: it is 0/0, inf - inf, 0 * inf, "
+            "or a function outside its domain; "
             "change the formula or the data so that this cannot happen",
         ),
         (  # after the last sample, where the future operator still looks
             "eventually[0:2](x / (once[0:1] y))",
             "0@0 0@5",
             "1@0 0@4.5",
-            "'x / (once[0:1] y)' has no value at time 5.5 s: it is 0/0, inf - inf, 0 * inf, or a root or "
-            "logarithm of a negative number; "
+            "'x / (once[0:1] y)' has no value at time 5.5 s: it is 0/0, inf - inf, 0 * inf, "
+            "or a function outside its domain; "
             "change the formula or the data so that this cannot happen",
         ),
     ],
@@ -343,8 +343,7 @@ def test_a_push_that_has_no_value_leaves_the_monitor_as_it_was():
     with pytest.raises(EvaluationError) as caught:
         monitor.push({"x": signal("9@1 -1@2")})
     assert str(caught.value) == (
-        "'sqrt(x)' has no value at time 2 s: it is 0/0, inf - inf, 0 * inf, or a root or "
-        "logarithm of a negative number; "
+        "'sqrt(x)' has no value at time 2 s: it is 0/0, inf - inf, 0 * inf, or a function outside its domain; "
         "change the formula or the data so that this cannot happen"
     )
     assert told(monitor.push({"x": signal("9@1")})) == [("9@1", 1), ("3@1", 1)]

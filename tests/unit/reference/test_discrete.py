@@ -37,32 +37,32 @@ def array(*values):
             STL["ge"](STL["sqrt"](X), Const(1.0)),
             {"x": array(4, 1, 0, -1)},
             0.0,
-            "'sqrt(x)' has no value at sample 3, time 0.3 s: it is 0/0, inf - inf, 0 * inf, or a root or "
-            "logarithm of a negative number; "
+            "'sqrt(x)' has no value at sample 3, time 0.3 s: it is 0/0, inf - inf, 0 * inf, "
+            "or a function outside its domain; "
             "change the formula or the data so that this cannot happen",
         ),
         (
             STL["always"](STL["div"](X, Y), interval=window(0, 1)),
             {"x": array(1, 0), "y": array(0, 0)},
             2.5,
-            "'x / y' has no value at sample 1, time 2.6 s: it is 0/0, inf - inf, 0 * inf, or a root or "
-            "logarithm of a negative number; "
+            "'x / y' has no value at sample 1, time 2.6 s: it is 0/0, inf - inf, 0 * inf, "
+            "or a function outside its domain; "
             "change the formula or the data so that this cannot happen",
         ),
         (
             STL["ge"](X, Y),
             {"x": array(inf), "y": array(inf)},
             1.0,
-            "'x >= y' has no value at sample 0, time 1 s: it is 0/0, inf - inf, 0 * inf, or a root or "
-            "logarithm of a negative number; "
+            "'x >= y' has no value at sample 0, time 1 s: it is 0/0, inf - inf, 0 * inf, "
+            "or a function outside its domain; "
             "change the formula or the data so that this cannot happen",
         ),
         (
             STL["not"](STL["pow"](X, Const(0.5))),
             {"x": array(0.25, -0.25)},
             0.0,
-            "'pow(x, 0.5)' has no value at sample 1, time 0.1 s: it is 0/0, inf - inf, 0 * inf, or a root or "
-            "logarithm of a negative number; "
+            "'pow(x, 0.5)' has no value at sample 1, time 0.1 s: it is 0/0, inf - inf, 0 * inf, "
+            "or a function outside its domain; "
             "change the formula or the data so that this cannot happen",
         ),
     ],
@@ -87,8 +87,8 @@ def test_online_the_index_and_time_are_those_of_the_whole_trace():
     with pytest.raises(EvaluationError) as error:
         monitor.push([array(1, -4)])
     assert str(error.value) == (
-        "'sqrt(x)' has no value at sample 13, time 8.3 s: it is 0/0, inf - inf, 0 * inf, or a root or "
-        "logarithm of a negative number; "
+        "'sqrt(x)' has no value at sample 13, time 8.3 s: it is 0/0, inf - inf, 0 * inf, "
+        "or a function outside its domain; "
         "change the formula or the data so that this cannot happen"
     )
     assert monitor.samples == 12
@@ -104,7 +104,7 @@ def test_what_is_not_known_yet_is_no_error():
         monitor.finish()
     assert str(error.value) == (
         "'(eventually[0.1:0.1] x) - (eventually[0.1:0.1] x)' has no value at sample 2, time 0.2 s: "
-        "it is 0/0, inf - inf, 0 * inf, or a root or logarithm of a negative number; "
+        "it is 0/0, inf - inf, 0 * inf, or a function outside its domain; "
         "change the formula or the data so that this cannot happen"
     )
     assert monitor.push([array(4)])[0].tolist() == [0]

@@ -71,8 +71,8 @@ def test_online_violations_are_counted_from_reset_to_reset():
         (
             2,
             [("x", 0.0), ("y", 0.0)],
-            "'x / y' has no value at sample 2, time 2 s: it is 0/0, inf - inf, 0 * inf, or a root or "
-            "logarithm of a negative number; change the formula or the data so that this cannot happen",
+            "'x / y' has no value at sample 2, time 2 s: it is 0/0, inf - inf, 0 * inf, "
+            "or a function outside its domain; change the formula or the data so that this cannot happen",
         ),
     ],
     ids=["NaN", "text", "unknown name", "time goes back", "0/0"],

@@ -68,8 +68,8 @@ def test_an_update_that_fails_leaves_the_monitor_as_it_was():
     with pytest.raises(rtamt.RTAMTException) as info:
         spec.update(1, [("x", 0.0), ("y", 0.0)])
     assert str(info.value) == (
-        "RTAMT Exception: 'x / y' has no value at sample 1, time 1 s: it is 0/0, inf - inf, 0 * inf, or a root or "
-        "logarithm of a negative number; "
+        "RTAMT Exception: 'x / y' has no value at sample 1, time 1 s: it is 0/0, inf - inf, 0 * inf, "
+        "or a function outside its domain; "
         "change the formula or the data so that this cannot happen"
     )
     with pytest.raises(rtamt.RTAMTException) as info:

@@ -69,8 +69,8 @@ def test_messages_name_the_constant_that_may_have_another_value_by_now():
         monitor.step((0.0, 0.0))
     assert refused.value.args == (
         c_api.UNDEFINED,
-        "'x / y' has no value at sample 0, time 0 s: it is 0/0, inf - inf, 0 * inf, or a root or logarithm "
-        "of a negative number; change the formula or the data so that this cannot happen.",
+        "'x / y' has no value at sample 0, time 0 s: it is 0/0, inf - inf, 0 * inf, "
+        "or a function outside its domain; change the formula or the data so that this cannot happen.",
     )
     with pytest.raises(c_api.RefusedError) as refused:
         monitor.step((float("inf"), 1.0, 3.0))
