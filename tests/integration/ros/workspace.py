@@ -36,9 +36,14 @@ def build(home, *packages):
     for package in (*PACKAGES, *packages):
         (source / package.name).symlink_to(package)
     env = {name: value for name, value in os.environ.items() if not name.startswith("ROS_")}
-    env = {**env, "PATH": f"{python.parent}{os.pathsep}{env['PATH']}", "PYTHONDONTWRITEBYTECODE": "1"}
+    # As docs/how-to/ros.md has it: with the environment active, and no option names its Python.
+    active = {
+        "PATH": f"{python.parent}{os.pathsep}{env['PATH']}",
+        "VIRTUAL_ENV": str(python.parent.parent),
+    }
+    env = {**env, **active, "PYTHONDONTWRITEBYTECODE": "1"}
     built = subprocess.run(
-        ["catkin_make", "-C", str(source.parent), f"-DPYTHON_EXECUTABLE={python}"],
+        ["catkin_make", "-C", str(source.parent)],
         cwd=source.parent,
         env=env,
         capture_output=True,
@@ -46,6 +51,10 @@ def build(home, *packages):
         check=False,
     )
     assert built.returncode == 0, built.stdout + built.stderr
+    (node,) = source.parent.glob("devel/lib/rtamt4ros/ros_stl_monitor.py")
+    assert node.read_text().startswith(
+        f"#!{python.parent / 'python3'}\n"
+    )  # runs in the environment that built it
     sourced = subprocess.run(
         ["bash", "-c", ". devel/setup.bash && env -0"],
         cwd=source.parent,
