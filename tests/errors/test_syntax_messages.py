@@ -81,16 +81,16 @@ FORMULAS = [
     ("x /* y", "  ^^", ParseError, "this comment is never closed"),
     ('"x >= 1', "^", ParseError, "this quoted name is never closed"),
     (
-        "1 <= x <= 3",
+        "1 <= x >= 3",
         "^^^^^^^^^^^",
         ParseError,
-        "comparisons do not chain; write 1 <= x and x <= 3, or use parentheses",
+        "only comparisons in one direction chain; write 1 <= x and x >= 3, or use parentheses",
     ),
     (
         "x > 1 == y > 2",
         "^^^^^^^^^^",
         ParseError,
-        "comparisons do not chain; write x > 1 and 1 == y, or use parentheses",
+        "only comparisons in one direction chain; write x > 1 and 1 == y, or use parentheses",
     ),
     (
         "x - prev(x) >= 1",

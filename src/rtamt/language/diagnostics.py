@@ -140,3 +140,10 @@ def _misspelled(language: Language, before: Token, token: Token) -> tuple[str, T
         if hint:
             return hint, suspect
     return "", token
+
+
+def no_chain(text: str, whole: Span, middle: Span, symbol: Span) -> str:
+    """Return the message for comparisons in a row that have no common direction."""
+    first, between = text[whole.start : middle.end], text[middle.start : middle.end]
+    second = f"{between} {text[symbol.start : symbol.end]} {text[symbol.end : whole.end].strip()}"
+    return f"only comparisons in one direction chain; write {first} and {second}, or use parentheses"

@@ -29,13 +29,24 @@ def is_infix(op: Operator) -> bool:
 
 
 def is_predicate(op: Operator) -> bool:
-    """Return whether an infix operator turns numbers into a formula; such operators do not chain.
+    """Return whether an infix operator turns numbers into a formula; only comparisons chain.
 
     >>> from rtamt.language.operators import STL
     >>> is_predicate(STL["ge"]), is_predicate(STL["add"]), is_predicate(STL["and"])
     (True, False, False)
     """
     return op.result is Sort.FORMULA and Sort.NUMBER in op.operands and is_infix(op)
+
+
+def chains(first: Operator, second: Operator) -> bool:
+    """Return whether two comparisons in a row have one direction: ``1 <= x < 3`` is ``1 <= x and x < 3``.
+
+    >>> from rtamt.language.operators import STL
+    >>> chains(STL["le"], STL["lt"]), chains(STL["le"], STL["gt"])
+    (True, False)
+    """
+    spellings = {first.spellings[0], second.spellings[0]}
+    return spellings <= {"<", "<="} or spellings <= {">", ">="}
 
 
 def is_number(formula: Formula) -> bool:

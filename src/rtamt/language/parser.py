@@ -13,7 +13,8 @@
 
 Words such as ``always``, ``G`` or ``min`` are operators only where an operator can stand: a prefix
 operator needs something after it that begins an operand or an interval, a function needs ``(``,
-and an infix operator stands after an operand.
+and an infix operator stands after an operand. Comparisons in one direction chain: ``1 <= x < 3`` is
+``1 <= x and x < 3``.
 """
 
 from __future__ import annotations
@@ -24,7 +25,7 @@ from typing import TYPE_CHECKING
 from rtamt.errors import NameInFormulaError, ParseError, SpecificationError, did_you_mean
 from rtamt.language import diagnostics
 from rtamt.language.formula import Apply, Const, Formula, Span, Var
-from rtamt.language.grammar import INFINITY, MAX_DEPTH, is_predicate, passes_on, sign
+from rtamt.language.grammar import INFINITY, MAX_DEPTH, chains, is_predicate, passes_on, sign
 from rtamt.language.intervals import parse_interval
 from rtamt.language.lexer import Token, quoted, tokenize, unquoted
 from rtamt.language.operators import STL, Bounds, Fixity, Language, Operator
@@ -99,7 +100,7 @@ class FormulaParser:
         self._depth += 1
         start = self.tokens[self.index].start
         left = self.operand(power, under)
-        last: tuple[Operator, Span] | None = None
+        last: tuple[Operator, Formula, Span] | None = None
         while True:
             token = self.tokens[self.index]
             op = self.language.infix(token.text)
@@ -112,9 +113,16 @@ class FormulaParser:
             right = self.expression(op.power + 1 if op.fixity is Fixity.LEFT else op.power, op)
             end = self.tokens[self.index - 1].end
             if last is not None and is_predicate(op) and is_predicate(last[0]):
-                raise self._chained(Span(start, end), last[1], token.text, self.text[right_start:end])
-            left = Apply(op, (left, right), interval, Span(start, end))
-            last = (op, Span(right_start, end))
+                _, middle, span = last
+                both = self.language.get("and")
+                if both is None or not chains(last[0], op):
+                    whole, link = Span(start, end), Span(token.start, token.end)
+                    raise self.error(diagnostics.no_chain(self.text, whole, span, link), whole)
+                comparison = Apply(op, (middle, right), None, Span(span.start, end))
+                left = Apply(both, (left, comparison), None, Span(start, end))
+            else:
+                left = Apply(op, (left, right), interval, Span(start, end))
+            last = (op, right, Span(right_start, end))
         self._depth -= 1
         return left
 
@@ -358,14 +366,6 @@ class FormulaParser:
             f"nested too deeply: at most {MAX_DEPTH} formulas may stand inside one another; "
             f"give an inner one a name and use the name",
             self.token.span,
-        )
-
-    def _chained(self, whole: Span, middle: Span, symbol: str, right: str) -> SpecificationError:
-        first = self.text[whole.start : middle.end]
-        between = self.text[middle.start : middle.end]
-        return self.error(
-            f"comparisons do not chain; write {first} and {between} {symbol} {right}, or use parentheses",
-            whole,
         )
 
 

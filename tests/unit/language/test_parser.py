@@ -290,3 +290,19 @@ def test_parsing_changes_nothing_of_the_callers():
     constants, definitions, names = {"c": 1.0}, {"d": X}, ["x"]
     parse("x > c and d", constants=constants, definitions=definitions, variables=names)
     assert (constants, definitions, names) == ({"c": 1.0}, {"d": X}, ["x"])
+
+
+@pytest.mark.parametrize(
+    ("chain", "meaning"),
+    [
+        ("1 <= x <= 3", "1 <= x and x <= 3"),
+        ("3 > x >= y > -1", "(3 > x and x >= y) and y > -1"),
+        ("not 1 <= x + y < 2 * z", "not (1 <= x + y and x + y < 2 * z)"),
+        (
+            "0 < x < y until[0:2] 1 >= y >= 0 or z > 1",
+            "(0 < x and x < y) until[0:2] (1 >= y and y >= 0) or z > 1",
+        ),
+    ],
+)
+def test_comparisons_in_one_direction_chain(chain, meaning):
+    assert parse(chain) == parse(meaning)
