@@ -15,6 +15,7 @@ frames      pandas, polars, xarray, arrow and numpy objects
 csv         CSV files
 csv_cells   text columns of CSV files to numbers and dates
 csv_source  CSV files as a source
+csv_arrow   plain decimal numbers of large CSV files, by pyarrow
 arrow       Parquet and Arrow files and tables
 excel       Excel workbooks
 sql         databases

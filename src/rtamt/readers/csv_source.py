@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from io import TextIOWrapper
 from itertools import chain, islice
 from typing import TYPE_CHECKING
 
@@ -20,6 +21,7 @@ from rtamt.readers.csv import (
     read_header,
     rows,
 )
+from rtamt.readers.csv_arrow import plain_blocks
 from rtamt.readers.csv_cells import LARGEST, Cells
 from rtamt.readers.dates import is_date
 from rtamt.readers.frames import field_of
@@ -46,9 +48,7 @@ def open_csv(path: str) -> Source:
 
     def chunks(wanted: Sequence[Field]) -> Iterator[list[Raw]]:
         try:
-            with open(path, encoding="utf-8-sig", newline="") as lines:
-                _, rest = read_header(lines, path)
-                yield from _blocks(rest, header, wanted)
+            yield from _chunks(path, header, wanted)
         except UnicodeDecodeError:
             raise TraceError(
                 f"'{path}' is not UTF-8 text; save it as CSV in UTF-8 (spreadsheets offer this under 'save as')"
@@ -61,12 +61,26 @@ def open_csv(path: str) -> Source:
     return Source(path, (Table(tuple(fields), load, chunks),))
 
 
-def _blocks(lines: Iterator[str], header: Header, wanted: Sequence[Field]) -> Iterator[list[Raw]]:
-    """Yield columns block by block: by numpy as long as lines are plain numbers, cell by cell from there on."""
+def _chunks(path: str, header: Header, wanted: Sequence[Field]) -> Iterator[list[Raw]]:
+    """Yield columns block by block: by pyarrow and numpy as long as lines are plain numbers, then cell by cell."""
     # Of a name that is there twice: the first.
     places = {name: i for i, name in reversed(list(enumerate(header.names)))}
     columns = [Column(f.column, places[f.column], f.skip_nan) for f in wanted]
-    line = header.line
+    line, end = header.line, 0
+    for block in plain_blocks(path, header, columns):
+        yield [_whole(column) for column in block.columns]
+        line, end = line + block.lines, block.end
+    with open(path, "rb") as file:
+        file.seek(end)
+        with TextIOWrapper(file, "utf-8" if end else "utf-8-sig", newline="") as lines:
+            rest = lines if end else read_header(lines, path)[1]
+            yield from _blocks(rest, header, wanted, columns, line)
+
+
+def _blocks(
+    lines: Iterator[str], header: Header, wanted: Sequence[Field], columns: Sequence[Column], line: int
+) -> Iterator[list[Raw]]:
+    """Yield columns block by block; ``line``: that of the file before these lines."""
     while block := list(islice(lines, block_of(header))):
         values = plain(block, header, columns)
         if values is None or np.abs(values).max(initial=0) >= LARGEST:
