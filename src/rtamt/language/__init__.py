@@ -3,27 +3,29 @@
 ``operators.py`` contains the operator table, which drives the lexer, the parser, the printer, the checks, the
 compiler, the documentation and the test generators.
 
-=================  =========================================================================
-module             purpose
-=================  =========================================================================
-operators          the table: every operator of the language, once
-records            the records ``Operator`` and ``Language`` (an immutable set of operators)
-definitions        the discrete-time meaning of each operator: one pure function
-enclosures         interval extensions: operators of one instant on operands known up to bounds
-dense_definitions  the dense-time meaning of temporal operators, at one time
-formula            formulas: three immutable node types
-lexer              text to tokens
-parser             tokens to a formula, and the grammar of formulas
-grammar            rules shared by parser and printer: chaining, signs, nesting depth
-intervals          bounds of temporal operators: units, exact values, errors
-units              durations with units
-scope              names in a formula: constants, named formulas, declared variables
-specfile           specification files (``.stl``) to a document, and their grammar
-document           the content of a specification file
-requirements       ``require ID "text" severity WORD: formula``
-lint               the table of warnings
-diagnostics        syntax error messages
-printer            formula to text, RTAMT's canonical text and LaTeX
-undefined_value    the error for undefined values, shared by both back ends
-=================  =========================================================================
+===================  =========================================================================
+module               purpose
+===================  =========================================================================
+operators            the table: every operator of the language, once
+records              the records ``Operator`` and ``Language`` (an immutable set of operators)
+definitions          the discrete-time meaning of each operator: one pure function
+functions            the meaning of sin, round, clip and the other mathematical functions
+enclosures           interval extensions: operators of one instant on operands known up to bounds
+function_enclosures  interval extensions of the mathematical functions
+dense_definitions    the dense-time meaning of temporal operators, at one time
+formula              formulas: three immutable node types
+lexer                text to tokens
+parser               tokens to a formula, and the grammar of formulas
+grammar              rules shared by parser and printer: chaining, signs, nesting depth
+intervals            bounds of temporal operators: units, exact values, errors
+units                durations with units
+scope                names in a formula: constants, named formulas, declared variables
+specfile             specification files (``.stl``) to a document, and their grammar
+document             the content of a specification file
+requirements         ``require ID "text" severity WORD: formula``
+lint                 the table of warnings
+diagnostics          syntax error messages
+printer              formula to text, RTAMT's canonical text and LaTeX
+undefined_value      the error for undefined values, shared by both back ends
+===================  =========================================================================
 """
