@@ -25,8 +25,8 @@ namespace {
 
 } // namespace
 
-Origin::Origin(std::vector<Item> items, const Engine& engine)
-    : items_(std::move(items)), states_(items_.size()) {
+Origin::Origin(std::vector<Item> items, const Engine& engine, bool follows)
+    : items_(std::move(items)), states_(items_.size()), follows_(follows) {
     for (std::size_t i = 0; i < items_.size(); ++i) {
         const Item& item = items_[i];
         const bool pair = item.kind == Item::Kind::both || item.kind == Item::Kind::either;
@@ -108,7 +108,7 @@ void Origin::settle(const Engine& engine, Tick closed, std::span<Tick> wanted) {
             fold(engine, i, open);
             state.next = open;
         }
-        if (state.value[0] == -state.value[1]) state.next = forever;
+        if (!follows_ && state.value[0] == -state.value[1]) state.next = forever;
         wanted[item.a / 2] = std::min(wanted[item.a / 2], state.next);
     }
 }

@@ -31,8 +31,8 @@ struct Item {
 
 class Origin {
   public:
-    // The last item is that of the formula.
-    Origin(std::vector<Item> items, const Engine& engine);
+    // The last item is that of the formula. `follows`: whether items go on when they are decided.
+    Origin(std::vector<Item> items, const Engine& engine, bool follows = false);
 
     // Looks at what the engine knows now.
     void look(const Engine& engine);
@@ -44,6 +44,18 @@ class Origin {
 
     // The bounds when the trace ends just before `end`.
     [[nodiscard]] Bounds ended(const Engine& engine, Tick end) const;
+
+    // Of an item: a register of its value, before it is negated; of until, how far hold goes over
+    // the ticks before next().
+    [[nodiscard]] std::size_t size() const noexcept { return items_.size(); }
+    [[nodiscard]] const Item& item(std::size_t item) const noexcept { return items_[item]; }
+    [[nodiscard]] double value(std::size_t item, int reg) const noexcept {
+        return states_[item].value[static_cast<std::size_t>(reg)];
+    }
+    [[nodiscard]] double held(std::size_t item, int reg) const noexcept {
+        return states_[item].held[static_cast<std::size_t>(reg)];
+    }
+    [[nodiscard]] Tick next(std::size_t item) const noexcept { return states_[item].next; }
 
     void transfer(Snapshot& snapshot);
 
@@ -57,6 +69,7 @@ class Origin {
     };
     std::vector<Item> items_;
     std::vector<State> states_;
+    bool follows_;
 
     [[nodiscard]] Bounds bounds_of(std::size_t item) const noexcept;
     void look_at(const Engine& engine, std::size_t item) noexcept;

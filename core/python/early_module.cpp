@@ -64,7 +64,8 @@ void add_early_monitor(const nb::module_& module, const Exceptions& exceptions) 
                          const std::vector<std::pair<double, double>>& ranges,
                          const std::vector<nb::str>& names, const nb::object& ignored,
                          double period, double tolerance, std::optional<Tick> lateness,
-                         const nb::object& verdict, bool replays) {
+                         const nb::object& verdict, bool replays,
+                         const std::optional<EarlyCauses>& causes) {
                 EarlySettings settings{
                     period,  tolerance,   lateness.has_value(), lateness.value_or(0),
                     replays, std::nullopt};
@@ -74,11 +75,12 @@ void add_early_monitor(const nb::module_& module, const Exceptions& exceptions) 
                 }
                 new (self) EarlyMonitor(graph_of(nodes, static_cast<std::uint32_t>(names.size())),
                                         std::move(outputs), items_of(origin), bounds_of(ranges),
-                                        names, ignored, std::move(settings), exceptions);
+                                        names, ignored, std::move(settings), causes, exceptions);
             },
             nb::arg("nodes"), nb::arg("outputs"), nb::arg("origin"), nb::arg("ranges"),
             nb::arg("names"), nb::arg("ignored"), nb::arg("period"), nb::arg("tolerance"),
-            nb::arg("lateness").none(), nb::arg("verdict").none(), nb::arg("replays") = false)
+            nb::arg("lateness").none(), nb::arg("verdict").none(), nb::arg("replays") = false,
+            nb::arg("causes").none() = nb::none())
         .def("take", &EarlyMonitor::take, nb::arg("time"), nb::arg("lower"), nb::arg("upper"),
              nb::arg("after"), "Take bounds of every input at one time, in order.")
         .def("learn", &EarlyMonitor::learn, nb::arg("time"), nb::arg("values"), nb::arg("after"),
@@ -93,6 +95,10 @@ void add_early_monitor(const nb::module_& module, const Exceptions& exceptions) 
              "The bounds of an output at a sample, None where they are forgotten.")
         .def("changes", &EarlyMonitor::changes, nb::arg("output"),
              "Runs (first, last, lower, upper) that the last call changed.")
+        .def("causation_at_start", &EarlyMonitor::causation_at_start,
+             "Violation and satisfaction that the newest sample causes at the start of the trace.")
+        .def("causation", &EarlyMonitor::causation, nb::arg("output"), nb::arg("sample"),
+             "Violation and satisfaction that the newest sample causes for an output at a sample.")
         .def("place", &EarlyMonitor::place, nb::arg("time"), "The index of a time, or None.")
         .def("known", &EarlyMonitor::known, nb::arg("variable"), nb::arg("sample"),
              "What is known of an input at a sample.")

@@ -21,9 +21,22 @@ namespace {
 constexpr std::int64_t pause = 64;
 
 [[nodiscard]] std::optional<early::Origin> origin_of(std::vector<early::Item> items,
-                                                     const early::Engine& engine) {
+                                                     const early::Engine& engine, bool follows) {
     if (items.empty()) return std::nullopt;
-    return early::Origin(std::move(items), engine);
+    return early::Origin(std::move(items), engine, follows);
+}
+
+[[nodiscard]] early::Causes causes_of(const EarlyCauses& given, const early::Engine& engine,
+                                      const early::Origin& origin) {
+    std::vector<early::Cause> parts;
+    for (const auto& [kind, ref, a, b, low, high, shift, core] : std::get<0>(given)) {
+        const auto known = static_cast<early::Cause::Kind>(kind);
+        parts.push_back({known, ref, a, b, low, high, shift, core});
+    }
+    std::vector<early::StartingCause> starts;
+    for (const auto& [a, b, before, rest] : std::get<2>(given))
+        starts.push_back({a, b, before, rest});
+    return {std::move(parts), std::get<1>(given), std::move(starts), engine, origin};
 }
 
 } // namespace
@@ -31,9 +44,11 @@ constexpr std::int64_t pause = 64;
 EarlyMonitor::EarlyMonitor(const early::Graph& graph, std::vector<std::uint32_t> outputs,
                            std::vector<early::Item> origin, std::vector<Bounds> ranges,
                            const std::vector<nb::str>& names, const nb::object& ignored,
-                           EarlySettings settings, Exceptions exceptions)
+                           EarlySettings settings, const std::optional<EarlyCauses>& causes,
+                           Exceptions exceptions)
     : engine_(graph, ranges, settings.late), outputs_(std::move(outputs)),
-      decisions_(outputs_.size()), origin_(origin_of(std::move(origin), engine_)),
+      decisions_(outputs_.size()),
+      origin_(origin_of(std::move(origin), engine_, causes.has_value())),
       times_(settings.period, settings.tolerance), ranges_(std::move(ranges)),
       settings_(std::move(settings)), exceptions_(std::move(exceptions)),
       guard_(exceptions_.refused, exceptions_.in_use), names_(names, graph.inputs, ignored),
@@ -43,6 +58,10 @@ EarlyMonitor::EarlyMonitor(const early::Graph& graph, std::vector<std::uint32_t>
     steps_before_ = steps_before(graph);
     for (const std::uint32_t output : outputs_) {
         if (output / 2 >= engine_.size()) throw std::invalid_argument("There is no such output.");
+    }
+    if (causes) {
+        causes_.emplace(causes_of(*causes, engine_, origin_.value()));
+        causation_.emplace(std::get<3>(*causes), std::array{"violation", "satisfaction"});
     }
     // What is known before any sample came, such as the truth of constants, waits for the first.
     for (std::size_t i = 0; i < outputs_.size(); ++i)
@@ -186,6 +205,7 @@ void EarlyMonitor::note(Tick before) {
         changes_[i].collect(engine_, outputs_[i], before, newest);
     }
     if (origin_) origin_->look(engine_);
+    if (causes_) causes_->look(engine_, *origin_, newest);
 }
 
 Tick EarlyMonitor::lag(std::size_t output) const {
@@ -251,6 +271,11 @@ nb::object EarlyMonitor::finish() {
 
 PyObject* EarlyMonitor::answer() noexcept {
     if (settings_.verdict) return news(0);
+    if (causation_ && !finished_) {
+        const auto [violation, satisfaction] = causation_at_start();
+        return causation_->make({nb::steal(PyFloat_FromDouble(violation)),
+                                 nb::steal(PyFloat_FromDouble(satisfaction))});
+    }
     Py_RETURN_NONE;
 }
 
@@ -309,6 +334,18 @@ EarlyMonitor::changes(std::size_t output) const {
     return result;
 }
 
+// No minus before a zero.
+std::pair<double, double> EarlyMonitor::causation_at_start() const {
+    const Bounds caused = causes_.value().at_start();
+    return {caused.upper + 0.0, caused.lower + 0.0};
+}
+
+std::pair<double, double> EarlyMonitor::causation(std::size_t output, Tick sample) const {
+    if (output >= outputs_.size()) throw std::out_of_range("There is no such output.");
+    const Bounds caused = causes_.value().at(output, sample);
+    return {caused.upper + 0.0, caused.lower + 0.0};
+}
+
 std::optional<Tick> EarlyMonitor::place(double time) const {
     return times_.place(time);
 }
@@ -344,6 +381,7 @@ void EarlyMonitor::restore(const nb::bytes& state) {
 void EarlyMonitor::transfer(Snapshot& snapshot) {
     engine_.transfer(snapshot);
     if (origin_) origin_->transfer(snapshot);
+    if (causes_) causes_->transfer(snapshot);
     for (auto& decisions : decisions_)
         decisions.transfer(snapshot);
     times_.transfer(snapshot);

@@ -4,6 +4,7 @@
 // caller brings it in the form of take() or learn().
 #pragma once
 
+#include "../early/causation.hpp"
 #include "../early/changes.hpp"
 #include "../early/decisions.hpp"
 #include "../early/engine.hpp"
@@ -26,6 +27,15 @@
 
 namespace rtamt::python {
 
+// (kind, ref, a, b, low, high, shift, core)
+using EarlyCause = std::tuple<int, std::uint32_t, std::uint32_t, std::uint32_t, early::Tick,
+                              early::Tick, early::Tick, std::uint32_t>;
+// (a, b, before, rest)
+using EarlyStart = std::tuple<std::uint32_t, std::uint32_t, std::uint32_t, std::uint32_t>;
+// Parts, outputs, starts, and the class of what update() returns.
+using EarlyCauses = std::tuple<std::vector<EarlyCause>, std::vector<std::uint32_t>,
+                               std::vector<EarlyStart>, nb::object>;
+
 struct EarlySettings {
     double period;
     double tolerance;
@@ -40,7 +50,8 @@ class EarlyMonitor : public EarlyBackend {
     EarlyMonitor(const early::Graph& graph, std::vector<std::uint32_t> outputs,
                  std::vector<early::Item> origin, std::vector<Bounds> ranges,
                  const std::vector<nb::str>& names, const nb::object& ignored,
-                 EarlySettings settings, Exceptions exceptions);
+                 EarlySettings settings, const std::optional<EarlyCauses>& causes,
+                 Exceptions exceptions);
 
     // A list of verdicts, or None; null, with a Python exception set, is a refusal.
     [[nodiscard]] PyObject* update(PyObject* time, const Named& values) noexcept override;
@@ -64,6 +75,9 @@ class EarlyMonitor : public EarlyBackend {
     // Runs (first, last, lower, upper) of an output that the last call changed.
     [[nodiscard]] std::vector<std::tuple<early::Tick, early::Tick, double, double>>
     changes(std::size_t output) const;
+    // Violation and satisfaction that the newest sample causes.
+    [[nodiscard]] std::pair<double, double> causation_at_start() const;
+    [[nodiscard]] std::pair<double, double> causation(std::size_t output, early::Tick sample) const;
     [[nodiscard]] std::optional<early::Tick> place(double time) const;
     [[nodiscard]] std::pair<double, double> known(std::uint32_t input, early::Tick sample) const;
     [[nodiscard]] double time(early::Tick sample) const;
@@ -86,6 +100,8 @@ class EarlyMonitor : public EarlyBackend {
     std::vector<std::uint32_t> outputs_;
     std::vector<early::Decisions> decisions_; // by output
     std::optional<early::Origin> origin_;
+    std::optional<early::Causes> causes_;
+    std::optional<ResultClass<2>> causation_; // of what update() returns
     early::Times times_;
     std::vector<Bounds> ranges_;
     EarlySettings settings_;

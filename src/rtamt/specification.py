@@ -37,6 +37,7 @@ if TYPE_CHECKING:
     from rtamt.signals.discrete import Discrete
     from rtamt.signals.domain_interface import DomainTrace, TimeDomain
     from rtamt.signals.signal import Signal
+    from rtamt.verdicts.causation import CausationMonitor
     from rtamt.verdicts.dense_early import DenseEagerMonitor
     from rtamt.verdicts.eager import EagerMonitor
     from rtamt.verdicts.interval import IntervalMonitor
@@ -223,6 +224,19 @@ class Specification(SpecificationText):
         **settings: Unpack[IntervalSettings],
     ) -> IntervalMonitor: ...
 
+    @overload
+    def monitor(
+        self,
+        *,
+        time: Literal["discrete"] | Discrete | None = None,
+        period: Duration | None = None,
+        tolerance: float | None = None,
+        semantics: Semantics | None = None,
+        watch: Watch = (),
+        time_unit: str | None = None,
+        verdict: Literal["causation"],
+    ) -> CausationMonitor: ...
+
     def monitor(
         self,
         *,
@@ -255,7 +269,8 @@ class Specification(SpecificationText):
 
         ``verdict``: what the monitor reports of each sample: ``"delayed"``, the robustness one horizon later;
         ``"eager"``, whether the formula holds, as soon as no later sample can change it; ``"interval"``, bounds
-        of the robustness from what is known by now. In dense time these two report runs of instants, with unbounded
+        of the robustness from what is known by now; ``"causation"``, by how much the sample alone violates or
+        satisfies the formula. In dense time ``"eager"`` and ``"interval"`` report runs of instants, with unbounded
         future too. ``at``: of which instants ``"interval"`` reports: the ``"start"`` of the trace, as by default
         for unbounded future, or ``"every"`` one. ``ranges``: from a variable to its least and greatest value
         (``"eager"``, ``"interval"``). ``lateness``: by how much a sample may come late (``"interval"``); without it,

@@ -1,4 +1,4 @@
-"""What ``rtamt monitor --verdict`` prints before the horizon: verdicts as soon as they are settled, and bounds."""
+"""What ``rtamt monitor --verdict`` prints before the horizon: settled verdicts, bounds, and causation."""
 
 from __future__ import annotations
 
@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 
     from rtamt.signals.outcomes import Interval, Verdict
     from rtamt.verdicts.at_start import StartMonitor
+    from rtamt.verdicts.causation import CausationMonitor
     from rtamt.verdicts.dense_early import DenseEagerMonitor
     from rtamt.verdicts.eager import EagerMonitor
     from rtamt.verdicts.early import EarlyMonitor
@@ -119,6 +120,29 @@ class IntervalFeed:
                 f'"final": {json.dumps(change.final)}}}',
                 flush=True,
             )
+
+
+class CausationFeed:
+    """Prints what each sample alone makes of the formula at the start of the trace."""
+
+    def __init__(self, monitor: CausationMonitor) -> None:
+        self.monitor = monitor
+
+    def take(self, stamp: Any, values: dict[str, float], line: int) -> str:
+        """Take a sample and print what it causes; return what is wrong with it, if anything is."""
+        try:
+            time = _time(self.monitor, stamp)
+            caused = self.monitor.update(time, **values)
+        except StlError as error:
+            return f"{STDIN}, line {line}: {error}"
+        violation, satisfaction = map(json_number, (caused.violation, caused.satisfaction))
+        rest = json.dumps({"violation": violation, "satisfaction": satisfaction})
+        say(f'{{"time": {_json(time)}, {rest[1:]}', flush=True)
+        return ""
+
+    def finish(self) -> None:
+        """End the trace."""
+        self.monitor.finish()
 
 
 def _time(monitor: EarlyMonitor, stamp: Any) -> Any:

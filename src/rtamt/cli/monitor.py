@@ -25,7 +25,7 @@ from rtamt.cli.command import (
     read_specification,
     stamp_text,
 )
-from rtamt.cli.early_feeds import EagerFeed, IntervalFeed, StartFeed
+from rtamt.cli.early_feeds import CausationFeed, EagerFeed, IntervalFeed, StartFeed
 from rtamt.cli.live_view import Live
 from rtamt.cli.stdin_reader import STDIN, Samples
 from rtamt.cli.terminal import printed, say
@@ -36,6 +36,7 @@ from rtamt.signals.regular import TOLERANCE
 from rtamt.signals.signal import Signal
 from rtamt.signals.trace import in_seconds
 from rtamt.verdicts.at_start import StartMonitor
+from rtamt.verdicts.causation import CausationMonitor
 from rtamt.verdicts.interval import IntervalMonitor
 from rtamt.verdicts.modes import DELAYED, MODES
 
@@ -76,7 +77,9 @@ and in the input. With --semantics boolean a line has the verdict too: {"time": 
 --verdict eager prints {"time": 0.0, "satisfied": false, "decided_at": 2.0} as soon as no later sample can
 change whether the formula holds; --verdict interval prints bounds of the robustness whenever they change:
 {"time": 0.0, "lower": -1.0, "upper": "inf", "final": false}. With "until" an object is about all samples up to that
-one, in dense time all instants before it. A formula of unbounded future is watched at the
+one, in dense time all instants before it. --verdict causation prints by how much each sample alone violates and
+satisfies the formula at the start of the trace: {"time": 0.0, "violation": -1.0, "satisfaction": "-inf"}, or
+"inf" and "-inf" if it has no part. A formula of unbounded future is watched at the
 start of the trace, also without --verdict: {"time": 12.3, "lower": "-inf", "upper": -1.0, "status":
 "violated since 12.3 s"}; other states are "open" and "can no longer be violated".
 
@@ -169,7 +172,7 @@ def _follow(watched: Feed, samples: Samples, live: Live | None, *, keep_going: b
     return code
 
 
-def _early(spec: Specification, args: argparse.Namespace) -> EagerFeed | IntervalFeed | StartFeed | None:
+def _early(spec: Specification, args: argparse.Namespace) -> EarlyFeed | None:
     """Return what prints before the horizon, if that is asked for, or if there is no horizon."""
     verdict = args.verdict
     at_start = verdict in {None, "interval"} and unbounded_future(spec.formula) is not None
@@ -180,6 +183,8 @@ def _early(spec: Specification, args: argparse.Namespace) -> EagerFeed | Interva
     if at_start:
         return StartFeed(StartMonitor(spec, tolerance=args.tolerance))
     monitor = spec.monitor(verdict=verdict, tolerance=args.tolerance)
+    if isinstance(monitor, CausationMonitor):
+        return CausationFeed(monitor)
     return IntervalFeed(monitor) if isinstance(monitor, IntervalMonitor) else EagerFeed(monitor)
 
 
@@ -330,6 +335,7 @@ class EventFeed:
 
 
 #: What takes the samples, and prints what becomes known.
-Feed: TypeAlias = SampleFeed | EventFeed | EagerFeed | IntervalFeed | StartFeed
+EarlyFeed: TypeAlias = EagerFeed | IntervalFeed | StartFeed | CausationFeed
+Feed: TypeAlias = SampleFeed | EventFeed | EarlyFeed
 
 COMMAND = Command("monitor", "watch a stream: samples on stdin, robustness on stdout", configure, run)

@@ -81,11 +81,30 @@ class Graph:
     nodes: list[Node] = field(default_factory=list)
     outputs: list[int] = field(default_factory=list)
     items: list[Item] = field(default_factory=list)
+    #: What each item is the value of; None for a part that is no formula.
+    starts: list[Formula | None] = field(default_factory=list)
     origins: list[Formula] = field(default_factory=list)
     _index: dict[Node, int] = field(default_factory=dict)
     _refs: dict[Formula, int] = field(default_factory=dict)
     _local: dict[Formula, bool] = field(default_factory=dict)
     _depths: dict[int, Fraction | None] = field(default_factory=dict)
+
+    def ref(self, formula: Formula) -> int:
+        """Return the reference of a part of a compiled formula, other than one that has items instead."""
+        return _ref(self, formula)
+
+    def is_atom(self, formula: Formula) -> bool:
+        """Return whether a part reads inputs at one instant alone."""
+        return self._local[formula]
+
+    def recursion(self, formula: Apply) -> int:
+        """Return the reference of an until or since without its bounds."""
+        hold, goal = (_ref(self, arg) for arg in formula.args)
+        return (
+            _since_core(self, hold, goal)
+            if isinstance(formula.op.kernel, Since)
+            else _recursion(self, hold, goal)
+        )
 
     def horizon(self, ref: int) -> int:
         """Return how many steps after an instant the value of a reference is final at the latest."""
@@ -226,7 +245,7 @@ def _over(graph: Graph, kind: str, operand: int, low: int, high: int) -> int:
     return _add(graph, Node(KINDS.index(kind), operand, low=low, high=high, horizon=horizon))
 
 
-def _bounds(graph: Graph, formula: Apply) -> tuple[int, int]:
+def interval_in_steps(graph: Graph, formula: Apply) -> tuple[int, int]:
     """Return the interval of an operator in steps; no interval is [0, inf)."""
     if formula.interval is None:
         return 0, FOREVER
@@ -235,7 +254,7 @@ def _bounds(graph: Graph, formula: Apply) -> tuple[int, int]:
 
 
 def _window(graph: Graph, formula: Apply, kernel: Window, operand: int) -> int:
-    begin, end = _bounds(graph, formula)
+    begin, end = interval_in_steps(graph, formula)
     kind = "least" if kernel.reduce == "min" else "greatest"
     if formula.op.tense is Tense.PAST:
         return _over(graph, kind, operand, -end, -begin)
@@ -249,10 +268,8 @@ def _before(graph: Graph, begin: int) -> int:
 
 def _since(graph: Graph, formula: Apply, hold: int, goal: int) -> int:
     """φ since[a, b] ψ is once[a, b] ψ, φ on (t - a, t], and (φ since ψ) a ago."""
-    begin, end = _bounds(graph, formula)
-    horizon = max(graph.horizon(hold), graph.horizon(goal))
-    kind = "since_dense" if graph.domain.continuous else "since"
-    core = _add(graph, Node(KINDS.index(kind), hold, goal, horizon=horizon))
+    begin, end = interval_in_steps(graph, formula)
+    core = _since_core(graph, hold, goal)
     if graph.domain.continuous and begin == 0:
         core = _pair(graph, "either", core, goal)
     value = _over(graph, "greatest", core, -begin, -begin)
@@ -263,13 +280,19 @@ def _since(graph: Graph, formula: Apply, hold: int, goal: int) -> int:
     return value
 
 
+def _since_core(graph: Graph, hold: int, goal: int) -> int:
+    horizon = max(graph.horizon(hold), graph.horizon(goal))
+    kind = "since_dense" if graph.domain.continuous else "since"
+    return _add(graph, Node(KINDS.index(kind), hold, goal, horizon=horizon))
+
+
 def _recursion(graph: Graph, hold: int, goal: int) -> int:
     return _add(graph, Node(KINDS.index("until"), hold, goal, horizon=FOREVER))
 
 
 def _until(graph: Graph, formula: Apply, hold: int, goal: int) -> int:
     """φ until[a, b] ψ is eventually[a, b] ψ, φ on [t, t + a), and (φ until ψ) from t + a on."""
-    begin, end = _bounds(graph, formula)
+    begin, end = interval_in_steps(graph, formula)
     past = formula.op.tense is Tense.PAST
     core = _recursion(graph, hold, goal)
     origin = -end if past else 0  # where it is read from
@@ -324,6 +347,7 @@ def _at_start(graph: Graph, formula: Formula, *, negated: bool) -> int:
 
     def add(kind: str, a: int, b: int = NO_OPERAND, c: int = NO_OPERAND, tick: int = 0) -> int:
         graph.items.append(Item(ITEMS.index(kind), negated, a, b, c, tick))
+        graph.starts.append(formula)
         return len(graph.items) - 1
 
     if not _splits(graph, formula):
@@ -336,7 +360,7 @@ def _at_start(graph: Graph, formula: Formula, *, negated: bool) -> int:
         operands = [_at_start(graph, arg, negated=False) for arg in formula.args]
         return add(_LATTICE[kernel.opcode], *operands)
     args = [_ref(graph, arg) for arg in formula.args]
-    begin, _ = _bounds(graph, formula)
+    begin, _ = interval_in_steps(graph, formula)
     if isinstance(kernel, Window):
         return add("all" if kernel.reduce == "min" else "some", args[0], tick=begin)
     hold, goal = args
@@ -346,4 +370,5 @@ def _at_start(graph: Graph, formula: Formula, *, negated: bool) -> int:
     graph.items.append(Item(*reached))
     before = _over(graph, "least", hold, 0, _before(graph, begin))
     graph.items.append(Item(ITEMS.index("value"), False, before))
+    graph.starts += [None, None]
     return add("both", len(graph.items) - 2, len(graph.items) - 1)

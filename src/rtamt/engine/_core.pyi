@@ -167,7 +167,8 @@ class EarlyMonitor:
 
     ``nodes``, ``outputs`` and ``origin`` are those of ``compiler.early.Graph``. ``lateness``: by how many samples
     one may come late; None where all come in order. ``verdict``: the class of what update() returns, None for bounds.
-    ``replays``: whether update() takes nothing by itself.
+    ``replays``: whether update() takes nothing by itself. ``causes``: the parts, outputs and starts of
+    ``compiler.causation.Causes``, and the class of what update() returns.
     """
 
     def __init__(
@@ -183,6 +184,7 @@ class EarlyMonitor:
         lateness: int | None,
         verdict: type | None,
         replays: bool = False,
+        causes: tuple[Any, ...] | None = None,
     ) -> None: ...
     def take(self, time: float, lower: Sequence[float], upper: Sequence[float], after: int) -> Any:
         """Take bounds of every input at one time, in order."""
@@ -207,6 +209,12 @@ class EarlyMonitor:
 
     def changes(self, output: int) -> list[tuple[int, int, float, float]]:
         """Runs (first, last, lower, upper) that the last call changed."""
+
+    def causation_at_start(self) -> tuple[float, float]:
+        """Violation and satisfaction that the newest sample causes at the start of the trace."""
+
+    def causation(self, output: int, sample: int) -> tuple[float, float]:
+        """Violation and satisfaction that the newest sample causes for an output at a sample."""
 
     def place(self, time: float) -> int | None:
         """The index of a time, or None."""

@@ -2,21 +2,22 @@
 
 Z. Zhang et al., "Online causation monitoring of signal temporal logic", CAV 2023. With b the newest sample
 and [L, U] the bounds after it, the violation causation ``viol`` at t is how bad the newest sample makes the formula
-at t, and ``sat`` how good: for a fixed t the minimum of ``viol`` over the samples so far is U, and the maximum
-of ``sat`` is L. So a predicate elsewhere than at b is worth what is known of it without any sample: -inf to +inf, but
-a constant is what it is, and an absolute value is not negative. In discrete time, for exact samples.
+at t, and ``sat`` how good. A predicate has its value at b; elsewhere the newest sample causes nothing, which is +inf
+and -inf. For a fixed t the minimum of ``viol`` over the samples so far, and of the upper bound before any of them,
+is U; the maximum of ``sat``, and of that lower bound, is L. In discrete time, for exact samples.
 """
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from math import inf
+from typing import TYPE_CHECKING
 
-from rtamt.errors import SpecificationError
 from rtamt.language.formula import Apply, Formula, postorder
-from rtamt.language.operators import Bounds, Pointwise, Shift, Since, Tense, Until, Window
-from rtamt.language.printer import excerpt
+from rtamt.language.operators import Bounds, Pointwise, Shift, Since, Tense, Window
 from rtamt.reference.discrete_bounds import bounds
-from rtamt.rewrite.desugar import desugar, written
+from rtamt.rewrite.desugar import desugar
+from rtamt.rewrite.early import connects
+from rtamt.signals.outcomes import Causation
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -28,17 +29,14 @@ if TYPE_CHECKING:
 _Part = tuple[Formula, int]
 
 
-class Causation(NamedTuple):
-    """Violation and satisfaction causation at one sample."""
-
-    viol: float
-    sat: float
+#: What a sample causes where it has no part.
+NOTHING = Causation(inf, -inf)
 
 
 def causation(formula: Formula, known: Knowledge, period: Fraction, m: int) -> list[Causation]:
     """Return how the last sample of ``known`` affects the formula at samples 0 to m - 1.
 
-    Raises :class:`SpecificationError` at arithmetic on formulas in time, which has no causation.
+    The formula must be one that has causation (``rewrite.early.causeless``).
 
     >>> from fractions import Fraction
     >>> import numpy as np
@@ -47,15 +45,9 @@ def causation(formula: Formula, known: Knowledge, period: Fraction, m: int) -> l
     >>> from rtamt.reference.discrete_bounds import Knowledge
     >>> x = np.array([4.0, 1.0, 2.0])
     >>> causation(parse_formula("always(x >= 3)"), Knowledge({"x": Enclosure(x, x)}, 3), Fraction(1), 1)
-    [Causation(viol=-1.0, sat=-inf)]
+    [Causation(violation=-1.0, satisfaction=-inf)]
     """
     core = desugar(formula)
-    for node in postorder(core):
-        if not _connects(node) and any(map(_in_time, postorder(node))):
-            culprit = excerpt(written(node, [formula]))
-            raise SpecificationError(
-                f"'{culprit}' is arithmetic on a formula in time, which has no causation; use another verdict mode"
-            )
     causes = _Causes(known, period, m + known.n + sum(_reach(node, period) + 1 for node in postorder(core)))
     return [causes.at(core, t) for t in range(m)]
 
@@ -78,43 +70,39 @@ class _Causes:
 
     def _cause(self, node: Formula, t: int) -> Causation:
         lower, upper = self._limits(node, t)
-        if not isinstance(node, Apply) or not _connects(node):
-            if t != self._known.n - 1:  # what is known without any sample
-                lower, upper = self._limits(node, None)
-            return Causation(upper, lower)
+        if not isinstance(node, Apply) or not connects(node):
+            return Causation(upper, lower) if t == self._known.n - 1 else NOTHING
         kernel, args = node.op.kernel, node.args
         if isinstance(kernel, Shift):
             there = t + (1 if node.op.tense is Tense.FUTURE else -1)
-            return self.at(args[0], there) if there >= 0 else Causation(kernel.fill, kernel.fill)
+            return self.at(args[0], there) if there >= 0 else NOTHING
         if isinstance(kernel, Pointwise) and kernel.opcode == "neg":
-            viol, sat = self.at(args[0], t)
-            return Causation(-sat, -viol)
+            found = self.at(args[0], t)
+            return Causation(-found.satisfaction, -found.violation)
         if isinstance(kernel, Pointwise | Window):
             inside = [(arg, u) for arg in args for u in self._window(node, t)]
             smallest = (kernel.opcode if isinstance(kernel, Pointwise) else kernel.reduce) == "min"
             alternatives = [inside] if smallest else [[part] for part in inside]
             if not inside:
-                return Causation(upper, lower)
+                return NOTHING
         else:
             alternatives = [
                 [(args[1], u), *((args[0], v) for v in held)] for u, held in self._targets(node, t)
             ]
             if not alternatives:
-                return Causation(upper, lower)
+                return NOTHING
         # φ is the best of its alternatives, and each is as bad as the worst of its parts.
-        viol = max(min(self.at(*part).viol for parts in alternatives for part in parts), upper)
+        viol = max(min(self.at(*part).violation for parts in alternatives for part in parts), upper)
         sat = max(self._all(parts) for parts in alternatives)
         return Causation(viol, sat)
 
     def _all(self, parts: list[_Part]) -> float:
         """Return the satisfaction causation of parts that must all hold."""
-        return min(max(self.at(*part).sat for part in parts), *(self._limits(*part)[0] for part in parts))
+        return min(
+            max(self.at(*part).satisfaction for part in parts), *(self._limits(*part)[0] for part in parts)
+        )
 
-    def _limits(self, node: Formula, t: int | None) -> tuple[float, float]:
-        """Return the bounds at a sample; None: where no sample has come."""
-        if t is None:
-            lower, upper = bounds(node, self._known.until(0), self._period)
-            return float(lower[0]), float(upper[0])
+    def _limits(self, node: Formula, t: int) -> tuple[float, float]:
         if node not in self._bounds:
             found = bounds(node, self._known, self._period)
             self._bounds[node] = list(zip(found.lower.tolist(), found.upper.tolist(), strict=True))
@@ -139,14 +127,6 @@ class _Causes:
         assert end is not None, "the grammar asks for a bound"
         first = max(t - end, 0)
         return [(u, range(first, u)) for u in range(max(t - end + begin, 0), t + 1)]
-
-
-def _connects(node: Formula) -> bool:
-    """Return whether an operator only takes minima, maxima and negations of its operands."""
-    kernel = node.op.kernel if isinstance(node, Apply) else None
-    if isinstance(kernel, Pointwise):
-        return kernel.opcode in ("min", "max", "neg")
-    return isinstance(kernel, Window | Shift | Since | Until)
 
 
 def _in_time(node: Formula) -> bool:

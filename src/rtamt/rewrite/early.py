@@ -2,7 +2,8 @@
 
 Bounds are sound for every formula. They are tight (attained by some trace that agrees with all known samples) if
 every sample enters with one polarity: :func:`loose`. In discrete time the end of a trace clips windows, so that
-a verdict at the end may differ from one reported while the trace went on: :func:`ends_differently`.
+a verdict at the end may differ from one reported while the trace went on: :func:`ends_differently`. Arithmetic on
+formulas in time has no causation: :func:`causeless`.
 """
 
 from __future__ import annotations
@@ -14,8 +15,8 @@ import numpy as np
 
 from rtamt.language.enclosures import Enclosure, extended
 from rtamt.language.formula import Apply, Const, Formula, Var, children, fold, postorder, variables
-from rtamt.language.operators import Bounds, Since, Tense, Until
-from rtamt.rewrite.desugar import desugar
+from rtamt.language.operators import Bounds, Pointwise, Shift, Since, Tense, Until, Window
+from rtamt.rewrite.desugar import desugar, written
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -199,3 +200,28 @@ def _unseen(
         )  # future operators over operands that may have any value
     assert node.op.definition is not None
     return extended(node.op.definition, node.op.extension, operands)
+
+
+def connects(node: Formula) -> bool:
+    """Return whether an operator only takes minima, maxima and negations of its operands."""
+    kernel = node.op.kernel if isinstance(node, Apply) else None
+    if isinstance(kernel, Pointwise):
+        return kernel.opcode in ("min", "max", "neg")
+    return isinstance(kernel, Window | Shift | Since | Until)
+
+
+def causeless(formula: Formula) -> Formula | None:
+    """Return a part of a formula that has no causation, which is arithmetic on a formula in time.
+
+    >>> from rtamt.language.parser import parse_formula
+    >>> causeless(parse_formula("always((once x) + 1 >= 0)"))
+    <formula (once x) + 1>
+    """
+    in_time: dict[int, bool] = {}
+    core = desugar(formula)
+    for node in postorder(core):
+        below = any(in_time[id(operand)] for operand in children(node))
+        if below and not connects(node):
+            return written(node, [formula])
+        in_time[id(node)] = below or (isinstance(node, Apply) and node.op.tense is not Tense.NONE)
+    return None

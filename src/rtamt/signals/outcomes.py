@@ -63,6 +63,22 @@ class VerdictRun:
     decided_at: Any
 
 
+@dataclass(frozen=True, slots=True)
+class Causation:
+    """By how much the newest sample alone violates and satisfies a formula (CAV 2023).
+
+    ``violation``: the robustness would be at most this because of the sample; +inf if it has no part. ``satisfaction``:
+    it would be at least this; -inf if it has no part.
+
+    >>> from rtamt import Causation
+    >>> Causation(violation=-2.0, satisfaction=-2.0)
+    Causation(violation=-2.0, satisfaction=-2.0)
+    """
+
+    violation: float
+    satisfaction: float
+
+
 class BoundedSignal(Signal):
     """A signal given by bounds: ``times``, ``lower`` and ``upper``, arrays of the same length.
 

@@ -8,12 +8,14 @@ from typing import TYPE_CHECKING, Any, ClassVar
 from rtamt.engine.backend import Session
 from rtamt.engine.discrete.apart import Apart
 from rtamt.engine.discrete.early_python_backend import PythonEarlyMonitor
+from rtamt.engine.gate import in_use
 from rtamt.engine.native import EarlyMonitorBase
 from rtamt.errors import TraceError, shown
 from rtamt.language.undefined_value import at_sample, undefined
 from rtamt.language.units import check_unit
 from rtamt.rewrite.desugar import written
 from rtamt.signals import arrays
+from rtamt.signals.outcomes import Causation
 from rtamt.signals.regular import irregular, not_increasing
 from rtamt.verdicts.caller_clock import CallerClock, Stamp
 from rtamt.verdicts.early import EarlyMonitor, GraphSession
@@ -22,6 +24,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
     from fractions import Fraction
 
+    from rtamt.compiler.causation import Causes
     from rtamt.compiler.early import Graph
     from rtamt.language.formula import Formula
     from rtamt.signals.domain_interface import TimeDomain
@@ -48,6 +51,8 @@ class DiscreteEarlyMonitor(EarlyMonitor):
     """What the monitors of discrete time share. Not instantiated by users."""
 
     _clock: CallerClock
+    #: What each sample causes is reported, too.
+    _causes: Causes | None = None
 
     _remembered: ClassVar[tuple[str, ...]] = ("_finished", "_clock")
     _base = EarlyMonitorBase
@@ -78,6 +83,7 @@ class DiscreteEarlyMonitor(EarlyMonitor):
                 self._tolerance,
                 self._late,
                 self._verdict,
+                self._causes is not None,
             )
         else:
             self._session = self._compiled()
@@ -98,6 +104,7 @@ class DiscreteEarlyMonitor(EarlyMonitor):
             self._late,
             self._verdict,
             self._replays,
+            None if self._causes is None else (*self._causes, Causation),
         )
 
     def _connect(self, backend: Any) -> None:
@@ -188,6 +195,29 @@ class DiscreteEarlyMonitor(EarlyMonitor):
         place = backend.place(time)
         if place is None or (place != backend.newest + 1 and place - 1 > backend.closed):
             raise irregular(self.samples, time, last, self._step, self._tolerance)
+
+    def _take_in_order(self, time: Any, values: dict[str, Any]) -> Any:
+        """Take a sample that comes after all others, or find out what is wrong with it."""
+        with self._gate:
+            flat = self._read_by_formula(values)
+            if self._finished:
+                raise self._is_finished()
+            after = self.samples
+            stamp = self._stamp(time)
+            known = self._bounds_of(flat, after, stamp.seconds)
+            self._check_order(stamp.seconds)
+            try:
+                answer = self._backend.take(stamp.seconds, *self._row(known), after)
+                self._remember(stamp)
+                return self._as_given(answer)
+            except self._refused:
+                raise in_use() from None
+            except self._undefined as error:
+                raise self._no_value(error) from None
+
+    def _as_given(self, answer: Any) -> Any:
+        """Return what the back end answers with its times in the form of the caller's."""
+        return answer
 
     def _no_value(self, error: Any) -> Exception:
         """Name the sub-formula and the instant of a value that does not exist."""

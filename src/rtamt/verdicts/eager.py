@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from rtamt.engine.gate import alone, in_use
+from rtamt.engine.gate import alone
 from rtamt.engine.native import EarlyMonitorBase
 from rtamt.signals.outcomes import Verdict
 from rtamt.verdicts.discrete_early import DiscreteEarlyMonitor
@@ -46,22 +46,7 @@ class EagerMonitor(DiscreteEarlyMonitor, EarlyMonitorBase):
 
     def _update_carefully(self, time: Any, /, **values: Any) -> list[Verdict]:
         """Take a sample that the core did not take, or find out what is wrong with it."""
-        with self._gate:
-            flat = self._read_by_formula(values)
-            if self._finished:
-                raise self._is_finished()
-            after = self.samples
-            stamp = self._stamp(time)
-            known = self._bounds_of(flat, after, stamp.seconds)
-            self._check_order(stamp.seconds)
-            try:
-                verdicts = self._backend.take(stamp.seconds, *self._row(known), after)
-                self._remember(stamp)
-                return self._as_given(verdicts)
-            except self._refused:
-                raise in_use() from None
-            except self._undefined as error:
-                raise self._no_value(error) from None
+        return self._take_in_order(time, values)  # type: ignore[no-any-return]
 
     @alone
     def finish(self) -> list[Verdict]:
@@ -69,13 +54,13 @@ class EagerMonitor(DiscreteEarlyMonitor, EarlyMonitorBase):
         if self._finished:
             return []
         self._finished = True
-        return self._as_given(self._backend.finish())
+        return self._as_given(self._backend.finish())  # type: ignore[no-any-return]
 
     def __getitem__(self, name: str | Formula) -> list[Verdict]:
         """Return the verdicts of a formula that is watched which the last call settled."""
-        return self._as_given(self._backend.verdicts(self._output(name)))
+        return self._as_given(self._backend.verdicts(self._output(name)))  # type: ignore[no-any-return]
 
-    def _as_given(self, verdicts: list[Verdict]) -> list[Verdict]:
+    def _as_given(self, verdicts: Any) -> Any:
         """Return verdicts with their times in the form of the caller's."""
         if self._clock.plain:
             return verdicts

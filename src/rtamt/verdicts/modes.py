@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 from rtamt.errors import UsageError, did_you_mean, shown
 from rtamt.signals.dense import Dense
 from rtamt.signals.discrete import Discrete
+from rtamt.verdicts.causation import CausationMonitor
 from rtamt.verdicts.dense_early import DenseEagerMonitor
 from rtamt.verdicts.dense_interval import DenseIntervalMonitor
 from rtamt.verdicts.discrete_interval import DiscreteIntervalMonitor
@@ -55,6 +56,11 @@ MODES: Mapping[str, Mode] = MappingProxyType(
                 "bounds of the robustness, from what is known by now",
                 MappingProxyType({Discrete.name: DiscreteIntervalMonitor, Dense.name: DenseIntervalMonitor}),
                 settings=("at", "ranges", "lateness", "on_correction"),
+            ),
+            Mode(
+                "causation",
+                "by how much each sample alone violates or satisfies the formula",
+                MappingProxyType({Discrete.name: CausationMonitor}),
             ),
         )
     }

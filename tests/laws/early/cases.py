@@ -83,7 +83,10 @@ def _interval(rng: Random, op: Operator, *, unbounded: bool) -> Interval | None:
 
 @dataclass(frozen=True)
 class Case:
-    """A formula, and a trace of discrete time that goes on for a horizon after the n samples that come."""
+    """A formula, and a trace of discrete time that goes on for a horizon after the n samples that come.
+
+    Of unbounded future the trace goes on for one sample.
+    """
 
     formula: Formula
     names: tuple[str, ...]
@@ -129,10 +132,9 @@ def _known(rng: Random, true: float, limits: Range, *, exact: bool) -> Known:
 def case(
     rng: Random, *, exact: bool | None = None, ranges: bool | None = None, most: int = 8, **kinds: bool
 ) -> Case:
-    """Draw a case of discrete time with bounded future; ``exact`` and ``ranges``: whether, by default either."""
+    """Draw a case of discrete time; ``exact`` and ``ranges``: whether, by default either."""
     drawn = _reading(rng, **kinds)
-    names, depth = variables(drawn), horizon(drawn)
-    assert depth is not None
+    names, depth = variables(drawn), horizon(drawn) or 0
     limits = _ranges(rng, names, 0.4) if ranges is None else _ranges(rng, names, 1.0) if ranges else {}
     sharp = rng.random() < 0.5 if exact is None else exact
     n = rng.randint(1, most)

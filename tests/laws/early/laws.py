@@ -17,9 +17,8 @@ from rtamt.language.operators import STL
 from rtamt.reference import dense as dense_reference
 from rtamt.reference import discrete as reference
 from rtamt.reference import discrete_bounds, earliest
-from rtamt.reference.causation import causation
 from rtamt.reference.discrete_bounds import ANYTHING
-from rtamt.rewrite.early import ends_differently, loose
+from rtamt.rewrite.early import causeless, ends_differently, loose
 from rtamt.rewrite.horizon import horizon
 from rtamt.rewrite.semantics import boolean
 from tests.laws.early.monitors import DEFINITION, PERIOD, TICK
@@ -28,6 +27,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from rtamt.language.formula import Formula
+    from rtamt.signals.outcomes import Causation
     from tests.laws.early.cases import Case, DenseCase
     from tests.laws.early.monitors import Implementation
 
@@ -224,23 +224,42 @@ def _definition(case: Case) -> discrete_bounds.Knowledge:
     return monitor.known
 
 
-def causes(case: Case) -> None:
-    """The bounds are the extremes of the causation of all samples so far."""
+def causes(case: Case, made: Implementation) -> None:
+    """With the bounds before any sample, the bounds are the extremes of the causation of all samples so far."""
     assert case.exact
     assert not case.ranges
-    known = _definition(case)
-    m = case.n + 2
-    viol, sat = [math.inf] * m, [-math.inf] * m
-    for n in range(1, case.n + 1):
-        try:
-            bounds = discrete_bounds.bounds(case.formula, known.until(n), PERIOD)
-            news = causation(case.formula, known.until(n), PERIOD, m)
-        except EvaluationError:
-            raise NothingToCheck from None
-        for t in range(m):
-            viol[t], sat[t] = min(viol[t], news[t].viol), max(sat[t], news[t].sat)
-            i = min(t, len(bounds.lower) - 1)
-            assert (sat[t], viol[t]) == (bounds.lower[i], bounds.upper[i])
+    if causeless(case.formula) is not None:
+        raise NothingToCheck
+    instants = range(len(next(iter(case.truth.values()))) - _horizon(case.formula))
+    expected = _all_bounds(case, DEFINITION)
+    monitor = made.causation(case.formula)
+    viol, sat = [[each[k] for each in expected[0]] for k in (1, 0)]
+    for i, row in enumerate(case.samples):
+        news = _causation(monitor, i, row, instants)
+        for t in instants:
+            viol[t], sat[t] = min(viol[t], news[t].violation), max(sat[t], news[t].satisfaction)
+            assert (sat[t], viol[t]) == expected[i + 1][t]
+
+
+def causation_as_defined(case: Case, made: Implementation) -> None:
+    """What each sample causes, at the start of the trace and at every instant, is what the definition says."""
+    if causeless(case.formula) is not None:
+        raise NothingToCheck
+    instants = range(case.n) if horizon(case.formula) is not None else None
+    monitor, definition = made.causation(case.formula), DEFINITION.causation(case.formula)
+    for i, row in enumerate(case.samples):
+        assert _causation(monitor, i, row, instants) == _causation(definition, i, row, instants)
+
+
+def _causation(monitor: Any, i: int, row: Mapping[str, Any], instants: range | None) -> list[Causation]:
+    """Return what a sample causes at instants, or else at the start of the trace."""
+    try:
+        start = monitor.update(i, **{name: _given(known) for name, known in row.items()})
+        every = [monitor.causation(t) for t in instants or ()]
+    except EvaluationError:
+        raise NothingToCheck from None
+    assert not every or every[0] == start
+    return every or [start]
 
 
 # ---- dense time ---------------------------------------------------------------------------------

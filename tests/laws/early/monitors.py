@@ -14,11 +14,13 @@ import numpy as np
 
 from rtamt import Interval, Verdict, VerdictRun
 from rtamt.language.enclosures import Enclosure
-from rtamt.reference import dense_bounds, discrete_bounds, earliest
+from rtamt.language.formula import variables
+from rtamt.reference import causation, dense_bounds, discrete_bounds, earliest
 from rtamt.reference.discrete_bounds import ANYTHING, Knowledge
 from rtamt.rewrite.semantics import boolean
 from rtamt.signals.dense import Dense
 from rtamt.signals.discrete import DISCRETE
+from rtamt.verdicts.causation import CausationMonitor
 from rtamt.verdicts.dense_early import DenseEagerMonitor
 from rtamt.verdicts.dense_interval import DenseIntervalMonitor
 from rtamt.verdicts.discrete_interval import DiscreteIntervalMonitor
@@ -27,6 +29,7 @@ from rtamt.verdicts.eager import EagerMonitor
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
+    from rtamt import Causation
     from rtamt.language.formula import Formula
     from rtamt.reference.dense_bounds import StepBounds
     from rtamt.verdicts.interval import Change
@@ -42,12 +45,14 @@ class Implementation:
 
     Times are whole seconds: the period and the tick are 1 s. A monitor of bounds has ``update(t, x=…)``, which
     takes a number, bounds or None (missing), ``interval(t)`` and ``finish()``; one of verdicts has
-    ``update`` and ``finish``, which return lists of ``Verdict``, in dense time of ``VerdictRun``.
+    ``update`` and ``finish``, which return lists of ``Verdict``, in dense time of ``VerdictRun``; one of causation
+    has ``update``, which returns what a sample causes at the start, and ``causation(t)``.
     """
 
     name: str
     interval: Callable[[Formula, tuple[str, ...], Mapping[str, Range], int], Any]
     eager: Callable[[Formula, tuple[str, ...], Mapping[str, Range]], Any]
+    causation: Callable[[Formula], Any]
     dense_interval: Callable[[Formula, tuple[str, ...], Mapping[str, Range]], Any]
     dense_eager: Callable[[Formula, tuple[str, ...], Mapping[str, Range]], Any]
 
@@ -110,6 +115,18 @@ class _Eager(_Discrete):
         return [Verdict(*each) for each in earliest.verdicts(self._formula, self.known, PERIOD)[-1]]
 
 
+class _Causes(_Discrete):
+    def __init__(self, formula: Formula) -> None:
+        super().__init__(formula, variables(formula), {})
+
+    def update(self, t: int, **values: Any) -> Causation:
+        self._take(t, values)
+        return self.causation(0)
+
+    def causation(self, t: int) -> Causation:
+        return causation.causation(self._formula, self.known, PERIOD, t + 1)[t]
+
+
 class _Dense:
     """The same in dense time."""
 
@@ -164,7 +181,7 @@ class _DenseEager(_Dense):
         return [VerdictRun(*run) for run in earliest.runs(told[-1])]
 
 
-DEFINITION = Implementation("definition", _Intervals, _Eager, _DenseIntervals, _DenseEager)
+DEFINITION = Implementation("definition", _Intervals, _Eager, _Causes, _DenseIntervals, _DenseEager)
 
 
 class _Kept:
@@ -177,7 +194,12 @@ class _Kept:
     ) -> None:
         declared = {name: limits for name, limits in ranges.items() if name in names}
         self._monitor = DiscreteIntervalMonitor(
-            formula, DISCRETE.online, at="every", ranges=declared, lateness=lateness
+            formula,
+            DISCRETE.online,
+            at="every",
+            ranges=declared,
+            lateness=lateness,
+            backend=self.backend,
         )
         self._kept: dict[int, Interval] = {}
 
@@ -217,6 +239,14 @@ class _Settled:
 
     def finish(self) -> list[Verdict]:
         return self._samples(self._monitor.finish())
+
+
+def _causes(formula: Formula) -> CausationMonitor:
+    return CausationMonitor(formula, DISCRETE.online)
+
+
+def _causes_by_python(formula: Formula) -> CausationMonitor:
+    return CausationMonitor(formula, DISCRETE.online, backend="python")
 
 
 class _DenseKept:
@@ -293,9 +323,14 @@ class _DenseSettledByPython(_DenseSettled):
     backend = "python"
 
 
-ENGINE = Implementation("engine", _Kept, _Settled, _DenseKept, _DenseSettled)
+ENGINE = Implementation("engine", _Kept, _Settled, _causes, _DenseKept, _DenseSettled)
 PYTHON = Implementation(
-    "Python back end", _KeptByPython, _SettledByPython, _DenseKeptByPython, _DenseSettledByPython
+    "Python back end",
+    _KeptByPython,
+    _SettledByPython,
+    _causes_by_python,
+    _DenseKeptByPython,
+    _DenseSettledByPython,
 )
 
 IMPLEMENTATIONS = [DEFINITION, ENGINE, PYTHON]

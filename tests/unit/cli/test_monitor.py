@@ -306,6 +306,15 @@ def test_verdicts_are_printed_once_they_are_settled(run):
     assert lines(answer.out) == [(0.0, True, 1.0), (1.0, False, 2.0), (2.0, False, 2.0), (3.0, True, 3.0)]
 
 
+def test_causation_is_printed_of_every_sample(run):
+    stdin = jsonl(*({"time": t, "x": x} for t, x in enumerate([5, 1])))
+    answer = run("monitor", "always(x >= 3)", "--verdict", "causation", stdin=stdin)
+    assert answer.out == (
+        '{"time": 0.0, "violation": 2.0, "satisfaction": "-inf"}\n'
+        '{"time": 1.0, "violation": -2.0, "satisfaction": "-inf"}\n'
+    )
+
+
 def test_bounds_are_printed_when_they_change(run):
     stdin = jsonl(*({"time": t, "x": x} for t, x in enumerate([5, 1])))
     answer = run("monitor", "always[0:1](x >= 3)", "--verdict", "interval", stdin=stdin)

@@ -13,7 +13,7 @@ import rtamt
         (
             "x",
             {"verdict": "eagre"},
-            "verdict is 'eagre'; did you mean 'eager'?; choose from delayed, eager, interval",
+            "verdict is 'eagre'; did you mean 'eager'?; choose from delayed, eager, interval, causation",
         ),
         (
             "x",
@@ -26,9 +26,42 @@ import rtamt
             {"verdict": "interval", "ranges": {"x": (3, 1)}},
             "the range of 'x' is (3, 1), reversed; give (lower, upper)",
         ),
+        (
+            "x",
+            {"verdict": "causation", "ranges": {"x": (1, 3)}},
+            "ranges= belongs to verdict='eager' or 'interval', and this is verdict='causation'",
+        ),
     ],
 )
 def test_wrong_setting_is_rejected_with_one_sentence(text, settings, message):
     with pytest.raises(rtamt.UsageError) as error:
         rtamt.parse(text).monitor(**settings)
     assert str(error.value) == message
+
+
+def test_causation_of_arithmetic_on_formulas_in_time_is_rejected_with_a_caret():
+    with pytest.raises(rtamt.SpecificationError) as error:
+        rtamt.parse("always((once x) + 1 >= 0)").monitor(verdict="causation")
+    assert str(error.value) == (
+        "'(once x) + 1' is arithmetic on a formula in time, which has no causation; use another verdict mode\n"
+        "  line 1, column 8:\n    always((once x) + 1 >= 0)\n           ^^^^^^^^^^^^"
+    )
+
+
+def test_causation_of_an_uncertain_sample_is_rejected_with_one_sentence():
+    monitor = rtamt.parse("always(x >= 0)").monitor(verdict="causation")
+    with pytest.raises(rtamt.TraceError) as error:
+        monitor.update(0, x=(4.8, 5.0))
+    assert str(error.value) == (
+        "'x' is (4.8, 5.0) at sample 0, time 0 s, and causation needs exact samples: give a number, or monitor with "
+        "verdict='interval'"
+    )
+
+
+def test_causation_at_an_instant_of_unbounded_future_is_rejected_with_one_sentence():
+    monitor = rtamt.parse("always(x >= 0)").monitor(verdict="causation")
+    with pytest.raises(rtamt.UsageError) as error:
+        monitor.causation(0)
+    assert str(error.value) == (
+        "a formula of unbounded future has causation at the start of the trace alone; call causation()"
+    )

@@ -13,7 +13,9 @@ import numpy as np
 
 from rtamt.engine.backend import RefusedError
 from rtamt.language.enclosures import Enclosure
+from rtamt.reference.causation import causation
 from rtamt.reference.discrete_bounds import Knowledge, bounds
+from rtamt.signals.outcomes import Causation
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -37,12 +39,13 @@ class PythonEarlyMonitor:
         tolerance: float,
         lateness: int | None,
         verdict: type | None,
+        causes: bool = False,
     ) -> None:
         self._start, self._outputs = formulas[0], tuple(formulas[hidden:])
         self._ranges = dict(zip(names, ranges, strict=True))
         self._names = tuple(names)
         self._period, self._tolerance = period, tolerance
-        self._lateness, self._verdict = lateness, verdict
+        self._lateness, self._verdict, self._causes = lateness, verdict, causes
         self._known: dict[int, dict[str, Pair]] = {}
         self._times: dict[int, float] = {}
         self.samples, self.newest, self.closed, self.finished = 0, -1, -1, False
@@ -79,10 +82,10 @@ class PythonEarlyMonitor:
         self.closed = max(self.closed, self.newest - late)
         try:
             self._look()
+            return self._answer()
         except BaseException:
             self.restore(before)
             raise
-        return self._answer()
 
     def _knowledge(self) -> Knowledge:
         n = self.newest + 1
@@ -100,6 +103,8 @@ class PythonEarlyMonitor:
     def _look(self) -> None:
         """See what the last sample has made known of each output, up to the newest sample."""
         self._found = [self._bounds(formula) for formula in self._outputs]
+        if self._start not in self._outputs:
+            self._bounds(self._start)  # which fails where an operation has no value
         self._news = [
             self._verdicts(i) if self._verdict else self._changes(i) for i in range(len(self._outputs))
         ]
@@ -141,7 +146,23 @@ class PythonEarlyMonitor:
         return news
 
     def _answer(self) -> Any:
+        if self._causes:
+            return Causation(*self.causation_at_start())
         return self.verdicts(0) if self._verdict else None
+
+    def causation_at_start(self) -> Pair:
+        """Violation and satisfaction that the newest sample causes at the start of the trace."""
+        return self._caused(self._start, 0)
+
+    def causation(self, output: int, sample: int) -> Pair:
+        """Violation and satisfaction that the newest sample causes for an output at a sample."""
+        return self._caused(self._outputs[output], sample)
+
+    def _caused(self, formula: Formula, sample: int) -> Pair:
+        if not self.samples:
+            return inf, -inf
+        found = causation(formula, self._knowledge(), self._period, sample + 1)[sample]
+        return found.violation, found.satisfaction
 
     def watermark(self, time: float) -> None:
         """Nothing at or before a time will come."""

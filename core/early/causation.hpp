@@ -1,0 +1,82 @@
+// What the newest sample alone makes of a formula: by how much it violates and satisfies it.
+//
+// Z. Zhang et al., "Online causation monitoring of signal temporal logic", CAV 2023. Two more
+// registers beside those of the bounds: register 0 holds how good the newest sample makes a part at
+// a tick, register 1 how bad, negated, so that negation exchanges them and one set of rules serves
+// both. What an atom causes is its value at the newest tick and -inf elsewhere, nothing. What takes
+// the greatest of its operands takes the greatest of what they cause; what takes the least takes
+// the greatest too, but not more than its own bound.
+//
+// Nothing is kept from one sample to the next. Cost: proportional to the runs of what is caused.
+#pragma once
+
+#include "engine.hpp"
+#include "origin.hpp"
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace rtamt::early {
+
+// A part of a formula, operands first. A reference to a part is twice its index, plus one where it
+// is negated.
+struct Cause {
+    enum class Kind : std::uint8_t { atom, both, either, least, greatest, until, since };
+    Kind kind{};
+    std::uint32_t ref = none; // of the graph, whose bounds are those of this part
+    std::uint32_t a = none;   // references to parts
+    std::uint32_t b = none;
+    Tick low = 0; // the window; of until and since the bounds of b
+    Tick high = 0;
+    Tick shift = 0;            // of until: it is read from so much earlier
+    std::uint32_t core = none; // of the graph: the recursion of until or since
+};
+
+// An item of the formula at the start of the trace: of value, all and some the part, of until both
+// operands. `before` and `rest`: the items of a window [0, a) over hold and of the recursion from
+// there, if the item is their conjunction.
+struct StartingCause {
+    std::uint32_t a = none;
+    std::uint32_t b = none;
+    std::uint32_t before = none;
+    std::uint32_t rest = none;
+};
+
+class Causes {
+  public:
+    Causes(std::vector<Cause> parts, std::vector<std::uint32_t> outputs,
+           std::vector<StartingCause> starts, const Engine& engine, const Origin& origin);
+
+    // Looks at the newest sample, which the engine and the origin know.
+    void look(const Engine& engine, const Origin& origin, Tick newest);
+
+    // Violation is the upper end, satisfaction the lower.
+    [[nodiscard]] Bounds at(std::size_t output, Tick t) const noexcept;
+    [[nodiscard]] Bounds at_start() const noexcept { return start_; }
+
+    void transfer(Snapshot& snapshot);
+
+  private:
+    using Part = std::array<std::vector<Run>, 2>; // without ticks at which nothing is caused
+
+    std::vector<Cause> causes_;
+    std::vector<std::uint32_t> outputs_;
+    std::vector<StartingCause> starts_;
+    Tick reach_ = 0; // farther from the newest sample than anything is read that still changes
+    std::vector<Part> parts_;
+    std::vector<Part> known_; // by output
+    std::vector<std::array<double, 2>> items_;
+    Bounds start_{-infinity, infinity};
+
+    [[nodiscard]] const std::vector<Run>& of(std::uint32_t ref, int reg) const noexcept {
+        return parts_[ref / 2][static_cast<std::size_t>(reg) ^ (ref & 1U)];
+    }
+    void compute(const Engine& engine, std::size_t index, int reg, Tick newest);
+    [[nodiscard]] double item(const Engine& engine, const Origin& origin, std::size_t index,
+                              int reg) const noexcept;
+    [[nodiscard]] double until_item(const Engine& engine, const Origin& origin,
+                                    std::size_t index) const noexcept;
+};
+
+} // namespace rtamt::early

@@ -1,0 +1,104 @@
+"""Monitors of causation: what the laws do not show."""
+
+from __future__ import annotations
+
+import copy
+import pickle
+from math import inf
+
+import pytest
+
+import rtamt
+from rtamt import Causation
+
+BACKENDS = pytest.mark.parametrize("backend", ["cpp", "python"])
+RESPONSE = "always(req >= 3 -> eventually[0:2](gnt >= 3))"
+
+
+@BACKENDS
+def test_each_violation_is_caused_by_the_sample_that_makes_it_certain(backend):
+    monitor = rtamt.parse(RESPONSE, backend=backend).monitor(verdict="causation")
+    samples = [(5, 0), (0, 0), (0, 1), (7, 0), (0, 0), (0, 3)]
+    found = [monitor.update(t, req=req, gnt=gnt).violation for t, (req, gnt) in enumerate(samples)]
+    # The request at 0 is not granted by 2, and the one at 3 just so at 5. Between them are ends of windows without a
+    # request, which is 3 below its threshold there.
+    assert found == [inf, inf, -2, 3, 3, 0]
+
+
+@BACKENDS
+def test_formula_of_bounded_future_has_causation_at_every_sample(backend):
+    monitor = rtamt.parse("always[0:1](x >= 3)", backend=backend).monitor(verdict="causation")
+    for t, x in enumerate([4, 1, 2]):
+        newest = monitor.update(t, x=x)
+    assert newest == monitor.causation() == monitor.causation(0) == Causation(inf, -inf)
+    assert monitor.causation(1) == Causation(-1, -2)
+    assert monitor.causation(2) == Causation(-1, -inf)
+
+
+@BACKENDS
+@pytest.mark.parametrize("twin", [copy.copy, lambda monitor: pickle.loads(pickle.dumps(monitor))])  # noqa: S301
+def test_copy_goes_its_own_way(twin, backend):
+    monitor = rtamt.parse(RESPONSE, backend=backend).monitor(verdict="causation")
+    monitor.update(0, req=5, gnt=0)
+    first = monitor.update(1, req=4, gnt=2)
+    other = twin(monitor)
+    assert other.causation() == first
+    assert other.update(2, req=0, gnt=2) == Causation(-1, -inf)
+    assert monitor.update(2, req=0, gnt=9) == Causation(6, -inf)
+
+
+@BACKENDS
+def test_watched_formula_has_causation_at_the_start(backend):
+    monitor = rtamt.parse("always(x >= 3)", backend=backend).monitor(
+        verdict="causation", watch=["eventually[0:1](x >= 3)"]
+    )
+    monitor.update(0, x=1)
+    assert monitor["eventually[0:1](x >= 3)"] == Causation(inf, -2)
+    monitor.update(1, x=5)
+    assert monitor["eventually[0:1](x >= 3)"] == Causation(2, 2)
+
+
+@BACKENDS
+@pytest.mark.parametrize("wrong", [{"x": (4, 5)}, {"x": None}, {"x": "1"}, {"y": 1}, {}])
+def test_uncertain_or_wrong_sample_leaves_the_monitor_as_it_was(wrong, backend):
+    monitor = rtamt.parse("always(x >= 3)", backend=backend).monitor(verdict="causation")
+    before = monitor.update(0, x=1)
+    with pytest.raises(rtamt.TraceError):
+        monitor.update(1, **wrong)
+    assert (monitor.samples, monitor.causation()) == (1, before)
+    assert monitor.update(1, x=4) == Causation(1, -inf)
+
+
+@BACKENDS
+def test_sample_without_a_value_leaves_the_monitor_as_it_was(backend):
+    monitor = rtamt.parse("always(once(sqrt(x) >= 1))", backend=backend).monitor(verdict="causation")
+    before = monitor.update(0, x=4)
+    with pytest.raises(rtamt.EvaluationError):
+        monitor.update(1, x=-4)
+    assert (monitor.samples, monitor.causation()) == (1, before)
+
+
+def test_finished_monitor_takes_samples_again_after_a_reset():
+    monitor = rtamt.parse("always(x >= 3)").monitor(verdict="causation")
+    monitor.update(0, x=1)
+    monitor.finish()
+    with pytest.raises(rtamt.UsageError, match="has finished"):
+        monitor.update(1, x=1)
+    monitor.reset()
+    assert monitor.update(0, x=5) == Causation(2, -inf)
+
+
+def test_times_are_taken_in_any_unit():
+    monitor = rtamt.parse("always[0:1ms](x >= 3)", period="1ms").monitor(verdict="causation", time_unit="us")
+    monitor.update(0, x=5)
+    assert monitor.update(1000, x=4) == Causation(1, 1) == monitor.causation(0)
+
+
+def test_many_samples_keep_little_memory():
+    monitor = rtamt.parse(RESPONSE).monitor(verdict="causation")
+    for t in range(1000):
+        monitor.update(t, req=t % 7, gnt=t % 5)
+    before = monitor.memory
+    for t in range(1000, 5000):
+        monitor.update(t, req=t % 7, gnt=t % 5)
+    assert monitor.memory <= before + 2**12
