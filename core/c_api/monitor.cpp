@@ -77,12 +77,12 @@ Monitor::Monitor(std::span<const std::uint8_t> program) {
     checksum_ = Reader(program.last(checksum_size)).take<std::uint32_t>();
     metadata_ = Metadata::parse(parsed);
     apart_ = parsed.domain == Domain::dense && apart(parsed);
-    runner_ = make_runner(std::move(parsed));
+    runner_ = make_runner(std::move(parsed), metadata_);
 }
 
 Monitor::Monitor(Monitor& other)
-    : checksum_(other.checksum_), metadata_(other.metadata_), runner_(make_runner(other.program())),
-      apart_(other.apart_) {
+    : checksum_(other.checksum_), metadata_(other.metadata_),
+      runner_(make_runner(other.program(), metadata_)), apart_(other.apart_) {
     other.require_whole();
     Snapshot saved;
     other.runner_->transfer(saved);
@@ -113,19 +113,19 @@ void Monitor::set_parameter(std::size_t index, double value) {
     Program patched = program();
     for (const std::uint32_t place : parameter.instructions)
         patched.instructions[place].x = value;
-    runner_ = make_runner(std::move(patched));
+    runner_ = make_runner(std::move(patched), metadata_);
     broken_ = false;
 }
 
 void Monitor::step(std::span<const double> row, std::span<rtamt_value> known) {
-    DiscreteRunner& runner = discrete();
+    SampledRunner& runner = discrete();
     require_ready();
     check_row(row, known.size());
-    runner.step(row.data(), known);
+    unbroken([&] { runner.step(row.data(), known); });
 }
 
 void Monitor::hold(std::span<const double> row, std::size_t count, std::span<rtamt_value> known) {
-    DiscreteRunner& runner = discrete();
+    SampledRunner& runner = discrete();
     require_ready();
     check_row(row, known.size());
     unbroken([&] { runner.hold(row, count, known); });
@@ -210,8 +210,8 @@ void Monitor::finish() {
     unbroken([&] { runner_->finish(); });
 }
 
-void Monitor::reset() noexcept {
-    runner_->reset();
+void Monitor::reset() {
+    unbroken([&] { runner_->reset(); });
     broken_ = false;
 }
 
@@ -250,7 +250,7 @@ void Monitor::restore(std::span<const std::uint8_t> state) {
         for (const std::uint32_t place : parameter.instructions)
             patched.instructions[place].x = value;
     }
-    auto runner = make_runner(std::move(patched));
+    auto runner = make_runner(std::move(patched), metadata_);
     runner->transfer(snapshot);
     snapshot.end();
     runner_ = std::move(runner);
@@ -275,11 +275,11 @@ std::string Monitor::time_of(std::int64_t step) const {
     return "sample " + std::to_string(step) + ", time " + shown(seconds) + " s";
 }
 
-DiscreteRunner& Monitor::discrete() const {
+SampledRunner& Monitor::discrete() const {
     if (program().domain != Domain::discrete) {
         refuse("The program is for dense time: use rtamt_push.");
     }
-    return static_cast<DiscreteRunner&>(*runner_);
+    return static_cast<SampledRunner&>(*runner_);
 }
 
 DenseRunner& Monitor::dense() const {

@@ -40,7 +40,7 @@ class Monitor {
     void hold(std::span<const double> row, std::size_t count, std::span<rtamt_value> known);
     void push(std::span<const rtamt_sample> samples);
     void finish();
-    void reset() noexcept;
+    void reset();
 
     [[nodiscard]] std::vector<std::uint8_t> save();
     void restore(std::span<const std::uint8_t> state);
@@ -56,7 +56,7 @@ class Monitor {
     bool broken_ = false; // memory ran out in the middle of something
 
     [[nodiscard]] std::string time_of(std::int64_t step) const;
-    [[nodiscard]] DiscreteRunner& discrete() const;
+    [[nodiscard]] SampledRunner& discrete() const;
     [[nodiscard]] DenseRunner& dense() const;
     void check_row(std::span<const double> row, std::size_t outputs) const;
     void require_whole() const;

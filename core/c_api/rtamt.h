@@ -129,7 +129,11 @@ RTAMT_API rtamt_status rtamt_set_parameter(rtamt_monitor* monitor, uint32_t para
 
 /* Discrete time: takes the next sample, `count` values, one an input. For each of the first
  * `outputs` outputs, `results` receives the value that has become known, the one `lag` samples ago;
- * it is not known in the first `lag` samples. Allocates nothing. */
+ * it is not known in the first `lag` samples. Allocates nothing, unless the program is one of bounds
+ * (rtamt compile --verdict interval): its outputs are lower and upper, bounds of the robustness at
+ * the start of the trace whatever is still to come, verdict (infinite, with its sign) and
+ * decided_since, the seconds from the first sample to the one that decided; these two are not known
+ * while the verdict is open. */
 RTAMT_API rtamt_status rtamt_step(rtamt_monitor* monitor, const double* values, size_t count,
                                   rtamt_value* results, size_t outputs);
 

@@ -1,5 +1,7 @@
 #include "runner.hpp"
 
+#include "early_runner.hpp"
+
 #include <algorithm>
 #include <utility>
 
@@ -142,7 +144,12 @@ void DenseRunner::reset() noexcept {
         list.resize(0);
 }
 
-std::unique_ptr<Runner> make_runner(Program program) {
+std::unique_ptr<Runner> make_runner(Program program, const Metadata& metadata) {
+    if (!metadata.early.empty()) {
+        EarlyGraph graph = EarlyGraph::parse(metadata.early, program.inputs);
+        return std::make_unique<EarlyRunner>(std::move(program), metadata.seconds(),
+                                             std::move(graph));
+    }
     if (program.domain == Domain::dense) return std::make_unique<DenseRunner>(std::move(program));
     return std::make_unique<DiscreteRunner>(std::move(program));
 }

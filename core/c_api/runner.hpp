@@ -3,6 +3,7 @@
 
 #include "../dense/executor.hpp"
 #include "../discrete/executor.hpp"
+#include "../program/metadata.hpp"
 #include "../program/program.hpp"
 #include "../program/snapshot.hpp"
 #include "rtamt.h"
@@ -43,7 +44,7 @@ class Runner {
 
     // Throws Undefined; the state is then as it was.
     virtual void finish() = 0;
-    virtual void reset() noexcept = 0;
+    virtual void reset() = 0;
     virtual void transfer(Snapshot& snapshot) = 0;
 
     // What the last call made known.
@@ -55,16 +56,26 @@ class Runner {
     std::vector<dense::EventList> told_; // by output
 };
 
-class DiscreteRunner final : public Runner {
+// Samples come one period apart.
+class SampledRunner : public Runner {
+  public:
+    // One value an input; the answers of the first outputs.
+    virtual void step(const double* row, std::span<rtamt_value> known) = 0;
+
+    // The same sample `count` times, all of them or none.
+    virtual void hold(std::span<const double> row, std::size_t count,
+                      std::span<rtamt_value> known) = 0;
+    [[nodiscard]] virtual std::int64_t samples() const noexcept = 0;
+};
+
+class DiscreteRunner final : public SampledRunner {
   public:
     explicit DiscreteRunner(Program program);
 
-    // One value an input; the answers of the first outputs.
-    void step(const double* row, std::span<rtamt_value> known);
-
-    // The same sample `count` times, all of them or none.
-    void hold(std::span<const double> row, std::size_t count, std::span<rtamt_value> known);
-    [[nodiscard]] std::int64_t samples() const noexcept { return executor_.samples(); }
+    void step(const double* row, std::span<rtamt_value> known) override;
+    void hold(std::span<const double> row, std::size_t count,
+              std::span<rtamt_value> known) override;
+    [[nodiscard]] std::int64_t samples() const noexcept override { return executor_.samples(); }
 
     [[nodiscard]] const Program& program() const noexcept override { return executor_.program(); }
     [[nodiscard]] bool finished() const noexcept override { return executor_.finished(); }
@@ -114,6 +125,6 @@ class DenseRunner final : public Runner {
     std::vector<dense::Events> events_;
 };
 
-[[nodiscard]] std::unique_ptr<Runner> make_runner(Program program);
+[[nodiscard]] std::unique_ptr<Runner> make_runner(Program program, const Metadata& metadata);
 
 } // namespace rtamt::c_api

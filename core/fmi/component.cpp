@@ -22,10 +22,12 @@ constexpr std::size_t checksum_size = 4;
 constexpr double tolerance = 1e-6;
 
 // The variables of a Told, in this order.
-enum class Output : std::uint32_t { robustness, verdict, known, since };
+enum class Output : std::uint32_t { robustness, verdict, known, since, lower, upper };
 
-[[nodiscard]] constexpr Output output_of(std::uint32_t place) noexcept {
-    return static_cast<Output>(place % Component::fields);
+[[nodiscard]] constexpr Output output_of(std::uint32_t place, bool early) noexcept {
+    constexpr std::array bounds{Output::lower, Output::upper, Output::verdict, Output::since};
+    const std::uint32_t field = place % Component::fields;
+    return early ? bounds[field] : static_cast<Output>(field);
 }
 
 [[noreturn]] void refuse(const std::string& sentence) {
@@ -99,7 +101,12 @@ Component::Component(const std::string& folder, const std::string& token)
 
 Component::Now Component::fresh() const {
     Now fresh;
-    fresh.told.resize(monitor_->program().outputs.size() / 2);
+    fresh.told.resize(is_early() ? 1 : monitor_->program().outputs.size() / 2);
+    if (is_early()) {
+        constexpr double infinity = std::numeric_limits<double>::infinity();
+        fresh.told.front().robustness = -infinity;
+        fresh.told.front().upper = infinity;
+    }
     fresh.inputs.resize(monitor_->metadata().inputs.size());
     return fresh;
 }
@@ -152,8 +159,10 @@ void Component::advance_discrete(double time, double end) {
         refuse("The step begins at " + shown(time) + " s, but the last one ended at " +
                shown(now_.reached) + " s.");
     }
-    std::vector<rtamt_value> known(2 * now_.told.size());
+    std::vector<rtamt_value> known(is_early() ? monitor_->program().outputs.size()
+                                              : 2 * now_.told.size());
     monitor_->hold(now_.inputs, static_cast<std::size_t>(last - first), known);
+    if (is_early()) return tell_bounds(known);
     for (std::size_t i = 0; i < now_.told.size(); ++i) {
         if (known[2 * i].known == 0) continue;
         const std::int64_t until = *monitor_->runner().known_until(2 * i);
@@ -162,6 +171,15 @@ void Component::advance_discrete(double time, double end) {
                         .since = now_.start + static_cast<double>(until) * step(),
                         .known = true};
     }
+}
+
+void Component::tell_bounds(std::span<const rtamt_value> known) noexcept {
+    Told& told = now_.told.front();
+    told.known = known[2].known != 0;
+    told.robustness = known[0].value;
+    told.upper = known[1].value;
+    told.verdict = known[2].value;
+    told.since = told.known ? now_.start + known[3].value : 0.0;
 }
 
 void Component::advance_dense(double time) {
@@ -200,8 +218,11 @@ void Component::advance_dense(double time) {
 double Component::real(std::uint32_t reference) const {
     if (reference < outputs()) return now_.inputs[reference];
     if (is_output(reference)) {
-        const Output place = output_of(reference - outputs());
-        if (place == Output::robustness) return told(reference).robustness;
+        const Output place = output_of(reference - outputs(), is_early());
+        if (place == Output::robustness || place == Output::lower) {
+            return told(reference).robustness;
+        }
+        if (place == Output::upper) return told(reference).upper;
         if (place == Output::since) return told(reference).since;
     } else {
         const std::uint32_t place = reference - parameters();
@@ -213,7 +234,7 @@ double Component::real(std::uint32_t reference) const {
 }
 
 std::int32_t Component::integer(std::uint32_t reference) const {
-    if (!is_output(reference) || output_of(reference - outputs()) != Output::verdict) {
+    if (!is_output(reference) || output_of(reference - outputs(), is_early()) != Output::verdict) {
         refuse("There is no integer variable with the reference " + std::to_string(reference) +
                ".");
     }
@@ -222,7 +243,7 @@ std::int32_t Component::integer(std::uint32_t reference) const {
 }
 
 bool Component::boolean(std::uint32_t reference) const {
-    if (!is_output(reference) || output_of(reference - outputs()) != Output::known) {
+    if (!is_output(reference) || output_of(reference - outputs(), is_early()) != Output::known) {
         refuse("There is no Boolean variable with the reference " + std::to_string(reference) +
                ".");
     }
@@ -256,7 +277,7 @@ void Component::Now::transfer(Snapshot& snapshot) {
         snapshot.item(*value);
     snapshot.require(std::isfinite(start) && std::isfinite(reached));
     for (Told& each : told) {
-        for (double* value : {&each.robustness, &each.verdict, &each.since})
+        for (double* value : {&each.robustness, &each.upper, &each.verdict, &each.since})
             snapshot.item(*value);
         snapshot.item(each.known);
     }

@@ -3,8 +3,9 @@
 // and everything is then as it was.
 //
 // Value references: the inputs from 0 on, then robustness, verdict, known, known_since of all
-// requirements together, where there are several these four of each, then the parameters;
-// src/rtamt/fmi/variables.py counts in the same way.
+// requirements together, where there are several these four of each, then the parameters. A program
+// of bounds has lower, upper, verdict, decided_since instead. src/rtamt/fmi/variables.py counts in
+// the same way.
 //
 // Discrete time: sample k is what the inputs are at start + k periods, and a step from t to t + h
 // takes the samples in [t, t + h), with the inputs held. Dense time: every communication point
@@ -57,8 +58,9 @@ class Component {
 
     // What is known of one requirement, or of all together.
     struct Told {
-        double robustness = 0.0;
-        double verdict = 0.0; // +inf or -inf; 0 as long as it is not known
+        double robustness = 0.0; // of bounds the lower one
+        double upper = 0.0;      // of bounds alone
+        double verdict = 0.0;    // +inf or -inf; 0 as long as it is not known
         double since = 0.0;
         bool known = false;
     };
@@ -93,6 +95,8 @@ class Component {
         return now_.told[(reference - outputs()) / fields];
     }
     void advance_discrete(double time, double end);
+    void tell_bounds(std::span<const rtamt_value> known) noexcept;
+    [[nodiscard]] bool is_early() const noexcept { return !monitor_->metadata().early.empty(); }
     void advance_dense(double time);
     [[nodiscard]] std::int64_t instant(double time) const;
 };

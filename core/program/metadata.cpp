@@ -35,10 +35,14 @@ class NoteReader {
         return count;
     }
 
-    [[nodiscard]] std::string text() {
+    [[nodiscard]] std::string bytes() {
         const auto length = number<std::uint32_t>();
         need(length);
-        std::string text = reader_.text(length);
+        return reader_.text(length);
+    }
+
+    [[nodiscard]] std::string text() {
+        std::string text = bytes();
         if (text.find('\0') != std::string::npos) refuse("a name in it has a zero byte");
         return text;
     }
@@ -113,6 +117,7 @@ Metadata Metadata::parse(const Program& program) {
         const auto instruction = note.instruction();
         metadata.meanings[instruction] = note.text();
     }
+    metadata.early = note.bytes();
     note.end();
     return metadata;
 }

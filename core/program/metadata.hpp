@@ -11,6 +11,8 @@
 //     u32        number of parameters; of each: text name, u32 number of instructions, and the u32
 //                indices of these, constants all of them, which have the value of the parameter
 //     u32        number of meanings; of each: u32 instruction, text of the formula it computes
+//     u32        number of bytes that follow: the graph of bounds at the start of the trace
+//                (../c_api/early_runner.hpp), or none
 #pragma once
 
 #include "program.hpp"
@@ -36,6 +38,7 @@ struct Metadata {
     std::vector<std::string> outputs;
     std::vector<Parameter> parameters;
     std::map<std::uint32_t, std::string> meanings; // by instruction
+    std::string early;                             // the graph, as bytes
 
     // Reads and checks the note of a program; throws std::invalid_argument with one sentence.
     [[nodiscard]] static Metadata parse(const Program& program);

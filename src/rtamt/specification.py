@@ -19,7 +19,7 @@ from rtamt.signals.inexact import Uncertainty, fill_gaps
 from rtamt.specification_text import SpecificationText
 from rtamt.verdicts.modes import DELAYED, mode_of, monitor_of, semantics_in
 from rtamt.verdicts.offline import by_start, judge_apart
-from rtamt.verdicts.standalone import carried_program
+from rtamt.verdicts.standalone import bounds_program, carried_program
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -342,6 +342,7 @@ class Specification(SpecificationText):
         period: Duration | None = None,
         resolution: Duration | None = None,
         semantics: Semantics | None = None,
+        verdict: str = DELAYED,
     ) -> Program:
         """Compile the requirement to a standalone program, which the core runs without Python.
 
@@ -350,13 +351,22 @@ class Specification(SpecificationText):
         its own, ``robustness.R1`` and ``verdict.R1``. The named constants of the specification are parameters
         of the program, except those that bound an interval. Settings and errors as for :meth:`monitor`.
 
+        With ``verdict="interval"`` its outputs are bounds at the start of the trace, whatever is still to come:
+        ``lower``, ``upper``, ``verdict``, and ``decided_since``, the seconds from the first sample to the one that
+        decided the verdict. The future may then be unbounded; time is discrete, and there are no parameters.
+
         >>> import rtamt
         >>> program = rtamt.parse("always[0:200ms](x >= 3)").compile(period="100ms")
         >>> program.lags, len(program.to_bytes())
-        ((2, 2), 459)
+        ((2, 2), 463)
         """
         domain = self._domain_for(time, period, None, resolution).online
         chosen = self._semantics(semantics)
+        if mode_of(verdict, {}).name != DELAYED:
+            if verdict != "interval":
+                raise UsageError(f"verdict='{verdict}' cannot be compiled; choose from {DELAYED}, interval")
+            applied = self._apply_semantics(self.formula, chosen)
+            return bounds_program(self.formula, domain, applied=applied, text=self.text, name=self.name)
         several = self.requirements if len(self.requirements) > 1 else {}
         parts = {name: one._outputs(chosen) for name, one in several.items()}
         return carried_program(

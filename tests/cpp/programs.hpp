@@ -139,6 +139,7 @@ inline std::string note_of(const rtamt::Metadata& metadata) {
         put(bytes, instruction);
         put_text(bytes, text);
     }
+    put_text(bytes, metadata.early);
     return {bytes.begin(), bytes.end()};
 }
 
@@ -161,7 +162,8 @@ inline Program carried(rtamt::Domain domain = rtamt::Domain::discrete) {
                             {"a", "b"},
                             {"robustness", "ratio"},
                             {{"limit", {limit}}},
-                            {{quotient, "a / b"}, {margin, "a / b - limit"}}});
+                            {{quotient, "a / b"}, {margin, "a / b - limit"}},
+                            ""});
     return program;
 }
 

@@ -199,6 +199,17 @@ def warn(spec: Specification, given: str, ignored: Sequence[str]) -> int:
     return len(found)
 
 
+def add_verdict_option(parser: argparse.ArgumentParser) -> None:
+    """Add what a compiled program reports."""
+    parser.add_argument(
+        "--verdict",
+        choices=("delayed", "interval"),
+        default="delayed",
+        help="delayed: robustness and verdict of every sample, one horizon later; interval: bounds and verdict at the "
+        "start of the trace, whatever is still to come (default: delayed)",
+    )
+
+
 def add_stamp_options(parser: argparse.ArgumentParser, what: str) -> None:
     """Add where the timestamps are and in what unit; ``what`` they are: a column, a key."""
     group = options(parser, READING)

@@ -9,6 +9,7 @@ from rtamt.cli.command import (
     Command,
     add_specification_options,
     add_time_option,
+    add_verdict_option,
     read_specification,
     write_output,
 )
@@ -38,6 +39,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.epilog = _EPILOG
     add_specification_options(parser)
     add_time_option(parser)
+    add_verdict_option(parser)
     parser.add_argument("-o", "--output", metavar="FILE", help="the file to write, such as spec.rtamt")
     parser.add_argument("--dump", action="store_true", help="list the instructions")
 
@@ -47,7 +49,7 @@ def run(args: argparse.Namespace) -> int:
     if args.output is None and not args.dump:
         raise UsageError("nothing to do: give -o FILE to write the program, or --dump to list it")
     spec = read_specification(args, args.time)
-    program = spec.compile()
+    program = spec.compile(verdict=args.verdict)
     if args.output is not None:
         code = program.to_bytes()
         write_output(args.output, code)

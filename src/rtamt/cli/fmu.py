@@ -6,7 +6,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rtamt import fmi
-from rtamt.cli.command import OK, Command, add_specification_options, add_time_option, read_specification
+from rtamt.cli.command import (
+    OK,
+    Command,
+    add_specification_options,
+    add_time_option,
+    add_verdict_option,
+    read_specification,
+)
 from rtamt.cli.terminal import say
 
 if TYPE_CHECKING:
@@ -31,6 +38,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.epilog = _EPILOG
     add_specification_options(parser)
     add_time_option(parser)
+    add_verdict_option(parser)
     parser.add_argument("-o", "--output", metavar="FILE", required=True, help="the unit to write, FILE.fmu")
     parser.add_argument(
         "--fmi", type=int, choices=(2, 3), default=2, help="the version: FMI 2.0 or 3.0 (default: 2)"
@@ -39,7 +47,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Write the unit."""
-    fmi.export(read_specification(args, args.time), args.output, version=args.fmi)
+    fmi.export(read_specification(args, args.time), args.output, version=args.fmi, verdict=args.verdict)
     say(f"{args.output}: FMI {args.fmi}.0, co-simulation, {Path(args.output).stat().st_size / 1024:.0f} KiB")
     return OK
 

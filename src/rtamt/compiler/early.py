@@ -141,6 +141,23 @@ def compile_graph(
     return graph
 
 
+def compile_starts(
+    formulas: Sequence[Formula], period: Fraction, inputs: tuple[str, ...]
+) -> tuple[Graph, tuple[int, ...]]:
+    """Compile core formulas whose values are asked for at the start of the trace alone.
+
+    Returns the graph, and of each formula how many items there are up to its own, which is the last of these.
+    """
+    graph = Graph(period, inputs)
+    ends = []
+    for formula in formulas:
+        graph._depths.update(horizons(formula, period))
+        _lower(graph, formula, only_start=True)
+        _at_start(graph, formula, negated=False)
+        ends.append(len(graph.items))
+    return graph, tuple(ends)
+
+
 def _lower(graph: Graph, formula: Formula, *, only_start: bool) -> None:
     """Add the nodes of a formula, operands first; without those that its value at the start does not need."""
     for node in postorder(formula):

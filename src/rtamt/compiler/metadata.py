@@ -25,7 +25,8 @@ class Metadata:
     """Names and texts of a program.
 
     ``formula`` is its text. ``outputs`` are their names. ``parameters`` maps a named constant to the
-    instructions that hold its value. ``meanings`` maps an instruction to the formula it computes.
+    instructions that hold its value. ``meanings`` maps an instruction to the formula it computes. ``early``: of a
+    program of bounds its graph, as the core reads it (core/c_api/early_runner.hpp).
     """
 
     name: str = ""
@@ -33,6 +34,7 @@ class Metadata:
     outputs: tuple[str, ...] = ()
     parameters: Mapping[str, tuple[int, ...]] = field(default_factory=lambda: MappingProxyType({}))
     meanings: Mapping[int, str] = field(default_factory=lambda: MappingProxyType({}))
+    early: bytes = b""
 
     def to_bytes(self, inputs: tuple[str, ...], period: Fraction) -> bytes:
         """Serialise the metadata together with the program's inputs and period."""
@@ -47,6 +49,7 @@ class Metadata:
         parts.append(_COUNT.pack(len(self.meanings)))
         for place, text in self.meanings.items():
             parts += [_COUNT.pack(place), _text(text)]
+        parts += [_COUNT.pack(len(self.early)), self.early]
         return b"".join(parts)
 
     @staticmethod
@@ -61,8 +64,11 @@ class Metadata:
         told = tuple(reader.text() for _ in range(outputs))
         parameters = {reader.text(): tuple(reader.numbers()) for _ in range(reader.number())}
         meanings = {reader.number(): reader.text() for _ in range(reader.number())}
+        early = reader.bytes(reader.number())
         reader.end()
-        metadata = Metadata(name, formula, told, MappingProxyType(parameters), MappingProxyType(meanings))
+        metadata = Metadata(
+            name, formula, told, MappingProxyType(parameters), MappingProxyType(meanings), early
+        )
         return metadata, names, Fraction(numerator, denominator)
 
 
@@ -84,7 +90,7 @@ class _Reader:
         self._at = 0
 
     def take(self, layout: struct.Struct) -> tuple[int, ...]:
-        return layout.unpack(self._bytes(layout.size))
+        return layout.unpack(self.bytes(layout.size))
 
     def number(self) -> int:
         return self.take(_COUNT)[0]
@@ -94,7 +100,7 @@ class _Reader:
 
     def text(self) -> str:
         try:
-            return self._bytes(self.number()).decode()
+            return self.bytes(self.number()).decode()
         except UnicodeDecodeError:
             raise damaged("a text in its metadata is not UTF-8") from None
 
@@ -102,7 +108,7 @@ class _Reader:
         if self._at != len(self._note):
             raise damaged("its metadata is longer than it should be")
 
-    def _bytes(self, size: int) -> bytes:
+    def bytes(self, size: int) -> bytes:
         if size > len(self._note) - self._at:
             raise damaged("its metadata is shorter than it should be")
         self._at += size

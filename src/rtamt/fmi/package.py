@@ -13,6 +13,7 @@ from rtamt import runtime
 from rtamt.errors import UsageError
 from rtamt.files import replacing
 from rtamt.fmi.description import Unit, description, identifier
+from rtamt.verdicts.modes import DELAYED
 
 if TYPE_CHECKING:
     import os
@@ -40,6 +41,7 @@ def export(
     period: Duration | None = None,
     resolution: Duration | None = None,
     semantics: Semantics | None = None,
+    verdict: str = DELAYED,
 ) -> None:
     """Write a requirement's monitor as a Functional Mock-up Unit for co-simulation.
 
@@ -61,7 +63,9 @@ def export(
             f"there is no FMI version {version!r} to write, only {VERSIONS[0]} and {VERSIONS[1]}"
         )
     path = Path(path)
-    program = spec.compile(time=time, period=period, resolution=resolution, semantics=semantics)
+    program = spec.compile(
+        time=time, period=period, resolution=resolution, semantics=semantics, verdict=verdict
+    )
     code = program.to_bytes()
     name = spec.name or path.stem
     # A program ends in its checksum; the runtime looks at the same four bytes.

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
+from math import inf
 from typing import TYPE_CHECKING
 
 from rtamt.errors import UsageError
@@ -59,7 +60,10 @@ def variables_of(program: Program, units: Mapping[str, str]) -> tuple[Variable, 
 
     for name in program.inputs:
         add(name, "real", "input", 0.0, "a variable of the requirement", units.get(name, ""))
-    for output, lag in zip(metadata.outputs[::2], program.lags[::2], strict=True):
+    for name, kind, start, unit, description in _BOUNDS if metadata.early else ():
+        add(name, kind, "output", start, description, unit)
+    told = () if metadata.early else metadata.outputs
+    for output, lag in zip(told[::2], program.lags[: len(told) : 2], strict=True):
         requirement = output.removeprefix("robustness")
         for name, kind, unit, description in _outputs(format_duration(lag * program.period)):
             add(f"{name}{requirement}", kind, "output", 0.0, description, unit)
@@ -67,6 +71,21 @@ def variables_of(program: Program, units: Mapping[str, str]) -> tuple[Variable, 
         value = program.instructions[places[0]].x
         add(name, "real", "parameter", value, "a constant of the requirement", units.get(name, ""))
     return tuple(found)
+
+
+#: Of a program of bounds: names, types, start values, units and descriptions of its outputs.
+_BOUNDS = (
+    ("lower", "real", -inf, "", "the robustness at the start is at least that, whatever is still to come"),
+    ("upper", "real", inf, "", "the robustness at the start is at most that, whatever is still to come"),
+    ("verdict", "integer", 0.0, "", "1 satisfied, -1 violated at the start; 0 while that is open"),
+    (
+        "decided_since",
+        "real",
+        0.0,
+        "s",
+        "the time of the sample that decided the verdict; 0 while it is open",
+    ),
+)
 
 
 def _outputs(late: str) -> tuple[tuple[str, str, str, str], ...]:

@@ -2,22 +2,25 @@
 
 from __future__ import annotations
 
+import struct
 from dataclasses import replace
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
+from rtamt.compiler.early import compile_starts
 from rtamt.compiler.metadata import Metadata
 from rtamt.compiler.plan import compile_program
+from rtamt.compiler.program import Instruction, Program
+from rtamt.errors import UsageError
 from rtamt.language.formula import Apply, Const, Formula, Var, fold, postorder, variables
 from rtamt.language.printer import PAGE, excerpt, to_text
 from rtamt.rewrite.check import check_online
-from rtamt.rewrite.desugar import as_written, desugar
+from rtamt.rewrite.desugar import as_written, desugar, written
 from rtamt.verdicts.robustness_and_truth import Outputs, outputs_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
-    from rtamt.compiler.program import Program
     from rtamt.signals.domain_interface import TimeDomain
 
 #: What a standalone program tells, in this order: ρ, and +inf or -inf as the formula holds or not. Of several
@@ -72,6 +75,70 @@ def carried_program(
         MappingProxyType(_meanings(program, [_with_parameters(each, structural, values) for each in judged])),
     )
     return replace(program, metadata=metadata)
+
+
+#: What a standalone program of bounds tells, in this order: bounds of the robustness at the start of the trace,
+#: +inf or -inf once its verdict is decided, and the seconds from the first sample to the one that decided it.
+BOUNDS = ("lower", "upper", "verdict", "decided_since")
+
+_NODE, _STEP, _ITEM = struct.Struct("<IIIqqqI"), struct.Struct("<IIId"), struct.Struct("<IIIIIq")
+
+
+def bounds_program(
+    formula: Formula,
+    domain: TimeDomain,
+    *,
+    applied: Formula | None = None,
+    text: str | None = None,
+    name: str | None = None,
+) -> Program:
+    """Compile a requirement for carriers that report outputs :data:`BOUNDS`, in discrete time; it has no parameters.
+
+    Arguments as for :func:`carried_program`. The future may be unbounded.
+
+    >>> from rtamt.language.parser import parse_formula
+    >>> from rtamt.signals.discrete import Discrete
+    >>> program = bounds_program(parse_formula("always(x >= 3)"), Discrete(period=1))
+    >>> program.metadata.outputs, len(program.metadata.early)
+    (('lower', 'upper', 'verdict', 'decided_since'), 268)
+    """
+    if domain.continuous:
+        raise UsageError(
+            "bounds at the start of the trace are compiled for discrete time: use it, or verdict='delayed'"
+        )
+    period = domain.step
+    assert period is not None, "a program has a fixed step"
+    domain.check(formula, text)
+    inputs = variables(formula)
+    domain.check_inputs(inputs)
+    outputs = outputs_of(formula, applied)
+    graph, (first, _) = compile_starts([desugar(each) for each in outputs], period, inputs)
+    parts = [struct.pack("<III", len(graph.nodes), len(graph.items), first)]
+    for node in graph.nodes:
+        parts.append(
+            _NODE.pack(node.kind, node.a, node.b, node.low, node.high, node.horizon, len(node.steps))
+        )
+        parts += [_STEP.pack(*step) for step in node.steps]
+    parts += [_ITEM.pack(*item) for item in graph.items]
+    # Step k of the graph means what instruction k after the inputs does.
+    steps = [step for node in graph.nodes for step in node.steps]
+    instructions = [Instruction("input", n=i) for i in range(len(inputs))]
+    instructions += [Instruction("const", x=step.x) for step in steps]
+    metadata = Metadata(
+        name or "",
+        to_text(formula, limit=PAGE),
+        BOUNDS,
+        meanings=MappingProxyType(
+            {
+                len(inputs) + i: excerpt(written(origin, outputs))
+                for i, origin in enumerate(graph.origins)
+                if isinstance(origin, Apply)
+            }
+        ),
+        early=b"".join(parts),
+    )
+    told = (len(instructions) - 1,) * len(BOUNDS)
+    return Program(tuple(instructions), inputs, told, period, metadata=metadata)
 
 
 def _bounds(formula: Formula) -> frozenset[str]:

@@ -15,6 +15,7 @@ from fmpy.fmi2 import FMU2Slave
 
 import rtamt
 from rtamt import fmi
+from rtamt.verdicts.at_start import StartMonitor
 from tests.integration.fmi.instance import PERIOD, Unit
 from tests.unit.fmi import BOTH
 
@@ -246,3 +247,24 @@ def test_each_of_several_requirements_has_outputs_as_soon_as_it_is_known(exporte
     assert (unit.get("known_since"), unit.get("known_since.R1")) == (0, 0)
     assert unit.get("known_since.R2") == pytest.approx(0.2)
     unit.close()
+
+
+@BOTH
+def test_bounds_and_verdict_at_the_start_are_outputs_with_units(unit, version):
+    text = "always(req >= 3 -> eventually[0:200ms](gnt >= 3))"
+    start = StartMonitor(rtamt.parse(text), period=PERIOD)
+    there = unit(text, version, period=PERIOD, verdict="interval").begin(start=5.0)
+    outputs = {v.name: v for v in there.description.modelVariables if v.causality == "output"}
+    assert list(outputs) == ["lower", "upper", "verdict", "decided_since"]
+    assert outputs["decided_since"].unit == "s"
+    assert [there.get("lower"), there.get("upper")] == [-np.inf, np.inf]
+    for i, (req, gnt) in enumerate([(0, 0), (5, 0), (0, 0), (0, 4), (7, 0), (0, 0), (0, 2), (0, 9)]):
+        start.update(i * PERIOD, req=req, gnt=gnt)
+        there.set(req=req, gnt=gnt)
+        there.step(5.0 + i * PERIOD)
+        known = start.interval()
+        assert bits([there.get("lower"), there.get("upper")]) == bits([known.lower, known.upper])
+        assert there.get("verdict") == {None: 0, True: 1, False: -1}[start.satisfied]
+        since = 0.0 if start.decided_at is None else 5.0 + start.decided_at
+        assert there.get("decided_since") == pytest.approx(since)
+    assert start.satisfied is False

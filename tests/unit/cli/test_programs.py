@@ -21,7 +21,7 @@ LISTING = (
 def test_a_program_is_written_and_told_about(run):
     assert run("compile", SPEC, "--period", "100ms", "-o", "spec.rtamt") == (
         0,
-        "spec.rtamt: 6 instructions, 492 bytes, discrete time\n",
+        "spec.rtamt: 6 instructions, 496 bytes, discrete time\n",
         "",
     )
     facts, _, listing = run("info", "spec.rtamt").out.partition("program\n")
@@ -108,3 +108,17 @@ def test_a_unit_is_written(run, tmp_path):
     unbounded = run("fmu", "always(x <= 3)", "-o", "limit.fmu")
     assert unbounded.code == 2
     assert unbounded.err.startswith("rtamt: 'always' without an upper bound needs the whole future")
+
+
+def test_a_program_of_bounds_is_compiled_for_unbounded_future(run):
+    answer = run("compile", "always(x >= 3)", "--verdict", "interval", "-o", "bounds.rtamt")
+    assert (answer.code, answer.err) == (0, "")
+    listed = run("info", "bounds.rtamt").out
+    assert "outputs    lower, upper, verdict, decided_since" in listed
+    assert run("compile", "always(x >= 3)", "-o", "delayed.rtamt").code == 2
+    dense = run("compile", "always(x >= 3)", "--verdict", "interval", "--time", "dense", "-o", "dense.rtamt")
+    assert "bounds at the start of the trace are compiled for discrete time" in dense.err
+
+
+def test_a_unit_of_bounds_is_exported_for_unbounded_future(run):
+    assert run("fmu", "always(x >= 3)", "--verdict", "interval", "-o", "bounds.fmu").code == 0

@@ -1,0 +1,80 @@
+// A program whose outputs are bounds and verdict at the start of the trace, in discrete time.
+//
+// Its outputs are lower, upper, verdict (+inf or -inf, not known while it is open) and
+// decided_since (seconds from the first sample to the one that decided). The instructions are
+// inputs and constants alone: what runs is a graph (../early/graph.hpp), which the metadata carries
+// as bytes, little endian:
+//
+//     u32, u32, u32   numbers of nodes, of items, and of those that are of the robustness; the last
+//                     item is that of the truth
+//     nodes           u32 kind, u32 a, u32 b, i64 low, i64 high, i64 horizon, u32 number of steps;
+//                     of each step u32 opcode, u32 a, u32 b, f64 x
+//     items           u32 kind, u32 negated, u32 a, u32 b, u32 c, i64 tick
+//
+// Step k has the meaning of instruction `inputs` + k.
+#pragma once
+
+#include "../early/engine.hpp"
+#include "../early/origin.hpp"
+#include "runner.hpp"
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace rtamt::c_api {
+
+struct EarlyGraph {
+    early::Graph graph;
+    std::vector<early::Item> robustness;
+    std::vector<early::Item> truth;
+
+    // Throws std::invalid_argument with one sentence.
+    [[nodiscard]] static EarlyGraph parse(const std::string& bytes, std::uint32_t inputs);
+};
+
+class EarlyRunner final : public SampledRunner {
+  public:
+    static constexpr std::size_t outputs = 4;
+
+    EarlyRunner(Program program, double period, EarlyGraph graph);
+
+    void step(const double* row, std::span<rtamt_value> known) override;
+    void hold(std::span<const double> row, std::size_t count,
+              std::span<rtamt_value> known) override;
+    [[nodiscard]] std::int64_t samples() const noexcept override { return samples_; }
+
+    [[nodiscard]] const Program& program() const noexcept override { return program_; }
+    [[nodiscard]] bool finished() const noexcept override { return finished_; }
+    [[nodiscard]] bool begun() const noexcept override { return samples_ != 0; }
+    [[nodiscard]] std::optional<std::int64_t>
+    known_until(std::size_t output) const noexcept override;
+    void finish() override;
+    void reset() override;
+    void transfer(Snapshot& snapshot) override;
+
+  private:
+    Program program_;
+    double period_;
+    EarlyGraph graph_;
+    early::Engine engine_;
+    early::Origin robustness_;
+    early::Origin truth_;
+    std::vector<std::uint32_t> steps_before_; // by node
+    std::vector<early::Tick> wanted_;
+    Bounds bounds_{};
+    std::int64_t samples_ = 0;
+    std::int64_t decided_ = -1; // the sample that decided
+    double verdict_ = 0.0;
+    bool finished_ = false;
+
+    void take(const double* row);
+    void decide(const Bounds& truth) noexcept;
+    void settle();
+    [[nodiscard]] rtamt_value value(std::size_t output) const noexcept;
+    void show(std::span<rtamt_value> known) const noexcept;
+};
+
+} // namespace rtamt::c_api
