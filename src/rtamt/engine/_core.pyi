@@ -354,6 +354,11 @@ def dense_evaluate(
 ) -> list[_Events]:
     """Run a program over whole signals, up to their last time and extra ticks more."""
 
+def dense_evaluate_bounds(
+    program: bytes, columns: Sequence[_Events], extra: int = 0
+) -> list[tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.float64]]]:
+    """Run a program without calls over bounds of whole signals, times and an array of shape (n, 2) of each."""
+
 def dense_scan(kind: str, a: _Events, b: _Events | None = None) -> _Events:
     """Unbounded future over whole step functions: run_max, run_min, or until."""
 
