@@ -10,6 +10,7 @@ from fractions import Fraction
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rtamt.engine.gate import alone
+from rtamt.engine.online import time_of
 from rtamt.errors import BoundError, TraceError, UsageError, did_you_mean, shown
 from rtamt.language.units import duration
 from rtamt.rewrite.check import unbounded_future
@@ -116,8 +117,9 @@ class IntervalMonitor(EarlyMonitor):
             value; the monitor is then as it was.
             """
 
-    def _update_carefully(self, time: Any, /, **values: Any) -> None:
+    def _update_carefully(self, *given: Any, **values: Any) -> None:
         """Take a sample that the core did not take, or find out what is wrong with it."""
+        time = time_of(given)
         with self._gate:
             self._take(time, values)
 
