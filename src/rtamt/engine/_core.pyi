@@ -210,6 +210,17 @@ class EarlyMonitor:
     def changes(self, output: int) -> list[tuple[int, int, float, float]]:
         """Runs (first, last, lower, upper) that the last call changed."""
 
+    def supposed(
+        self,
+        output: int | None,
+        sample: int,
+        later: Sequence[tuple[int, int, Sequence[float], Sequence[float]]],
+    ) -> tuple[float, float] | None:
+        """The bounds of an output at a sample, or at the start, if later samples had these bounds of all inputs.
+
+        ``later``: (first, last, lower, upper), counted from the sample after the newest; None as for bounds().
+        """
+
     def causation_at_start(self) -> tuple[float, float]:
         """Violation and satisfaction that the newest sample causes at the start of the trace."""
 

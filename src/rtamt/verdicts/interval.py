@@ -224,8 +224,14 @@ class IntervalMonitor(EarlyMonitor):
     # ---- answers ---------------------------------------------------------------------------------
 
     @abstractmethod
-    def interval(self, time: Any = None) -> Interval:
-        """Return the bounds at the start of the trace, or at an instant that is not long final (``at="every"``)."""
+    def interval(self, time: Any = None, *, prediction: Mapping[str, Any] | None = None) -> Interval:
+        """Return the bounds at the start of the trace, or at an instant that is not long final (``at="every"``).
+
+        ``prediction``: what samples after the newest one are supposed to be, for this call alone, in discrete time:
+        from a variable to (lower, upper), two numbers for all later samples, or two arrays over the next ones.
+        The robustness lies within the bounds if the samples do; see :func:`rtamt.calibrate`. The
+        cost of a call is proportional to the length of the arrays.
+        """
 
     def changes(self) -> list[Change]:
         """Return runs of samples up to the newest one whose bounds the last update changed, with what they are now."""
