@@ -8,7 +8,10 @@ from random import Random
 import pytest
 from conformance import early
 
+import rtamt
+from rtamt import Dense
 from rtamt.language.parser import parse_formula
+from rtamt.rewrite.check import unbounded_future
 from tests.oracle import meaning
 
 CASES = early.read()
@@ -18,6 +21,43 @@ CASES = early.read()
 def test_the_answers_are_those_of_the_definition(case):
     fresh = replace(case, tree={}, bounds=[], verdicts=[])
     assert early.answered(fresh) == case
+
+
+@pytest.mark.parametrize("backend", ["cpp", "python"])
+@pytest.mark.parametrize("case", [pytest.param(case, id=case.id) for case in CASES if case.time == "dense"])
+def test_the_monitors_of_dense_time_give_the_answers(case, backend):
+    domain = Dense(case.seconds)
+    spec = rtamt.parse(case.formula, time=domain, backend=backend)
+    ranges = {name: (low, high) for name, (low, high) in case.ranges.items()}
+    settings = {"time": domain, "ranges": ranges}
+    every = unbounded_future(spec.formula) is None
+    bounds, eager = (spec.monitor(verdict=mode, **settings) for mode in ("interval", "eager"))
+    told = []
+    for stage, (tick, row) in enumerate([*early.updates_of(case), (None, {})]):
+        if tick is None:
+            bounds.finish()
+            told.append(eager.finish())
+        else:
+            bounds.update(_seconds(tick, case), **row)
+            told.append(eager.update(_seconds(tick, case), **row))
+        expected = case.bounds[stage]
+        if expected is None:
+            continue
+        assert bounds.interval() == rtamt.Interval(*expected[0][1:])
+        for begin, lower, upper in expected if every else ():
+            assert bounds.interval(_seconds(begin, case)) == rtamt.Interval(lower, upper)
+    runs = [[(r.begin, r.end, r.satisfied, r.decided_at) for r in news] for news in told]
+    assert runs == [
+        [
+            (_seconds(b, case), _seconds(e, case), satisfied, _seconds(at, case))
+            for b, e, satisfied, at in news
+        ]
+        for news in case.verdicts
+    ]
+
+
+def _seconds(tick, case):
+    return float(tick * case.seconds)
 
 
 @pytest.mark.parametrize("case", [pytest.param(case, id=case.id) for case in CASES])

@@ -9,6 +9,7 @@ import rtamt
 from rtamt.compiler.program import Program
 from rtamt.explain.report import Explanation
 from rtamt.language.formula import Formula
+from rtamt.verdicts.dense_early import DenseEagerMonitor
 from rtamt.verdicts.eager import EagerMonitor
 from rtamt.verdicts.interval import IntervalMonitor
 
@@ -66,6 +67,10 @@ def monitors() -> None:
     eager = assert_type(spec.monitor(verdict="eager"), EagerMonitor)
     assert_type(eager.update(0.0, x=4), list[rtamt.Verdict])
     assert_type(spec.monitor(verdict="interval"), IntervalMonitor)
+    runs = assert_type(spec.monitor(time="dense", verdict="eager"), DenseEagerMonitor)
+    assert_type(runs.update(0.0, x=4), list[rtamt.VerdictRun])
+    bounds = assert_type(spec.monitor(time="dense", verdict="interval", lateness="1s"), IntervalMonitor)
+    assert_type(bounds.interval(0.0), rtamt.Interval)
 
 
 def recordings(path: str) -> None:

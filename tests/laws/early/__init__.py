@@ -1,11 +1,13 @@
 """Laws of verdicts before the horizon, for every monitor that gives them; the definition is one of them.
 
-=========  ==========================================================================
-module     purpose
-=========  ==========================================================================
-cases      random formulas, traces, and what is known of the traces
-monitors   the monitors that must obey the laws: add one there
-laws       the laws, each a function of a case and a monitor
-soak       ``python -m tests.laws.early.soak 1000000``: the laws on that many cases
-=========  ==========================================================================
+==============  ==========================================================================
+module          purpose
+==============  ==========================================================================
+cases           random formulas, traces, and what is known of the traces
+monitors        the monitors that must obey the laws: add one there
+laws            the laws of discrete time, each a function of a case and a monitor
+dense_laws      those of dense time
+specifications  laws of whole specifications: requirements, semantics, forms of times, copies
+soak            ``python -m tests.laws.early.soak 1000000``: the laws on that many cases
+==============  ==========================================================================
 """

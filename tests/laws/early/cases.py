@@ -173,24 +173,67 @@ class DenseCase:
         ]
 
 
+@dataclass(frozen=True)
+class Arrivals:
+    """The samples of a case in the order in which they come, one by one.
+
+    Each has a time, a name, what is known of it, and perhaps a watermark that comes after it. ``lateness``: by how
+    much one comes at most after the newest. ``truth``: as in the case, without what would come too late.
+    """
+
+    samples: list[tuple[int, str, Known, int | None]]
+    lateness: int
+    truth: dict[str, tuple[list[int], list[float]]]
+
+
+def arrivals(rng: Random, case: DenseCase) -> Arrivals:
+    """Draw an order; some samples come twice, first less exactly, and watermarks are as late as they can be."""
+    order = [(t, name, known) for t, row in case.updates for name, known in row.items()]
+    rng.shuffle(order)
+    if rng.random() < 0.5:
+        order.sort(key=lambda each: each[0] + rng.randint(0, 4))
+    came, last = {each[:2] for each in order}, max(t for t, _ in case.updates)
+    truth: dict[str, tuple[list[int], list[float]]] = {}
+    for name, (times, values) in case.truth.items():
+        kept = [(t, v) for t, v in zip(times, values, strict=True) if (t, name) in came or t > last]
+        truth[name] = [t for t, _ in kept], [v for _, v in kept]
+    newest, lateness = -(10**9), 0
+    samples: list[tuple[int, str, Known, int | None]] = []
+    for i, (t, name, known) in enumerate(order):
+        newest = max(newest, t)
+        lateness = max(lateness, newest - t)
+        if known is not None and rng.random() < 0.2:
+            vague = max(known[0] - 1, case.ranges.get(name, ANYTHING)[0]), known[1]
+            samples.append((t, name, vague, None))
+        mark = min([each[0] - 1 for each in order[i + 1 :]], default=last) if rng.random() < 0.2 else None
+        samples.append((t, name, known, mark))
+    return Arrivals(samples, lateness + rng.choice((1, 1, 3)), truth)
+
+
 def dense_case(
     rng: Random,
     *,
     exact: bool | None = None,
     ranges: bool | None = None,
     ordered: bool | None = None,
+    narrow: bool = False,
     **kinds: bool,
 ) -> DenseCase:
-    """Draw a case of dense time; ``ordered``: whether the updates come in the order of their times."""
+    """Draw a case of dense time; ``ordered``: whether the updates come in the order of their times.
+
+    ``narrow``: few samples, ranges of two values.
+    """
     drawn = _reading(rng, dense=True, **{"unbounded": True, **kinds})
     names = variables(drawn)
     limits = _ranges(rng, names, 0.4) if ranges is None else _ranges(rng, names, 1.0) if ranges else {}
+    if narrow:
+        limits = {name: (low, low + 0.5) for name, (low, _) in limits.items()}
     sharp = rng.random() < 0.5 if exact is None else exact
     origin = rng.choice((0, 0, -5, 7))
     truth: dict[str, tuple[list[int], list[float]]] = {}
     came: dict[str, int] = {}
     for name in names:
-        n = rng.randint(1, 6)
+        n = rng.randint(1, 2 if narrow else 6)
         times = [origin + rng.choice((0, 0, 1, 3))]
         while len(times) < n + 3:
             times.append(times[-1] + rng.choice((1, 1, 2, 2, 3, 4)))

@@ -1,4 +1,4 @@
-"""The laws of bounds and early verdicts. Each takes a case and an implementation, and asserts.
+"""The laws of bounds and early verdicts in discrete time. Each takes a case and an implementation, and asserts.
 
 ``"bounds"`` are [L, U] of a formula at an instant, given what is known of the signals so far.
 """
@@ -14,21 +14,20 @@ import numpy as np
 from rtamt.errors import EvaluationError
 from rtamt.language.formula import Apply, postorder
 from rtamt.language.operators import STL
-from rtamt.reference import dense as dense_reference
 from rtamt.reference import discrete as reference
 from rtamt.reference import discrete_bounds, earliest
 from rtamt.reference.discrete_bounds import ANYTHING
 from rtamt.rewrite.early import causeless, ends_differently, loose
 from rtamt.rewrite.horizon import horizon
 from rtamt.rewrite.semantics import boolean
-from tests.laws.early.monitors import DEFINITION, PERIOD, TICK
+from tests.laws.early.monitors import DEFINITION, PERIOD
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from rtamt.language.formula import Formula
     from rtamt.signals.outcomes import Causation
-    from tests.laws.early.cases import Case, DenseCase
+    from tests.laws.early.cases import Case
     from tests.laws.early.monitors import Implementation
 
 
@@ -45,13 +44,13 @@ def rho(formula: Formula, columns: Mapping[str, list[float]], n: int) -> list[fl
         raise NothingToCheck from None
 
 
-def _horizon(formula: Formula) -> int:
+def whole_horizon(formula: Formula) -> int:
     depth = horizon(formula)
     assert depth is not None
     return int(depth)
 
 
-def _given(known: Any) -> Any:
+def given(known: Any) -> Any:
     """Return what an update takes: a number where the bounds are one."""
     return known[0] if known is not None and known[0] == known[1] else known
 
@@ -61,13 +60,13 @@ def _monitors(case: Case, made: Implementation) -> Any:
     monitor = made.interval(case.formula, case.names, case.ranges, 0)
     yield 0, monitor
     for i, row in enumerate(case.samples):
-        monitor.update(i, **{name: _given(known) for name, known in row.items()})
+        monitor.update(i, **{name: given(known) for name, known in row.items()})
         yield i + 1, monitor
 
 
 def _all_bounds(case: Case, made: Implementation) -> list[list[tuple[float, float]]]:
     """Return the bounds at every sample of the whole trace: before the first and after every sample."""
-    instants = range(len(next(iter(case.truth.values()))) - _horizon(case.formula))
+    instants = range(len(next(iter(case.truth.values()))) - whole_horizon(case.formula))
     found = []
     try:
         for _, monitor in _monitors(case, made):
@@ -76,9 +75,6 @@ def _all_bounds(case: Case, made: Implementation) -> list[list[tuple[float, floa
     except EvaluationError:
         raise NothingToCheck from None
     return found
-
-
-# ---- discrete time ------------------------------------------------------------------------------
 
 
 def sound(case: Case, made: Implementation) -> None:
@@ -101,7 +97,7 @@ def delayed(case: Case, made: Implementation) -> None:
     assert case.exact
     expected = rho(case.formula, case.truth, len(next(iter(case.truth.values()))))
     for n, bounds in enumerate(_all_bounds(case, made)):
-        for t in range(n - _horizon(case.formula)):
+        for t in range(n - whole_horizon(case.formula)):
             assert bounds[t] == (expected[t], expected[t])
 
 
@@ -134,7 +130,7 @@ def any_order(case: Case, made: Implementation, order: list[int]) -> None:
         monitor = made.interval(case.formula, case.names, case.ranges, case.n)
         try:
             for i in arrival:
-                monitor.update(i, **{name: _given(known) for name, known in case.samples[i].items()})
+                monitor.update(i, **{name: given(known) for name, known in case.samples[i].items()})
             monitor.finish()
             finals.append([monitor.interval(t) for t in range(case.n)])
         except EvaluationError:
@@ -178,7 +174,7 @@ def eager(case: Case, made: Implementation) -> None:
     told = []
     try:
         for i, row in enumerate(case.samples):
-            told.append(monitor.update(i, **{name: _given(known) for name, known in row.items()}))
+            told.append(monitor.update(i, **{name: given(known) for name, known in row.items()}))
         told.append(monitor.finish())
         known = _definition(case)
         expected = earliest.verdicts(case.formula, known, PERIOD)
@@ -230,7 +226,7 @@ def causes(case: Case, made: Implementation) -> None:
     assert not case.ranges
     if causeless(case.formula) is not None:
         raise NothingToCheck
-    instants = range(len(next(iter(case.truth.values()))) - _horizon(case.formula))
+    instants = range(len(next(iter(case.truth.values()))) - whole_horizon(case.formula))
     expected = _all_bounds(case, DEFINITION)
     monitor = made.causation(case.formula)
     viol, sat = [[each[k] for each in expected[0]] for k in (1, 0)]
@@ -254,145 +250,9 @@ def causation_as_defined(case: Case, made: Implementation) -> None:
 def _causation(monitor: Any, i: int, row: Mapping[str, Any], instants: range | None) -> list[Causation]:
     """Return what a sample causes at instants, or else at the start of the trace."""
     try:
-        start = monitor.update(i, **{name: _given(known) for name, known in row.items()})
+        start = monitor.update(i, **{name: given(known) for name, known in row.items()})
         every = [monitor.causation(t) for t in instants or ()]
     except EvaluationError:
         raise NothingToCheck from None
     assert not every or every[0] == start
     return every or [start]
-
-
-# ---- dense time ---------------------------------------------------------------------------------
-
-
-def _span(case: DenseCase) -> tuple[int, int]:
-    times = [t for t, _ in case.truth.values()]
-    return max(t[0] for t in times), max(t[-1] for t in times)
-
-
-def _dense_rho(formula: Formula, signals: Mapping[str, tuple[list[int], list[float]]]) -> Any:
-    try:
-        return dense_reference.evaluate(formula, signals, TICK)
-    except EvaluationError:
-        raise NothingToCheck from None
-
-
-def _values(steps: Any, ticks: range) -> list[float]:
-    return steps.values[np.searchsorted(steps.times, list(ticks), side="right") - 1].tolist()
-
-
-def _dense_bounds(case: DenseCase, made: Implementation) -> list[list[tuple[float, float]]]:
-    """Return the bounds at every tick of the trace, after every update from the first on that starts it."""
-    monitor = made.dense_interval(case.formula, case.names, case.ranges)
-    ticks = range(_span(case)[0], _span(case)[1] + 1)
-    missing = set(case.names)
-    found = []
-    try:
-        for t, row in case.updates:
-            monitor.update(t, **{name: _given(known) for name, known in row.items()})
-            missing -= set(row)
-            if not missing:
-                each = [monitor.interval(k) for k in ticks]
-                found.append([(bounds.lower, bounds.upper) for bounds in each])
-    except EvaluationError:
-        raise NothingToCheck from None
-    return found
-
-
-def dense_sound(case: DenseCase, made: Implementation) -> None:
-    """The robustness of the signals with all later samples lies within the bounds."""
-    ticks = range(_span(case)[0], _span(case)[1] + 1)
-    expected = _values(_dense_rho(case.formula, case.truth), ticks)
-    for bounds in _dense_bounds(case, made):
-        for (lower, upper), value in zip(bounds, expected, strict=True):
-            assert lower <= value <= upper
-
-
-def dense_narrowing(case: DenseCase, made: Implementation) -> None:
-    """With every update the bounds at every instant only become narrower."""
-    for before, after in itertools.pairwise(_dense_bounds(case, made)):
-        for (wide_lower, wide_upper), (lower, upper) in zip(before, after, strict=True):
-            assert wide_lower <= lower <= upper <= wide_upper
-
-
-def dense_finished(case: DenseCase, made: Implementation) -> None:
-    """At the end the bounds are the robustness of the samples, within all that was told before."""
-    assert case.exact
-    came: dict[str, tuple[list[int], list[float]]] = {name: ([], []) for name in case.names}
-    for t, row in case.updates:
-        for name, known in row.items():
-            came[name][0].append(t)
-            came[name][1].append(known[0])
-    start, end = max(t[0] for t, _ in came.values()), max(t[-1] for t, _ in came.values())
-    expected = _values(_dense_rho(case.formula, came), range(start, end + 1))
-    before = _dense_bounds(case, made)
-    monitor = made.dense_interval(case.formula, case.names, case.ranges)
-    for t, row in case.updates:
-        monitor.update(t, **{name: _given(known) for name, known in row.items()})
-    monitor.finish()
-    final = [monitor.interval(t) for t in range(start, end + 1)]
-    assert [(each.lower, each.upper) for each in final] == [(value, value) for value in expected]
-    for bounds in before:
-        for (lower, upper), value in zip(bounds, expected, strict=False):
-            assert lower <= value <= upper
-
-
-def dense_as_defined(case: DenseCase, made: Implementation) -> None:
-    """After every update the bounds at every tick are those of the definition."""
-    if made is DEFINITION:
-        raise NothingToCheck
-    assert _dense_bounds(case, made) == _dense_bounds(case, DEFINITION)
-
-
-def dense_start(case: DenseCase, made: Implementation) -> None:
-    """Before the first and after every update and at the end, the bounds at the start are those of the definition."""
-    if made is DEFINITION:
-        raise NothingToCheck
-    both = [each.dense_interval(case.formula, case.names, case.ranges) for each in (made, DEFINITION)]
-    try:
-        assert both[0].start() == both[1].start()
-        for t, row in case.updates:
-            for monitor in both:
-                monitor.update(t, **{name: _given(known) for name, known in row.items()})
-            assert both[0].start() == both[1].start()
-        for monitor in both:
-            monitor.finish()
-        assert both[0].start() == both[1].start()
-    except EvaluationError:
-        raise NothingToCheck from None
-
-
-def dense_eager(case: DenseCase, made: Implementation) -> None:
-    """Every tick has its verdict once, from the earliest update that decides it; that of the end agrees."""
-    monitor = made.dense_eager(case.formula, case.names, case.ranges)
-    told = []
-    try:
-        for t, row in case.updates:
-            told.append(monitor.update(t, **{name: _given(known) for name, known in row.items()}))
-        told.append(monitor.finish())
-        expected = earliest.dense_verdicts(
-            case.formula, case.bounded(len(case.updates)), case.names, TICK, case.ranges, finished=True
-        )
-    except EvaluationError:
-        raise NothingToCheck from None
-    got = [
-        {t: (run.satisfied, run.decided_at) for run in news for t in range(run.begin, run.end)}
-        for news in told
-    ]
-    assert [sum(run.end - run.begin for run in news) for news in told] == [len(each) for each in got]
-    assert got == [{t: (satisfied, at) for t, satisfied, at in news} for news in expected]
-    if case.exact:
-        _dense_signs(case, got)
-
-
-def _dense_signs(case: DenseCase, got: list[dict[int, tuple[bool, int]]]) -> None:
-    """Check verdicts of exact samples against the truth at the end, and that none is missing or comes twice."""
-    known = earliest.after(case.bounded(len(case.updates)), case.names, case.ranges, finished=True)
-    assert known.start is not None
-    end = max(t for t, _ in case.updates)
-    signals = {name: (list(times), list(lower)) for name, (times, lower, _) in known.samples.items()}
-    final = _values(_dense_rho(boolean(case.formula), signals), range(known.start, end + 1))
-    assert sorted(t for news in got for t in news) == list(range(known.start, end + 1))
-    for news in got:
-        for t, (satisfied, _) in news.items():
-            assert satisfied == (final[t - known.start] > 0)

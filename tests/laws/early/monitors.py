@@ -13,9 +13,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rtamt import Interval, Verdict, VerdictRun
+from rtamt.compiler.early import FOREVER
 from rtamt.language.enclosures import Enclosure
 from rtamt.language.formula import variables
 from rtamt.reference import causation, dense_bounds, discrete_bounds, earliest
+from rtamt.reference.dense_bounds import DenseKnowledge
 from rtamt.reference.discrete_bounds import ANYTHING, Knowledge
 from rtamt.rewrite.semantics import boolean
 from rtamt.signals.dense import Dense
@@ -53,8 +55,11 @@ class Implementation:
     interval: Callable[[Formula, tuple[str, ...], Mapping[str, Range], int], Any]
     eager: Callable[[Formula, tuple[str, ...], Mapping[str, Range]], Any]
     causation: Callable[[Formula], Any]
-    dense_interval: Callable[[Formula, tuple[str, ...], Mapping[str, Range]], Any]
+    #: Also with a lateness and whether to replay corrections.
+    dense_interval: Callable[..., Any]
     dense_eager: Callable[[Formula, tuple[str, ...], Mapping[str, Range]], Any]
+    #: The back end of specifications, if it is one.
+    backend: str | None = None
 
 
 def _bounds(value: Any, limits: Range) -> Range:
@@ -141,28 +146,79 @@ class _Dense:
 
 
 class _DenseIntervals(_Dense):
-    _found: StepBounds | None = None
+    """Bounds; with a lateness, from what each tick by itself is known to be."""
+
+    def __init__(
+        self,
+        formula: Formula,
+        names: tuple[str, ...],
+        ranges: Mapping[str, Range],
+        lateness: int | None = None,
+        *,
+        replay: bool = False,
+    ) -> None:
+        super().__init__(formula, names, ranges)
+        self._lateness = 0 if replay and lateness is None else lateness
+        self._mark: int | None = None
+        self._found: StepBounds | None = None
 
     def update(self, t: int, **values: Any) -> None:
         self._take(t, values)
         self._found = None
 
-    @property
-    def _bounds(self) -> StepBounds:
-        if self._found is None:
-            known = earliest.after(self._updates, self._names, self._ranges, finished=self._finished)
-            self._found = dense_bounds.bounds(self._formula, known, TICK)
-        return self._found
-
-    def start(self) -> Interval:
-        return Interval(*self._bounds.at(self._bounds.times[0]))
-
-    def interval(self, t: int) -> Interval:
-        return Interval(*self._bounds.at(t))
+    def watermark(self, t: int) -> None:
+        self._mark = t if self._mark is None else max(t, self._mark)
+        self._found = None
 
     def finish(self) -> None:
         self._finished = True
         self._found = None
+
+    @property
+    def known(self) -> DenseKnowledge:
+        if self._lateness is None and self._mark is None:
+            return earliest.after(self._updates, self._names, self._ranges, finished=self._finished)
+        samples: dict[str, dict[int, Range]] = {name: {} for name in self._names}
+        for t, row in self._updates:
+            for name, bounds in row.items():
+                samples[name][t] = bounds
+        newest = max((t for t, _ in self._updates), default=-FOREVER)
+        late = -FOREVER if self._lateness is None else newest - self._lateness - 1
+        closed = max(late, -FOREVER if self._mark is None else self._mark)
+        columns: dict[str, Any] = {}
+        for name, own in samples.items():
+            known = max([closed, *(own if self._lateness is None else ())])
+            if not own or (min(own) > known and not self._finished):
+                columns[name] = (), (), ()
+                continue
+            ticks = range(min(own), max(newest, known, *own) + 2)
+            ends = [self._at(own, name, t, known) for t in ticks]
+            columns[name] = ticks, [low for low, _ in ends], [high for _, high in ends]
+        every = dict.fromkeys(self._names, FOREVER)
+        return DenseKnowledge(columns, self._ranges, self._finished, every)
+
+    def _at(self, samples: Mapping[int, Range], name: str, t: int, known: int) -> Range:
+        if t in samples:
+            return samples[t]
+        if t > known and not self._finished:
+            return self._ranges.get(name, ANYTHING)
+        return samples[max(each for each in samples if each < t)]
+
+    @property
+    def _steps(self) -> StepBounds:
+        if self._found is None:
+            self._found = dense_bounds.bounds(self._formula, self.known, TICK)
+        return self._found
+
+    @property
+    def started(self) -> bool:
+        return self.known.start is not None
+
+    def start(self) -> Interval:
+        return Interval(*self._steps.at(self._steps.times[0]))
+
+    def interval(self, t: int) -> Interval:
+        return Interval(*self._steps.at(t))
 
 
 class _DenseEager(_Dense):
@@ -254,9 +310,24 @@ class _DenseKept:
 
     backend = "cpp"
 
-    def __init__(self, formula: Formula, names: tuple[str, ...], ranges: Mapping[str, Range]) -> None:
+    def __init__(
+        self,
+        formula: Formula,
+        names: tuple[str, ...],
+        ranges: Mapping[str, Range],
+        lateness: int | None = None,
+        *,
+        replay: bool = False,
+    ) -> None:
         declared = {name: limits for name, limits in ranges.items() if name in names}
-        self._monitor = DenseIntervalMonitor(formula, SECONDS, ranges=declared, backend=self.backend)
+        self._monitor = DenseIntervalMonitor(
+            formula,
+            SECONDS,
+            ranges=declared,
+            lateness=lateness,
+            on_correction="replay" if replay else "reject",
+            backend=self.backend,
+        )
         self._kept: dict[int, Interval] = {}
 
     def _keep(self, changes: list[Change]) -> None:
@@ -267,6 +338,11 @@ class _DenseKept:
 
     def update(self, t: int, **values: Any) -> None:
         self._monitor.update(t, **values)
+        if self._monitor.at == "every":
+            self._keep(self._monitor.changes())
+
+    def watermark(self, t: int) -> None:
+        self._monitor.watermark(t)
         if self._monitor.at == "every":
             self._keep(self._monitor.changes())
 
@@ -323,7 +399,7 @@ class _DenseSettledByPython(_DenseSettled):
     backend = "python"
 
 
-ENGINE = Implementation("engine", _Kept, _Settled, _causes, _DenseKept, _DenseSettled)
+ENGINE = Implementation("engine", _Kept, _Settled, _causes, _DenseKept, _DenseSettled, "cpp")
 PYTHON = Implementation(
     "Python back end",
     _KeptByPython,
@@ -331,6 +407,7 @@ PYTHON = Implementation(
     _causes_by_python,
     _DenseKeptByPython,
     _DenseSettledByPython,
+    "python",
 )
 
 IMPLEMENTATIONS = [DEFINITION, ENGINE, PYTHON]

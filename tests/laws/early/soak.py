@@ -10,8 +10,8 @@ from collections import Counter
 from random import Random
 from typing import TYPE_CHECKING
 
-from tests.laws.early import laws
-from tests.laws.early.cases import case, dense_case
+from tests.laws.early import dense_laws, laws, specifications
+from tests.laws.early.cases import ANYTHING, arrivals, case, dense_case, value
 from tests.laws.early.monitors import DEFINITION, IMPLEMENTATIONS
 
 if TYPE_CHECKING:
@@ -68,27 +68,57 @@ def causation_as_defined(rng: Random, made: Implementation) -> None:
 
 
 def dense_sound(rng: Random, made: Implementation) -> None:
-    laws.dense_sound(dense_case(rng, unbounded=False), made)
+    dense_laws.sound(dense_case(rng, unbounded=False), made)
 
 
 def dense_narrowing(rng: Random, made: Implementation) -> None:
-    laws.dense_narrowing(dense_case(rng, unbounded=False), made)
+    dense_laws.narrowing(dense_case(rng, unbounded=False), made)
 
 
 def dense_finished(rng: Random, made: Implementation) -> None:
-    laws.dense_finished(dense_case(rng, exact=True, unbounded=False), made)
+    dense_laws.finished(dense_case(rng, exact=True, unbounded=False), made)
 
 
 def dense_as_defined(rng: Random, made: Implementation) -> None:
-    laws.dense_as_defined(dense_case(rng, unbounded=False), made)
+    dense_laws.as_defined(dense_case(rng, unbounded=False), made)
 
 
 def dense_start(rng: Random, made: Implementation) -> None:
-    laws.dense_start(dense_case(rng), made)
+    dense_laws.start(dense_case(rng), made)
+
+
+def dense_late(rng: Random, made: Implementation) -> None:
+    drawn = dense_case(rng, unbounded=False)
+    dense_laws.late(drawn, made, arrivals(rng, drawn))
+
+
+def dense_corrected(rng: Random, made: Implementation) -> None:
+    drawn = dense_case(rng, unbounded=False)
+    wrong = {
+        (t, name): value(rng, *drawn.ranges.get(name, ANYTHING))
+        for t, row in drawn.updates
+        for name, known in row.items()
+        if known is not None and known[0] == known[1] and rng.random() < 0.4
+    }
+    dense_laws.corrected(drawn, made, wrong)
+
+
+def dense_tight(rng: Random, made: Implementation) -> None:
+    dense_laws.tight(dense_case(rng, ranges=True, odd=False, unbounded=False, narrow=True), made)
 
 
 def dense_eager(rng: Random, made: Implementation) -> None:
-    laws.dense_eager(dense_case(rng), made)
+    dense_laws.eager(dense_case(rng), made)
+
+
+def specification_bounds(rng: Random, made: Implementation) -> None:
+    assert made.backend is not None
+    specifications.bounds(rng, made.backend)
+
+
+def specification_verdicts(rng: Random, made: Implementation) -> None:
+    assert made.backend is not None
+    specifications.verdicts(rng, made.backend)
 
 
 LAWS: list[Law] = [
@@ -107,11 +137,24 @@ LAWS: list[Law] = [
     dense_finished,
     dense_as_defined,
     dense_start,
+    dense_late,
+    dense_corrected,
+    dense_tight,
     dense_eager,
+    specification_bounds,
+    specification_verdicts,
 ]
 
-#: Laws that compare an implementation with the definition.
-COMPARISONS: list[Law] = [as_defined, causation_as_defined, dense_as_defined, dense_start]
+#: Laws that compare an implementation with the definition, or with an evaluation.
+COMPARISONS: list[Law] = [
+    as_defined,
+    causation_as_defined,
+    dense_as_defined,
+    dense_start,
+    dense_corrected,
+    specification_bounds,
+    specification_verdicts,
+]
 
 
 def laws_of(made: Implementation) -> list[Law]:

@@ -337,3 +337,30 @@ def test_unbounded_future_is_watched_at_the_start(run, formula, states):
     stdin = jsonl(*({"time": t, "x": x} for t, x in enumerate([5, 1])))
     answer = run("monitor", formula, stdin=stdin)
     assert [json.loads(line)["status"] for line in answer.out.splitlines()] == states
+
+
+def test_runs_of_instants_are_printed_in_dense_time(run):
+    stdin = jsonl({"time": 0, "x": 5}, {"time": 1.5, "x": 4}, {"time": 2.5, "x": 1})
+    dense = ("monitor", "always[0:1](x >= 3)", "--time", "dense", "--verdict")
+    assert run(*dense, "eager", stdin=stdin).out == (
+        '{"time": 0.0, "until": 0.500000001, "satisfied": true, "decided_at": 1.5}\n'
+        '{"time": 0.500000001, "until": 1.5, "satisfied": true, "decided_at": 2.5}\n'
+        '{"time": 1.5, "until": 2.500000001, "satisfied": false, "decided_at": 2.5}\n'
+    )
+    assert run(*dense, "interval", stdin=stdin).out.splitlines()[:2] == [
+        '{"time": 0.0, "until": 1e-09, "lower": "-inf", "upper": 2.0, "final": false}',
+        '{"time": 0.0, "until": 0.5, "lower": 2.0, "upper": 2.0, "final": true}',
+    ]
+
+
+def test_unbounded_future_is_watched_at_the_start_in_dense_time_too(run):
+    stdin = jsonl({"time": "2026-01-01T00:00:00", "x": 5}, {"time": "2026-01-01T00:00:00.5", "x": 1})
+    answer = run("monitor", "always(x >= 3)", "--time", "dense", stdin=stdin)
+    states = [json.loads(line)["status"] for line in answer.out.splitlines()]
+    assert states == ["open", *["violated since 2026-01-01T00:00:00.500000000"] * 2]
+
+
+def test_samples_of_dense_time_need_their_times_for_verdicts_too(run):
+    answer = run("monitor", "always(x >= 3)", "--time", "dense", stdin=jsonl({"x": 5}))
+    assert answer.code == 2
+    assert "line 1: in dense time every sample needs its time" in answer.err

@@ -279,3 +279,15 @@ def test_end_without_a_sample_of_a_variable_is_an_error_that_names_it():
 def test_unbounded_future_at_every_instant_is_an_error_that_points_at_it():
     with pytest.raises(rtamt.BoundError, match="ask for the start of the trace with at='start'"):
         interval("always x", at="every")
+
+
+def test_watched_formulas_report_their_own_changes():
+    spec = rtamt.parse("always[0:5](x >= 3)")
+    bounds = spec.monitor(**SETTINGS, watch=["x >= 3", spec.formula])
+    bounds.update(0, x=4)
+    bounds.update(1, x=5)
+    assert [(c.begin, c.end, c.interval.lower) for c in bounds["x >= 3"]] == [(0.1, 1.0, 1.0), (1.0, 1.1, 2.0)]
+    assert bounds[spec.formula] == bounds.changes()
+    eager = spec.monitor(**EAGER, watch=["x >= 3"])
+    assert eager.update(0, x=4) == []
+    assert eager["x >= 3"] == [VerdictRun(0.0, 1e-9, True, 0.0)]
