@@ -37,10 +37,13 @@ test-cpp: $(VENV)/.group-build ## C++: the core alone, under the address, undefi
 	$(WITH_VENV) cmake --build --preset tsan
 	$(WITH_VENV) ctest --preset tsan --no-tests=error
 
-test-install: $(VENV)/.made ## `pip install .` in an empty environment, then the newcomer's path to an explained violation
-	rm -rf build/install
+# The steps of .github/workflows/wheels.yml that this machine can run: the wheel is built from the source distribution.
+test-install: $(VENV)/.group-wheel ## a source distribution and a wheel, installed in an empty environment, then the newcomer's path to an explained violation
+	rm -rf build/install build/dist
+	$(RUN) -m build --outdir build/dist . >build/dist.log || { cat build/dist.log; exit 1; }
+	[ "$$(uname)" != Linux ] || PATH="$(CURDIR)/$(VENV)/bin:$$PATH" $(RUN) -m auditwheel repair --wheel-dir build/dist/repaired build/dist/*.whl
 	$(RUN) -m venv build/install
-	build/install/bin/python -m pip install --quiet .
+	build/install/bin/python -m pip install --quiet "$$(ls build/dist/repaired/*.whl build/dist/*.whl 2>/dev/null | head -n 1)"
 	tools/newcomer "$(CURDIR)/build/install/bin/rtamt" build/install/newcomer
 
 lint: $(VENV)/.core $(VENV)/.group-test $(VENV)/.group-lint ## ruff, mypy, import contracts, clang-format, clang-tidy

@@ -54,12 +54,14 @@ void Engine::clear() noexcept {
 
 // Takes everything back if something failed.
 std::optional<Engine::Failure> Engine::attempt(std::optional<Failure> failure) {
-    if (failure) {
-        for (const Undo& undo : std::views::reverse(journal_))
-            undo.runs->set(undo.l, undo.r, undo.old);
-        clear();
-    }
+    if (failure) revert();
     return failure;
+}
+
+void Engine::revert() {
+    for (const Undo& undo : std::views::reverse(journal_))
+        undo.runs->set(undo.l, undo.r, undo.old);
+    clear();
 }
 
 // ---- knowledge ----------------------------------------------------------------------------------
@@ -120,6 +122,21 @@ std::optional<Engine::Failure> Engine::learn(std::span<const Lesson> lessons) {
         for (const std::uint32_t i : readers_[lesson.input]) {
             const auto failure = relearn(i, lesson.l, lesson.r);
             if (failure) return attempt(failure);
+        }
+    }
+    return attempt(propagate(false));
+}
+
+std::optional<Engine::Failure> Engine::suppose(std::span<const Supposition> suppositions) {
+    clear();
+    journaling_ = true;
+    for (const Supposition& supposed : suppositions) {
+        for (std::uint32_t i = 0; i < nodes_.size(); ++i) {
+            if (node(i).kind != Kind::atom) continue;
+            if (run<Bounds>(node(i).steps, supposed.row, bounds_) != none) continue; // not known
+            const Bounds result = bounds_[node(i).steps.size() - 1];
+            lift(nodes_[i], 0, supposed.l, supposed.r, result.lower);
+            lift(nodes_[i], 1, supposed.l, supposed.r, -result.upper);
         }
     }
     return attempt(propagate(false));

@@ -62,6 +62,16 @@ class Engine {
     };
     [[nodiscard]] std::optional<Failure> learn(std::span<const Lesson> lessons);
 
+    // What is supposed of all inputs at [l, r], where nothing is known of them but their ranges. It
+    // holds until revert(), with which everything is as it was before.
+    struct Supposition {
+        Tick l;
+        Tick r;
+        std::vector<Bounds> row;
+    };
+    [[nodiscard]] std::optional<Failure> suppose(std::span<const Supposition> suppositions);
+    void revert();
+
     // What is known of an input; the run of equal knowledge ends at `end`.
     [[nodiscard]] Bounds known(std::uint32_t input, Tick t) const noexcept;
 

@@ -95,6 +95,8 @@ void add_early_monitor(const nb::module_& module, const Exceptions& exceptions) 
              "The bounds of an output at a sample, None where they are forgotten.")
         .def("changes", &EarlyMonitor::changes, nb::arg("output"),
              "Runs (first, last, lower, upper) that the last call changed.")
+        .def("supposed", &EarlyMonitor::supposed, nb::arg("output").none(), nb::arg("sample"),
+             nb::arg("later"), "The bounds if later samples had these bounds of all inputs.")
         .def("causation_at_start", &EarlyMonitor::causation_at_start,
              "Violation and satisfaction that the newest sample causes at the start of the trace.")
         .def("causation", &EarlyMonitor::causation, nb::arg("output"), nb::arg("sample"),

@@ -334,6 +334,41 @@ EarlyMonitor::changes(std::size_t output) const {
     return result;
 }
 
+nb::object EarlyMonitor::supposed(
+    std::optional<std::size_t> output, Tick sample,
+    const std::vector<std::tuple<Tick, Tick, std::vector<double>, std::vector<double>>>& later) {
+    guard_.require_idle();
+    if (output.value_or(0) >= outputs_.size() && output) {
+        throw std::out_of_range("There is no such output.");
+    }
+    if (output && sample < held(*output)) return nb::none();
+    const Tick next = times_.newest() + 1;
+    std::vector<early::Engine::Supposition> suppositions;
+    for (const auto& [first, last, lower, upper] : later) {
+        if (lower.size() != row_.size() || upper.size() != row_.size() || first < 0) {
+            throw std::invalid_argument("There is a bound of every input.");
+        }
+        early::Engine::Supposition supposed{next + first, early::plus(next, last), {}};
+        for (std::size_t i = 0; i < lower.size(); ++i)
+            supposed.row.push_back({lower[i], upper[i]});
+        suppositions.push_back(std::move(supposed));
+    }
+    if (const auto failure = engine_.suppose(suppositions)) {
+        const Tick t = failure->tick;
+        return checked(fail(*failure, next > 0 ? times_.at(t) : static_cast<double>(t)));
+    }
+    Bounds value{};
+    if (output) {
+        value = engine_.at(outputs_[*output], sample);
+    } else {
+        early::Origin origin = origin_.value();
+        origin.look(engine_);
+        value = origin.value();
+    }
+    engine_.revert();
+    return nb::make_tuple(value.lower, value.upper);
+}
+
 // No minus before a zero.
 std::pair<double, double> EarlyMonitor::causation_at_start() const {
     const Bounds caused = causes_.value().at_start();

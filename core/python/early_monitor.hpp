@@ -75,6 +75,13 @@ class EarlyMonitor : public EarlyBackend {
     // Runs (first, last, lower, upper) of an output that the last call changed.
     [[nodiscard]] std::vector<std::tuple<early::Tick, early::Tick, double, double>>
     changes(std::size_t output) const;
+    // The bounds of an output at a sample, or of the formula at the start, if later samples had
+    // these bounds of all inputs: (first, last, lower, upper), counted from the sample after the
+    // newest.
+    [[nodiscard]] nb::object supposed(
+        std::optional<std::size_t> output, early::Tick sample,
+        const std::vector<
+            std::tuple<early::Tick, early::Tick, std::vector<double>, std::vector<double>>>& later);
     // Violation and satisfaction that the newest sample causes.
     [[nodiscard]] std::pair<double, double> causation_at_start() const;
     [[nodiscard]] std::pair<double, double> causation(std::size_t output, early::Tick sample) const;

@@ -144,6 +144,59 @@ nb::list dense_evaluate(const nb::bytes& bytes, const std::vector<EventColumn>& 
     return hand_over(outputs);
 }
 
+// The same of bounds: of each input times and (lower, upper), of each output times, lower and
+// upper.
+nb::list dense_evaluate_bounds(const nb::bytes& bytes,
+                               const std::vector<std::pair<Times, BoundsColumn>>& columns,
+                               std::int64_t extra, const Exceptions& exceptions) {
+    using Inputs = dense::BasicEvents<Bounds>;
+    const nb::list none;
+    Calls held(none);
+    Program program = parse(bytes, Domain::dense);
+    if (extra < 0) throw std::invalid_argument("The extra ticks cannot be fewer than 0.");
+    if (columns.size() != program.inputs) {
+        throw std::invalid_argument("Got " + std::to_string(columns.size()) +
+                                    " signals for a program with " +
+                                    std::to_string(program.inputs) + " inputs.");
+    }
+    std::vector<std::vector<Bounds>> values;
+    std::vector<Inputs> inputs;
+    std::size_t all = 0;
+    for (const auto& [times, column] : columns) {
+        const std::size_t count = times.shape(0);
+        if (column.shape(0) != count) {
+            throw std::invalid_argument("A signal has " + std::to_string(count) + " times and " +
+                                        std::to_string(column.shape(0)) + " values.");
+        }
+        auto& ends = values.emplace_back(count);
+        for (std::size_t i = 0; i < count; ++i)
+            ends[i] = {column(i, 0), column(i, 1)};
+        inputs.push_back({times.data(), ends.data(), count});
+        all += count;
+    }
+    std::vector<dense::BasicEventList<Bounds>> outputs(program.outputs.size());
+    const auto failure = without_gil(all, [&] {
+        return dense::BasicExecutor<Interval>::evaluate(std::move(program), inputs, extra, outputs);
+    });
+    if (failure) {
+        raise_undefined(exceptions, held, failure->instruction, failure->time, failure->fault);
+    }
+    nb::list found;
+    for (const auto& output : outputs) {
+        const auto events = output.view();
+        EventList lower;
+        Results upper;
+        upper.add(events.count);
+        for (std::size_t i = 0; i < events.count; ++i) {
+            lower.append(events.times[i], events.values[i].lower);
+            upper.pointers()[0][i] = events.values[i].upper;
+        }
+        const nb::tuple ends = hand_over(lower);
+        found.append(nb::make_tuple(ends[0], ends[1], std::move(upper.hand_over()[0])));
+    }
+    return found;
+}
+
 nb::tuple dense_scan(std::string_view kind, const EventColumn& a,
                      const std::optional<EventColumn>& b) {
     std::vector<EventColumn> columns{a};
@@ -204,6 +257,16 @@ void add_offline(nanobind::module_& m, const Exceptions& exceptions) {
         nb::arg("program"), nb::arg("columns"), nb::arg("extra") = 0, nb::arg("calls") = nb::list(),
         "Run a program over whole signals, times and values of each, up to their last time and "
         "extra ticks more; return the events of each output.");
+    m.def(
+        "dense_evaluate_bounds",
+        [exceptions](const nb::bytes& program,
+                     const std::vector<std::pair<Times, BoundsColumn>>& columns,
+                     std::int64_t extra) {
+            return dense_evaluate_bounds(program, columns, extra, exceptions);
+        },
+        nb::arg("program"), nb::arg("columns"), nb::arg("extra") = 0,
+        "Run a program without calls over bounds of whole signals, times and an array of shape "
+        "(n, 2) of each; return times, lower and upper bounds of each output.");
     m.def("dense_scan", &dense_scan, nb::arg("kind"), nb::arg("a"), nb::arg("b") = nb::none(),
           "Unbounded future over whole step functions: run_max, run_min, or until.");
 }

@@ -46,11 +46,14 @@ def linked(program: Path) -> bool:
     return "librtamt.so.1 " in run("readelf", "--dynamic", program).replace("]", " ")
 
 
-def test_a_c_program_finds_the_library_by_cmake(place: Path) -> None:
+def test_programs_in_c_and_cpp_find_the_library_by_cmake(place: Path) -> None:
     run("cmake", "-S", place, "-B", place / "build", f"-DCMAKE_PREFIX_PATH={place / 'prefix'}")
     run("cmake", "--build", place / "build")
-    assert linked(place / "build/watch")
-    assert run(place / "build/watch", place / "spec.rtamt") == (place / "expected.txt").read_text("utf-8")
+    runs = (("watch", "spec.rtamt", "expected.txt"), ("watch_dense", "dense.rtamt", "expected_dense.txt"))
+    for name, compiled, expected in runs:
+        program = place / "build" / name
+        assert linked(program)
+        assert run(program, place / compiled) == (place / expected).read_text("utf-8")
 
 
 def test_a_c_program_finds_the_library_by_pkg_config(place: Path) -> None:

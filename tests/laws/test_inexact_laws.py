@@ -9,14 +9,17 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 import rtamt
+from rtamt.engine.dense.backends import BACKENDS as DENSE_BACKENDS
 from rtamt.engine.discrete.backends import BACKENDS
 from rtamt.errors import EvaluationError
 from rtamt.language.formula import Apply, postorder, variables
 from rtamt.language.printer import to_text
 from rtamt.reference import discrete as reference
+from rtamt.signals.dense import DenseTrace
 from rtamt.signals.discrete import DiscreteTrace
-from tests.laws.early.cases import formula, value
-from tests.laws.early.monitors import PERIOD
+from rtamt.signals.ticks import TimeScale
+from tests.laws.early.cases import dense_case, formula, value
+from tests.laws.early.monitors import PERIOD, TICK
 
 
 def drawn(seed: int):
@@ -47,6 +50,33 @@ def of(backend: str, asked, trace) -> list[list[float]]:
 def test_both_back_ends_give_the_same_bounds_to_the_last_bit(seed):
     asked, trace, _ = drawn(seed)
     assert of("cpp", asked, trace) == of("python", asked, trace)
+
+
+def drawn_dense(seed: int):
+    """Draw a formula and a finished recording of dense time, known in part."""
+    rng = Random(seed)  # noqa: S311 - no secret
+    case = dense_case(rng)
+    columns, bounds = {}, {}
+    for name, (times, values) in case.truth.items():
+        far = np.array([rng.choice((0.0, 0.0, 0.5, 2.0, np.inf)) for _ in times])
+        columns[name] = np.array(times), np.array(values)
+        bounds[name] = columns[name][1] - far, columns[name][1] + far
+    scale = TimeScale.in_ticks(TICK)
+    return case.formula, DenseTrace(columns, scale, bounds=bounds)
+
+
+def dense_of(backend: str, asked, trace) -> list[list[float]]:
+    try:
+        (found,) = DENSE_BACKENDS[backend].bounds((asked,), TICK, tuple(trace.columns))(trace)
+    except EvaluationError:
+        return []
+    return [found.times.tolist(), found.lower.tolist(), found.upper.tolist()]
+
+
+@given(st.integers(0, 2**32))
+def test_both_back_ends_give_the_same_bounds_in_dense_time_to_the_last_bit(seed):
+    asked, trace = drawn_dense(seed)
+    assert dense_of("cpp", asked, trace) == dense_of("python", asked, trace)
 
 
 @given(st.integers(0, 2**32))

@@ -193,7 +193,7 @@ TASKS: dict[str, tuple[str, tuple[str, ...]]] = {
         (
             "rtamt.verdicts.eager.EagerMonitor", "Verdict", "rtamt.verdicts.dense_early.DenseEagerMonitor",
             "VerdictRun", "rtamt.verdicts.interval.IntervalMonitor", "rtamt.verdicts.interval.Change", "Interval",
-            "rtamt.verdicts.causation.CausationMonitor", "Causation",
+            "rtamt.verdicts.causation.CausationMonitor", "Causation", "calibrate",
         ),
     ),
     "Explain": ("", ("Result.explain", "rtamt.explain.report.Explanation")),

@@ -31,7 +31,7 @@ from rtamt.cli.reading_options import add_reading_options, reading_of
 from rtamt.cli.reports import REPORTS, HtmlReport, write_report
 from rtamt.cli.reports.messages import robustness_members
 from rtamt.cli.runner import Outcome, Requirement, outcomes
-from rtamt.cli.terminal import Progress, printed, say, table, use_color
+from rtamt.cli.terminal import Progress, printed, say, table, use_color, width_of
 from rtamt.errors import escaped
 from rtamt.language.units import format_duration
 from rtamt.signals.regular import merged
@@ -237,11 +237,12 @@ def _as_table(requirements: Sequence[Requirement], found: Sequence[Outcome], col
         rows.append((outcome.requirement, outcome.trace, *cells, outcome.verdict))
     kinds = [_KINDS[outcome.verdict] for outcome in found]
     if len(requirements) > 1:
-        text = table(rows, right=(2, 3, 4, 5), kinds=kinds, color=color)
+        text = table(rows, (2, 3, 4, 5), kinds, color, width_of(sys.stdout))
     else:
         spec = requirements[0].spec
         title = f"{spec.name}: {printed(spec.formula)}" if spec.name else printed(spec.formula)
-        text = f"{escaped(title)}\n\n{table([row[1:] for row in rows], right=(1, 2, 3, 4), kinds=kinds, color=color)}"
+        alone = table([row[1:] for row in rows], (1, 2, 3, 4), kinds, color, width_of(sys.stdout))
+        text = f"{escaped(title)}\n\n{alone}"
     notes = dict.fromkeys(f"note: {outcome.trace}: {note}" for outcome in found for note in outcome.notes)
     if notes:
         text += "\n\n" + "\n".join(notes)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from rtamt.cli.command import OK, Command
 from rtamt.cli.language import add_language_option, read_language
-from rtamt.cli.terminal import say, table, use_color
+from rtamt.cli.terminal import say, table, use_color, width_of
 from rtamt.errors import UsageError, did_you_mean
 from rtamt.language.operators import Bounds, Fixity
 from rtamt.language.units import UNITS
@@ -44,19 +44,18 @@ def run(args: argparse.Namespace) -> int:
     )
     rows = [("name", "written", "example", "meaning")]
     rows += [(op.name, _written(op), op.example, op.doc) for op in chosen]
-    say(_fitted(rows))
+    color = use_color("auto", sys.stdout)
+    say(_fitted(rows, color), color=color)
     if not args.names:
         say(f"\n{_notes(language)}")
     return OK
 
 
-def _fitted(rows: list[tuple[str, str, str, str]]) -> str:
+def _fitted(rows: list[tuple[str, str, str, str]], color: bool) -> str:
     """Return the rows as a table; the meanings on lines of their own where the terminal is too narrow."""
-    color = use_color("auto", sys.stdout)
-    wide = table(rows, color=color)
-    width = max(len(line) for line in table(rows).splitlines())
-    if not sys.stdout.isatty() or width <= shutil.get_terminal_size().columns:
-        return wide
+    columns = width_of(sys.stdout)
+    if columns is None or max(len(line) for line in table(rows, width=columns).splitlines()) <= columns:
+        return table(rows, color=color, width=columns)
     lines = table([row[:3] for row in rows], color=color).splitlines()
     return "\n".join(f"{line}\n    {meaning}" for line, (*_, meaning) in zip(lines, rows, strict=True))
 

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import os
 import re
+import shutil
 import sys
 import time
-from typing import TYPE_CHECKING, TextIO
+from importlib import import_module
+from io import StringIO
+from typing import TYPE_CHECKING, Any, TextIO
 
 from rtamt.errors import UsageError, choices, escaped
 from rtamt.language.printer import PAGE, to_text
@@ -20,6 +23,10 @@ COLOR_MODES = ("auto", "always", "never")
 
 #: What a cell of a table is about, to the code that a terminal takes for it.
 _CODES = {"good": "32", "bad": "31", "error": "33", "head": "1"}
+#: Characters to which a column of text may be folded.
+_NARROW = 12
+#: The same as the codes, for rich.
+_STYLES = {"good": "green", "bad": "red", "error": "yellow"}
 
 
 #: The codes that :func:`paint` writes.
@@ -67,11 +74,13 @@ def table(
     right: Sequence[int] = (),
     kinds: Sequence[str] = (),
     color: bool = False,
+    width: int | None = None,
 ) -> str:
     """Return rows of cells as aligned lines; the first row is the heading.
 
     ``right``: the columns (from 0) to align to the right, as numbers are. ``kinds``: for every row
-    after the heading, the kind (see ``paint``) of its last cell.
+    after the heading, the kind (see ``paint``) of its last cell. ``width``: of the terminal; where lines are longer,
+    cells of text are folded within their columns if rich is installed.
 
     >>> print(table([("trace", "samples"), ("a.csv", "7")], right=[1]))
     trace  samples
@@ -79,6 +88,12 @@ def table(
     """
     rows = [[escaped(cell).replace("\n", "\\n") for cell in row] for row in rows]
     widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
+    space = 2 * (len(widths) - 1)
+    if width is not None and sum(widths) + space > width and _rich("table") is not None:
+        whole = {*right, *([len(widths) - 1] if kinds else [])}
+        least = sum(own if i in whole else min(own, _NARROW) for i, own in enumerate(widths))
+        if least + space <= width:
+            return _folded(rows, right, kinds, color, width)
     lines = []
     for number, row in enumerate(rows):
         cells = [
@@ -92,8 +107,42 @@ def table(
     return "\n".join(lines)
 
 
+def width_of(stream: TextIO) -> int | None:
+    """Return the number of columns of a terminal; None where the stream is none."""
+    return shutil.get_terminal_size().columns if stream.isatty() else None
+
+
+def _rich(module: str) -> Any:
+    """Return a module of rich; None where it is not installed."""
+    try:
+        return import_module(f"rich.{module}")
+    except ImportError:
+        return None
+
+
+def _folded(
+    rows: Sequence[Sequence[str]], right: Sequence[int], kinds: Sequence[str], color: bool, width: int
+) -> str:
+    """Return a table with cells folded within their columns, drawn by rich; its codes are those of ``paint``."""
+    text = _rich("text").Text  # which reads no markup
+    drawn = _rich("table").Table(box=None, pad_edge=False, padding=(0, 2, 0, 0), header_style="bold")
+    last = len(rows[0]) - 1
+    for i, name in enumerate(rows[0]):
+        whole = i in right or (i == last and kinds)  # numbers and verdicts
+        drawn.add_column(
+            text(name), justify="right" if i in right else "left", overflow="fold", no_wrap=bool(whole)
+        )
+    for number, (*cells, end) in enumerate(rows[1:]):
+        drawn.add_row(*map(text, cells), text(end, _STYLES.get(kinds[number], "") if kinds else ""))
+    console = _rich("console").Console(
+        file=StringIO(), width=width, force_terminal=color, color_system="standard" if color else None
+    )
+    console.print(drawn)
+    return "\n".join(line.rstrip() for line in console.file.getvalue().rstrip().split("\n"))
+
+
 class Progress:
-    """A counter line on stderr while work takes long; nothing where stderr is no terminal.
+    """A counter line on stderr while work takes long, drawn by rich if that is installed; nothing without a terminal.
 
     Use it as a context: the line is gone at the end, and before anything else is printed.
     """
@@ -108,26 +157,60 @@ class Progress:
         self._live = self._stream.isatty()
         self._next = time.monotonic() + self.PAUSE
         self._shown = False
+        self._rich: Any = None
 
     def show(self, text: str) -> None:
         """Show what is going on, at most a few times a second."""
-        if self._live and time.monotonic() >= self._next:
-            self._next = time.monotonic() + self.PAUSE
-            self._shown = True
-            self._stream.write(f"\r\x1b[K{escaped(text)}")
-            self._stream.flush()
+        self._show(text)
 
     def bar(self, done: int, total: int, text: str) -> None:
         """Show how much of the work is done."""
-        filled = self.WIDTH * done // total
-        self.show(f"[{'#' * filled}{'.' * (self.WIDTH - filled)}] {done}/{total} {text}")
+        self._show(text, (done, total))
+
+    def _show(self, text: str, part: tuple[int, int] | None = None) -> None:
+        if not self._live or time.monotonic() < self._next:
+            return
+        self._next = time.monotonic() + self.PAUSE
+        self._shown = True
+        progress = _rich("progress")
+        if progress is not None:
+            self._draw(progress, text, part)
+            return
+        if part is not None:
+            done, total = part
+            filled = self.WIDTH * done // total
+            text = f"[{'#' * filled}{'.' * (self.WIDTH - filled)}] {done}/{total} {text}"
+        self._stream.write(f"\r\x1b[K{escaped(text)}")
+        self._stream.flush()
+
+    def _draw(self, progress: Any, text: str, part: tuple[int, int] | None) -> None:
+        """Draw a bar, the time so far and the text with rich."""
+        done, total = part or (None, None)
+        if self._rich is None:
+            columns = (
+                progress.BarColumn(self.WIDTH),
+                progress.MofNCompleteColumn(),
+                progress.TimeElapsedColumn(),
+                progress.TextColumn("{task.description}", markup=False),
+            )
+            console = _rich("console").Console(
+                file=self._stream, no_color=not use_color("auto", self._stream)
+            )
+            self._rich = progress.Progress(*columns, console=console, transient=True, auto_refresh=False)
+            self._rich.add_task(escaped(text), total=total)
+        self._rich.start()
+        self._rich.update(0, description=escaped(text), completed=done, total=total, refresh=True)
 
     def clear(self) -> None:
         """Take the line away."""
-        if self._shown:
-            self._stream.write("\r\x1b[K")
-            self._stream.flush()
-            self._shown = False
+        if not self._shown:
+            return
+        self._shown = False
+        if self._rich is not None:
+            self._rich.stop()
+            return
+        self._stream.write("\r\x1b[K")
+        self._stream.flush()
 
     def __enter__(self) -> Progress:
         return self

@@ -210,6 +210,17 @@ class EarlyMonitor:
     def changes(self, output: int) -> list[tuple[int, int, float, float]]:
         """Runs (first, last, lower, upper) that the last call changed."""
 
+    def supposed(
+        self,
+        output: int | None,
+        sample: int,
+        later: Sequence[tuple[int, int, Sequence[float], Sequence[float]]],
+    ) -> tuple[float, float] | None:
+        """The bounds of an output at a sample, or at the start, if later samples had these bounds of all inputs.
+
+        ``later``: (first, last, lower, upper), counted from the sample after the newest; None as for bounds().
+        """
+
     def causation_at_start(self) -> tuple[float, float]:
         """Violation and satisfaction that the newest sample causes at the start of the trace."""
 
@@ -353,6 +364,11 @@ def dense_evaluate(
     program: bytes, columns: Sequence[_Events], extra: int = 0, calls: _Calls = ...
 ) -> list[_Events]:
     """Run a program over whole signals, up to their last time and extra ticks more."""
+
+def dense_evaluate_bounds(
+    program: bytes, columns: Sequence[_Events], extra: int = 0
+) -> list[tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.float64]]]:
+    """Run a program without calls over bounds of whole signals, times and an array of shape (n, 2) of each."""
 
 def dense_scan(kind: str, a: _Events, b: _Events | None = None) -> _Events:
     """Unbounded future over whole step functions: run_max, run_min, or until."""

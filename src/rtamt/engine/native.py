@@ -42,9 +42,9 @@ class _TakenByPython:
     _update_carefully: Callable[..., Any]
     _step_carefully: Callable[..., Any]
 
-    def update(self, time: Any, /, **values: float) -> Any:
+    def update(self, *time: Any, **values: float) -> Any:
         """Take one sample."""
-        return self._update_carefully(time, **values)
+        return self._update_carefully(*time, **values)
 
     def step(self, *values: float) -> Any:
         """Take one sample by position."""

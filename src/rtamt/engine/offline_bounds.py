@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
@@ -17,6 +17,10 @@ if TYPE_CHECKING:
     from rtamt.signals.arrays import FloatArray
     from rtamt.signals.dense import DenseTrace
     from rtamt.signals.discrete import DiscreteTrace
+    from rtamt.signals.ticks import TickArray
+
+    #: Ticks, and the lower and the upper bound from each of them on.
+    StepBounds: TypeAlias = tuple[TickArray, FloatArray, FloatArray]
 
 
 def discrete(formula: Formula, trace: DiscreteTrace) -> BoundedSignal:
@@ -29,18 +33,28 @@ def discrete(formula: Formula, trace: DiscreteTrace) -> BoundedSignal:
 
 def dense(formula: Formula, trace: DenseTrace) -> BoundedSignal:
     """Return the bounds of a formula over a recording in dense time, by the definition."""
-    samples = {}
-    for name, (ticks, _) in trace.columns.items():
-        lower, upper = (_held(ends, len(ticks)) for ends in trace.bounds[name])
-        samples[name] = ticks.tolist(), lower.tolist(), upper.tolist()
+    samples = {name: tuple(each.tolist() for each in steps) for name, steps in signal_bounds(trace).items()}
     steps = dense_bounds.bounds(formula, DenseKnowledge(samples, finished=True), trace.scale.tick)
-    inside = [t for t in steps.times if t <= trace.end]
+    return bounded_signal(trace, np.array(steps.times), np.array(steps.lower), np.array(steps.upper))
+
+
+def signal_bounds(trace: DenseTrace) -> dict[str, StepBounds]:
+    """Return ticks, lower and upper bounds of each variable of a recording."""
+    return {
+        name: (ticks, *(_held(ends, len(ticks)) for ends in trace.bounds[name]))  # type: ignore[misc]
+        for name, (ticks, _) in trace.columns.items()
+    }
+
+
+def bounded_signal(
+    trace: DenseTrace, ticks: TickArray, lower: FloatArray, upper: FloatArray
+) -> BoundedSignal:
+    """Return bounds that change at these ticks, as far as the recording goes and with a point at its end."""
+    inside = ticks[ticks <= trace.end]
     if inside[-1] < trace.end:
-        inside.append(trace.end)
-    pairs = np.array([steps.at(t) for t in inside])
-    return BoundedSignal(
-        trace.scale.times(np.array(inside, np.int64)), pairs[:, 0].copy(), pairs[:, 1].copy()
-    )
+        inside = np.append(inside, trace.end)
+    places = ticks.searchsorted(inside, "right") - 1
+    return BoundedSignal(trace.scale.times(inside), lower[places], upper[places])
 
 
 def _held(values: FloatArray, count: int) -> FloatArray:

@@ -38,6 +38,16 @@ def _label(name: str | Formula) -> str:
     return excerpt(name) if isinstance(name, Formula) else str(name)
 
 
+def time_of(given: tuple[Any, ...]) -> Any:
+    """Return the only value without a name that ``update`` takes, the time of the sample."""
+    if len(given) != 1:
+        raise UsageError(
+            f"update() takes one time, and each variable by its name, such as update(0.5, x=1.0); got {len(given)} "
+            f"values without a name"
+        )
+    return given[0]
+
+
 class OnlineMonitor:
     """A monitor of either time domain, beside a base of the compiled core. Not instantiated by users."""
 

@@ -15,6 +15,7 @@ import numpy as np
 
 from rtamt.errors import TraceError, UsageError, choices, shown, with_article
 from rtamt.language.units import UNITS, check_unit, in_seconds
+from rtamt.signals import counting
 from rtamt.signals.counting import all_integers, integers, quotients, refuse_implausible
 from rtamt.signals.datetimes import has_length, in_nanoseconds, nanoseconds_of, no_length, out_of_reach
 from rtamt.signals.time_columns import check_frame
@@ -27,7 +28,7 @@ if TYPE_CHECKING:
     FloatArray = NDArray[np.float64]
 
 #: The key under which a trace holds its timestamps.
-TIME = "time"
+TIME = counting.TIME
 
 
 _MOMENTS = (datetime, timedelta, np.datetime64, np.timedelta64)

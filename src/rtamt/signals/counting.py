@@ -16,6 +16,12 @@ if TYPE_CHECKING:
     FloatArray = NDArray[np.float64]
     TickArray = NDArray[np.int64]
 
+#: Numbers that cannot be compared with a double without an overflow.
+_SHORT = (np.float16, np.float32)
+
+#: How timestamps are called beside signals.
+TIME = "time"
+
 #: Timestamps keep this distance from the ends of int64, so that bounds can be added to them.
 FARTHEST = 2**62
 
@@ -48,6 +54,8 @@ def refuse_implausible(times: Any, name: str, first: int = 0, source: str = "") 
     if isinstance(times, np.ndarray) and times.dtype.kind != "O":
         if times.dtype.kind not in "iuf" or not len(times):
             return
+        if times.dtype in _SHORT:
+            times = times.astype(np.float64)
         # NaN and infinities are reported elsewhere.
         if times.min() > -IMPLAUSIBLE and times.max() < IMPLAUSIBLE:
             return
@@ -63,12 +71,20 @@ def is_implausible(time: Any) -> bool:
     (False, True, True)
     """
     plain = isinstance(time, int | float | np.integer | np.floating) and not isinstance(time, np.timedelta64)
+    if isinstance(time, _SHORT):
+        time = float(time)
     return plain and bool(IMPLAUSIBLE <= abs(time) <= _LARGEST)
 
 
 def implausible(name: str, index: int, time: Any, source: str = "") -> TraceError:
     """Return the error for such a number where seconds are expected; ``source``: where it was read."""
-    number = time.item() if isinstance(time, np.generic) else time
+    number = (
+        float(time)
+        if isinstance(time, np.floating)
+        else time.item()
+        if isinstance(time, np.generic)
+        else time
+    )
     unit = next(unit for unit, least in _SINCE_1970 if abs(time) >= least)
     remedy = (
         f"if it counts {unit} since 1970, say time_unit='{unit}', or on the command line --time-unit {unit}"
@@ -76,11 +92,20 @@ def implausible(name: str, index: int, time: Any, source: str = "") -> TraceErro
     if abs(time) >= 2**64:
         remedy = "subtract a start time"
     return TraceError(
-        f"the time of '{name}'{f' of {source}' if source else ''} is {shown(number)} at sample {index}, "
+        f"{times_of(name)}{f' of {source}' if source else ''} is {shown(number)} at sample {index}, "
         f"too large for seconds: {remedy}",
         variable=name,
         index=index,
     )
+
+
+def times_of(name: str) -> str:
+    """Return the subject of a sentence about the timestamps of a signal.
+
+    >>> times_of("x"), times_of("time")
+    ("the time of 'x'", 'time')
+    """
+    return TIME if name == TIME else f"the time of '{name}'"
 
 
 def integers(times: Any) -> NDArray[Any]:

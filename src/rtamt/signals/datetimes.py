@@ -11,6 +11,7 @@ import numpy as np
 
 from rtamt.errors import TraceError
 from rtamt.language.units import UNITS
+from rtamt.signals.counting import times_of
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -94,7 +95,7 @@ def out_of_reach(name: str, index: int, time: Any, kind: str, where: str = "") -
 def no_length(name: str, index: int) -> TraceError:
     """Return the error for a ``timedelta64`` without a fixed length."""
     return TraceError(
-        f"the time of '{name}' is a timedelta64 without a unit of fixed length at sample {index}: "
+        f"{times_of(name)} is a timedelta64 without a unit of fixed length at sample {index}: "
         f"give it one, such as np.timedelta64(5, 'ms')",
         variable=name,
         index=index,

@@ -11,6 +11,7 @@ import numpy as np
 from rtamt.errors import TraceError
 from rtamt.language.units import format_duration
 from rtamt.signals import arrays
+from rtamt.signals.counting import times_of
 from rtamt.signals.regular import merged, never_set
 from rtamt.signals.signal import Signal
 from rtamt.signals.ticks import sequence_of
@@ -170,7 +171,7 @@ def not_increasing(name: str, index: int, time: int, before: int, scale: TimeSca
             index=index,
         )
     return TraceError(
-        f"the time of '{name}' does not increase at sample {index}: {scale.show(time)} comes after "
+        f"{times_of(name)} does not increase at sample {index}: {scale.show(time)} comes after "
         f"{scale.show(before)}; sort the samples",
         variable=name,
         index=index,

@@ -43,6 +43,7 @@ from rtamt.signals.counting import (
     refuse_implausible,
     rescaled,
     tick_of,
+    times_of,
 )
 from rtamt.signals.datetimes import counts_of, has_length, nanoseconds_of, no_length
 
@@ -232,7 +233,7 @@ class TimeScale:
         if self.kind == "seconds":
             expected += " or a datetime"
         return TraceError(
-            f"the time of '{name}' is {shown(time)} at sample {first + i}, expected {expected}",
+            f"{times_of(name)} is {shown(time)} at sample {first + i}, expected {expected}",
             variable=name,
             index=first + i,
         )
@@ -367,5 +368,5 @@ def date_of(seconds: float) -> np.datetime64:
 def not_finite(name: str, index: int, time: Any) -> TraceError:
     """Return the error for a time that is none."""
     return TraceError(
-        f"the time of '{name}' is {time} at sample {index}: give a finite time", variable=name, index=index
+        f"{times_of(name)} is {time} at sample {index}: give a finite time", variable=name, index=index
     )

@@ -19,6 +19,7 @@ interval              bounds of the robustness: late samples and corrections
 discrete_interval     the monitor of bounds in discrete time
 dense_interval        the monitor of bounds in dense time
 causation             the monitor of what each sample alone causes
+prediction            predictions of later samples, and the radius of their errors
 caller_clock          times of early monitors in the format of the caller
 early_check           whether a recording can no longer change a verdict (``rtamt check --early``)
 at_start              bounds and verdict at the start of the trace

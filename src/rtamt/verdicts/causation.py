@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 from rtamt.compiler.causation import compile_causes
 from rtamt.engine.gate import alone
 from rtamt.engine.native import EarlyMonitorBase
+from rtamt.engine.online import time_of
 from rtamt.errors import SpecificationError, TraceError, UsageError, shown
 from rtamt.language.printer import excerpt
 from rtamt.rewrite.check import unbounded_future
@@ -67,9 +68,9 @@ class CausationMonitor(DiscreteEarlyMonitor, EarlyMonitorBase):
             value; the monitor is then as it was.
             """
 
-    def _update_carefully(self, time: Any, /, **values: Any) -> Causation:
+    def _update_carefully(self, *given: Any, **values: Any) -> Causation:
         """Take a sample that the core did not take, or find out what is wrong with it."""
-        return self._take_in_order(time, values)  # type: ignore[no-any-return]
+        return self._take_in_order(time_of(given), values)  # type: ignore[no-any-return]
 
     def _bounds_of(
         self, values: Mapping[str, Any], index: int, time: float

@@ -11,6 +11,7 @@ from rtamt.engine.dense.early_python_backend import PythonDenseEarlyMonitor
 from rtamt.engine.dense.groups import own_variables
 from rtamt.engine.gate import alone, in_use
 from rtamt.engine.native import EarlyMonitorBase
+from rtamt.engine.online import time_of
 from rtamt.errors import TraceError
 from rtamt.language.undefined_value import undefined
 from rtamt.language.units import check_unit
@@ -213,8 +214,9 @@ class DenseEagerMonitor(DenseEarlyMonitor, EarlyMonitorBase):
             value; the monitor is then as it was.
             """
 
-    def _update_carefully(self, time: Any, /, **values: Any) -> list[VerdictRun]:
+    def _update_carefully(self, *given: Any, **values: Any) -> list[VerdictRun]:
         """Take an instant that the core did not take, or find out what is wrong with it."""
+        time = time_of(given)
         with self._gate:
             scale, tick, known = self._lessons(time, values)
             self._check_in_order(tick, scale, known)

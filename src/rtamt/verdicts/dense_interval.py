@@ -16,7 +16,7 @@ from rtamt.verdicts.dense_early import DenseEarlyMonitor
 from rtamt.verdicts.interval import Change, IntervalMonitor
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     from rtamt.engine.dense.runs import Run
     from rtamt.signals.ticks import TimeScale
@@ -122,8 +122,10 @@ class DenseIntervalMonitor(DenseEarlyMonitor, IntervalMonitor, EarlyMonitorBase)
 
     # ---- answers ---------------------------------------------------------------------------------
 
-    def interval(self, time: Any = None) -> Interval:
-        """Return the bounds at the start of the trace, or at an instant that is not long final (``at="every"``)."""
+    def interval(self, time: Any = None, *, prediction: Mapping[str, Any] | None = None) -> Interval:
+        """See :meth:`IntervalMonitor.interval`."""
+        if prediction is not None:
+            raise UsageError("a prediction needs discrete time; use it, or declare ranges")
         if time is None:
             return Interval(*self._backend.origin())
         if self.at == "start":

@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING, Any, ClassVar
 from rtamt.engine.backend import Session
 from rtamt.engine.discrete.apart import Apart
 from rtamt.engine.discrete.early_python_backend import PythonEarlyMonitor
+from rtamt.engine.discrete.samples import read_time
 from rtamt.engine.gate import in_use
 from rtamt.engine.native import EarlyMonitorBase
-from rtamt.errors import TraceError, shown
+from rtamt.errors import TraceError
 from rtamt.language.undefined_value import at_sample, undefined
 from rtamt.language.units import check_unit
 from rtamt.rewrite.desugar import written
@@ -134,8 +135,12 @@ class DiscreteEarlyMonitor(EarlyMonitor):
         """Return a time in seconds and as it was given; raise :class:`TraceError` for what is none."""
         stamp = self._clock.read(time, self._count)
         if stamp is None:
-            return Stamp(self._number(time))
-        return Stamp(self._number(stamp.seconds), stamp.original)
+            return Stamp(read_time(time, self.samples, None))
+        if not isfinite(stamp.seconds):
+            raise TraceError(
+                f"time is {stamp.seconds} at sample {self.samples}: give a finite number of seconds"
+            )
+        return stamp
 
     def _seconds(self, time: Any) -> float:
         return self._stamp(time).seconds
@@ -150,17 +155,6 @@ class DiscreteEarlyMonitor(EarlyMonitor):
             self._connect(self._backend)
         if self._clock.full and begun:
             self._clock.forget(self._backend.earliest)
-
-    def _number(self, time: Any) -> float:
-        number = arrays.number_of(time)
-        if number is None:
-            raise TraceError(
-                f"time is {shown(time)} at sample {self.samples}, expected a number of seconds",
-                variable=arrays.TIME,
-            )
-        if not isfinite(number):
-            raise TraceError(f"time is {number} at sample {self.samples}: give a finite number of seconds")
-        return number
 
     def _bounds_of(
         self, values: Mapping[str, Any], index: int, time: float

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from fractions import Fraction
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from rtamt.compiler.early import FOREVER
 from rtamt.engine.gate import alone, in_use
@@ -15,6 +15,10 @@ from rtamt.signals.outcomes import Interval
 from rtamt.signals.regular import irregular
 from rtamt.verdicts.discrete_early import DiscreteEarlyMonitor
 from rtamt.verdicts.interval import Change, IntervalMonitor
+from rtamt.verdicts.prediction import Later, later_samples
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
 
 
 class DiscreteIntervalMonitor(DiscreteEarlyMonitor, IntervalMonitor, EarlyMonitorBase):
@@ -140,9 +144,12 @@ class DiscreteIntervalMonitor(DiscreteEarlyMonitor, IntervalMonitor, EarlyMonito
 
     # ---- answers ---------------------------------------------------------------------------------
 
-    def interval(self, time: Any = None) -> Interval:
-        """Return the bounds at the start of the trace, or at a sample that is not long final (``at="every"``)."""
+    def interval(self, time: Any = None, *, prediction: Mapping[str, Any] | None = None) -> Interval:
+        """See :meth:`IntervalMonitor.interval`."""
+        later = None if prediction is None else self._later(prediction)
         if time is None:
+            if later is not None:
+                return Interval(*self._supposed(None, 0, later))
             return Interval(*self._backend.origin()) if self._at_end is None else self._at_end
         if self.at == "start":
             raise self._start_only()
@@ -155,12 +162,28 @@ class DiscreteIntervalMonitor(DiscreteEarlyMonitor, IntervalMonitor, EarlyMonito
             first, values = self._rest[0]
             found = values[sample - first] if first <= sample < first + len(values) else None
         else:
-            found = backend.bounds(0, sample)
+            found = backend.bounds(0, sample) if later is None else self._supposed(0, sample, later)
         if found is None:
             raise UsageError(
                 f"the bounds at {stamp:.15g} s are final and no longer kept; read them from changes() when they are"
             )
         return Interval(*found)
+
+    def _later(self, prediction: Mapping[str, Any]) -> list[Later]:
+        """Return predictions as the back end takes them."""
+        if self._finished:
+            raise UsageError("the trace has ended, so that there is nothing to predict")
+        if self._early:
+            raise UsageError(
+                "the trace has not started: it does when no earlier sample can come, and predictions follow the newest"
+            )
+        return later_samples(prediction, self.input_names, self._known_ranges())
+
+    def _supposed(self, output: int | None, sample: int, later: list[Later]) -> Any:
+        try:
+            return self._backend.supposed(output, sample, later)
+        except self._undefined as error:
+            raise self._no_value(error) from None
 
     def _changes(self, output: int) -> list[Change]:
         if self._rest:

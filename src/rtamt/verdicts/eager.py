@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from rtamt.engine.gate import alone
 from rtamt.engine.native import EarlyMonitorBase
+from rtamt.engine.online import time_of
 from rtamt.signals.outcomes import Verdict
 from rtamt.verdicts.discrete_early import DiscreteEarlyMonitor
 
@@ -44,9 +45,9 @@ class EagerMonitor(DiscreteEarlyMonitor, EarlyMonitorBase):
             value; the monitor is then as it was.
             """
 
-    def _update_carefully(self, time: Any, /, **values: Any) -> list[Verdict]:
+    def _update_carefully(self, *given: Any, **values: Any) -> list[Verdict]:
         """Take a sample that the core did not take, or find out what is wrong with it."""
-        return self._take_in_order(time, values)  # type: ignore[no-any-return]
+        return self._take_in_order(time_of(given), values)  # type: ignore[no-any-return]
 
     @alone
     def finish(self) -> list[Verdict]:

@@ -10,6 +10,7 @@ from fractions import Fraction
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rtamt.engine.gate import alone
+from rtamt.engine.online import time_of
 from rtamt.errors import BoundError, TraceError, UsageError, did_you_mean, shown
 from rtamt.language.units import duration
 from rtamt.rewrite.check import unbounded_future
@@ -116,8 +117,9 @@ class IntervalMonitor(EarlyMonitor):
             value; the monitor is then as it was.
             """
 
-    def _update_carefully(self, time: Any, /, **values: Any) -> None:
+    def _update_carefully(self, *given: Any, **values: Any) -> None:
         """Take a sample that the core did not take, or find out what is wrong with it."""
+        time = time_of(given)
         with self._gate:
             self._take(time, values)
 
@@ -222,8 +224,14 @@ class IntervalMonitor(EarlyMonitor):
     # ---- answers ---------------------------------------------------------------------------------
 
     @abstractmethod
-    def interval(self, time: Any = None) -> Interval:
-        """Return the bounds at the start of the trace, or at an instant that is not long final (``at="every"``)."""
+    def interval(self, time: Any = None, *, prediction: Mapping[str, Any] | None = None) -> Interval:
+        """Return the bounds at the start of the trace, or at an instant that is not long final (``at="every"``).
+
+        ``prediction``: what samples after the newest one are supposed to be, for this call alone, in discrete time:
+        from a variable to (lower, upper), two numbers for all later samples, or two arrays over the next ones.
+        The robustness lies within the bounds if the samples do; see :func:`rtamt.calibrate`. The
+        cost of a call is proportional to the length of the arrays.
+        """
 
     def changes(self) -> list[Change]:
         """Return runs of samples up to the newest one whose bounds the last update changed, with what they are now."""

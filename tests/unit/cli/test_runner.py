@@ -2,6 +2,7 @@
 
 import json
 import sqlite3
+import sys
 from contextlib import closing
 from html.parser import HTMLParser
 from io import StringIO
@@ -215,7 +216,8 @@ def test_info_of_a_recording_tells_what_was_found_and_guessed(run, write):
     )
 
 
-def test_a_bar_where_somebody_watches():
+def test_a_bar_where_somebody_watches(monkeypatch):
+    monkeypatch.setitem(sys.modules, "rich.progress", None)
     stream = StringIO()
     stream.isatty = lambda: True
     with Progress(stream) as progress:

@@ -1,6 +1,8 @@
 """Colour, tables and the counter line."""
 
 import io
+import re
+import sys
 
 import pytest
 
@@ -42,7 +44,39 @@ def test_colour_does_not_change_the_columns():
     )
 
 
+def test_a_table_wider_than_the_terminal_is_folded_within_its_columns():
+    rows = [
+        ("requirement", "trace", "verdict"),
+        ("brakes in time", "x" * 30, "violated"),
+        ("b", "y", "satisfied"),
+    ]
+    folded = table(rows, kinds=["bad", "good"], width=40).splitlines()
+    assert max(map(len, folded)) <= 40
+    assert "".join(line for line in folded).count("x") == 30
+    assert table(rows, kinds=["bad", "good"], width=80) == table(rows, kinds=["bad", "good"])
+    painted = table(rows, kinds=["bad", "good"], color=True, width=40)
+    assert re.sub("\x1b\\[[0-9]+m", "", painted).split() == " ".join(folded).split()
+    assert set(re.findall("\x1b\\[[0-9;]+m", painted)) == {f"\x1b[{code}m" for code in (0, 1, 31, 32)}
+
+
+def test_a_table_is_plain_text_where_rich_is_not_installed(monkeypatch):
+    rows = [("trace", "verdict"), ("x" * 30, "violated")]
+    monkeypatch.setitem(sys.modules, "rich.table", None)
+    assert table(rows, width=20) == table(rows)
+
+
+def test_rich_draws_a_bar_and_takes_it_away(monkeypatch):
+    monkeypatch.setattr(Progress, "PAUSE", 0.0)
+    stream = Terminal()
+    with Progress(stream) as progress:
+        progress.bar(1, 4, "[b]a.csv")
+        assert "1/4" in stream.getvalue()
+        assert "[b]a.csv" in stream.getvalue()
+    assert stream.getvalue().endswith("\x1b[2K")
+
+
 def test_the_counter_line_comes_after_a_while_and_goes_away(monkeypatch):
+    monkeypatch.setitem(sys.modules, "rich.progress", None)
     clock = iter([0.0, 0.1, 1.0, 1.0, 1.1])
     monkeypatch.setattr("rtamt.cli.terminal.time.monotonic", lambda: next(clock))
     stream = Terminal()

@@ -7,11 +7,12 @@ from typing import TYPE_CHECKING, Any
 
 from rtamt.compiler.plan import compile_program
 from rtamt.engine import offline_bounds
-from rtamt.engine.backend import Backend, Compiled, CompiledSession, Defined, Session, named
-from rtamt.engine.dense.evaluate import Evaluator
+from rtamt.engine.backend import Compiled, CompiledSession, Defined, Session, named
+from rtamt.engine.dense.evaluate import BoundsEvaluator, Evaluator
 from rtamt.engine.dense.python_backend import PythonDenseMonitor
 from rtamt.engine.native import core, not_made
-from rtamt.engine.user_operators import EventDriver, calls_of
+from rtamt.engine.user_operators import EventDriver, calls_of, is_built_in
+from rtamt.language.formula import postorder
 from rtamt.reference import dense as reference
 from rtamt.rewrite.desugar import desugar
 from rtamt.signals.dense import Dense
@@ -27,8 +28,12 @@ if TYPE_CHECKING:
     from rtamt.signals.outcomes import BoundedSignal
 
 
-class _DenseBackend(Backend):
-    """A back end of dense time, where bounds are computed by the definition."""
+class CompiledDense(Compiled):
+    """The compiled core."""
+
+    def evaluator(self, formulas: tuple[Formula, ...], step: Fraction, inputs: tuple[str, ...]) -> Evaluator:
+        """See :class:`Backend`."""
+        return Evaluator(formulas, step, inputs)
 
     def bounds(
         self,
@@ -36,16 +41,10 @@ class _DenseBackend(Backend):
         step: Fraction,
         inputs: tuple[str, ...],
     ) -> Callable[[DenseTrace], list[BoundedSignal]]:
-        """See :class:`Backend`."""
-        return lambda trace: [offline_bounds.dense(formula, trace) for formula in formulas]
-
-
-class CompiledDense(_DenseBackend, Compiled):
-    """The compiled core."""
-
-    def evaluator(self, formulas: tuple[Formula, ...], step: Fraction, inputs: tuple[str, ...]) -> Evaluator:
-        """See :class:`Backend`."""
-        return Evaluator(formulas, step, inputs)
+        """See :class:`Backend`. What the core can only call is left to the definition."""
+        if not all(map(is_built_in, postorder(*map(desugar, formulas)))):
+            return BACKENDS["python"].bounds(formulas, step, inputs)
+        return BoundsEvaluator(formulas, step, inputs).of_bounds
 
     def memory(self, program: Program) -> None:
         """See :class:`Backend`: windows keep as many changes as there are."""
@@ -63,7 +62,7 @@ class CompiledDense(_DenseBackend, Compiled):
         return EventProgram(formulas, inputs, domain, ignored, parts=parts)
 
 
-class DefinedDense(_DenseBackend, Defined):
+class DefinedDense(Defined):
     """The definition."""
 
     def evaluator(
@@ -79,6 +78,15 @@ class DefinedDense(_DenseBackend, Defined):
             return [(each.times, each.values) for each in steps]
 
         return evaluated
+
+    def bounds(
+        self,
+        formulas: tuple[Formula, ...],
+        step: Fraction,
+        inputs: tuple[str, ...],
+    ) -> Callable[[DenseTrace], list[BoundedSignal]]:
+        """See :class:`Backend`."""
+        return lambda trace: [offline_bounds.dense(formula, trace) for formula in formulas]
 
     def session(
         self,

@@ -8,11 +8,13 @@ import numpy as np
 
 from rtamt.compiler.plan import DEFINED, compile_plan
 from rtamt.engine.native import core, culprit, not_made
+from rtamt.engine.offline_bounds import bounded_signal, signal_bounds
 from rtamt.engine.user_operators import EventDriver, calls_of, defined_signal
 from rtamt.language.undefined_value import undefined
 from rtamt.rewrite.desugar import desugar
 from rtamt.rewrite.horizon import reach
 from rtamt.signals.dense import Dense
+from rtamt.signals.regular import merged
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -20,9 +22,12 @@ if TYPE_CHECKING:
 
     from rtamt.compiler.plan import Plan, Scan
     from rtamt.compiler.program import Program
+    from rtamt.engine.offline_bounds import StepBounds
+    from rtamt.errors import EvaluationError
     from rtamt.language.formula import Formula
     from rtamt.signals.dense import DenseTrace
     from rtamt.signals.dense_arrays import Samples
+    from rtamt.signals.outcomes import BoundedSignal
     from rtamt.signals.ticks import TimeScale
 
 
@@ -51,6 +56,42 @@ class Evaluator:
         return run(plan.program, columns, recording.scale, plan, self._asked)
 
 
+class BoundsEvaluator(Evaluator):
+    """Evaluates bounds of the same formulas over recordings that are known in part."""
+
+    def of_bounds(self, recording: DenseTrace) -> list[BoundedSignal]:
+        """Return the bounds of each formula from the recording's start to its end."""
+        plan, columns = self._plan, signal_bounds(recording)
+        for stage in plan.stages:
+            values = self._run(stage.program, columns, recording, self._settled)
+            for scan in stage.scans:
+                operands = [values[i] for i in scan.outputs]
+                lower, upper = (
+                    core().dense_scan(scan.kind, *((each[0], each[k]) for each in operands)) for k in (1, 2)
+                )
+                columns[scan.name] = _joined(lower, upper)
+        found = self._run(plan.program, columns, recording)
+        return [bounded_signal(recording, *each) for each in found]
+
+    def _run(
+        self, program: Program, columns: Mapping[str, StepBounds], recording: DenseTrace, extra: int = 0
+    ) -> list[StepBounds]:
+        _core = core()
+        inputs = [columns[name] for name in program.inputs]
+        signals = [(ticks, np.stack((lower, upper), axis=1)) for ticks, lower, upper in inputs]
+        try:
+            return _core.dense_evaluate_bounds(program.code(), signals, extra)  # type: ignore[no-any-return]
+        except _core.Undefined as error:
+            raise _undefined(error, program, recording.scale, self._plan, self._asked) from None
+
+
+def _joined(lower: Samples, upper: Samples) -> StepBounds:
+    """Return two step functions from the same instant on as one pair of bounds."""
+    ticks = merged([lower[0], upper[0]])
+    ends = (values[own.searchsorted(ticks, "right") - 1] for own, values in (lower, upper))
+    return ticks, *ends  # type: ignore[return-value]
+
+
 def run(
     program: Program,
     columns: Mapping[str, Samples],
@@ -68,9 +109,16 @@ def run(
     except RuntimeError as error:
         raise not_made(program, error) from None
     except _core.Undefined as error:
-        formula = culprit(error, program, asked, plan.original)
-        raise undefined(formula, f"time {scale.show(error.args[1])}") from None
+        raise _undefined(error, program, scale, plan, asked) from None
     return values
+
+
+def _undefined(
+    error: Exception, program: Program, scale: TimeScale, plan: Plan, asked: Sequence[Formula]
+) -> EvaluationError:
+    """Return the error for a value that does not exist."""
+    formula = culprit(error, program, asked, plan.original)
+    return undefined(formula, f"time {scale.show(error.args[1])}")
 
 
 def defined(scan: Scan, operands: list[Samples], recording: DenseTrace, plan: Plan) -> Samples:

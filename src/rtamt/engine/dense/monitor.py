@@ -10,7 +10,7 @@ from rtamt.engine.dense.backends import BACKENDS
 from rtamt.engine.dense.groups import GroupSession, own_variables
 from rtamt.engine.gate import alone, in_use
 from rtamt.engine.native import DenseMonitorBase
-from rtamt.engine.online import OnlineMonitor, Watched, depth_of
+from rtamt.engine.online import OnlineMonitor, Watched, depth_of, time_of
 from rtamt.errors import TraceError, UsageError
 from rtamt.language.undefined_value import undefined
 from rtamt.language.units import check_unit
@@ -111,8 +111,9 @@ class DenseMonitor(DenseMonitorBase, OnlineMonitor):
             for wrong data and :class:`EvaluationError` where an operation has no value; the monitor is then unchanged.
             """
 
-    def _update_carefully(self, time: Any, /, **values: Any) -> Signal:
+    def _update_carefully(self, *given: Any, **values: Any) -> Signal:
         """Take an instant that the core did not take, or find out what is wrong with it."""
+        time = time_of(given)
         flat = self._read_by_formula(values)
         for name in flat:
             if name not in self.input_names:

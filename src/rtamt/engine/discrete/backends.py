@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any
 from rtamt.compiler.plan import compile_program
 from rtamt.engine import offline_bounds
 from rtamt.engine.backend import Compiled, CompiledSession, Defined, Session, named
-from rtamt.engine.discrete.evaluate import BoundsEvaluator, Evaluator, is_built_in
+from rtamt.engine.discrete.evaluate import BoundsEvaluator, Evaluator
 from rtamt.engine.discrete.python_backend import PythonMonitor
 from rtamt.engine.native import core, core_monitor
-from rtamt.engine.user_operators import SampleDriver, calls_of
+from rtamt.engine.user_operators import SampleDriver, calls_of, is_built_in
 from rtamt.language.formula import postorder
 from rtamt.reference import discrete as reference
 from rtamt.rewrite.desugar import desugar

@@ -192,6 +192,29 @@ class PythonEarlyMonitor:
         """The bounds at the start of the trace."""
         return self._pair(self._bounds(self._start), 0)
 
+    def supposed(
+        self,
+        output: int | None,
+        sample: int,
+        later: Sequence[tuple[int, int, Sequence[float], Sequence[float]]],
+    ) -> Pair | None:
+        """The bounds of an output at a sample, or at the start, if later samples had these bounds of all inputs."""
+        known = self._knowledge()
+        columns, ranges, n = dict(known.columns), dict(self._ranges), known.n
+        for first, last, lower, upper in later:
+            for name, low, high in zip(self._names, lower, upper, strict=True):
+                if first == last:
+                    columns[name] = Enclosure(
+                        np.append(columns[name].lower, low), np.append(columns[name].upper, high)
+                    )
+                else:
+                    ranges[name] = (low, high)
+            n += first == last
+        formula = self._start if output is None else self._outputs[output]
+        supposed = Knowledge(columns, n, ranges, closed=known.closed)
+        start = self._times[0] if self._times else 0.0
+        return self._pair(bounds(formula, supposed, self._period, start), sample)
+
     def bounds(self, output: int, sample: int) -> Pair:
         """The bounds of an output at a sample."""
         return self._pair(self._bounds(self._outputs[output]), sample)

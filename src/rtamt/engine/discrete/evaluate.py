@@ -11,7 +11,6 @@ from rtamt.compiler.plan import DEFINED, Plan, compile_plan
 from rtamt.engine.native import core, culprit, not_made
 from rtamt.engine.user_operators import SampleDriver, calls_of, defined_column
 from rtamt.language.formula import Apply, postorder
-from rtamt.language.operators import Pointwise, Shift, Since, Until, Window
 from rtamt.language.undefined_value import at_sample, undefined
 from rtamt.rewrite.desugar import desugar
 
@@ -85,13 +84,6 @@ class BoundsEvaluator(Evaluator):
         with undefined_named(program, trace, plan, self._asked):
             found: list[Ends] = core().evaluate_bounds(program.code(), inputs, len(trace))
         return found
-
-
-def is_built_in(node: Formula) -> bool:
-    """Return whether the core has a built-in kernel for an operator."""
-    return not isinstance(node, Apply) or isinstance(
-        node.op.kernel, Pointwise | Window | Shift | Since | Until
-    )
 
 
 def longest_bound(formulas: Sequence[Formula], period: Fraction) -> int:

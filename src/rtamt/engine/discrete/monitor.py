@@ -13,7 +13,7 @@ from rtamt.engine.discrete.caller_times import CallerTimes
 from rtamt.engine.discrete.samples import read_time, read_values
 from rtamt.engine.gate import alone, in_use
 from rtamt.engine.native import MonitorBase
-from rtamt.engine.online import OnlineMonitor, Watched, depth_of
+from rtamt.engine.online import OnlineMonitor, Watched, depth_of, time_of
 from rtamt.errors import TraceError, UsageError
 from rtamt.language.undefined_value import at_sample, undefined
 from rtamt.language.units import check_unit
@@ -143,8 +143,9 @@ class Monitor(MonitorBase, OnlineMonitor):
             [1.0, 1.0]
             """
 
-    def _update_carefully(self, time: Any, /, **values: Any) -> float | None:
+    def _update_carefully(self, *given: Any, **values: Any) -> float | None:
         """Take a sample that the core did not take, or find out what is wrong with it."""
+        time = time_of(given)
         if self._times.plain:
             return self._take(time, values)
         return self._take_told(time, values)
