@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from rtamt.errors import EvaluationError
 from rtamt.language.dense_definitions import QUARTERS, Steps, critical, lifted
-from rtamt.language.formula import Apply, Formula, Interval, Var, postorder
+from rtamt.language.formula import Apply, Const, Formula, Interval, Var, postorder
 from rtamt.language.operators import STL, Bounds, Operator, Sort, Tense
 from rtamt.reference import discrete as reference
 from rtamt.reference.dense import DenseReferenceMonitor, StepFunction, evaluate
@@ -36,6 +36,8 @@ def named(ops):
 
 
 def operands(op: Operator) -> tuple[Formula, ...]:
+    if len(op.operands) > 2:  # limits that are not reversed
+        return (Var("x"), Const(-1.0), Const(1.5))
     return tuple(Var(name) for name, _ in zip("xy", op.operands, strict=False))
 
 

@@ -75,6 +75,8 @@ IN_TIME: dict[str, Callable[..., Any]] = {
     "eventually": lambda p, t, a, b: max(_ahead(p, t, a, b)),
     "historically": lambda p, t, a, b: min(_behind(p, t, a, b), default=TOP),
     "once": lambda p, t, a, b: max(_behind(p, t, a, b), default=BOTTOM),
+    "minimum": lambda p, t, a, b: min(_behind(p, t, a, b), default=TOP),
+    "maximum": lambda p, t, a, b: max(_behind(p, t, a, b), default=BOTTOM),
     "until": _until,
     "since": _since,
     "precedes": _precedes,

@@ -265,7 +265,10 @@ DENSE: dict[str, Callable[..., Any]] = {
 
 ATOMS = {"true": True, "false": False}
 
-COVERED = {*NUMBERS, *COMPARISONS, *POINTWISE, *DISCRETE, *ATOMS}
+# Numbers over time, each with the formula of the same window.
+AGGREGATES = {"minimum": "historically", "maximum": "once"}
+
+COVERED = {*NUMBERS, *COMPARISONS, *POINTWISE, *DISCRETE, *ATOMS, *AGGREGATES}
 
 # ---- semantics: (U, V), of which change is measured and which are fixed ------------------------------
 
@@ -350,7 +353,7 @@ def _evaluate(
             return [POINTWISE[name](alg, *values) for values in zip(*below, strict=True)]
         begin, end = (0, None) if node.interval is None else (node.interval.begin, node.interval.end)
         window = (int(begin / step), inf if end is None else int(end / step))
-        return [in_time[name](alg, *below, t, *window) for t in range(size)]
+        return [in_time[AGGREGATES.get(name, name)](alg, *below, t, *window) for t in range(size)]
 
     def evaluate(node: Formula, below: tuple[tuple[Values, Values], ...]) -> tuple[Values, Values]:
         """Return the values of a node read as a number, and read as a formula."""
@@ -363,10 +366,13 @@ def _evaluate(
             assert isinstance(node, Apply)
             name = node.op.name
             pointwise = COMPARISONS[name][0] if name in COMPARISONS else NUMBERS.get(name)
-            if pointwise is None:
+            if name in AGGREGATES:
+                number = apply(ROBUSTNESS, node, operands)
+            elif pointwise is None:
                 formulas = [as_formula for _, as_formula in below]
                 return apply(ROBUSTNESS, node, operands), apply(alg, node, formulas)
-            number = [pointwise(*values) for values in zip(*operands, strict=True)]
+            else:
+                number = [pointwise(*values) for values in zip(*operands, strict=True)]
             if name in NUMBERS:
                 _defined(node, number)
         return number, _judged(node, operands, number, semantics, inputs)

@@ -295,6 +295,13 @@ STL: Language = Language.of((
     _prefix("once", "once O", 75, "At some instant of the window behind: the largest value.",
             "once[0:5](x >= 3)", latex=r"\mathbf{{O}}_{I} {0}", tense=Tense.PAST, bounds=Bounds.OPTIONAL,
             definition=d.once, dense=dense.once, kernel=Window("max"), dual="historically", guards=("and",)),
+    # ---- numbers over time -------------------------------------------------------------------
+    _function("minimum", 1, "The least number of the window behind.", "minimum[0:5](x) >= 3",
+              latex=r"\mathrm{{minimum}}_{I}({0})", tense=Tense.PAST, bounds=Bounds.OPTIONAL,
+              definition=d.historically, dense=dense.historically, kernel=Window("min"), guards=("implies",)),
+    _function("maximum", 1, "The greatest number of the window behind.", "maximum[0:5](x) - x <= 3",
+              latex=r"\mathrm{{maximum}}_{I}({0})", tense=Tense.PAST, bounds=Bounds.OPTIONAL,
+              definition=d.once, dense=dense.once, kernel=Window("max"), guards=("and",)),
     # ---- one sample away ---------------------------------------------------------------------
     _prefix("prev", "prev Y previous", 70, "One sample ago; holds where there is none.", "prev(x >= 3)",
             latex=r"\mathbf{{Y}} {0}", tense=Tense.PAST, reach=1, discrete_only=True,
