@@ -206,6 +206,7 @@ class Result:
         start: Any = None,
         end: Any = None,
         zoom: str | None = None,
+        bounds: bool = False,
         figure: Figure | None = None,
     ) -> Figure:
         """Plot the signals, the robustness over time and the explanation; needs ``pip install 'rtamt[plot]'``.
@@ -215,8 +216,9 @@ class Result:
         next to the top. Intervals in which a formula does not hold are shaded (Boolean semantics), the sufficient
         cause is yellow, and a diamond marks the critical point; infinities are drawn at the edge. ``at``: the
         instant to explain, as in :meth:`explain`. ``start`` and ``end``: the visible time range;
-        ``zoom="violation"``: the range around the first violation. ``figure``: the matplotlib figure to draw
-        into, by default a new one of pyplot.
+        ``zoom="violation"``: the range around the first violation. ``bounds``: also draw what was known of the
+        robustness at the start after each sample, a band that narrows to it, and the sample that decided the
+        verdict (discrete time). ``figure``: the matplotlib figure to draw into, by default a new one of pyplot.
 
         >>> import rtamt
         >>> from matplotlib.figure import Figure
@@ -229,7 +231,7 @@ class Result:
         from rtamt.plot.scene import scene
 
         self._require_one_start("plot")
-        seen = scene(self, at)
+        seen = scene(self, at, bounds=bounds)
         window = seen.window(start, end, zoom)
         canvas = new_figure() if figure is None else figure
         draw(seen, rows, canvas, window)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import sys
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -18,6 +19,7 @@ from rtamt.verdicts.discrete_early import DiscreteEarlyMonitor
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from rtamt.cli.live_view import Live
     from rtamt.signals.outcomes import Interval, Verdict
     from rtamt.verdicts.at_start import StartMonitor
     from rtamt.verdicts.causation import CausationMonitor
@@ -56,10 +58,14 @@ class EagerFeed:
 
 
 class StartFeed:
-    """Prints bounds and verdict at the start of the trace whenever they change."""
+    """Prints bounds and verdict at the start of the trace whenever they change.
 
-    def __init__(self, start: StartMonitor) -> None:
+    What is drawn live replaces that on a terminal, and goes beside it into a pipe or a file.
+    """
+
+    def __init__(self, start: StartMonitor, live: Live | None = None) -> None:
         self.start = start
+        self._live = live
         self.monitor = start.bounds
         self._last: tuple[Interval, str] | None = None
 
@@ -73,13 +79,22 @@ class StartFeed:
         now = self.start.interval(), self._status()
         if now != self._last:
             self._last = now
-            say(f'{{"time": {_json(time)}, {self._members(*now)}}}', flush=True)
+            self._say(f'{{"time": {_json(time)}, {self._members(*now)}}}')
+        if self._live is not None:
+            self._live.bounds(*now, self.start.satisfied)
         return ""
 
     def finish(self) -> None:
         """End the trace; print what is known at its end."""
         self.start.finish()
-        say(f'{{{self._members(self.start.interval(), self._status())}, "final": true}}', flush=True)
+        now = self.start.interval(), self._status()
+        self._say(f'{{{self._members(*now)}, "final": true}}')
+        if self._live is not None:
+            self._live.bounds(*now, self.start.satisfied)
+
+    def _say(self, line: str) -> None:
+        if self._live is None or not sys.stdout.isatty():
+            say(line, flush=True)
 
     def _members(self, interval: Interval, status: str) -> str:
         return f'{_ends(interval)}, "status": {json.dumps(status)}'

@@ -20,8 +20,12 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
     from typing import TextIO
 
+    from rtamt.signals.outcomes import Interval
+
 _BLOCKS = "▁▂▃▄▅▆▇█"
 _SIGNS = {True: "✓", False: "✗"}
+#: The names of the two lines of bounds.
+_BAND = ("upper ", "lower ")
 #: Values that are kept: more columns than a terminal has.
 _MOST = 1000
 
@@ -52,6 +56,8 @@ class Live:
         self.units = dict(units or {})
         self._title = title
         self._values: deque[float] = deque(maxlen=_MOST)
+        self._bounds: deque[Interval] = deque(maxlen=_MOST)
+        self._status: tuple[str, bool | None] = ("", None)
         self._latest: dict[str, float] = {}
         self._known: Any = None
         self._lowest: tuple[float, Any] = (inf, None)
@@ -80,17 +86,40 @@ class Live:
         if robustness < self._lowest[0] or self._lowest[1] is None:
             self._lowest = (robustness, stamp)
 
+    def bounds(self, known: Interval, status: str, satisfied: bool | None) -> None:
+        """Take what is known of the robustness and the verdict at the start of the trace after a sample."""
+        self._bounds.append(known)
+        self._status = (status, satisfied)
+
     def __rich_console__(self, _: object, options: Any) -> Iterator[Any]:
         """Yield the lines, none wider than the terminal."""
-        seen = list(self._values)[-options.max_width :]
         yield self._line(self._title, "bold")
-        yield self._line(self._verdict(), _color(seen[-1]) if seen else "")
-        yield self._text.assemble(*zip(blocks(seen), map(_color, seen), strict=True))
+        yield from self._band(options.max_width) if self._bounds else self._robustness(options.max_width)
         values = "  ".join(
             f"{name} = {short(value)} {self.units.get(name, '')}".rstrip()
             for name, value in self._latest.items()
         )
         yield self._line(f"{self._samples} samples  {values}")
+
+    def _robustness(self, width: int) -> Iterator[Any]:
+        seen = list(self._values)[-width:]
+        yield self._line(self._verdict(), _color(seen[-1]) if seen else "")
+        yield self._text.assemble(*zip(blocks(seen), map(_color, seen), strict=True))
+
+    def _band(self, width: int) -> Iterator[Any]:
+        """Yield the verdict, and the bounds as two lines on one scale, which meet in the robustness."""
+        text, satisfied = self._status
+        known = list(self._bounds)[-(width - len(_BAND[0])) :]
+        style = "yellow" if satisfied is None else "green" if satisfied else "red"
+        sign = "…" if satisfied is None else _SIGNS[satisfied]
+        last = known[-1]
+        yield self._line(
+            f"{sign} {text}  (robustness from {short(last.lower)} to {short(last.upper)})", style
+        )
+        ends = [each.upper for each in known], [each.lower for each in known]
+        drawn = blocks([*ends[0], *ends[1]])
+        for name, part in zip(_BAND, (drawn[: len(known)], drawn[len(known) :]), strict=True):
+            yield self._text.assemble((name, "dim"), (part, style))
 
     def _line(self, text: str, style: str = "") -> Any:
         return self._text(escaped(text).replace("\n", " "), style, no_wrap=True, overflow="ellipsis")

@@ -87,8 +87,9 @@ A line that is no sample ends the monitor with exit code 2. With --keep-going it
 left out, and the exit code is 2 at the end. A sample that is left out leaves a gap in time, which
 --tolerance inf allows: the next sample then takes its place.
 
---live draws on the terminal (stderr) instead: verdict, robustness so far, lowest value, latest samples with
-their units; what is piped on stays as it is. It needs the package rich: pip install 'rtamt[cli]'.
+--live draws on the terminal (stderr) instead: verdict, robustness so far (of unbounded future its bounds at
+the start), lowest value, latest samples with their units; what is piped on stays as it is. It needs the package
+rich: pip install 'rtamt[cli]'.
 
 examples:
   echo '{"time": 0, "x": 5}' | rtamt monitor "x >= 3"
@@ -132,7 +133,7 @@ def run(args: argparse.Namespace) -> int:
     told = Output(verdicts=spec.semantics == "boolean", live=live)
     names = tuple(spec.requirements) if len(spec.requirements) > 1 else ()
     watched: Feed
-    early = _early(spec, args)
+    early = _early(spec, args, live)
     if early is not None:
         watched = early
     elif dense:
@@ -172,16 +173,16 @@ def _follow(watched: Feed, samples: Samples, live: Live | None, *, keep_going: b
     return code
 
 
-def _early(spec: Specification, args: argparse.Namespace) -> EarlyFeed | None:
+def _early(spec: Specification, args: argparse.Namespace, live: Live | None) -> EarlyFeed | None:
     """Return what prints before the horizon, if that is asked for, or if there is no horizon."""
     verdict = args.verdict
     at_start = verdict in {None, "interval"} and unbounded_future(spec.formula) is not None
     if not at_start and verdict in {None, DELAYED}:
         return None
+    if at_start:
+        return StartFeed(StartMonitor(spec, tolerance=args.tolerance), live)
     if args.live:
         raise CommandError(f"--live draws the robustness; leave it out, or use --verdict {DELAYED}")
-    if at_start:
-        return StartFeed(StartMonitor(spec, tolerance=args.tolerance))
     monitor = spec.monitor(verdict=verdict, tolerance=args.tolerance)
     if isinstance(monitor, CausationMonitor):
         return CausationFeed(monitor)

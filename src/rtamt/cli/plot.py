@@ -32,7 +32,9 @@ matplotlib: pip install 'rtamt[plot]'."""
 
 _EPILOG = """\
 Shaded: where a formula does not hold. Yellow: the implicant, the predicates on these intervals alone
-force the verdict. Diamond: the critical point. Without -o the picture is shown in a window.
+force the verdict. Diamond: the critical point. --bounds: a band from the lower to the upper bound of the
+robustness at the start, as known after each sample; it narrows to the robustness. Without -o the picture is
+shown in a window.
 
 examples:
   rtamt plot examples/request_grant/spec.stl examples/request_grant/c_violated.csv -o build/c.png
@@ -58,6 +60,11 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--zoom", metavar="{violation}", help="show the first violation and what is around it"
     )
+    parser.add_argument(
+        "--bounds",
+        action="store_true",
+        help="draw what was known of the robustness at the start after each sample, and when the verdict was decided",
+    )
     parser.add_argument("--tree", action="store_true", help="draw the formula as a tree with its values")
 
 
@@ -70,7 +77,7 @@ def run(args: argparse.Namespace) -> int:
         progress.show("evaluating")
         trace, result = result_of_one(args, "plot")
         try:
-            seen = scene(result, instant(args.at, result))
+            seen = scene(result, instant(args.at, result), bounds=args.bounds)
             ends = (instant(args.start, result, "--from"), instant(args.end, result, "--to"))
             window = seen.window(*ends, args.zoom)
         except StlError as error:

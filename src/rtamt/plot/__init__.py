@@ -6,6 +6,7 @@
 module  purpose
 ======  ===============================================================
 scene   the content of a plot as data
+band    bounds at the start of a trace, after each sample
 panels  which signals share a panel
 lines   points of lines, and intervals in which a formula does not hold
 clock   times as positions on an axis

@@ -11,11 +11,13 @@ import numpy as np
 from rtamt.extras import library
 from rtamt.language.formula import variables
 from rtamt.plot import style
+from rtamt.plot.lines import Line
+from rtamt.signals.regular import merged
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from rtamt.plot.lines import Line
+    from rtamt.plot.band import Band
     from rtamt.plot.scene import Node, Panel, Scene
     from rtamt.signals.arrays import FloatArray
 
@@ -70,8 +72,8 @@ class _Drawing:
 
     def draw(self) -> None:
         least = _ROW if len(self._scene.panels) > _FEW else _PANEL
-        heights = [max(least, _names_height(panel)) for panel in self._scene.panels] + [_ROW] * len(
-            self._chosen
+        heights = [max(least, _names_height(panel)) for panel in self._scene.panels] + [_ROW] * (
+            len(self._chosen) + (self._scene.band is not None)
         )
         head = _HEAD + 0.19 * len(self._title) + 0.2
         total = head + sum(heights) + _GAP * (len(heights) - 1) + _FOOT
@@ -88,8 +90,10 @@ class _Drawing:
             self._frame(axis)
         for panel, axis in zip(self._scene.panels, axes[:split], strict=True):
             self._panel(panel, axis)
-        for number, axis in zip(self._chosen, axes[split:], strict=True):
+        for number, axis in zip(self._chosen, axes[split:], strict=False):
             self._row(number, axis)
+        if self._scene.band is not None:
+            self._bounds(self._scene.band, axes[-1])
         for axis in axes[:-1]:
             axis.tick_params(labelbottom=False)
         self._time_axis(axes[-1])
@@ -236,22 +240,12 @@ class _Drawing:
         self._instants(axis)
         at = self._scene.told_at(number)
         value, fails = node.line.at(at), node.fails_at(at)
-        axis.annotate(
+        told = f"at {self._scene.clock.told(at)}"
+        self._beside(
+            axis,
             f"{style.SIGNS[not fails]} {style.number(value)}",
-            (1.012, 0.5),
-            xycoords="axes fraction",
-            fontsize=9,
-            fontweight="bold",
-            va="bottom",
-            color=style.FAILS if fails else style.HOLDS,
-        )
-        axis.annotate(
-            f"at {self._scene.clock.told(at)}".replace(" (+", "\n(+"),
-            (1.012, 0.44),
-            xycoords="axes fraction",
-            fontsize=7.5,
-            va="top",
-            color=style.QUIET,
+            told,
+            style.FAILS if fails else style.HOLDS,
         )
         if (
             self._scene.critical is not None
@@ -261,12 +255,69 @@ class _Drawing:
             position = self._scene.critical[1]
             self._diamond(axis, position, float(edges.shown(np.array([node.line.at(position)]))[0]))
 
+    def _beside(self, axis: Any, text: str, moment: str, color: str) -> None:
+        """Write what holds, and when, beside a row."""
+        axis.annotate(
+            text,
+            (1.012, 0.5),
+            xycoords="axes fraction",
+            fontsize=9,
+            fontweight="bold",
+            va="bottom",
+            color=color,
+        )
+        axis.annotate(
+            moment.replace(" (+", "\n(+"),
+            (1.012, 0.44),
+            xycoords="axes fraction",
+            fontsize=7.5,
+            va="top",
+            color=style.QUIET,
+        )
+
     def _fails(self, axis: Any, node: Node) -> None:
         for start, end in self._visible(node.fails):
             patch = axis.axvspan(
                 self._place(start), self._place(end), facecolor=style.FAILS, alpha=0.13, linewidth=0
             )
             self._marks.setdefault("does not hold", patch)
+
+    # ---- bounds ------------------------------------------------------------------------------------
+
+    def _bounds(self, band: Band, axis: Any) -> None:
+        """Draw what was known of the robustness at the start after each sample, and what it was in the end."""
+        both = [
+            self._seen(Line(end, band.positions, values)).decimated(_COLUMNS)
+            for end, values in (("lower", band.lower), ("upper", band.upper))
+        ]
+        every = np.concatenate([line.values for line in both])
+        edges = _Edges(axis, np.append(every[np.isfinite(every)], (0.0, band.robustness)), both)
+        axis.axhline(0.0, color=style.QUIET, linewidth=0.9)
+        places = merged([line.positions for line in both])
+        lower, upper = (
+            edges.shown(values[np.searchsorted(band.positions, places)])
+            for values in (band.lower, band.upper)
+        )
+        axis.fill_between(
+            self._places(places), lower, upper, step="post", color=style.BAND, alpha=0.35, linewidth=0
+        )
+        for values in (lower, upper):
+            axis.plot(self._places(places), values, color=style.BAND, linewidth=1.2, drawstyle="steps-post")
+        axis.axhline(float(edges.shown(np.array([band.robustness]))[0]), color=style.INK, linewidth=1.4)
+        axis.set_title(
+            "bounds of the robustness at the start, after each sample",
+            loc="left",
+            fontsize=8.5,
+            pad=4,
+            color=style.INK,
+        )
+        axis.set_ylabel("ρ", rotation=0, fontsize=9, color=style.QUIET, va="center")
+        axis.yaxis.set_label_coords(-0.068, 0.5)
+        kind = style.HOLDS if self._scene.explanation.satisfied else style.FAILS
+        if band.decided is not None and self._sees(band.decided):
+            axis.axvline(self._place(band.decided), color=kind, linewidth=1.2)
+        told = "at the end" if band.decided is None else f"at {self._scene.clock.told(band.decided)}"
+        self._beside(axis, "decided", told, kind)
 
     # ---- marks -------------------------------------------------------------------------------------
 

@@ -11,6 +11,7 @@ from rtamt.errors import UsageError
 from rtamt.explain.sentences import predicate_text
 from rtamt.language.formula import Apply, Var, variables
 from rtamt.language.records import Bounds, Fixity
+from rtamt.plot.band import Band, band
 from rtamt.plot.clock import Clock
 from rtamt.plot.lines import Line, Range, ranges
 from rtamt.plot.panels import groups
@@ -80,6 +81,8 @@ class Scene:
     nodes: tuple[Node, ...]
     at: float
     critical: tuple[int, float] | None
+    #: What was known of the robustness at the start after each sample, where that is asked for.
+    band: Band | None = None
 
     @property
     def verdict(self) -> str:
@@ -147,9 +150,12 @@ class Scene:
         return tuple(found)
 
 
-def scene(result: Result, at: Any = None) -> Scene:
-    """Return what there is to see of a result, explained at an instant (by default the first)."""
-    return _Painter(result, at).scene()
+def scene(result: Result, at: Any = None, *, bounds: bool = False) -> Scene:
+    """Return what there is to see of a result, explained at an instant (by default the first).
+
+    ``bounds``: also what was known after each sample; see :func:`~rtamt.plot.band.band`.
+    """
+    return _Painter(result, at).scene(band(result) if bounds else None)
 
 
 class _Painter:
@@ -162,7 +168,7 @@ class _Painter:
         self._clock = Clock.of(result.trace)
         self._dense = result.trace.domain.continuous
 
-    def scene(self) -> Scene:
+    def scene(self, known: Band | None) -> Scene:
         formulas = _sub_formulas(self._spec.formula)
         places = {formula: i for i, formula in enumerate(formulas)}
         point = self._explanation.critical
@@ -181,6 +187,7 @@ class _Painter:
             ),
             self._clock.position(self._explanation.time),
             critical,
+            known,
         )
 
     def _signals(self, formulas: Sequence[Formula]) -> Iterator[tuple[Signal, Signal]]:

@@ -8,6 +8,8 @@ SIGNALS = ("#0072B2", "#E69F00", "#009E73", "#CC79A7", "#56B4E9", "#5D4A9C")
 HOLDS, FAILS = "#0072B2", "#D55E00"
 #: Behind what an implicant rests on.
 BECAUSE = "#F0E442"
+#: Between bounds.
+BAND = "#009E73"
 INK, QUIET, FAINT = "#1f2328", "#6e7781", "#d1d9e0"
 
 #: What a verdict is drawn with, beside its colour.

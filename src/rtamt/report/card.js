@@ -48,6 +48,7 @@ class Card {
     }
     this.body.append(node("h3", {}, `Robustness of the formula and its parts; values of the parts at ${data.told}`));
     await this.tree();
+    if (data.bounds) this.band(data.bounds);
     this.timeline.join(this);
     this.section.querySelectorAll(".go").forEach((line) => this.link(line));
     this.section.addEventListener("toggle", () => { if (this.section.open) this.draw(); });
@@ -88,6 +89,17 @@ class Card {
       fold.addEventListener("toggle", () => this.prepare());
       for (const child of [...part.children].reverse()) stack.push([child, depth + 1]);
     }
+  }
+
+  // What was known of the robustness at the start after each sample.
+  band({ decided, robustness, line }) {
+    this.body.append(node("h3", {}, `Bounds of the robustness at the start, after each sample; decided ${decided === null ? "at the end" : `at ${decided}`}`));
+    const host = this.host(104);
+    this.body.append(host.frame);
+    const levels = typeof robustness === "number" && robustness !== 0 ? [0, robustness] : [0];
+    this.charts.push(new Chart(this, host.plot, {
+      lines: [new Line(line)], height: 104, levels, fails: new Float64Array(), because: new Float64Array(),
+    }));
   }
 
   // Draw what is small at once, then load every sample of what is seen.

@@ -70,7 +70,8 @@ class Legend {
   // Whatever is seen is samples, unless this says otherwise.
   note(seen) {
     const kinds = new Set(seen.map(({ kind }) => kind)), most = Math.max(...seen.map(({ per }) => per || 0));
-    this.told.textContent = kinds.has("ranges") ? "boxes: range of the samples, which this file does not hold"
+    const bands = this.chart.lines.every(({ data }) => data.band);
+    this.told.textContent = bands ? "" : kinds.has("ranges") ? "boxes: range of the samples, which this file does not hold"
       : kinds.has("extremes") ? `${number(Math.round(most * devicePixelRatio))} samples a pixel: lowest and highest drawn` : "";
   }
 }

@@ -10,6 +10,7 @@ import numpy as np
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
+    from rtamt.plot.band import Band
     from rtamt.plot.lines import Line, Range
     from rtamt.plot.scene import Panel, Scene
     from rtamt.report.store import Store
@@ -44,6 +45,30 @@ def data_of(scene: Scene, store: Store) -> dict[str, Any]:
         "nodes": [_node(number, scene, store, share) for number in range(len(scene.nodes))],
         "told": scene.clock.told(scene.told_at(-1)),
         "open": list(scene.chosen(6)),
+        "bounds": None if scene.band is None else _bounds(scene.band, scene, store),
+    }
+
+
+def _bounds(band: Band, scene: Scene, store: Store) -> dict[str, Any]:
+    """Return the band of what was known after each sample, as a line that is a range everywhere."""
+    both = np.concatenate([band.lower, band.upper])
+    finite = both[np.isfinite(both)]
+    return {
+        "decided": None if band.decided is None else scene.clock.told(band.decided),
+        "robustness": _number(band.robustness),
+        "line": {
+            "name": "robustness at the start",
+            "band": True,
+            "points": len(band.positions),
+            "low": float(finite.min()) if len(finite) else None,
+            "high": float(finite.max()) if len(finite) else None,
+            "ends": [bool((both == end).any()) for end in (-np.inf, np.inf)],
+            "overview": {
+                "at": store.put(band.positions),
+                "low": store.put(band.lower),
+                "high": store.put(band.upper),
+            },
+        },
     }
 
 

@@ -98,7 +98,7 @@ class Line {
     if (this.loaded) return samples(this.x, this.y, from, to, columns);
     const first = Math.max(before(this.at, from), 0), last = Math.min(before(this.at, to) + 1, this.at.length - 1);
     const part = (this.at[last] - this.at[first]) / Math.max(last - first, 1);
-    if (part > (2.5 * (to - from)) / columns) return { kind: "ranges", x: [], y: [], first, last };
+    if (this.data.band || part > (2.5 * (to - from)) / columns) return { kind: "ranges", x: [], y: [], first, last };
     const x = [], y = [];
     for (let i = first; i <= last; i++) {
       const low = this.lows[i], high = this.highs[i];

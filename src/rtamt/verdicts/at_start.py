@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from rtamt.settings import Semantics
     from rtamt.signals.outcomes import Interval
     from rtamt.specification import Specification
     from rtamt.verdicts.interval import IntervalMonitor
@@ -27,8 +28,10 @@ class StartMonitor:
     (Interval(lower=-inf, upper=0.0), False, 1, 'violated')
     """
 
-    def __init__(self, spec: Specification, **settings: Any) -> None:
-        self.bounds: IntervalMonitor = spec.monitor(verdict="interval", at="start", **settings)
+    def __init__(self, spec: Specification, *, semantics: Semantics | None = None, **settings: Any) -> None:
+        self.bounds: IntervalMonitor = spec.monitor(
+            verdict="interval", at="start", semantics=semantics, **settings
+        )
         self._truth: IntervalMonitor = spec.monitor(
             verdict="interval", at="start", semantics="boolean", **settings
         )

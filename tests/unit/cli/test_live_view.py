@@ -6,9 +6,11 @@ import pty
 import re
 import subprocess
 import sys
+from math import inf
 
 import numpy as np
 
+from rtamt import Interval
 from rtamt.cli.live_view import Live, rounded
 
 LINES = "".join(f'{{"time": {t}, "x": {x}}}\n' for t, x in enumerate([5, 4, 1, 6]))
@@ -30,10 +32,10 @@ def picture(live, stream):
     return [line.rstrip() for line in plain.splitlines()]
 
 
-def monitor(stdout, lines=LINES, *options):
+def monitor(stdout, lines=LINES, *options, formula="always[0:1](x >= 3)"):
     """Run the monitor with a terminal for stderr; return the code, what is on the terminal, and stdout."""
     main, terminal = pty.openpty()
-    command = [sys.executable, "-m", "rtamt", "monitor", "always[0:1](x >= 3)", "--live", *options]
+    command = [sys.executable, "-m", "rtamt", "monitor", formula, "--live", *options]
     environment = {**os.environ, "TERM": "xterm", "NO_COLOR": ""}
     out = terminal if stdout == "terminal" else subprocess.PIPE
     with subprocess.Popen(
@@ -122,3 +124,30 @@ def test_a_line_is_never_wider_than_the_terminal(monkeypatch):
     lines = picture(live, stream)
     assert len(lines) == 4
     assert max(map(len, lines)) == 30
+
+
+def test_bounds_at_the_start_narrow_to_the_robustness():
+    stream = Terminal()
+    live = Live("always(x >= 3)", stream)
+    for known, status, satisfied in (
+        (Interval(-inf, 4.0), "open", None),
+        (Interval(-inf, 1.0), "open", None),
+        (Interval(-inf, -2.0), "violated since 2.0 s", False),
+        (Interval(-2.0, -2.0), "violated since 2.0 s", False),
+    ):
+        live.sample({"x": 5})
+        live.bounds(known, status, satisfied)
+    assert picture(live, stream) == [
+        "always(x >= 3)",
+        "✗ violated since 2.0 s  (robustness from -2 to -2)",
+        "upper █▅▁▁",
+        "lower ↓↓↓▁",
+        "4 samples  x = 5",
+    ]
+
+
+def test_unbounded_future_is_drawn_live():
+    code, seen, piped = monitor("pipe", LINES, formula="always(x >= 3)")
+    assert code == 0
+    assert "violated since 2.0 s" in seen
+    assert piped.decode().splitlines()[-1].endswith('"status": "violated since 2.0 s", "final": true}')

@@ -212,3 +212,23 @@ def test_two_hundred_requirements_are_a_small_page(tmp_path, monkeypatch):
     text = Path("many.html").read_text()
     assert len(re.findall(r'<details class="card', text)) == 200
     assert len(text) < 2_500_000
+
+
+def test_a_page_holds_what_was_known_after_each_sample():
+    store = Store()
+    result = rtamt.parse("always(x >= 3)").evaluate({"x": [5, 4, 2, 6]})
+    told = data_of(scene(result, bounds=True), store)["bounds"]
+    overview = told["line"]["overview"]
+    assert (told["decided"], told["robustness"]) == ("2 s", -1.0)
+    assert array(store, overview["at"]).tolist() == [0, 1, 2, 3]
+    assert array(store, overview["high"]).tolist() == [2, 1, -1, -1]
+    assert array(store, overview["low"]).tolist() == [-np.inf] * 4
+    assert told["line"]["ends"] == [True, False]
+
+
+@pytest.mark.parametrize(("more", "there"), [([], True), (["--time", "dense"], False)])
+def test_a_report_shows_bounds_in_discrete_time(tmp_path, monkeypatch, more, there):
+    monkeypatch.chdir(tmp_path)
+    Path("a.csv").write_text(ROWS)
+    assert main(["report", SPEC, "a.csv", "-o", "r.html", *more]) == 1
+    assert ('"bounds":{"decided":' in Path("r.html").read_text()) == there

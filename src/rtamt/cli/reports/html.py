@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Any
 from rtamt.cli.command import CommandError, short, write_output
 from rtamt.cli.reading_options import instant
 from rtamt.cli.terminal import printed
-from rtamt.errors import StlError
+from rtamt.errors import StlError, UsageError
+from rtamt.plot.band import Band, band
 from rtamt.plot.scene import scene
 from rtamt.readers.sql import shown
 from rtamt.report import File, Formula, Page, Row
@@ -19,9 +20,12 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
     from rtamt.cli.runner import Outcome, Requirement
+    from rtamt.results import Result
 
 #: Characters of a specification that a page shows.
 _TEXT = 20_000
+#: Samples up to which a page shows bounds after each of them.
+_SAMPLES = 8192
 
 
 class HtmlReport:
@@ -50,6 +54,7 @@ class HtmlReport:
         if outcome.result is not None:
             try:
                 seen = scene(outcome.result, instant(self._at, outcome.result))
+                seen = replace(seen, band=_band(outcome.result))
             except StlError as error:
                 if self._at is not None:
                     raise CommandError(f"{outcome.trace}: {error}") from error
@@ -82,6 +87,16 @@ def _facts(path: str) -> str:
     status = os.stat(path)
     changed = datetime.fromtimestamp(status.st_mtime, timezone.utc)
     return f"{status.st_size} bytes, modified {changed:%Y-%m-%d %H:%M} UTC"
+
+
+def _band(result: Result) -> Band | None:
+    """Return what was known after each sample; None in dense time and for long traces."""
+    if result.trace.domain.continuous or len(result.signal) > _SAMPLES:
+        return None
+    try:
+        return band(result)
+    except UsageError:  # an operator with code of its own has no bounds
+        return None
 
 
 def _row(outcome: Outcome) -> Row:
