@@ -91,6 +91,7 @@ from rtamt.rtamt_api.options import StlIOType as StlIOType
 from rtamt.rtamt_api.options import TimeInterpretation as TimeInterpretation
 from rtamt.signals.dense import Dense as Dense
 from rtamt.signals.discrete import Discrete as Discrete
+from rtamt.signals.episodes import Episode as Episode
 from rtamt.signals.outcomes import Causation as Causation
 from rtamt.signals.outcomes import Interval as Interval
 from rtamt.signals.outcomes import Verdict as Verdict

@@ -10,9 +10,11 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import EvaluationError, UsageError, did_you_mean
-from rtamt.language.formula import variables
+from rtamt.language.formula import Apply, variables
 from rtamt.language.grammar import is_number
+from rtamt.language.operators import STL
 from rtamt.language.printer import excerpt
+from rtamt.signals.episodes import Episode, EpisodeTracker
 from rtamt.signals.listing import show_time
 from rtamt.signals.outcomes import BoundedSignal, Interval
 from rtamt.verdicts import offline as verdicts
@@ -164,6 +166,41 @@ class Result:
         if isinstance(self.known, Judged) and self.known.violations:
             return self.known.violations[0]
         return verdicts.first_violation(spec._outputs().truth, self.trace, spec._signals_of)
+
+    def episodes(self) -> list[Episode]:
+        """Return the maximal runs of violation, with begin, end, and the worst robustness and its instant.
+
+        Of ``always φ`` they are those of φ in its window from the first instant on; of any other formula, the runs of
+        instants at which its robustness is below 0. Of several requirements call it for each:
+        ``result.requirements["R1"].episodes()``. A monitor has the same online: ``monitor(episodes=True)``.
+
+        >>> import rtamt
+        >>> result = rtamt.parse("always(x >= 3)").evaluate({"time": [0, 1, 2, 3, 4], "x": [5, 2, 1, 3, 0]})
+        >>> for episode in result.episodes():
+        ...     print(episode)
+        Episode(begin=1.0, end=2.0, worst=-2.0, at=2.0)
+        Episode(begin=4.0, end=4.0, worst=-3.0, at=4.0)
+        """
+        if len(self.specification.requirements) > 1:
+            first = next(iter(self.specification.requirements))
+            raise UsageError(
+                f"the specification has several requirements; ask one of them for its episodes, such as "
+                f"result.requirements['{first}']"
+            )
+        spec, formula = self.specification, self.specification.formula
+        begin, end = 0, None
+        if isinstance(formula, Apply) and formula.op is STL["always"]:
+            if formula.interval is not None:
+                begin = int(formula.interval.begin / self.trace.step)
+                end = None if formula.interval.end is None else int(formula.interval.end / self.trace.step)
+            formula = formula.args[0]
+        applied = spec._apply_semantics(formula, self.semantics)
+        (signal,) = spec._signals_of((applied,), self.trace.in_steps())
+        positions, values = self.trace.positions(signal).tolist(), signal.values.tolist()
+        tracker = EpisodeTracker(continuous=self.trace.domain.continuous)
+        tracker.take(tracker.cut(zip(positions, values, strict=True), begin, end))
+        time = self.trace.time
+        return [Episode(time(e.begin), time(e.end), e.worst, time(e.at)) for e in tracker.episodes()]
 
     def explain(self, at: Any = None) -> Explanation:
         """Explain why the formula is satisfied or violated: which signals are responsible, and when.

@@ -252,6 +252,7 @@ class Specification(SpecificationText):
         ranges: Mapping[str, Any] | None = None,
         lateness: Duration | None = None,
         on_correction: str | None = None,
+        episodes: bool = False,
     ) -> OnlineMonitor:
         """Return an online monitor; for dense time if selected here or in :func:`parse`.
 
@@ -275,7 +276,8 @@ class Specification(SpecificationText):
         for unbounded future, or ``"every"`` one. ``ranges``: from a variable to its least and greatest value
         (``"eager"``, ``"interval"``). ``lateness``: by how much a sample may come late (``"interval"``); without it,
         each variable of dense time has its samples in order. ``on_correction``: whether to ``"reject"`` or
-        ``"replay"`` a sample that contradicts an earlier one (``"interval"``).
+        ``"replay"`` a sample that contradicts an earlier one (``"interval"``). ``episodes``: whether the monitor
+        remembers runs of violation, which ``monitor.episodes()`` returns (``"delayed"``).
 
         >>> import rtamt
         >>> monitor = rtamt.parse("always[0:200ms](x >= 3)").monitor(period="100ms")
@@ -290,6 +292,7 @@ class Specification(SpecificationText):
         None 2.0 -3.0
         """
         given = {"at": at, "ranges": ranges, "lateness": lateness, "on_correction": on_correction}
+        given["episodes"] = episodes or None
         settings: dict[str, Any] = {name: setting for name, setting in given.items() if setting is not None}
         mode = mode_of(verdict, settings)
         asked, semantics = semantics, semantics_in(mode, self._semantics(semantics))
@@ -333,6 +336,7 @@ class Specification(SpecificationText):
             factory=factory,
             unit=time_unit,
             requirements=requirements,
+            **settings,
         )
 
     def compile(

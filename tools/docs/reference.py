@@ -184,7 +184,7 @@ TASKS: dict[str, tuple[str, tuple[str, ...]]] = {
         "",
         (
             "Specification.evaluate", "robustness", "Result", "first_violation", "Signal", "evaluate_all",
-            "evaluate_batch", "check_stream", "StreamResult", "Discrete", "Dense",
+            "evaluate_batch", "check_stream", "StreamResult", "Episode", "Discrete", "Dense",
         ),
     ),
     "Monitor": ("", ("Specification.monitor", "Monitor", "DenseMonitor")),

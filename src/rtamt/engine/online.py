@@ -13,11 +13,13 @@ from rtamt.language.formula import Formula, variables
 from rtamt.language.printer import excerpt
 from rtamt.rewrite.horizon import horizon
 from rtamt.signals import arrays
+from rtamt.signals.episodes import EpisodeTracker
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Mapping, Sequence
 
     from rtamt.engine.backend import Session
+    from rtamt.signals.episodes import Episode
 
     Self = TypeVar("Self", bound="OnlineMonitor")
 
@@ -83,6 +85,28 @@ class OnlineMonitor:
         self._factory = factory
         self._gate = Gate()  # serialises operations of several steps
         self._finished = False
+        #: What collects the episodes of each formula; None where nobody asked for them.
+        self._episodes: list[EpisodeTracker] | None = None
+
+    def _remember_episodes(self, *, continuous: bool) -> None:
+        self._episodes = [EpisodeTracker(continuous=continuous) for _ in self._formulas]
+
+    def episodes(self, name: str | Formula | None = None) -> list[Episode]:
+        """Return the maximal runs of violation so far, with begin, end, and the worst robustness and its instant.
+
+        ``name``: of a formula that is watched, such as one of several requirements. The last episode may still go on.
+        For monitors made with ``episodes=True``; they remember all episodes, and take each sample a little slower.
+
+        >>> import rtamt
+        >>> monitor = rtamt.parse("x >= 3").monitor(episodes=True)
+        >>> for t, x in enumerate([5, 2, 1, 3, 0]):
+        ...     _ = monitor.update(t, x=x)
+        >>> monitor.episodes()[0]
+        Episode(begin=1.0, end=2.0, worst=-2.0, at=2.0)
+        """
+        if self._episodes is None:
+            raise UsageError("the monitor does not remember episodes; make it with monitor(episodes=True)")
+        return self._episodes[0 if name is None else self._output(name)].episodes()
 
     @property
     @abstractmethod
@@ -160,6 +184,8 @@ class OnlineMonitor:
         backend = self._session.open()
         backend.restore(of_backend)
         self._connect(backend)
+        if self._episodes is not None:
+            self._episodes = [tracker.copied() for tracker in self._episodes]
 
 
 def depth_of(formula: Formula, period: Fraction = Fraction(1)) -> Fraction:

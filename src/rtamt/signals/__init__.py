@@ -11,6 +11,7 @@ signal            ``Signal``: the result of evaluations and monitors
 inexact           missing samples, measurement errors, declared ranges
 instants          sets of times as intervals, and step functions of them
 outcomes          bounds and verdicts that are known before the whole trace is
+episodes          the maximal runs of violation
 trace             ``Trace``: named signals, each with its own time base; resampling
 listing           a trace as text: its signals topic by topic
 arrays            data (lists, arrays, frames, objects) to float64 arrays

@@ -43,7 +43,7 @@ MODES: Mapping[str, Mode] = MappingProxyType(
     {
         mode.name: mode
         for mode in (
-            Mode("delayed", "the robustness at each sample, one horizon later"),
+            Mode("delayed", "the robustness at each sample, one horizon later", settings=("episodes",)),
             Mode(
                 "eager",
                 "whether the formula holds at each sample, as soon as no later sample can change it",

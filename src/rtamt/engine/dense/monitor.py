@@ -8,6 +8,7 @@ import numpy as np
 
 from rtamt.engine.dense.backends import BACKENDS
 from rtamt.engine.dense.groups import GroupSession, own_variables
+from rtamt.engine.discrete.apart import Apart
 from rtamt.engine.gate import alone, in_use
 from rtamt.engine.native import DenseMonitorBase
 from rtamt.engine.online import OnlineMonitor, Watched, depth_of, time_of
@@ -18,6 +19,7 @@ from rtamt.rewrite.check import check_online
 from rtamt.signals import arrays, dense_arrays
 from rtamt.signals.dense import DENSE, Dense
 from rtamt.signals.dense_arrays import TickSignal
+from rtamt.signals.episodes import Episode, plain_times
 from rtamt.signals.signal import Signal
 from rtamt.signals.ticks import TimeScale
 
@@ -47,7 +49,7 @@ class DenseMonitor(DenseMonitorBase, OnlineMonitor):
     ``copy.copy`` branches a monitor: the copy has the same state and is independent. Pickling works likewise.
     """
 
-    _remembered = ("_finished", "_scale")
+    _remembered = ("_finished", "_scale", "_episodes")
     _base = DenseMonitorBase
 
     def __init__(
@@ -64,6 +66,7 @@ class DenseMonitor(DenseMonitorBase, OnlineMonitor):
         unit: str | None = None,
         parts: bool = False,
         requirements: Sequence[Formula] = (),
+        episodes: bool = False,
     ) -> None:
         # ``requirements``: the conjuncts of the formula, each with its own trace.
         for watched in (Watched("", formula, text), *watch):
@@ -71,6 +74,8 @@ class DenseMonitor(DenseMonitorBase, OnlineMonitor):
             check_online(watched.formula, watched.text)
         OnlineMonitor.__init__(self, formula, watch, declared, factory)
         domain.check_inputs(self.input_names)
+        if episodes:
+            self._remember_episodes(continuous=True)
         self._depth = depth_of(formula)
         self._tick = domain.resolution
         self._given_scale = scale
@@ -86,7 +91,7 @@ class DenseMonitor(DenseMonitorBase, OnlineMonitor):
         self._connect(self._session.open())
 
     def _connect(self, backend: Any) -> None:
-        self._backend = backend
+        self._backend = backend if self._episodes is None else Apart(backend)
         self._refused = self._session.refused
         self._undefined: Any = self._session.undefined
         if self._scale is not None:
@@ -144,6 +149,7 @@ class DenseMonitor(DenseMonitorBase, OnlineMonitor):
                 raise TraceError(f"'{name}' has no samples; provide one before finish()", variable=name)
         known = self._run(self._backend.finish, self._scale)
         self._finished = True
+        self._note(known)
         return known
 
     def __getitem__(self, name: str | Formula) -> Signal:
@@ -187,6 +193,8 @@ class DenseMonitor(DenseMonitorBase, OnlineMonitor):
         self._backend.reset()
         self._finished = False
         self._scale = None
+        if self._episodes is not None:
+            self._remember_episodes(continuous=True)
 
     # ---- the long way ----------------------------------------------------------------------------
 
@@ -201,7 +209,24 @@ class DenseMonitor(DenseMonitorBase, OnlineMonitor):
         if self._scale is not scale:
             self._scale = scale
             self._tell(scale)
+        self._note(known)
         return known
+
+    def _note(self, known: Samples) -> None:
+        """Look at what became known of each formula."""
+        for output, tracker in enumerate(self._episodes or ()):
+            ticks, values = self._backend.last_output(output) if output else known
+            tracker.take(zip(ticks.tolist(), values.tolist(), strict=True))
+
+    def episodes(self, name: str | Formula | None = None) -> list[Episode]:
+        """See :meth:`OnlineMonitor.episodes`; an episode extends up to, and without, its end."""
+        found = super().episodes(name)
+        if not found:
+            return []
+        assert self._scale is not None
+        ticks = np.array([tick for each in found for tick in (each.begin, each.end, each.at)], np.int64)
+        times = iter(plain_times(self._scale.times(ticks)))
+        return [Episode(next(times), next(times), each.worst, next(times)) for each in found]
 
     @alone
     def _take(self, columns: dict[str, tuple[Any, Any]]) -> Signal:

@@ -21,6 +21,7 @@ from rtamt.rewrite.check import check_online
 from rtamt.signals import arrays
 from rtamt.signals.arrays import Stamps
 from rtamt.signals.discrete import DISCRETE, Discrete
+from rtamt.signals.episodes import plain_times
 from rtamt.signals.regular import (
     check_increasing,
     check_regular,
@@ -57,7 +58,7 @@ class Monitor(MonitorBase, OnlineMonitor):
     raises :class:`UsageError`.
     """
 
-    _remembered = ("_finished", "_news", "_times")
+    _remembered = ("_finished", "_news", "_times", "_episodes")
     _base = MonitorBase
 
     def __init__(
@@ -72,6 +73,7 @@ class Monitor(MonitorBase, OnlineMonitor):
         factory: Callable[[], OnlineMonitor] | None = None,
         unit: str | None = None,
         requirements: Sequence[Formula] = (),  # noqa: ARG002 - in discrete time they start together
+        episodes: bool = False,
     ) -> None:
         domain = domain.online
         period = domain.period
@@ -80,6 +82,8 @@ class Monitor(MonitorBase, OnlineMonitor):
             domain.check(watched.formula, watched.text)
             check_online(watched.formula, watched.text)
         OnlineMonitor.__init__(self, formula, watch, declared, factory)
+        if episodes:
+            self._remember_episodes(continuous=False)
         self._period = period
         self._tolerance = domain.tolerance
         self._depths = [depth_of(formula, period) for formula in self._formulas]
@@ -93,7 +97,7 @@ class Monitor(MonitorBase, OnlineMonitor):
         self._connect(self._session.open())
 
     def _connect(self, backend: Any) -> None:
-        self._backend = backend if self._times.plain else Apart(backend)
+        self._backend = backend if self._times.plain and self._episodes is None else Apart(backend)
         self._update = backend.update
         self._step = backend.step
         self._refused = self._session.refused
@@ -146,11 +150,17 @@ class Monitor(MonitorBase, OnlineMonitor):
     def _update_carefully(self, *given: Any, **values: Any) -> float | None:
         """Take a sample that the core did not take, or find out what is wrong with it."""
         time = time_of(given)
-        if self._times.plain:
+        if self._times.plain and self._episodes is None:
             return self._take(time, values)
-        return self._take_told(time, values)
+        return self._take_alone(time, values)
 
     @alone
+    def _take_alone(self, time: Any, values: dict[str, Any]) -> float | None:
+        """Take a sample whose time or value is remembered here."""
+        robustness = self._take(time, values) if self._times.plain else self._take_told(time, values)
+        self._note_sample(robustness)
+        return robustness
+
     def _take_told(self, time: Any, values: dict[str, Any]) -> float | None:
         """Take a sample whose time is not given in seconds."""
         stamp = self._times.read([time], self.samples)
@@ -174,11 +184,16 @@ class Monitor(MonitorBase, OnlineMonitor):
 
     def _step_carefully(self, *values: Any) -> float | None:
         """Take a sample by position that the core did not take, or find out what is wrong with it."""
-        if self._times.plain:
+        if self._times.plain and self._episodes is None:
             return self._take_row(values)
-        return self._take_row_told(values)
+        return self._take_row_alone(values)
 
     @alone
+    def _take_row_alone(self, values: tuple[float, ...]) -> float | None:
+        robustness = self._take_row(values) if self._times.plain else self._take_row_told(values)
+        self._note_sample(robustness)
+        return robustness
+
     def _take_row_told(self, values: tuple[float, ...]) -> float | None:
         """Take a sample after samples whose times are not in seconds."""
         later = self._times.later(1)
@@ -237,6 +252,7 @@ class Monitor(MonitorBase, OnlineMonitor):
             first = len(before) - min(lag, samples)
             news.append(Signal(every[first : first + len(values)], values))
         self._news = samples + len(times), news
+        self._note(news)
         return news[0]
 
     @alone
@@ -258,7 +274,22 @@ class Monitor(MonitorBase, OnlineMonitor):
         self._finished = True
         news = [Signal(self._recent(len(values)), values) for values in known]
         self._news = self.samples, news
+        self._note(news)
         return news[0]
+
+    def _note_sample(self, robustness: float | None) -> None:
+        """Look at what the last sample made known of each formula."""
+        if self._episodes is None:
+            return
+        for output, lag in enumerate(self._lags):
+            value = self._backend.latest(output) if output else robustness
+            if value is not None:
+                self._episodes[output].take([(plain_times(self._recent(lag + 1)[:1])[0], value)])
+
+    def _note(self, news: list[Signal]) -> None:
+        """Look at what a chunk made known of each formula."""
+        for tracker, signal in zip(self._episodes or (), news, strict=self._episodes is not None):
+            tracker.take(zip(plain_times(signal.times), signal.values.tolist(), strict=True))
 
     def __getitem__(self, name: str | Formula) -> float | Signal | None:
         """Return what the last update made known of a formula that is watched (see ``Specification.monitor``).
@@ -294,6 +325,8 @@ class Monitor(MonitorBase, OnlineMonitor):
         self._backend.reset()
         self._finished = False
         self._news = (0, [])
+        if self._episodes is not None:
+            self._remember_episodes(continuous=False)
         if self._times.original is not None:
             self._times = replace(self._times, original=None)
             self._connect(inner_of(self._backend))
