@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from tests.laws.early import dense_laws, laws, specifications
 from tests.laws.early.cases import ANYTHING, arrivals, case, dense_case, value
-from tests.laws.early.monitors import DEFINITION, IMPLEMENTATIONS
+from tests.laws.early.monitors import DEFINITION, IMPLEMENTATIONS, PYTHON
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -103,6 +103,10 @@ def dense_corrected(rng: Random, made: Implementation) -> None:
     dense_laws.corrected(drawn, made, wrong)
 
 
+def dense_fails_alike(rng: Random, made: Implementation) -> None:
+    dense_laws.fails_alike(dense_case(rng), made)
+
+
 def dense_tight(rng: Random, made: Implementation) -> None:
     dense_laws.tight(dense_case(rng, ranges=True, odd=False, unbounded=False, narrow=True), made)
 
@@ -139,6 +143,7 @@ LAWS: list[Law] = [
     dense_start,
     dense_late,
     dense_corrected,
+    dense_fails_alike,
     dense_tight,
     dense_eager,
     specification_bounds,
@@ -152,6 +157,7 @@ COMPARISONS: list[Law] = [
     dense_as_defined,
     dense_start,
     dense_corrected,
+    dense_fails_alike,
     specification_bounds,
     specification_verdicts,
 ]
@@ -159,7 +165,7 @@ COMPARISONS: list[Law] = [
 
 def laws_of(made: Implementation) -> list[Law]:
     """Return the laws that an implementation must obey."""
-    excluded = COMPARISONS if made is DEFINITION else []
+    excluded = COMPARISONS if made is DEFINITION else [dense_fails_alike] if made is PYTHON else []
     return [law for law in LAWS if law not in excluded]
 
 

@@ -286,7 +286,10 @@ def test_watched_formulas_report_their_own_changes():
     bounds = spec.monitor(**SETTINGS, watch=["x >= 3", spec.formula])
     bounds.update(0, x=4)
     bounds.update(1, x=5)
-    assert [(c.begin, c.end, c.interval.lower) for c in bounds["x >= 3"]] == [(0.1, 1.0, 1.0), (1.0, 1.1, 2.0)]
+    assert [(c.begin, c.end, c.interval.lower) for c in bounds["x >= 3"]] == [
+        (0.1, 1.0, 1.0),
+        (1.0, 1.1, 2.0),
+    ]
     assert bounds[spec.formula] == bounds.changes()
     eager = spec.monitor(**EAGER, watch=["x >= 3"])
     assert eager.update(0, x=4) == []

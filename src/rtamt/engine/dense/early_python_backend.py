@@ -77,13 +77,13 @@ class PythonDenseEarlyMonitor:
         lateness: int | None,
         verdicts: bool,
     ) -> None:
-        self._start, self._outputs = outputs[0], tuple(outputs[hidden:])
+        self._formulas, self._hidden = tuple(outputs), hidden
         self._ranges = dict(zip(names, ranges, strict=True))
         self._names = tuple(names)
         self._tick, self._lateness, self._decides = tick, lateness, verdicts
         self._came = _Came(({},) * len(self._names), (0,) * len(self._names))
-        self._told = (_Told(),) * len(self._outputs)
-        self._found: list[StepBounds | None] | None = None  # of the outputs, for all that came
+        self._told = (_Told(),) * (len(outputs) - hidden)
+        self._found: list[StepBounds | None] | None = None  # of all formulas, for all that came
 
     # ---- samples ---------------------------------------------------------------------------------
 
@@ -112,11 +112,11 @@ class PythonDenseEarlyMonitor:
 
     def _take(self, came: _Came, now: int) -> None:
         """Go on with all that came; an operation without a value leaves everything as it was."""
-        found = [self._bounds(output, came) for output in self._outputs]
+        found = [self._bounds(formula, came) for formula in self._formulas]
         look = self._verdicts if self._decides else self._changes
         self._told = tuple(
             told if each is None else look(told, each, came, now)
-            for told, each in zip(self._told, found, strict=True)
+            for told, each in zip(self._told, found[self._hidden :], strict=True)
         )
         self._came, self._found = came, found
 
@@ -137,10 +137,10 @@ class PythonDenseEarlyMonitor:
             return None
         return least([bounds(formula, known, self._tick) for formula, known in parts])
 
-    def _now(self, output: int) -> StepBounds | None:
+    def _now(self, formula: int) -> StepBounds | None:
         if self._found is None:
-            self._found = [self._bounds(each, self._came) for each in self._outputs]
-        return self._found[output]
+            self._found = [self._bounds(each, self._came) for each in self._formulas]
+        return self._found[formula]
 
     def _verdicts(self, told: _Told, found: StepBounds, came: _Came, now: int) -> _Told:
         newest = came.newest
@@ -220,21 +220,21 @@ class PythonDenseEarlyMonitor:
 
     def bounds(self, output: int, tick: int) -> Pair | None:
         """The bounds of an output at a tick, None where the trace has not started or they are forgotten."""
-        found = self._now(output)
+        found = self._now(self._hidden + output)
         return None if found is None or tick < found.times[0] else found.at(tick)
 
     def held(self, output: int) -> int | None:
         """The first tick whose bounds are held; None before the trace has started."""
-        found = self._now(output)
+        found = self._now(self._hidden + output)
         return None if found is None else found.times[0]
 
     def origin(self) -> Pair:
         """The bounds at the start of the trace."""
-        found = self._bounds(self._start, self._came)
+        found = self._now(0)
         if found is not None:
             return found.at(found.times[0])
         unseen = DenseKnowledge(dict.fromkeys(self._names, ((), (), ())), self._ranges)
-        parts = [bounds(f, unseen.of(names), self._tick).at(0) for f, names in self._start]
+        parts = [bounds(f, unseen.of(names), self._tick).at(0) for f, names in self._formulas[0]]
         return min(low for low, _ in parts), max(high for _, high in parts)
 
     def known(self, number: int, tick: int) -> Pair:
