@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Literal, overload
 from rtamt.engine.domains import engine_of
 from rtamt.engine.offline import Evaluators, Query
 from rtamt.errors import TraceError, UsageError
-from rtamt.language.printer import excerpt
+from rtamt.language.printer import excerpt, to_text
 from rtamt.language.specfile import parse_document
 from rtamt.language.units import check_unit
 from rtamt.results import Result, requirements_of
@@ -407,7 +407,9 @@ class Specification(SpecificationText):
         given = {name: v for name, v in self.document.constants.items() if name not in declared}
         names = ("domain", "period", "resolution", "unit", "backend", "language", "semantics")
         settings = {name: getattr(self, name) for name in names}
-        return _factory, (self.text, given, {**settings, "roles": dict(self.roles)}, self.document.selected)
+        formula = to_text(self.formula, self.language) if self.document.replaced else None
+        roles = dict(self.roles)
+        return _factory, (self.text, given, {**settings, "roles": roles}, self.document.selected, formula)
 
 
 def result_of(spec: Specification, recording: DomainTrace) -> Result:
@@ -416,7 +418,12 @@ def result_of(spec: Specification, recording: DomainTrace) -> Result:
 
 
 def _factory(
-    text: str, constants: Mapping[str, float], settings: dict[str, Any], selected: str | None
+    text: str,
+    constants: Mapping[str, float],
+    settings: dict[str, Any],
+    selected: str | None,
+    formula: str | None,
 ) -> Specification:
     document = parse_document(text, language=settings["language"], unit=settings["unit"], constants=constants)
-    return Specification(document if selected is None else document.select(selected), **settings)
+    spec = Specification(document if selected is None else document.select(selected), **settings)
+    return spec if formula is None else spec.with_formula(spec._named(formula))

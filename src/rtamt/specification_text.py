@@ -107,6 +107,17 @@ class SpecificationText:
         """
         return replace(self, document=self.document.select(name))
 
+    def with_formula(self, formula: Formula) -> Self:
+        """Return the specification of another formula over the same names, such as a pastified one.
+
+        >>> import rtamt
+        >>> spec = rtamt.parse("asked = req >= 3; always[0:1](asked -> gnt >= 3)")
+        >>> monitor = spec.with_formula(spec.pastified()).monitor()
+        >>> monitor.update(0.0, req=5, gnt=2)
+        -1.0
+        """
+        return replace(self, document=self.document.with_formula(formula))
+
     @property
     def text(self) -> str:
         """The text as it was given."""

@@ -1,5 +1,7 @@
 """Specifications: formulas that a monitor evaluates beside its own."""
 
+import pickle
+
 import pytest
 
 import rtamt
@@ -52,3 +54,13 @@ def test_a_formula_is_found_by_an_equal_one_and_watched_once():
     monitor = SPEC.monitor(watch=[FORMULAS["asked"], rtamt.parse("req >= 3").formula])
     monitor.update(0.0, req=5, gnt=2)
     assert monitor[rtamt.parse("req>=3").formula] == 2.0
+
+
+def test_a_specification_of_another_formula_is_pickled_with_that_formula():
+    spec = SPEC.with_formula(SPEC.pastified())
+    twin = pickle.loads(pickle.dumps(spec))  # noqa: S301 - our own
+    assert twin.formula == spec.formula != SPEC.formula
+    monitor = spec.monitor()
+    monitor.update(0.0, req=5.0, gnt=2.0)
+    resumed = pickle.loads(pickle.dumps(monitor))  # noqa: S301
+    assert resumed.update(1.0, req=5.0, gnt=4.0) == monitor.update(1.0, req=5.0, gnt=4.0)

@@ -92,6 +92,8 @@ class Document:
     selected: str | None = None
     #: The document it was selected from, with every requirement; None if nothing was selected.
     origin: Document | None = field(default=None, compare=False, repr=False)
+    #: Whether :meth:`with_formula` has replaced the requirements of the text.
+    replaced: bool = False
 
     def __hash__(self) -> int:
         return hash(self.text)
@@ -117,6 +119,11 @@ class Document:
         if name not in self._named:
             raise UsageError(f"there is no requirement '{name}'{choices(name, self._named, 'requirements')}")
         return replace(self, requirements=(self._named[name],), selected=name, origin=self.origin or self)
+
+    def with_formula(self, formula: Formula) -> Document:
+        """Return the same document with this formula as its only requirement."""
+        first = self.requirements[0]
+        return replace(self, requirements=(replace(first, formula=formula),), replaced=True)
 
     @cached_property
     def _named(self) -> dict[str, Requirement]:

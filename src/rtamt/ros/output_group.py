@@ -7,9 +7,7 @@ from dataclasses import replace
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-from rtamt.engine.dense.monitor import DenseMonitor
-from rtamt.engine.discrete.monitor import Monitor
-from rtamt.engine.online import Watched
+from rtamt.engine.dense.monitor import points_of
 from rtamt.errors import SpecificationError, UsageError
 from rtamt.language.formula import variables
 from rtamt.rewrite.check import always_has_a_value, unbounded_future
@@ -24,8 +22,11 @@ from rtamt.verdicts.robustness_and_truth import outputs_under
 if TYPE_CHECKING:
     from collections.abc import Container, Mapping, Sequence
 
+    from rtamt.language.formula import Formula
     from rtamt.ros.binding import Output
     from rtamt.ros.watch import Record
+    from rtamt.specification import Specification
+    from rtamt.verdicts.robustness_and_truth import Outputs
 
 
 class Standing:
@@ -95,18 +96,20 @@ def group_outputs(outputs: Sequence[Output]) -> list[list[Output]]:
     return list(groups.values())
 
 
-def _watched(output: Output, period: Fraction | None) -> tuple[Watched, Watched]:
+def _past(output: Output, period: Fraction | None) -> Outputs:
     """Return robustness and truth as formulas with past operators only, with equal values one horizon later."""
     spec = output.specification
     try:
         past = spec.pastified(period)
     except SpecificationError as error:
         raise type(error)(f"'{output.name}': {error.message}", error.text, error.span) from None
-    robustness, truth = outputs_under(past, spec.semantics, spec.roles)
-    return (
-        Watched(output.name, robustness, spec.text),
-        Watched(f"truth of {output.name}", truth, spec.text),
-    )
+    return outputs_under(past, spec.semantics, spec.roles)
+
+
+def _together(outputs: Sequence[Output], formulas: Sequence[Outputs]) -> tuple[Specification, list[Formula]]:
+    """Return the specification of the first formula, and all formulas, which its monitor watches in one program."""
+    every = [formula for both in formulas for formula in both]
+    return outputs[0].specification.with_formula(every[0]), every
 
 
 class DiscreteWatch(SampledWatch):
@@ -114,13 +117,10 @@ class DiscreteWatch(SampledWatch):
 
     def __init__(self, outputs: Sequence[Output], topic_of: Mapping[str, str], period: Fraction) -> None:
         super().__init__(outputs, topic_of, period)
-        self.formulas = tuple(_watched(output, period) for output in outputs)
+        self.formulas = tuple(_past(output, period) for output in outputs)
         self.standings: tuple[Standing, ...] = tuple(Standing(output, period) for output in outputs)
-        first, *_ = every = [watched for pair in self.formulas for watched in pair]
-        backend = outputs[0].specification.backend
-        self._monitor: Monitor = Monitor(
-            first.formula, Discrete(period), text=first.text, backend=backend, watch=every
-        )
+        spec, every = _together(outputs, self.formulas)
+        self._monitor = spec.monitor(time=Discrete(period), semantics="standard", watch=every)
 
     @property
     def samples(self) -> int:
@@ -150,12 +150,12 @@ class DiscreteWatch(SampledWatch):
                 records.append(Verdict(standing.output, stamp, standing.horizon, self._held(standing, truth)))
         return records
 
-    def _value(self, watched: Watched) -> float:
-        value = self._monitor[watched.name]
+    def _value(self, formula: Formula) -> float:
+        value = self._monitor[formula]
         assert isinstance(value, float), "a formula of the past is known at once"
         return value
 
-    def _held(self, standing: Standing, truth: Watched) -> bool | None:
+    def _held(self, standing: Standing, truth: Formula) -> bool | None:
         return self._value(truth) > 0 if self._monitor.samples > standing.lag else None
 
     def look(self) -> None:
@@ -172,14 +172,16 @@ class DenseWatch(Watch):
 
     def __init__(self, outputs: Sequence[Output], topic_of: Mapping[str, str]) -> None:
         super().__init__(outputs, topic_of)
-        self.formulas = tuple(_watched(output, None) for output in outputs)
+        formulas = tuple(_past(output, None) for output in outputs)
         self.standings: tuple[Standing, ...] = tuple(Standing(output, None) for output in outputs)
-        first, *_ = every = [watched for pair in self.formulas for watched in pair]
-        backend = outputs[0].specification.backend
         # Timestamps and ticks are both integer nanoseconds: results need no conversion.
-        self._monitor: DenseMonitor = DenseMonitor(
-            first.formula, Dense(NANOSECOND), text=first.text, backend=backend, watch=every, unit="ns"
+        spec, every = _together(outputs, formulas)
+        self._monitor = spec.monitor(
+            time=Dense(NANOSECOND), semantics="standard", watch=every, time_unit="ns"
         )
+        places = {formula: i for i, formula in enumerate(dict.fromkeys(every), 1)}
+        #: Of each output the places of robustness and truth in what became known.
+        self._places = [(places[both.robustness], places[both.truth]) for both in formulas]
         self._start: int | None = None
         self._held: deque[tuple[int, dict[str, float]]] = deque(maxlen=HELD)
         #: The latest points of the result, and then of each watched formula.
@@ -209,12 +211,12 @@ class DenseWatch(Watch):
         # All outputs are known up to the same instant.
         if not len(self._monitor.update(stamp, **values)):
             return []
-        self._points = points = self._monitor.points()
+        self._points = points = points_of(self._monitor)
         if self._start is None:
             self._start = points[1][0][0]  # the first entry belongs to the result of update()
         records: list[Record] = []
-        for standing, told, truths in zip(self.standings, points[1::2], points[2::2], strict=True):
-            output = standing.output
+        for standing, (robustness, truth) in zip(self.standings, self._places, strict=True):
+            output, told, truths = standing.output, points[robustness], points[truth]
             if wanted is None or standing.topic in wanted:
                 records += [Robustness(output, at, value) for at, value in told]
             heard = wanted is None or standing.verdicts in wanted
@@ -243,11 +245,11 @@ class DenseWatch(Watch):
 
     def look(self) -> None:
         """Bring the standings up to date."""
-        for standing, told, truths in zip(
-            self.standings, self._points[1::2], self._points[2::2], strict=False
-        ):
-            standing.latest = told[-1][1]
-            standing.satisfied = self._judge(standing, *truths[-1])
+        if not self._points:
+            return
+        for standing, (robustness, truth) in zip(self.standings, self._places, strict=True):
+            standing.latest = self._points[robustness][-1][1]
+            standing.satisfied = self._judge(standing, *self._points[truth][-1])
 
     def drop(self, topic: str) -> None:  # noqa: ARG002 - in dense time messages are samples
         """Restart when a stale topic resumes."""

@@ -7,7 +7,7 @@ from copy import copy
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from rtamt.engine.dense.monitor import DenseMonitor
+from rtamt.engine.dense.monitor import DenseMonitor, part_of
 from rtamt.engine.gate import alone
 from rtamt.engine.online import Watched
 from rtamt.errors import NameInFormulaError, StlError, TraceError, UsageError, shown
@@ -307,7 +307,7 @@ class StlDenseTimeOnlineSpecification(OnlineSpecification, DenseTimeSpecificatio
                 f"'{canonical(part, limit=EXCERPT)}' is no part of what is watched: the result, and past "
                 f"assertions that read no other variables; evaluate the finished signals offline"
             )
-        return _points(self._require_monitor().part(self._worth(part)), self._whole)
+        return _points(part_of(self._require_monitor(), self._worth(part)), self._whole)
 
     def _start_over(self, formulas: dict[str, Formula]) -> None:
         super()._start_over(formulas)

@@ -12,10 +12,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rtamt.engine.dense.groups import own_variables
-from rtamt.engine.dense.monitor import DenseMonitor
-from rtamt.engine.discrete.monitor import Monitor
+from rtamt.engine.dense.monitor import finish_ticks, known_ticks, push_ticks
+from rtamt.engine.discrete.monitor import push_samples
 from rtamt.engine.offline import Evaluators
-from rtamt.engine.online import Watched
 from rtamt.errors import TraceError, UsageError
 from rtamt.language.formula import Const
 from rtamt.language.units import check_unit, positive_period
@@ -37,6 +36,8 @@ from rtamt.verdicts.trackers import Tracker, Trackers
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
+    from rtamt.engine.dense.monitor import DenseMonitor
+    from rtamt.engine.discrete.monitor import Monitor
     from rtamt.language.formula import Formula
     from rtamt.language.units import Duration
     from rtamt.rewrite.semantics import PredicateSemantics
@@ -199,14 +200,11 @@ class _Group:
         self.outputs = {formula: _Output() for formula in self.formulas}
         self.start: int | None = None
 
-    def begin(self, unit: Fraction, dense: bool) -> tuple[Formula, list[Watched]]:
-        """Make the trackers; return what a monitor computes: its result, and what it watches."""
+    def begin(self, unit: Fraction, dense: bool, spec: Specification) -> Specification:
+        """Make the trackers; return the specification of the first formula, whose monitor watches the others."""
         for each in self.requirements.values():
             each.begin(unit, dense, self.outputs)
-        first, *others = self.formulas
-        return align_inputs(first, self.names), [
-            Watched(str(i), formula, None) for i, formula in enumerate(others, 1)
-        ]
+        return spec.with_formula(align_inputs(self.formulas[0], self.names))
 
 
 class _Stream(ABC):
@@ -274,7 +272,7 @@ class _DiscreteStream(_Stream):
             return
         if self._monitor is None:
             self._monitor = self._begin(stamps)
-        self._known(self._monitor, self._monitor.push(stamps, columns, n))
+        self._known(self._monitor, push_samples(self._monitor, stamps, columns, n))
         self.samples += n
 
     def _begin(self, stamps: Stamps | None) -> Monitor:
@@ -283,19 +281,18 @@ class _DiscreteStream(_Stream):
         if self._period is None:
             self._period = Fraction(1) if stamps is None else infer_period(stamps.seconds)
         check_bounds(self.spec.formula, self._period, self.spec.text)
-        formula, watch = self._group.begin(self._period, dense=False)
-        return Monitor(
-            formula,
-            Discrete(self._period, self._tolerance),
-            backend=self.spec.backend,
-            watch=watch,
-            unit=self.unit,
+        spec = self._group.begin(self._period, False, self.spec)
+        return spec.monitor(
+            time=Discrete(self._period, self._tolerance),
+            semantics="standard",
+            watch=self._group.formulas[1:],
+            time_unit=self.unit,
         )
 
     def _known(self, monitor: Monitor, first: Signal) -> None:
         """Hand on what became known, the first output and those that are watched."""
-        for i, output in enumerate(self._group.outputs.values()):
-            signal = monitor[str(i)] if i else first
+        for i, (formula, output) in enumerate(self._group.outputs.items()):
+            signal = monitor[formula] if i else first
             assert isinstance(signal, Signal)
             begin = output.known
             output.known += len(signal)
@@ -347,8 +344,8 @@ class _DenseStream(_Stream):
             yield _Group(some, [name for name in self.spec.input_names if name in names])
 
     def _monitor(self, group: _Group) -> DenseMonitor:
-        formula, watch = group.begin(self.spec.resolution, dense=True)
-        return DenseMonitor(formula, Dense(self.spec.resolution), backend=self.spec.backend, watch=watch)
+        spec = group.begin(self.spec.resolution, True, self.spec)
+        return spec.monitor(time=Dense(self.spec.resolution), semantics="standard", watch=group.formulas[1:])
 
     def take(self, chunk: Any) -> None:
         arrays.require_no_unit(chunk, self.unit)
@@ -372,7 +369,7 @@ class _DenseStream(_Stream):
                 self._last[name] = int(ticks[-1]), float(values[-1])
                 self._counts[name] = self._counts.get(name, 0) + len(ticks)
         for group, monitor in self._groups:
-            self._known(group, monitor, monitor.push(samples, self._scale))
+            self._known(group, monitor, push_ticks(monitor, samples, self._scale))
         self.samples += max(map(len, times))
 
     def _start(self, group: _Group) -> int:
@@ -384,8 +381,8 @@ class _DenseStream(_Stream):
         if not all(name in self._first for name in group.names):
             return
         start = self._start(group)
-        for i, output in enumerate(group.outputs.values()):
-            ticks, values = monitor.known(str(i)) if i else first
+        for i, (formula, output) in enumerate(group.outputs.items()):
+            ticks, values = known_ticks(monitor, formula) if i else first
             output.take(ticks - start, values, None if end is None else end - start)
 
     def finish(self) -> StreamResult:
@@ -405,8 +402,8 @@ class _DenseStream(_Stream):
             held = {
                 name: (np.array([until]), np.array([value])) for name, (last, value) in behind if last < until
             }
-            self._known(group, monitor, monitor.push(held, self._scale), end)
-            self._known(group, monitor, monitor.rest(), end)
+            self._known(group, monitor, push_ticks(monitor, held, self._scale), end)
+            self._known(group, monitor, finish_ticks(monitor), end)
             time = partial(self._time, start)
             found |= {
                 name: each.result(time, self.samples, None) for name, each in group.requirements.items()

@@ -138,10 +138,10 @@ class DenseMonitor(DenseMonitorBase, OnlineMonitor):
     @alone
     def finish(self) -> Signal:
         """End the trace: every signal holds its last value. Returns the rest of the robustness."""
-        return self._signal(self.rest())
+        return self._signal(self._rest())
 
-    def rest(self) -> Samples:
-        """End the trace, and return the rest as ticks and values."""
+    def _rest(self) -> Samples:
+        """See :func:`finish_ticks`."""
         if self._finished:
             return np.empty(0, np.int64), np.empty(0)
         for name, last in zip(self.input_names, self._backend.last_times, strict=True):
@@ -164,28 +164,12 @@ class DenseMonitor(DenseMonitorBase, OnlineMonitor):
         >>> monitor["x >= 3"]
         Signal(times=array([0.5]), values=array([-2.]))
         """
-        return self._signal(self.known(name))
+        return self._signal(self._known(name))
 
-    def known(self, name: str | Formula) -> Samples:
-        """Return the same as ticks and values."""
+    def _known(self, name: str | Formula) -> Samples:
+        """See :func:`known_ticks`."""
         known: Samples = self._backend.last_output(self._output(name))
         return known
-
-    def points(self) -> list[list[tuple[int, float]]]:
-        """Return what the last update made known as pairs of tick and value, for loops in which a microsecond counts.
-
-        A list for the result, empty where :meth:`update` has returned it, then one for each watched formula.
-        """
-        known: list[list[tuple[int, float]]] = self._backend.points()
-        return known
-
-    def part(self, formula: Formula) -> Signal:
-        """Return what the last update made known of any part of the formulas; they have no future operators.
-
-        Only for monitors with ``parts=True``, whose updates cost a few nanoseconds more for
-        each part.
-        """
-        return self._signal(self._session.part(self._backend, formula))
 
     @alone
     def reset(self) -> None:
@@ -198,11 +182,8 @@ class DenseMonitor(DenseMonitorBase, OnlineMonitor):
 
     # ---- the long way ----------------------------------------------------------------------------
 
-    def push(self, chunk: Mapping[str, Samples], scale: TimeScale) -> Samples:
-        """Take checked samples in ticks; return the newly known robustness as ticks and values.
-
-        ``scale``: the caller's time scale, for messages and later results.
-        """
+    def _push(self, chunk: Mapping[str, Samples], scale: TimeScale) -> Samples:
+        """See :func:`push_ticks`."""
         empty = np.empty(0, np.int64), np.empty(0)
         samples = [chunk.get(name, empty) for name in self.input_names]
         known = self._run(lambda: self._backend.push(samples), scale)
@@ -236,7 +217,7 @@ class DenseMonitor(DenseMonitorBase, OnlineMonitor):
         if not given and self._scale is None:
             return self._signal((np.empty(0, np.int64), np.empty(0)))
         scale = self._scale_of([times for times, _ in given.values()])
-        return self._signal(self.push(self._chunk(columns, scale), scale))
+        return self._signal(self._push(self._chunk(columns, scale), scale))
 
     def _scale_of(self, times: Sequence[Any]) -> TimeScale:
         """Return the time scale after these times."""
@@ -274,3 +255,41 @@ class DenseMonitor(DenseMonitorBase, OnlineMonitor):
         ticks, values = known
         scale = self._scale or self._given_scale or TimeScale.of(self._tick, [], self._unit)
         return Signal(scale.times(ticks), values)
+
+
+# ---- in ticks --------------------------------------------------------------------------------------
+
+
+def push_ticks(monitor: DenseMonitor, chunk: Mapping[str, Samples], scale: TimeScale) -> Samples:
+    """Take checked samples in ticks; return the newly known robustness as ticks and values.
+
+    ``scale``: the caller's time scale, for messages and later results.
+    """
+    return monitor._push(chunk, scale)
+
+
+def finish_ticks(monitor: DenseMonitor) -> Samples:
+    """End the trace; return the rest of the robustness as ticks and values."""
+    return monitor._rest()
+
+
+def known_ticks(monitor: DenseMonitor, name: str | Formula) -> Samples:
+    """Return what the last update made known of a formula that is watched, as ticks and values."""
+    return monitor._known(name)
+
+
+def points_of(monitor: DenseMonitor) -> list[list[tuple[int, float]]]:
+    """Return what the last update made known as pairs of tick and value, for loops in which a microsecond counts.
+
+    A list for the result, empty where ``update`` has returned it, then one for each watched formula.
+    """
+    known: list[list[tuple[int, float]]] = monitor._backend.points()
+    return known
+
+
+def part_of(monitor: DenseMonitor, formula: Formula) -> Signal:
+    """Return what the last update made known of any part of the formulas; they have no future operators.
+
+    Only for monitors with ``parts=True``, whose updates cost a few nanoseconds more for each part.
+    """
+    return monitor._signal(monitor._session.part(monitor._backend, formula))

@@ -233,10 +233,10 @@ class Monitor(MonitorBase, OnlineMonitor):
         """
         if self._finished:
             raise self._is_finished()
-        return self.push(*arrays.columns_of(data, self.input_names, self._times.unit))
+        return self._push(*arrays.columns_of(data, self.input_names, self._times.unit))
 
-    def push(self, stamps: Stamps | None, given: Mapping[str, arrays.FloatArray], n: int) -> Signal:
-        """Take a chunk of ``n`` samples as returned by ``arrays.columns_of``; not thread-safe."""
+    def _push(self, stamps: Stamps | None, given: Mapping[str, arrays.FloatArray], n: int) -> Signal:
+        """See :func:`push_samples`."""
         samples = self.samples
         (times, original), columns = self._chunk(stamps, given, n)
         before = self._recent(min(self._oldest, samples))
@@ -396,3 +396,10 @@ class Monitor(MonitorBase, OnlineMonitor):
     def _no_value(self, error: Any) -> Exception:
         """Return the error for an undefined value, with its sub-formula and instant."""
         return undefined(self._session.culprit(error), at_sample(error.args[1], error.time))
+
+
+def push_samples(
+    monitor: Monitor, stamps: Stamps | None, columns: Mapping[str, arrays.FloatArray], n: int
+) -> Signal:
+    """Take a chunk of ``n`` samples as returned by ``arrays.columns_of``; not thread-safe."""
+    return monitor._push(stamps, columns, n)
