@@ -27,7 +27,7 @@ from rtamt.cli.command import (
 )
 from rtamt.cli.early_feeds import CausationFeed, EagerFeed, IntervalFeed, StartFeed
 from rtamt.cli.live_view import Live
-from rtamt.cli.stdin_reader import STDIN, Samples
+from rtamt.cli.stdin_reader import STDIN, Samples, lines_of
 from rtamt.cli.terminal import printed, say
 from rtamt.errors import StlError, TraceError
 from rtamt.rewrite.check import unbounded_future
@@ -152,7 +152,7 @@ def run(args: argparse.Namespace) -> int:
 def _follow(watched: Feed, samples: Samples, live: Live | None, *, keep_going: bool) -> int:
     """Feed the monitor from stdin until the end of input; return the exit code."""
     code = OK
-    for number, line in enumerate(sys.stdin.buffer, 1):
+    for number, line in enumerate(lines_of(sys.stdin.buffer), 1):
         try:
             sample = samples.read(line, number)
         except TraceError as error:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import TraceError
 from rtamt.readers.assemble import Choice, clock_of, select
-from rtamt.readers.csv import Column, Header, check_width, numbers, read_header
+from rtamt.readers.csv import Column, Header, check_width, is_boolean, numbers, read_header, truth
 from rtamt.readers.csv_cells import Cells
 from rtamt.readers.dates import EXAMPLE, is_date
 from rtamt.readers.frames import field_of
@@ -86,6 +86,12 @@ class Samples:
                 raise
             raise _error(number, str(error).replace(f" of {STDIN}", "", 1), error.variable) from None
         return None
+
+
+def lines_of(stream: Iterable[bytes]) -> Iterator[bytes]:
+    """Yield the lines of a stream as they come, which end with LF, CR LF or CR, as in files."""
+    for line in stream:
+        yield from line.splitlines()
 
 
 class _Stamps:
@@ -205,6 +211,7 @@ class CsvSamples:
         assert selection is not None
         self._columns = [Column(name, self._header.names.index(f.column)) for name, f in selection.signals]
         self.units = {name: field.unit for name, field in selection.signals if field.unit}
+        self._boolean: dict[str, bool] = {}
 
     def read(self, text: str, number: int) -> Sample:
         """Return the sample in one line."""
@@ -221,10 +228,17 @@ class CsvSamples:
             given = [c for c in given if row[c.position].strip()]
         for column in given:
             self._stamps.require(column.name, row[column.position].strip(), number)
+        truths = [c for c in given if self._is_boolean(c.name, row[c.position].strip())]
+        given = [c for c in given if c not in truths]
         values = dict(zip((c.name for c in given), numbers(row, header, number, given), strict=True))
+        values |= {c.name: float(truth(row[c.position].strip(), c.name, header, number)) for c in truths}
         clock = self._stamps.clock
         stamp = None if clock is None else row[header.names.index(clock.field.column)]
         return self._stamps.sample(stamp, values, number)
+
+    def _is_boolean(self, name: str, text: str) -> bool:
+        """Return whether a column holds true and false, as its first cell tells, as in a file."""
+        return self._boolean.setdefault(name, is_boolean(text))
 
 
 # ---- JSON ----------------------------------------------------------------------------------------

@@ -149,4 +149,7 @@ def _raw(column: Any) -> Raw:
 
 
 def _is_plain(column: Any) -> bool:
-    return bool(np.issubdtype(column.type.to_pandas_dtype(), np.number))
+    try:
+        return bool(np.issubdtype(column.type.to_pandas_dtype(), np.number))
+    except NotImplementedError:  # types without an array of numpy, such as times of day
+        return False

@@ -173,6 +173,14 @@ def is_boolean(text: str) -> bool:
     return text.lower() in BOOLEANS
 
 
+def truth(text: str, name: str, header: Header, line: int) -> bool:
+    """Return the Boolean in a cell; raise :class:`TraceError` where there is none."""
+    value = BOOLEANS.get(text.lower())
+    if value is None:
+        raise header.error(line, f"'{name}' is '{text}', expected true or false", name)
+    return value
+
+
 def is_value(text: str) -> bool:
     """Return whether the text of a cell is a number, a Boolean or a date, and no name."""
     return is_number(text) or is_boolean(text) or is_date(text)

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rtamt.readers.csv import BOOLEANS, Header, is_boolean, number
+from rtamt.readers.csv import Header, is_boolean, number, truth
 from rtamt.readers.dates import DateError, Dates, is_date
 
 if TYPE_CHECKING:
@@ -73,10 +73,7 @@ class Cells:
         return self._truths(given) if self._boolean else self._numbers(given)
 
     def _truths(self, given: Sequence[tuple[str, int]]) -> Raw:
-        truths = [BOOLEANS.get(text.lower()) for text, _ in given]
-        if None in truths:
-            text, line = given[truths.index(None)]
-            raise self._header.error(line, f"'{self._name}' is '{text}', expected true or false", self._name)
+        truths = [truth(text, self._name, self._header, line) for text, line in given]
         return np.array(truths, dtype=np.float64)
 
     def _numbers(self, given: Sequence[tuple[str, int]]) -> Raw:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from codecs import getincrementaldecoder
 from dataclasses import replace
 from io import TextIOWrapper
 from itertools import chain, islice
@@ -35,12 +36,17 @@ if TYPE_CHECKING:
 #: Lines that are looked at to tell columns of numbers from columns of text.
 _SAMPLE = 100
 
+#: Bytes that are looked at to tell whether a header is UTF-8.
+_BEGINNING = 1 << 20
+
 
 def open_csv(path: str) -> Source:
     """Open a CSV file; columns whose first lines hold no number at all are text."""
     with open(path, encoding="utf-8-sig", newline="", errors="replace") as lines:
         header, rest = read_header(lines, path)
         sample = [row for _, row in islice(rows(rest, header, header.line), _SAMPLE)]
+    if any("\ufffd" in name for name in header.names):
+        _require_utf8(path)
     fields = [
         field_of(column, _kind([row[i].strip() for row in sample if len(row) > i and row[i].strip()]))
         for i, column in enumerate(header.names)
@@ -50,15 +56,28 @@ def open_csv(path: str) -> Source:
         try:
             yield from _chunks(path, header, wanted)
         except UnicodeDecodeError:
-            raise TraceError(
-                f"'{path}' is not UTF-8 text; save it as CSV in UTF-8 (spreadsheets offer this under 'save as')"
-            ) from None
+            raise _no_utf8(path) from None
 
     def load(wanted: Sequence[Field]) -> list[Raw]:
         parts = list(chunks(wanted))
         return [_joined([part[i] for part in parts]) for i in range(len(wanted))]
 
     return Source(path, (Table(tuple(fields), load, chunks),))
+
+
+def _require_utf8(path: str) -> None:
+    """Raise :class:`TraceError` if the beginning of a file is not UTF-8."""
+    with open(path, "rb") as file:
+        try:
+            getincrementaldecoder("utf-8")().decode(file.read(_BEGINNING))
+        except UnicodeDecodeError:
+            raise _no_utf8(path) from None
+
+
+def _no_utf8(path: str) -> TraceError:
+    return TraceError(
+        f"'{path}' is not UTF-8 text; save it as CSV in UTF-8 (spreadsheets offer this under 'save as')"
+    )
 
 
 def _chunks(path: str, header: Header, wanted: Sequence[Field]) -> Iterator[list[Raw]]:

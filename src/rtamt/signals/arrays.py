@@ -308,10 +308,14 @@ def field(value: Any, path: Sequence[str]) -> Any:
 def _keys(data: Any) -> list[str]:
     if is_mapping(data):
         return list(data)
-    columns = getattr(data, "columns", None)
-    if columns is None:
+    if not is_frame(data):
         raise not_a_mapping(data, "values, such as {'time': [...], 'x': [...]}")
-    return list(columns)
+    return list(data.columns)
+
+
+def is_frame(data: Any) -> bool:
+    """Return whether data has columns by name, as frames of pandas and polars have; the columns of Arrow are arrays."""
+    return hasattr(data, "columns") and not hasattr(data, "column_names")
 
 
 def not_a_mapping(data: Any, to: str) -> TraceError:
@@ -319,6 +323,8 @@ def not_a_mapping(data: Any, to: str) -> TraceError:
     if isinstance(data, str | PathLike):
         path = shown(fspath(data))
         return TraceError(f"expected data, got {path}; to read a file write rtamt.read({path})")
+    if hasattr(data, "column_names"):
+        return TraceError(f"expected data, got an Arrow {type(data).__name__}; write rtamt.read(table)")
     return TraceError(f"expected a mapping from variable to {to}, got {type(data).__name__}")
 
 

@@ -106,7 +106,7 @@ def columns_of(
     if data.__class__ is not dict and isinstance(data, arrays.Clocked):
         data = data.on_own_clocks(names)
     if not arrays.is_mapping(data):
-        if not hasattr(data, "columns"):
+        if not arrays.is_frame(data):
             raise arrays.not_a_mapping(data, "(times, values), such as {'x': ([0.0, 1.5], [3, 4])}")
         check_frame(data, arrays.TIME, names)
         data = {name: data[name] for name in (*names, arrays.TIME) if name in data.columns}

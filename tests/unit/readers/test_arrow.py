@@ -90,3 +90,25 @@ def test_without_the_extra_one_sentence_says_what_to_install(tmp_path, monkeypat
     assert str(error.value) == (
         "reading Parquet needs the package 'pyarrow', which is not installed: pip install 'rtamt[data]'"
     )
+
+
+@pytest.mark.parametrize("kind", [pa.time32("s"), pa.time64("us")])
+def test_times_of_day_raised_not_implemented_error(kind):
+    table = pa.table({"time": pa.array([0, 1], kind), "x": [1, 2]})
+    with pytest.raises(rtamt.TraceError, match=r"the time column 'time' of an arrow table is datetime\.time"):
+        rtamt.parse("x > 0").evaluate(rtamt.read(table))
+
+
+@pytest.mark.parametrize("time", ["discrete", "dense"])
+def test_a_table_of_arrow_that_was_not_read_raised_key_error(time):
+    spec = rtamt.parse("historically(x > 0)", time=time)
+    table = pa.table({"time": [0.0, 1.0], "x": [1, 2]})
+    for entry in (
+        spec.evaluate,
+        spec.monitor().update_many,
+        lambda data: rtamt.check_stream(spec, [data]),
+        lambda data: spec.evaluate(data, uncertainty={"x": 0.5}),
+    ):
+        with pytest.raises(rtamt.TraceError, match=r"got an Arrow Table; write rtamt\.read\(table\)"):
+            entry(table)
+    assert spec.evaluate(rtamt.read(table)).robustness == 1

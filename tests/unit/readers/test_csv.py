@@ -330,3 +330,49 @@ def test_an_empty_cell_in_discrete_time_is_rejected_by_one_sentence_at_every_ent
     assert spec.evaluate(rtamt.read("log.csv"), time="dense").satisfied
     assert spec.evaluate(rtamt.read("log.csv").resample(1)).satisfied
     assert spec.evaluate(rtamt.read("log.csv").hold()).satisfied
+
+
+# ---- the same table as a file and on stdin -----------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("text", "last"),
+    [
+        ("time,x\n0,true\n1,FALSE\n", 0.0),
+        ("time,x\r0,1\r1,2\r", 2.0),
+        ("time,x\r\n0,1\r\n1,2\r\n", 2.0),
+        ("time,x,y\n0,true,1\n1,True,-3\n", 1.0),
+    ],
+)
+def test_monitor_refused_booleans_and_lines_that_end_with_cr_which_files_may_have(
+    tmp_path, capsys, monkeypatch, text, last
+):
+    path = tmp_path / "log.csv"
+    path.write_bytes(text.encode())
+    assert rtamt.parse("x").evaluate(rtamt.read(path)).signal.values[-1] == last
+    answer = invoke(capsys, monkeypatch, ["monitor", "x"], text)
+    assert (answer.code, answer.err) == (0, "")
+    assert answer.out.splitlines()[-1] == f'{{"time": 1.0, "robustness": {last}}}'
+
+
+def test_a_number_among_booleans_is_rejected_by_one_sentence_in_files_and_on_stdin(
+    tmp_path, capsys, monkeypatch
+):
+    text = "time,x\n0,true\n1,3\n"
+    (tmp_path / "log.csv").write_text(text)
+    monkeypatch.chdir(tmp_path)
+    for args, name in ((["check", "x > 0", "log.csv"], "log.csv"), (["monitor", "x > 0"], "stdin")):
+        answer = invoke(capsys, monkeypatch, args, text)
+        assert (answer.code, answer.err) == (
+            2,
+            f"rtamt: {name}, line 3: 'x' is '3', expected true or false\n",
+        )
+
+
+def test_a_header_in_utf_16_is_not_reported_as_a_missing_column(tmp_path, capsys, monkeypatch):
+    path = tmp_path / "log.csv"
+    path.write_bytes("time,x\n0,1\n".encode("utf-16"))
+    answer = invoke(capsys, monkeypatch, ["check", "x > 0", str(path)])
+    assert (answer.code, "is not UTF-8 text" in answer.err) == (2, True)
+    path.write_text("time,x\ufffd\n0,1\n", encoding="utf-8")
+    assert rtamt.parse("x > 0").evaluate(rtamt.read(path, names={"x": "x\ufffd"})).robustness == 1
