@@ -35,8 +35,8 @@ def _load() -> ctypes.CDLL:
     library.rtamt_push.argtypes = (c_void_p, POINTER(Sample), c_size_t)
     library.rtamt_finish.argtypes = (c_void_p,)
     library.rtamt_reset.argtypes = (c_void_p,)
-    library.rtamt_told.argtypes = (c_void_p, c_uint32, POINTER(POINTER(c_int64)), POINTER(POINTER(c_double)))
-    library.rtamt_told.restype = c_size_t
+    library.rtamt_last_output.argtypes = (c_void_p, c_uint32, POINTER(POINTER(c_int64)), POINTER(POINTER(c_double)))
+    library.rtamt_last_output.restype = c_size_t
     library.rtamt_save.argtypes = (c_void_p, c_void_p, c_size_t, POINTER(c_size_t))
     library.rtamt_restore.argtypes = (c_void_p, c_char_p, c_size_t)
     return library
@@ -87,7 +87,7 @@ class Monitor:
     def told(self, output):
         """Return steps and values that the last call made known."""
         steps, values = POINTER(c_int64)(), POINTER(c_double)()
-        count = LIBRARY.rtamt_told(self._handle, output, byref(steps), byref(values))
+        count = LIBRARY.rtamt_last_output(self._handle, output, byref(steps), byref(values))
         return np.array(steps[:count], np.int64), np.array(values[:count], float)
 
     def set_parameter(self, index, value):

@@ -226,13 +226,13 @@ rtamt_status rtamt_reset(rtamt_monitor* monitor) {
     return error_boundary(monitor, [](Monitor& self) { self.reset(); });
 }
 
-size_t rtamt_told(const rtamt_monitor* monitor, uint32_t output, const int64_t** steps,
-                  const double** values) {
+size_t rtamt_last_output(const rtamt_monitor* monitor, uint32_t output, const int64_t** steps,
+                         const double** values) {
     if (output >= rtamt_outputs(monitor)) return 0;
-    const rtamt::dense::Events told = monitor->monitor.runner().told(output);
-    put(steps, told.times);
-    put(values, told.values);
-    return told.count;
+    const rtamt::dense::Events events = monitor->monitor.runner().last_output(output);
+    put(steps, events.times);
+    put(values, events.values);
+    return events.count;
 }
 
 int rtamt_known_until(const rtamt_monitor* monitor, uint32_t output, int64_t* step) {

@@ -137,13 +137,13 @@ RTAMT_API rtamt_status rtamt_set_parameter(rtamt_monitor* monitor, uint32_t para
 RTAMT_API rtamt_status rtamt_step(rtamt_monitor* monitor, const double* values, size_t count,
                                   rtamt_value* results, size_t outputs);
 
-/* Dense time: takes samples; those of one input at increasing ticks. rtamt_told has what became
+/* Dense time: takes samples; those of one input at increasing ticks. rtamt_last_output has what became
  * known. The trace starts when every input has started; where several requirements read different
  * inputs, all inputs must start at the same tick. */
 RTAMT_API rtamt_status rtamt_push(rtamt_monitor* monitor, const rtamt_sample* samples,
                                   size_t count);
 
-/* No more samples will come: rtamt_told has the rest. Then only rtamt_reset helps. */
+/* No more samples will come: rtamt_last_output has the rest. Then only rtamt_reset helps. */
 RTAMT_API rtamt_status rtamt_finish(rtamt_monitor* monitor);
 
 /* Forgets the trace; parameters stay. */
@@ -152,7 +152,7 @@ RTAMT_API rtamt_status rtamt_reset(rtamt_monitor* monitor);
 /* What the last rtamt_push or rtamt_finish made known of an output: answers how many values, and
  * where their steps (indices of samples, in dense time ticks from which on the value holds) and the
  * values themselves are, valid until the next call; either place may be null. */
-RTAMT_API size_t rtamt_told(const rtamt_monitor* monitor, uint32_t output, const int64_t** steps,
+RTAMT_API size_t rtamt_last_output(const rtamt_monitor* monitor, uint32_t output, const int64_t** steps,
                             const double** values);
 
 /* Answers 1 and the last step at which an output is known, or 0 if it is not known anywhere, and -1

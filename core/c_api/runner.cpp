@@ -10,7 +10,7 @@ namespace rtamt::c_api {
 // ---- discrete time ------------------------------------------------------------------------------
 
 DiscreteRunner::DiscreteRunner(Program program) : executor_(std::move(program)) {
-    told_.resize(executor_.program().outputs.size());
+    outputs_.resize(executor_.program().outputs.size());
 }
 
 void DiscreteRunner::step(const double* row, std::span<rtamt_value> known) {
@@ -18,7 +18,7 @@ void DiscreteRunner::step(const double* row, std::span<rtamt_value> known) {
     if (executor_.step(row, first) == discrete::Outcome::failed) {
         throw Undefined{executor_.failure().instruction, executor_.failure().sample};
     }
-    for (dense::EventList& list : told_)
+    for (dense::EventList& list : outputs_)
         list.resize(0);
     last_known(known);
 }
@@ -32,14 +32,14 @@ void DiscreteRunner::hold(std::span<const double> row, std::size_t count,
         pointers.push_back(columns.emplace_back(count, value).data());
     std::vector<std::vector<double>> values;
     std::vector<double*> buffers;
-    for (std::size_t output = 0; output < told_.size(); ++output) {
+    for (std::size_t output = 0; output < outputs_.size(); ++output) {
         values.emplace_back(executor_.known(output, count));
         buffers.push_back(values.back().data());
     }
     if (const auto failure = executor_.push(pointers, count, buffers)) {
         throw Undefined{failure->instruction, failure->sample};
     }
-    for (dense::EventList& list : told_)
+    for (dense::EventList& list : outputs_)
         list.resize(0);
     last_known(known);
 }
@@ -62,7 +62,7 @@ std::optional<std::int64_t> DiscreteRunner::known_until(std::size_t output) cons
 }
 
 void DiscreteRunner::finish() {
-    const std::size_t outputs = told_.size();
+    const std::size_t outputs = outputs_.size();
     std::vector<dense::EventList> rest(outputs);
     std::vector<double*> buffers;
     buffers.reserve(outputs);
@@ -78,12 +78,12 @@ void DiscreteRunner::finish() {
     if (const auto failure = executor_.finish(buffers)) {
         throw Undefined{failure->instruction, failure->sample};
     }
-    told_ = std::move(rest);
+    outputs_ = std::move(rest);
 }
 
 void DiscreteRunner::reset() noexcept {
     executor_.reset();
-    for (dense::EventList& list : told_)
+    for (dense::EventList& list : outputs_)
         list.resize(0);
 }
 
@@ -92,7 +92,7 @@ void DiscreteRunner::reset() noexcept {
 DenseRunner::DenseRunner(Program program)
     : executor_(std::move(program)), fresh_(executor_.program().inputs),
       events_(executor_.program().inputs) {
-    told_.resize(executor_.program().outputs.size());
+    outputs_.resize(executor_.program().outputs.size());
 }
 
 void DenseRunner::discard() noexcept {
@@ -101,11 +101,11 @@ void DenseRunner::discard() noexcept {
 }
 
 void DenseRunner::push() {
-    for (dense::EventList& list : told_)
+    for (dense::EventList& list : outputs_)
         list.resize(0);
     for (std::size_t input = 0; input < fresh_.size(); ++input)
         events_[input] = fresh_[input].view();
-    const auto failure = executor_.push(events_, told_);
+    const auto failure = executor_.push(events_, outputs_);
     discard();
     if (failure) throw Undefined{failure->instruction, failure->time};
 }
@@ -130,9 +130,9 @@ bool DenseRunner::begun() const noexcept {
 }
 
 void DenseRunner::finish() {
-    for (dense::EventList& list : told_)
+    for (dense::EventList& list : outputs_)
         list.resize(0);
-    if (const auto failure = executor_.finish(told_)) {
+    if (const auto failure = executor_.finish(outputs_)) {
         throw Undefined{failure->instruction, failure->time};
     }
 }
@@ -140,7 +140,7 @@ void DenseRunner::finish() {
 void DenseRunner::reset() noexcept {
     executor_.reset();
     discard();
-    for (dense::EventList& list : told_)
+    for (dense::EventList& list : outputs_)
         list.resize(0);
 }
 

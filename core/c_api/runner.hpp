@@ -48,12 +48,12 @@ class Runner {
     virtual void transfer(Snapshot& snapshot) = 0;
 
     // What the last call made known.
-    [[nodiscard]] dense::Events told(std::size_t output) const noexcept {
-        return told_[output].view();
+    [[nodiscard]] dense::Events last_output(std::size_t output) const noexcept {
+        return outputs_[output].view();
     }
 
   protected:
-    std::vector<dense::EventList> told_; // by output
+    std::vector<dense::EventList> outputs_; // by output
 };
 
 // Samples come one period apart.

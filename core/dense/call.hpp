@@ -42,11 +42,11 @@ class Call final : public Writing<double> {
         fault_ = foreign_.advance(
             {views_.data(), origin, frontier - operand_lag_, sink.due, &Sink::emit, &sink});
         if (fault_ == nullptr) fault_ = sink.fault;
-        if (fault_ == nullptr && sink.due >= origin && !sink.told.begun) {
+        if (fault_ == nullptr && sink.due >= origin && !sink.emitted.begun) {
             fault_ = "it gave no value at the start of the trace";
         }
         if (fault_ != nullptr) return start();
-        state_ = sink.told;
+        state_ = sink.emitted;
         publish(sink.list.count());
         return sink.undefined;
     }
@@ -71,8 +71,8 @@ class Call final : public Writing<double> {
     }
 
   private:
-    // What was told last.
-    struct Told {
+    // The last value that was emitted.
+    struct Emitted {
         std::int64_t time = 0;
         double value = 0.0;
         bool begun = false;
@@ -80,7 +80,7 @@ class Call final : public Writing<double> {
 
     struct Sink {
         EventList& list;
-        Told told;
+        Emitted emitted;
         std::int64_t origin = 0;
         std::int64_t due = 0;
         std::int64_t lag = 0;
@@ -92,17 +92,17 @@ class Call final : public Writing<double> {
         }
 
         void put(std::int64_t time, double value) {
-            if (!told.begun && time != origin) {
+            if (!emitted.begun && time != origin) {
                 fault = "its first value is not at the start of the trace";
-            } else if (told.begun && time <= told.time) {
+            } else if (emitted.begun && time <= emitted.time) {
                 fault = "its values are not in the order of time";
             } else if (time > due) {
                 fault = "it gave a value that is not due yet";
             }
             if (fault != nullptr) return;
-            const bool change = !told.begun || std::bit_cast<std::uint64_t>(value) !=
-                                                   std::bit_cast<std::uint64_t>(told.value);
-            told = {time, value, true};
+            const bool change = !emitted.begun || std::bit_cast<std::uint64_t>(value) !=
+                                                      std::bit_cast<std::uint64_t>(emitted.value);
+            emitted = {time, value, true};
             if (!change) return;
             list.append(time + lag, value);
             if (std::isnan(value)) undefined = std::min(undefined, time + lag);
@@ -115,8 +115,8 @@ class Call final : public Writing<double> {
     std::vector<const Events*> operands_;
     std::vector<std::vector<std::int64_t>> shifted_;
     std::vector<rtamt_events> views_;
-    Told state_;
-    Told saved_;
+    Emitted state_;
+    Emitted saved_;
     const char* fault_ = nullptr;
 
     // The events as the kernel counts time.

@@ -106,8 +106,8 @@ class BasicExecutor {
 
   private:
     struct Output {
-        bool told = false; // whether it has a value yet
-        Formula last{};    // and which
+        bool emitted = false; // whether it has a value yet
+        Formula last{};       // and which
     };
 
     Wiring<D> wiring_;
@@ -115,7 +115,7 @@ class BasicExecutor {
     std::int64_t origin_ = 0;     // when the trace begins
     std::int64_t frontier_ = 0;   // how far it is known
     std::int64_t stride_ = never; // longest step of the frontier
-    std::int64_t end_ = never;    // until when outputs are told
+    std::int64_t end_ = never;    // up to when outputs are known
     bool started_ = false;        // origin_ is known
     bool fresh_ = false;          // and nothing has run yet
     bool finished_ = false;

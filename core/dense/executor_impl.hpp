@@ -111,9 +111,9 @@ void BasicExecutor<D>::deliver(Outputs outputs) {
             const std::int64_t time = events.times[place] - lag;
             const Formula value = events.values[place];
             if (time > end_) break;
-            if (output.told && value == output.last) continue;
+            if (output.emitted && value == output.last) continue;
             outputs[i].append(time, value);
-            output.told = true;
+            output.emitted = true;
             output.last = value;
         }
     }
@@ -252,7 +252,7 @@ void BasicExecutor<D>::reset() noexcept {
     for (auto& queue : queues())
         queue.reset();
     for (Output& output : outputs_)
-        output.told = false;
+        output.emitted = false;
     stride_ = end_ = never;
     started_ = fresh_ = finished_ = false;
 }
@@ -268,7 +268,7 @@ void BasicExecutor<D>::transfer(Snapshot& snapshot) {
     for (auto& queue : queues())
         queue.transfer(snapshot);
     for (Output& output : outputs_) {
-        snapshot.item(output.told);
+        snapshot.item(output.emitted);
         snapshot.item(output.last);
     }
     snapshot.require(valid());

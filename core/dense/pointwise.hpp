@@ -13,9 +13,9 @@
 
 namespace rtamt::dense {
 
-// What a pointwise kernel has told so far.
+// The last value that a pointwise kernel has emitted.
 template <class Value>
-struct Told {
+struct Emitted {
     Value last{};
     bool begun = false; // whether there is a last one
 
@@ -33,19 +33,19 @@ class Results {
     using D = typename Operation::Out;
     using Value = typename D::Value;
 
-    Results(BasicEventList<Value>& list, const Told<Value>& told) noexcept
-        : times_(list.times()), values_(list.values()), told_(told) {}
+    Results(BasicEventList<Value>& list, const Emitted<Value>& emitted) noexcept
+        : times_(list.times()), values_(list.values()), emitted_(emitted) {}
 
     void put(std::int64_t time, const Value& value) noexcept {
         times_[count_] = time;
         values_[count_] = value;
-        count_ += static_cast<std::size_t>(!told_.begun | (value != told_.last));
-        told_ = {value, true};
+        count_ += static_cast<std::size_t>(!emitted_.begun | (value != emitted_.last));
+        emitted_ = {value, true};
         if constexpr (Operation::partial) undefined_ |= D::undefined(value);
     }
 
     [[nodiscard]] std::size_t count() const noexcept { return count_; }
-    [[nodiscard]] const Told<Value>& told() const noexcept { return told_; }
+    [[nodiscard]] const Emitted<Value>& emitted() const noexcept { return emitted_; }
 
     [[nodiscard]] std::int64_t first_undefined() const noexcept {
         if (!undefined_) [[likely]] {
@@ -54,46 +54,46 @@ class Results {
         for (std::size_t i = 0; i < count_; ++i) {
             if (D::undefined(values_[i])) return times_[i];
         }
-        return never; // undefined already before this run, and told then
+        return never; // undefined before this run, and reported then
     }
 
   private:
     std::int64_t* __restrict times_;
     Value* __restrict values_;
     std::size_t count_ = 0;
-    Told<Value> told_;
+    Emitted<Value> emitted_;
     bool undefined_ = false;
 };
 
 template <class Operation>
 class Unary final
-    : public Scalar<typename Operation::Out::Value, Told<typename Operation::Out::Value>> {
+    : public Scalar<typename Operation::Out::Value, Emitted<typename Operation::Out::Value>> {
   public:
     using In = typename Operation::In::Value;
     using Out = typename Operation::Out::Value;
 
-    explicit Unary(std::int64_t lag) noexcept : Scalar<Out, Told<Out>>(lag) {}
+    explicit Unary(std::int64_t lag) noexcept : Scalar<Out, Emitted<Out>>(lag) {}
 
     std::int64_t run(std::int64_t /*frontier*/) override {
         const BasicEvents<In> a = Kernel::a<In>();
         Results<Operation> results(this->room(a.count + 1), this->state());
         for (std::size_t i = 0; i < a.count; ++i)
             results.put(a.times[i], Operation::of(a.values[i]));
-        this->state() = results.told();
+        this->state() = results.emitted();
         this->publish(results.count());
         return results.first_undefined();
     }
 };
 
-// The operands at the frontier, and what was told.
+// The operands at the frontier, and the last value emitted.
 template <class In, class Out>
 struct Combined {
     Pair<In> operands;
-    Told<Out> told;
+    Emitted<Out> emitted;
 
     void transfer(Snapshot& snapshot) {
         snapshot.item(operands);
-        told.transfer(snapshot);
+        emitted.transfer(snapshot);
     }
 };
 
@@ -111,11 +111,11 @@ class Binary final
         const BasicEvents<In> a = Kernel::a<In>();
         const BasicEvents<In> b = Kernel::b<In>();
         Combined<In, Out>& state = this->state();
-        Results<Operation> results(this->room(a.count + b.count + 1), state.told);
+        Results<Operation> results(this->room(a.count + b.count + 1), state.emitted);
         merge(a, b, state.operands, [&](std::int64_t time, const Pair<In>& now) {
             results.put(time, Operation::of(now.a, now.b));
         });
-        state.told = results.told();
+        state.emitted = results.emitted();
         this->publish(results.count());
         return results.first_undefined();
     }

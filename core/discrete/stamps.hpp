@@ -1,4 +1,4 @@
-// The times of the last few samples: what becomes known late is told with the time it belongs to.
+// The times of the last few samples: late values are reported with the time they belong to.
 //
 // Cost: a multiplication a sample. Memory: none while every sample comes exactly a period after the
 // one before, which is computed instead; from the first that does not, a ring of as many numbers as

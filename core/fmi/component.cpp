@@ -21,7 +21,7 @@ constexpr std::size_t checksum_size = 4;
 // How far, as a part of the period, a communication point may miss a sampling instant.
 constexpr double tolerance = 1e-6;
 
-// The variables of a Told, in this order.
+// The variables of an Outcome, in this order.
 enum class Output : std::uint32_t { robustness, verdict, known, since, lower, upper };
 
 [[nodiscard]] constexpr Output output_of(std::uint32_t place, bool early) noexcept {
@@ -101,11 +101,11 @@ Component::Component(const std::string& folder, const std::string& token)
 
 Component::Now Component::fresh() const {
     Now fresh;
-    fresh.told.resize(is_early() ? 1 : monitor_->program().outputs.size() / 2);
+    fresh.outcomes.resize(is_early() ? 1 : monitor_->program().outputs.size() / 2);
     if (is_early()) {
         constexpr double infinity = std::numeric_limits<double>::infinity();
-        fresh.told.front().robustness = -infinity;
-        fresh.told.front().upper = infinity;
+        fresh.outcomes.front().robustness = -infinity;
+        fresh.outcomes.front().upper = infinity;
     }
     fresh.inputs.resize(monitor_->metadata().inputs.size());
     return fresh;
@@ -141,7 +141,7 @@ void Component::advance(double time, double length) {
 std::int64_t Component::instant(double time) const {
     const double place = (time - now_.start) / step();
     const double nearest = std::round(place);
-    // Far from zero, time itself is not told more exactly.
+    // Far from zero, time itself is not more exact.
     const double rounding = 4.0 * std::numeric_limits<double>::epsilon() * std::abs(time) / step();
     constexpr double most = 9e15;
     if (!(std::abs(place - nearest) <= tolerance + rounding) || std::abs(nearest) > most) {
@@ -160,26 +160,26 @@ void Component::advance_discrete(double time, double end) {
                shown(now_.reached) + " s.");
     }
     std::vector<rtamt_value> known(is_early() ? monitor_->program().outputs.size()
-                                              : 2 * now_.told.size());
+                                              : 2 * now_.outcomes.size());
     monitor_->hold(now_.inputs, static_cast<std::size_t>(last - first), known);
-    if (is_early()) return tell_bounds(known);
-    for (std::size_t i = 0; i < now_.told.size(); ++i) {
+    if (is_early()) return report_bounds(known);
+    for (std::size_t i = 0; i < now_.outcomes.size(); ++i) {
         if (known[2 * i].known == 0) continue;
         const std::int64_t until = *monitor_->runner().known_until(2 * i);
-        now_.told[i] = {.robustness = known[2 * i].value,
-                        .verdict = known[2 * i + 1].value,
-                        .since = now_.start + static_cast<double>(until) * step(),
-                        .known = true};
+        now_.outcomes[i] = {.robustness = known[2 * i].value,
+                            .verdict = known[2 * i + 1].value,
+                            .since = now_.start + static_cast<double>(until) * step(),
+                            .known = true};
     }
 }
 
-void Component::tell_bounds(std::span<const rtamt_value> known) noexcept {
-    Told& told = now_.told.front();
-    told.known = known[2].known != 0;
-    told.robustness = known[0].value;
-    told.upper = known[1].value;
-    told.verdict = known[2].value;
-    told.since = told.known ? now_.start + known[3].value : 0.0;
+void Component::report_bounds(std::span<const rtamt_value> known) noexcept {
+    Outcome& outcome = now_.outcomes.front();
+    outcome.known = known[2].known != 0;
+    outcome.robustness = known[0].value;
+    outcome.upper = known[1].value;
+    outcome.verdict = known[2].value;
+    outcome.since = outcome.known ? now_.start + known[3].value : 0.0;
 }
 
 void Component::advance_dense(double time) {
@@ -200,15 +200,15 @@ void Component::advance_dense(double time) {
     for (std::uint32_t input = 0; input < now_.inputs.size(); ++input)
         samples.push_back({static_cast<std::int64_t>(tick), now_.inputs[input], input});
     monitor_->push(samples);
-    for (std::size_t i = 0; i < now_.told.size(); ++i) {
-        Told& told = now_.told[i];
-        const dense::Events robustness = monitor_->runner().told(2 * i);
-        const dense::Events verdict = monitor_->runner().told(2 * i + 1);
-        if (robustness.count != 0) told.robustness = robustness.values[robustness.count - 1];
-        if (verdict.count != 0) told.verdict = verdict.values[verdict.count - 1];
+    for (std::size_t i = 0; i < now_.outcomes.size(); ++i) {
+        Outcome& outcome = now_.outcomes[i];
+        const dense::Events robustness = monitor_->runner().last_output(2 * i);
+        const dense::Events verdict = monitor_->runner().last_output(2 * i + 1);
+        if (robustness.count != 0) outcome.robustness = robustness.values[robustness.count - 1];
+        if (verdict.count != 0) outcome.verdict = verdict.values[verdict.count - 1];
         if (const auto until = monitor_->runner().known_until(2 * i)) {
-            told.known = true;
-            told.since = static_cast<double>(*until) / ticks_a_second;
+            outcome.known = true;
+            outcome.since = static_cast<double>(*until) / ticks_a_second;
         }
     }
 }
@@ -220,10 +220,10 @@ double Component::real(std::uint32_t reference) const {
     if (is_output(reference)) {
         const Output place = output_of(reference - outputs(), is_early());
         if (place == Output::robustness || place == Output::lower) {
-            return told(reference).robustness;
+            return outcome(reference).robustness;
         }
-        if (place == Output::upper) return told(reference).upper;
-        if (place == Output::since) return told(reference).since;
+        if (place == Output::upper) return outcome(reference).upper;
+        if (place == Output::since) return outcome(reference).since;
     } else {
         const std::uint32_t place = reference - parameters();
         const std::size_t count = monitor_->metadata().parameters.size();
@@ -238,7 +238,7 @@ std::int32_t Component::integer(std::uint32_t reference) const {
         refuse("There is no integer variable with the reference " + std::to_string(reference) +
                ".");
     }
-    const double verdict = told(reference).verdict;
+    const double verdict = outcome(reference).verdict;
     return verdict > 0.0 ? 1 : verdict < 0.0 ? -1 : 0;
 }
 
@@ -247,7 +247,7 @@ bool Component::boolean(std::uint32_t reference) const {
         refuse("There is no Boolean variable with the reference " + std::to_string(reference) +
                ".");
     }
-    return told(reference).known;
+    return outcome(reference).known;
 }
 
 void Component::set_real(std::uint32_t reference, double value) {
@@ -276,7 +276,7 @@ void Component::Now::transfer(Snapshot& snapshot) {
     for (double* value : {&start, &reached})
         snapshot.item(*value);
     snapshot.require(std::isfinite(start) && std::isfinite(reached));
-    for (Told& each : told) {
+    for (Outcome& each : outcomes) {
         for (double* value : {&each.robustness, &each.upper, &each.verdict, &each.since})
             snapshot.item(*value);
         snapshot.item(each.known);

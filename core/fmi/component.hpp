@@ -57,7 +57,7 @@ class Component {
     enum class Phase : std::uint8_t { setting, stepping, terminated };
 
     // What is known of one requirement, or of all together.
-    struct Told {
+    struct Outcome {
         double robustness = 0.0; // of bounds the lower one
         double upper = 0.0;      // of bounds alone
         double verdict = 0.0;    // +inf or -inf; 0 as long as it is not known
@@ -70,7 +70,7 @@ class Component {
         Phase phase = Phase::setting;
         double start = 0.0;
         double reached = 0.0;
-        std::vector<Told> told; // the first is of all together
+        std::vector<Outcome> outcomes; // the first is of all together
         std::vector<double> inputs;
 
         void transfer(Snapshot& snapshot);
@@ -86,16 +86,16 @@ class Component {
         return static_cast<std::uint32_t>(now_.inputs.size());
     }
     [[nodiscard]] std::uint32_t parameters() const noexcept { // the first reference of one
-        return outputs() + static_cast<std::uint32_t>(now_.told.size()) * fields;
+        return outputs() + static_cast<std::uint32_t>(now_.outcomes.size()) * fields;
     }
     [[nodiscard]] bool is_output(std::uint32_t reference) const noexcept {
         return reference >= outputs() && reference < parameters();
     }
-    [[nodiscard]] const Told& told(std::uint32_t reference) const noexcept {
-        return now_.told[(reference - outputs()) / fields];
+    [[nodiscard]] const Outcome& outcome(std::uint32_t reference) const noexcept {
+        return now_.outcomes[(reference - outputs()) / fields];
     }
     void advance_discrete(double time, double end);
-    void tell_bounds(std::span<const rtamt_value> known) noexcept;
+    void report_bounds(std::span<const rtamt_value> known) noexcept;
     [[nodiscard]] bool is_early() const noexcept { return !monitor_->metadata().early.empty(); }
     void advance_dense(double time);
     [[nodiscard]] std::int64_t instant(double time) const;

@@ -1,7 +1,7 @@
 // Kernels that are not of the core, as Python hands them over: the table of a loaded library, or a
 // function that makes a driver (rtamt.engine.user_operators), which stands for any Python class.
 //
-// A call to Python takes the GIL. What it raises is kept until the failure is told.
+// A call to Python takes the GIL. What it raises is kept until the failure is reported.
 #pragma once
 
 #include "../program/program.hpp"

@@ -57,11 +57,11 @@ static void release_all(void) {
 
 /* Throws, by `error`: mexErrMsgIdAndTxt of Octave would put the name of this file first. */
 static void refuse(const char* identifier, const char* sentence) {
-    mxArray* told[3];
-    told[0] = mxCreateString(identifier);
-    told[1] = mxCreateString("%s");
-    told[2] = mxCreateString(sentence);
-    (void)mexCallMATLAB(0, NULL, 3, told, "error");
+    mxArray* arguments[3];
+    arguments[0] = mxCreateString(identifier);
+    arguments[1] = mxCreateString("%s");
+    arguments[2] = mxCreateString(sentence);
+    (void)mexCallMATLAB(0, NULL, 3, arguments, "error");
 }
 
 static void check(rtamt_status status, const rtamt_monitor* monitor) {
@@ -229,12 +229,12 @@ static void finish(int results, mxArray* result[], int count, const mxArray* arg
     session* self = *find(count, arguments);
     const int64_t* steps = NULL;
     const double* values = NULL;
-    size_t told = 0;
+    size_t known = 0;
     check(rtamt_finish(self->taken), self->taken);
     forget_ahead(self);
-    told = rtamt_told(self->taken, 0, &steps, &values);
-    result[0] = mxCreateDoubleScalar(told == 0 ? 0.0 : (double)steps[0]);
-    if (results > 1) result[1] = row_of(values, told);
+    known = rtamt_last_output(self->taken, 0, &steps, &values);
+    result[0] = mxCreateDoubleScalar(known == 0 ? 0.0 : (double)steps[0]);
+    if (results > 1) result[1] = row_of(values, known);
 }
 
 static void reset(int results, mxArray* result[], int count, const mxArray* arguments[]) {

@@ -63,12 +63,12 @@ void run_discrete(const Program& program, std::uint8_t seed) {
     };
     rtamt::discrete::Executor executor(program);
     std::vector<double> row(program.inputs);
-    double told = 0.0;
+    double value = 0.0;
     const std::size_t steps = seed % samples;
     for (std::size_t i = 0; i < steps; ++i) {
         for (std::size_t input = 0; input < row.size(); ++input)
             row[input] = columns[input][i];
-        (void)executor.step(row.data(), told);
+        (void)executor.step(row.data(), value);
     }
     const auto count = static_cast<std::size_t>(samples - steps);
     auto known = room([&](std::size_t output) { return executor.known(output, count); });
@@ -103,11 +103,11 @@ void run_dense(const Program& program, std::uint8_t seed) {
         return events;
     };
     if (executor.last_possible() < 1000) return;
-    std::vector<EventList> told(program.outputs.size());
+    std::vector<EventList> results(program.outputs.size());
     const std::size_t half = seed % samples;
-    (void)executor.push(cut(0, half), told);
-    (void)executor.push(cut(half, samples), told);
-    (void)executor.finish(told);
+    (void)executor.push(cut(0, half), results);
+    (void)executor.push(cut(half, samples), results);
+    (void)executor.finish(results);
     (void)executor.state_bytes();
     executor.reset();
     std::vector<EventList> whole(program.outputs.size());

@@ -123,11 +123,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (taken(monitor.get(), rtamt_finish(monitor.get()))) {
         const std::int64_t* steps = nullptr;
         const double* values = nullptr;
-        const std::size_t count = rtamt_told(monitor.get(), 0, &steps, &values);
-        Bytes told(count * (sizeof(*steps) + sizeof(*values))); // all of it can be read
+        const std::size_t count = rtamt_last_output(monitor.get(), 0, &steps, &values);
+        Bytes output(count * (sizeof(*steps) + sizeof(*values))); // all of it can be read
         if (count != 0) {
-            std::memcpy(told.data(), steps, count * sizeof(*steps));
-            std::memcpy(told.data() + count * sizeof(*steps), values, count * sizeof(*values));
+            std::memcpy(output.data(), steps, count * sizeof(*steps));
+            std::memcpy(output.data() + count * sizeof(*steps), values, count * sizeof(*values));
         }
     }
     (void)rtamt_reset(monitor.get());

@@ -56,8 +56,8 @@ struct rtamt_events {
 
 // A stretch of dense time: the operands' changes after the last stretch and up to `until`, that
 // instant included. The first change of every operand is at `start`, where the trace begins. The
-// result's changes after those told so far and up to `due`, the first at `start`, go to emit(), in
-// the order of time. Until `due` reaches `start`, nothing is due.
+// result's changes after those emitted so far and up to `due`, the first at `start`, go to emit(),
+// in the order of time. Until `due` reaches `start`, nothing is due.
 struct rtamt_stretch {
     const rtamt_events* operands;
     std::int64_t start;

@@ -28,21 +28,21 @@ Handle example() {
     return create(programs::carried(rtamt::Domain::dense));
 }
 
-using Told = std::vector<std::pair<std::int64_t, double>>;
+using Points = std::vector<std::pair<std::int64_t, double>>;
 
-Told told(const Handle& monitor, std::uint32_t output = 0) {
+Points output_of(const Handle& monitor, std::uint32_t output = 0) {
     const std::int64_t* ticks = nullptr;
     const double* values = nullptr;
-    const std::size_t count = rtamt_told(monitor.get(), output, &ticks, &values);
-    Told events;
+    const std::size_t count = rtamt_last_output(monitor.get(), output, &ticks, &values);
+    Points events;
     for (std::size_t i = 0; i < count; ++i)
         events.emplace_back(ticks[i], values[i]);
     return events;
 }
 
-Told push(const Handle& monitor, const Samples& samples) {
+Points push(const Handle& monitor, const Samples& samples) {
     CHECK(rtamt_push(monitor.get(), samples.data(), samples.size()) == RTAMT_OK);
-    return told(monitor);
+    return output_of(monitor);
 }
 
 Bytes save(const Handle& monitor) {
@@ -62,18 +62,18 @@ TEST_CASE("samples in events out") {
     const Handle monitor = example();
     CHECK(rtamt_time(monitor.get()) == RTAMT_DENSE);
     CHECK(push(monitor, {{0, 3.0, 0}, {0, 1.0, 1}}).empty());
-    CHECK(told(monitor, 1) == Told({{0, 3.0}}));
+    CHECK(output_of(monitor, 1) == Points({{0, 3.0}}));
     CHECK(push(monitor, {{5, 5.0, 0}}).empty());
-    CHECK(push(monitor, {{7, 2.0, 1}, {6, 4.0, 0}}) == Told({{0, 1.5}}));
+    CHECK(push(monitor, {{7, 2.0, 1}, {6, 4.0, 0}}) == Points({{0, 1.5}}));
     std::int64_t until = 0;
     CHECK((rtamt_known_until(monitor.get(), 0, &until) == 1 && until == 3));
     CHECK((rtamt_known_until(monitor.get(), 2, &until) == 0 &&
            rtamt_sample_count(monitor.get()) == 0));
     CHECK(rtamt_finish(monitor.get()) == RTAMT_OK);
-    CHECK(told(monitor) == Told({{4, 0.5}}));
+    CHECK(output_of(monitor) == Points({{4, 0.5}}));
     CHECK((rtamt_known_until(monitor.get(), 0, &until) == 1 && until == 7));
     rtamt_reset(monitor.get());
-    CHECK((told(monitor).empty() && rtamt_known_until(monitor.get(), 0, &until) == 0));
+    CHECK((output_of(monitor).empty() && rtamt_known_until(monitor.get(), 0, &until) == 0));
 }
 
 TEST_CASE("a refused sample leaves the monitor as it was") {
@@ -129,13 +129,13 @@ TEST_CASE("a state is saved restored and cloned anywhere in a trace") {
         const Handle copy(copied);
         CHECK((save(other) == state && save(copy) == state));
         for (int i = cut; i < 30; ++i) {
-            const Told expected = push(monitor, {sample(i)});
+            const Points expected = push(monitor, {sample(i)});
             CHECK((push(other, {sample(i)}) == expected && push(copy, {sample(i)}) == expected));
         }
         for (const Handle* each : {&monitor, &other, &copy})
             CHECK(rtamt_finish(each->get()) == RTAMT_OK);
-        CHECK(!told(monitor).empty());
-        CHECK((told(other) == told(monitor) && told(copy) == told(monitor)));
+        CHECK(!output_of(monitor).empty());
+        CHECK((output_of(other) == output_of(monitor) && output_of(copy) == output_of(monitor)));
     }
 }
 
@@ -182,7 +182,7 @@ TEST_CASE("a forged state with a right checksum is refused or does no harm") {
             const Bytes later = save(victim);
             CHECK(rtamt_restore(victim.get(), later.data(), later.size()) == RTAMT_OK);
             (void)rtamt_finish(victim.get());
-            (void)told(victim);
+            (void)output_of(victim);
             std::int64_t until = 0;
             (void)rtamt_known_until(victim.get(), 0, &until);
         });

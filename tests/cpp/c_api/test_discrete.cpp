@@ -166,8 +166,8 @@ TEST_CASE("null pointers and wrong sizes are refused by every function") {
     CHECK((rtamt_parameters(nullptr) == 0 && rtamt_parameter(nullptr, 0) == nullptr));
     CHECK((rtamt_lag(nullptr, 0) == -1 &&
            rtamt_parameter_value(nullptr, 0, nullptr) == RTAMT_REFUSED));
-    CHECK(rtamt_told(nullptr, 0, nullptr, nullptr) == 0);
-    CHECK(rtamt_told(monitor.get(), 0, nullptr, nullptr) == 0);
+    CHECK(rtamt_last_output(nullptr, 0, nullptr, nullptr) == 0);
+    CHECK(rtamt_last_output(monitor.get(), 0, nullptr, nullptr) == 0);
     CHECK(rtamt_known_until(nullptr, 0, nullptr) == -1);
     CHECK(rtamt_known_until(monitor.get(), 0, nullptr) == 0);
     std::array<char, 99> message{};
@@ -187,9 +187,9 @@ TEST_CASE("samples in robustness out") {
     CHECK(rtamt_finish(monitor.get()) == RTAMT_OK);
     const std::int64_t* steps = nullptr;
     const double* values = nullptr;
-    CHECK(rtamt_told(monitor.get(), 0, &steps, &values) == 3);
+    CHECK(rtamt_last_output(monitor.get(), 0, &steps, &values) == 3);
     CHECK((steps[0] == 2 && values[0] == 3.5 && steps[2] == 4 && values[2] == 7.5));
-    CHECK(rtamt_told(monitor.get(), 2, &steps, &values) == 0);
+    CHECK(rtamt_last_output(monitor.get(), 2, &steps, &values) == 0);
     CHECK(rtamt_finish(monitor.get()) == RTAMT_REFUSED);
     CHECK(rtamt_message(monitor.get()) ==
           std::string("The trace has been finished before: reset the monitor."));

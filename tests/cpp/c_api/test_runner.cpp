@@ -30,10 +30,11 @@ TEST_CASE("in discrete time known values follow their lags") {
     CHECK((known[0].value == 2.5 && runner.begun() && runner.samples() == 5));
     CHECK((runner.known_until(0) == 1 && runner.known_until(1) == 4));
     runner.finish();
-    CHECK((runner.told(0).count == 3 && runner.told(0).times[0] == 2 && runner.told(1).count == 0));
-    CHECK((runner.told(0).values[2] == 5.5 && runner.known_until(0) == 4));
+    CHECK((runner.last_output(0).count == 3 && runner.last_output(0).times[0] == 2 &&
+           runner.last_output(1).count == 0));
+    CHECK((runner.last_output(0).values[2] == 5.5 && runner.known_until(0) == 4));
     runner.reset();
-    CHECK((!runner.begun() && !runner.finished() && runner.told(0).count == 0));
+    CHECK((!runner.begun() && !runner.finished() && runner.last_output(0).count == 0));
 }
 
 TEST_CASE("in dense time what is discarded was never there") {
@@ -45,10 +46,10 @@ TEST_CASE("in dense time what is discarded was never there") {
     runner.add(0, 0, 3.0);
     runner.add(1, 0, 1.0);
     runner.push();
-    CHECK((runner.told(0).count == 0 && runner.told(1).count == 1 && runner.begun()));
+    CHECK((runner.last_output(0).count == 0 && runner.last_output(1).count == 1 && runner.begun()));
     runner.add(0, 4, 4.0);
     runner.add(1, 4, 0.0);
     runner.push();
-    CHECK((runner.told(0).count == 1 && runner.told(0).values[0] == 1.5));
+    CHECK((runner.last_output(0).count == 1 && runner.last_output(0).values[0] == 1.5));
     CHECK((runner.known_until(0) == 1 && runner.known_until(1) == 4));
 }

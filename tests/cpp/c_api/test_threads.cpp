@@ -76,7 +76,7 @@ Bits discrete_run(const std::vector<std::uint8_t>& bytes) {
     CHECK(rtamt_restore(monitor, state.data(), state.size()) == RTAMT_OK);
     (void)rtamt_finish(monitor);
     const double* values = nullptr;
-    const std::size_t count = rtamt_told(monitor, 0, nullptr, &values);
+    const std::size_t count = rtamt_last_output(monitor, 0, nullptr, &values);
     for (std::size_t i = 0; i < count; ++i)
         bits.push_back(std::bit_cast<std::uint64_t>(values[i]));
     rtamt_destroy(monitor);
@@ -88,7 +88,7 @@ Bits dense_run(const std::vector<std::uint8_t>& bytes) {
     Bits bits;
     const auto read = [&] {
         const double* values = nullptr;
-        const std::size_t count = rtamt_told(monitor, 0, nullptr, &values);
+        const std::size_t count = rtamt_last_output(monitor, 0, nullptr, &values);
         for (std::size_t i = 0; i < count; ++i)
             bits.push_back(std::bit_cast<std::uint64_t>(values[i]));
     };

@@ -51,7 +51,7 @@ TEST_CASE("random programs offline are their definition") {
 }
 
 // Online in random chunks, where a chunk that fails is taken back and left out: after each update
-// exactly that is told which is known of the events that were accepted, and each failure is the
+// exactly what is known is reported of the events that were accepted, and each failure is the
 // definition's first.
 TEST_CASE("random programs online are their definition and failures leave no trace") {
     Random random(21);

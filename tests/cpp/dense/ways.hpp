@@ -100,7 +100,7 @@ class Online {
         return trace;
     }
 
-    // Whether exactly that has been told which is known, given the whole answer.
+    // Whether exactly what is known has been reported, given the whole result.
     [[nodiscard]] bool exact(const std::vector<Signal>& expected) const {
         const auto trace = accepted();
         for (std::size_t i = 0; i < outputs.size(); ++i) {
@@ -112,8 +112,8 @@ class Online {
                 known = dense_oracle::frontier_of(*trace) - lag;
             }
             if (executor_.known_until(i) != known) return false;
-            const Signal told = dense_oracle::signal_of(outputs[i].view());
-            if (told != (known ? expected[i].merged(*known) : Signal{})) return false;
+            const Signal reported = dense_oracle::signal_of(outputs[i].view());
+            if (reported != (known ? expected[i].merged(*known) : Signal{})) return false;
         }
         return true;
     }

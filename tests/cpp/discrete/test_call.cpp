@@ -81,18 +81,18 @@ TEST_CASE("a call is like any instruction in chunks of every size") {
         Signal late(size);
         for (const std::size_t chunk : std::initializer_list<std::size_t>{1, 3, 256, 700}) {
             Executor executor(program(ahead));
-            Signal told;
+            Signal results;
             for (std::size_t begin = 0; begin < size; begin += chunk) {
                 const std::size_t count = std::min(chunk, size - begin);
                 auto buffers = ways::buffers_for_push(executor, count);
                 CHECK(
                     !executor.push(ways::pointers({x, y}, begin), count, ways::pointers(buffers)));
-                told.insert(told.end(), buffers[0].begin(), buffers[0].end());
+                results.insert(results.end(), buffers[0].begin(), buffers[0].end());
             }
             std::vector<Signal> rest{Signal(executor.remaining(0))};
             CHECK(!executor.finish(ways::pointers(rest)));
-            told.insert(told.end(), rest[0].begin(), rest[0].end());
-            CHECK(told == expected(x, y));
+            results.insert(results.end(), rest[0].begin(), rest[0].end());
+            CHECK(results == expected(x, y));
         }
     }
 }

@@ -9,7 +9,7 @@ using ways::Random;
 using ways::Signal;
 
 // Whoever reads an input or writes an output: kernels alone, an output that is an input, one that
-// is read by others, one that is told twice, one that is late.
+// is read by others, one that is two outputs, one that is late.
 TEST_CASE("offline gives the same whoever reads inputs and outputs") {
     Random random(11);
     for (const std::size_t count : std::initializer_list<std::size_t>{0, 1, 3, 256, 257, 1100}) {

@@ -52,7 +52,7 @@ TEST_CASE("a class becomes a kernel") {
     CHECK((rtamt_test_count()->advance == nullptr && rtamt_test_count()->version == 1));
 }
 
-TEST_CASE("what it throws is told and taken back") {
+TEST_CASE("what it throws is reported and taken back") {
     One one(*rtamt_test_count());
     CHECK(one.take(2) == "2");
     one.foreign.checkpoint();
