@@ -35,7 +35,12 @@ def _load() -> ctypes.CDLL:
     library.rtamt_push.argtypes = (c_void_p, POINTER(Sample), c_size_t)
     library.rtamt_finish.argtypes = (c_void_p,)
     library.rtamt_reset.argtypes = (c_void_p,)
-    library.rtamt_last_output.argtypes = (c_void_p, c_uint32, POINTER(POINTER(c_int64)), POINTER(POINTER(c_double)))
+    library.rtamt_last_output.argtypes = (
+        c_void_p,
+        c_uint32,
+        POINTER(POINTER(c_int64)),
+        POINTER(POINTER(c_double)),
+    )
     library.rtamt_last_output.restype = c_size_t
     library.rtamt_save.argtypes = (c_void_p, c_void_p, c_size_t, POINTER(c_size_t))
     library.rtamt_restore.argtypes = (c_void_p, c_char_p, c_size_t)

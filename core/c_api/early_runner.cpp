@@ -124,7 +124,7 @@ EarlyRunner::EarlyRunner(Program program, double period, EarlyGraph graph)
         throw std::invalid_argument("This is not a program that can be run: bounds at the start of "
                                     "the trace are four outputs of discrete time.");
     }
-    told_.resize(outputs);
+    outputs_.resize(outputs);
 }
 
 void EarlyRunner::take(const double* row) {
@@ -156,7 +156,7 @@ void EarlyRunner::settle() {
 
 void EarlyRunner::step(const double* row, std::span<rtamt_value> known) {
     take(row);
-    for (dense::EventList& list : told_)
+    for (dense::EventList& list : outputs_)
         list.resize(0);
     show(known);
 }
@@ -173,7 +173,7 @@ void EarlyRunner::hold(std::span<const double> row, std::size_t count,
         transfer(read);
         throw;
     }
-    for (dense::EventList& list : told_)
+    for (dense::EventList& list : outputs_)
         list.resize(0);
     show(known);
 }
@@ -198,14 +198,14 @@ std::optional<std::int64_t> EarlyRunner::known_until(std::size_t output) const n
 
 void EarlyRunner::finish() {
     finished_ = true;
-    for (dense::EventList& list : told_)
+    for (dense::EventList& list : outputs_)
         list.resize(0);
     if (!begun()) return;
     bounds_ = robustness_.ended(engine_, samples_);
     decide(truth_.ended(engine_, samples_));
     for (std::size_t output = 0; output < outputs; ++output) {
         const rtamt_value last = value(output);
-        if (last.known != 0) told_[output].append(0, last.value);
+        if (last.known != 0) outputs_[output].append(0, last.value);
     }
 }
 
@@ -219,7 +219,7 @@ void EarlyRunner::reset() {
     decided_ = -1;
     verdict_ = 0.0;
     finished_ = false;
-    for (dense::EventList& list : told_)
+    for (dense::EventList& list : outputs_)
         list.resize(0);
 }
 

@@ -11,7 +11,7 @@ offline         evaluate queries on a recording; cache compiled plans
 offline_bounds  offline bounds of recordings with missing or uncertain samples
 timeline        a recording divided into cells, as explanations evaluate it
 online          watched formulas and copies, shared by the monitors
-gate            reject concurrent and reentrant use of a monitor
+usage_guard     reject concurrent and reentrant use of a monitor
 native          load the compiled core
 user_operators  call custom operators from the core
 _core           the compiled core (``core/``); the stub describes its interface

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
-from rtamt.engine.gate import Gate, alone
+from rtamt.engine.usage_guard import UsageGuard, exclusive
 from rtamt.errors import UsageError, did_you_mean
 from rtamt.language.formula import Formula, variables
 from rtamt.language.printer import excerpt
@@ -83,7 +83,7 @@ class OnlineMonitor:
         self._output_of = {watched.name: output for output, watched in enumerate(watch, 1)}
         self._declared = frozenset(declared)
         self._factory = factory
-        self._gate = Gate()  # serialises operations of several steps
+        self._usage = UsageGuard()  # serialises operations of several steps
         self._finished = False
         #: What collects the episodes of each formula; None where nobody asked for them.
         self._episodes: list[EpisodeTracker] | None = None
@@ -155,7 +155,7 @@ class OnlineMonitor:
         twin = type(self).__new__(type(self))
         twin._base.__init__(twin)  # type: ignore[misc]
         twin.__dict__.update(self.__dict__)  # nothing in it is changed in place
-        twin._gate = Gate()
+        twin._usage = UsageGuard()
         twin._resume(self._state())
         return twin
 
@@ -167,7 +167,7 @@ class OnlineMonitor:
             raise UsageError("only a monitor that Specification.monitor() has made can be pickled")
         return _resumed, (self._factory, self._state())
 
-    @alone
+    @exclusive
     def _state(self) -> tuple[Any, ...]:
         self._session.require_copyable()
         remembered = {name: getattr(self, name) for name in self._remembered}

@@ -8,8 +8,8 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from rtamt.engine.dense.monitor import DenseMonitor, part_of
-from rtamt.engine.gate import alone
 from rtamt.engine.online import Watched
+from rtamt.engine.usage_guard import exclusive
 from rtamt.errors import NameInFormulaError, StlError, TraceError, UsageError, shown
 from rtamt.language.formula import Apply, Const, Var, folds, outermost, postorder, variables
 from rtamt.language.operators import Tense
@@ -204,7 +204,7 @@ class StlDenseTimeOnlineSpecification(OnlineSpecification, DenseTimeSpecificatio
         super().pastify()
 
     @raises_rtamt
-    @alone
+    @exclusive
     def update(self, *dataset: Sequence[Any]) -> list[list[float]]:
         """Take the next samples and return what became known, in the form of ``evaluate``.
 
@@ -248,7 +248,7 @@ class StlDenseTimeOnlineSpecification(OnlineSpecification, DenseTimeSpecificatio
         return _points(signal, self._whole)
 
     @raises_rtamt
-    @alone
+    @exclusive
     def final_update(self, *dataset: Sequence[Any]) -> list[list[float]]:
         """Take the last samples, as :meth:`update` does, and return the rest of the robustness.
 
@@ -287,7 +287,7 @@ class StlDenseTimeOnlineSpecification(OnlineSpecification, DenseTimeSpecificatio
         return _with_points_at(changes, [*kept, *self._kept_times()], self._last)
 
     @raises_rtamt
-    @alone
+    @exclusive
     def reset(self) -> None:
         """Forget the signals; the next samples are the first."""
         self._value_of = None

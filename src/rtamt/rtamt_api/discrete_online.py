@@ -6,7 +6,7 @@ from numbers import Real
 from typing import TYPE_CHECKING, Any
 
 from rtamt.engine.discrete.samples import read_time, read_values
-from rtamt.engine.gate import alone, in_use
+from rtamt.engine.usage_guard import exclusive, in_use
 from rtamt.errors import TraceError
 from rtamt.language.formula import Formula, Var
 from rtamt.language.units import UNITS
@@ -60,7 +60,7 @@ class StlDiscreteTimeOnlineSpecification(OnlineSpecification, DiscreteTimeSpecif
             return self._update_carefully(timestamp, dataset)
 
     @raises_rtamt
-    @alone
+    @exclusive
     def reset(self) -> None:
         """Forget the trace; the next sample is the first."""
         if self._stream is not None:
@@ -111,7 +111,7 @@ class StlDiscreteTimeOnlineSpecification(OnlineSpecification, DiscreteTimeSpecif
         return robustness
 
     @raises_rtamt
-    @alone
+    @exclusive
     def _opened_stream(self) -> Stream:
         return self._require_stream()
 
@@ -132,7 +132,7 @@ class StlDiscreteTimeOnlineSpecification(OnlineSpecification, DiscreteTimeSpecif
     # ---- the careful way: objects, values assigned from outside, any iterable, and errors ----------
 
     @raises_rtamt
-    @alone
+    @exclusive
     def _update_carefully(self, timestamp: Any, dataset: Any) -> Any:
         stream = self._require_stream()
         given = self._pairs(dataset)

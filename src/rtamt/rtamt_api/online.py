@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from rtamt.engine.gate import Gate
+from rtamt.engine.usage_guard import UsageGuard
 from rtamt.errors import RTAMTException, SpecificationError
 from rtamt.language.formula import Apply, Formula, postorder
 from rtamt.language.operators import Tense
@@ -24,7 +24,7 @@ class OnlineSpecification(Formulas):
     def __init__(self) -> None:
         super().__init__()
         self._pastified = False
-        self._gate = Gate()  # what takes more than one step is done alone
+        self._usage = UsageGuard()  # what takes more than one step is done alone
         # From a variable to the names that formulas read: the variable itself, or its fields by full name.
         self._reads: dict[str, list[str]] = {}
 

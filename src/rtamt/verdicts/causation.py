@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from rtamt.compiler.causation import compile_causes
-from rtamt.engine.gate import alone
 from rtamt.engine.native import EarlyMonitorBase
 from rtamt.engine.online import time_of
+from rtamt.engine.usage_guard import exclusive
 from rtamt.errors import SpecificationError, TraceError, UsageError, shown
 from rtamt.language.printer import excerpt
 from rtamt.rewrite.check import unbounded_future
@@ -108,7 +108,7 @@ class CausationMonitor(DiscreteEarlyMonitor, EarlyMonitorBase):
         """Return what the newest sample causes for a formula that is watched, at the start of the trace."""
         return Causation(*self._backend.causation(self._output(name) - self._hidden, 0))
 
-    @alone
+    @exclusive
     def finish(self) -> None:
         """Say that no more samples will come; what samples cause is known when they come."""
         self._finished = True

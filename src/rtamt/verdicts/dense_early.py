@@ -9,9 +9,9 @@ import numpy as np
 from rtamt.engine.backend import Session
 from rtamt.engine.dense.early_python_backend import PythonDenseEarlyMonitor
 from rtamt.engine.dense.groups import own_variables
-from rtamt.engine.gate import alone, in_use
 from rtamt.engine.native import EarlyMonitorBase
 from rtamt.engine.online import time_of
+from rtamt.engine.usage_guard import exclusive, in_use
 from rtamt.errors import TraceError
 from rtamt.language.undefined_value import undefined
 from rtamt.language.units import check_unit
@@ -217,7 +217,7 @@ class DenseEagerMonitor(DenseEarlyMonitor, EarlyMonitorBase):
     def _update_carefully(self, *given: Any, **values: Any) -> list[VerdictRun]:
         """Take an instant that the core did not take, or find out what is wrong with it."""
         time = time_of(given)
-        with self._gate:
+        with self._usage:
             scale, tick, known = self._lessons(time, values)
             self._check_in_order(tick, scale, known)
             try:
@@ -230,7 +230,7 @@ class DenseEagerMonitor(DenseEarlyMonitor, EarlyMonitorBase):
             self._tell()
             return self._news(0)
 
-    @alone
+    @exclusive
     def finish(self) -> list[VerdictRun]:
         """Say that no more samples will come, so that each variable holds its value; return what was still open."""
         if self._finished:

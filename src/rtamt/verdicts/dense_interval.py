@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from rtamt.compiler.early import FOREVER
 from rtamt.engine.dense.runs import compared, merged
-from rtamt.engine.gate import alone, in_use
 from rtamt.engine.native import EarlyMonitorBase
+from rtamt.engine.usage_guard import exclusive, in_use
 from rtamt.errors import TraceError, UsageError
 from rtamt.language.units import format_duration
 from rtamt.signals import arrays
@@ -159,7 +159,7 @@ class DenseIntervalMonitor(DenseEarlyMonitor, IntervalMonitor, EarlyMonitorBase)
         first, last = self._times([begin, end])
         return Change(first, last, Interval(lower, upper), final, retracted)
 
-    @alone
+    @exclusive
     def finish(self) -> list[Change]:
         """Say that no more samples will come: every variable holds its value. Return the bounds that were open."""
         if not self._finished:

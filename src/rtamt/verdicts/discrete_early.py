@@ -9,8 +9,8 @@ from rtamt.engine.backend import Session
 from rtamt.engine.discrete.apart import Apart
 from rtamt.engine.discrete.early_python_backend import PythonEarlyMonitor
 from rtamt.engine.discrete.samples import read_time
-from rtamt.engine.gate import in_use
 from rtamt.engine.native import EarlyMonitorBase
+from rtamt.engine.usage_guard import in_use
 from rtamt.errors import TraceError
 from rtamt.language.undefined_value import at_sample, undefined
 from rtamt.language.units import check_unit
@@ -192,7 +192,7 @@ class DiscreteEarlyMonitor(EarlyMonitor):
 
     def _take_in_order(self, time: Any, values: dict[str, Any]) -> Any:
         """Take a sample that comes after all others, or find out what is wrong with it."""
-        with self._gate:
+        with self._usage:
             flat = self._read_by_formula(values)
             if self._finished:
                 raise self._is_finished()

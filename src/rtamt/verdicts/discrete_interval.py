@@ -6,8 +6,8 @@ from fractions import Fraction
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from rtamt.compiler.early import FOREVER
-from rtamt.engine.gate import alone, in_use
 from rtamt.engine.native import EarlyMonitorBase
+from rtamt.engine.usage_guard import exclusive, in_use
 from rtamt.errors import TraceError, UsageError
 from rtamt.language.units import format_duration
 from rtamt.signals import arrays
@@ -200,7 +200,7 @@ class DiscreteIntervalMonitor(DiscreteEarlyMonitor, IntervalMonitor, EarlyMonito
         begin, end = (self._clock.time(backend.time(t)) for t in (first, last))
         return Change(begin, end, Interval(lower, upper), final, retracted)
 
-    @alone
+    @exclusive
     def finish(self) -> list[Change]:
         """Say that no more samples will come; return the bounds that were still open, which are final now."""
         if not self._finished:

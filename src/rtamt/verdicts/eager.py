@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from rtamt.engine.gate import alone
 from rtamt.engine.native import EarlyMonitorBase
 from rtamt.engine.online import time_of
+from rtamt.engine.usage_guard import exclusive
 from rtamt.signals.outcomes import Verdict
 from rtamt.verdicts.discrete_early import DiscreteEarlyMonitor
 
@@ -49,7 +49,7 @@ class EagerMonitor(DiscreteEarlyMonitor, EarlyMonitorBase):
         """Take a sample that the core did not take, or find out what is wrong with it."""
         return self._take_in_order(time_of(given), values)  # type: ignore[no-any-return]
 
-    @alone
+    @exclusive
     def finish(self) -> list[Verdict]:
         """Say that no more samples will come; return the verdicts that were still open."""
         if self._finished:

@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, Any
 
 from rtamt.compiler.early import compile_graph
 from rtamt.engine.backend import Session
-from rtamt.engine.gate import alone
 from rtamt.engine.native import core
 from rtamt.engine.online import OnlineMonitor, Watched
+from rtamt.engine.usage_guard import exclusive
 from rtamt.errors import TraceError, UsageError, did_you_mean, shown
 from rtamt.rewrite.desugar import desugar
 from rtamt.signals import arrays
@@ -122,7 +122,7 @@ class EarlyMonitor(OnlineMonitor):
         """Forget all that came, apart from what the back end remembers."""
         self._finished = False
 
-    @alone
+    @exclusive
     def reset(self) -> None:
         """Forget the trace; the next sample is the first."""
         self._forget()

@@ -9,8 +9,8 @@ from abc import abstractmethod
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from rtamt.engine.gate import alone
 from rtamt.engine.online import time_of
+from rtamt.engine.usage_guard import exclusive
 from rtamt.errors import BoundError, TraceError, UsageError, did_you_mean, shown
 from rtamt.language.units import duration
 from rtamt.rewrite.check import unbounded_future
@@ -120,7 +120,7 @@ class IntervalMonitor(EarlyMonitor):
     def _update_carefully(self, *given: Any, **values: Any) -> None:
         """Take a sample that the core did not take, or find out what is wrong with it."""
         time = time_of(given)
-        with self._gate:
+        with self._usage:
             self._take(time, values)
 
     @abstractmethod
@@ -200,7 +200,7 @@ class IntervalMonitor(EarlyMonitor):
     def _differences(self, before: Any, after: Any) -> tuple[Change, ...]:
         """Return what a correction has changed, from two monitors of the back end."""
 
-    @alone
+    @exclusive
     def watermark(self, time: Any) -> None:
         """Say that nothing at or before a time will come.
 
@@ -208,7 +208,7 @@ class IntervalMonitor(EarlyMonitor):
         """
         self._mark_at(time)
 
-    @alone
+    @exclusive
     def advance(self, now: Any) -> None:
         """Say what time it is: nothing that is later than the lateness will come."""
         self._mark_at(now, late=True)

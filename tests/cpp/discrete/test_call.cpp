@@ -34,8 +34,8 @@ class Ahead {
             known_.push_back(sum);
         }
         for (std::size_t i = 0; i < samples.due; ++i) {
-            samples.out[i] = told_ < known_.size() ? known_[told_] : 0.0;
-            ++told_;
+            samples.out[i] = answered_ < known_.size() ? known_[answered_] : 0.0;
+            ++answered_;
         }
     }
 
@@ -43,7 +43,7 @@ class Ahead {
     std::size_t operands_;
     std::int64_t wait_;
     std::vector<double> known_;
-    std::size_t told_ = 0;
+    std::size_t answered_ = 0;
 };
 
 // once[0,2] of the sum of x, y and 1, each delayed by a sample, three samples ahead.

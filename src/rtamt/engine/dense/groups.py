@@ -15,8 +15,8 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import numpy as np
 
 from rtamt.engine.backend import RefusedError, Session
-from rtamt.engine.gate import Gate, alone
 from rtamt.engine.online import depth_of
+from rtamt.engine.usage_guard import UsageGuard, exclusive
 from rtamt.errors import UsageError
 from rtamt.language.formula import variables
 from rtamt.rewrite.check import always_has_a_value
@@ -155,7 +155,7 @@ class DenseGroups:
         self._requirements, self._watched = places[:requirements], places[requirements:]
         self._names = tuple(names)
         self._lags = [int(depth_of(parts[part].formulas[i]) / tick) for part, i in self._requirements]
-        self._gate = Gate()
+        self._usage = UsageGuard()
         self._start_over()
 
     def _start_over(self) -> None:
@@ -177,7 +177,7 @@ class DenseGroups:
     def set_time_scale(self, signal: type, scale: TimeScale, rate: float, whole: bool = False) -> None:
         """Ignore the time scale: every update takes the slow path."""
 
-    @alone
+    @exclusive
     def push(self, columns: Sequence[Samples]) -> Samples:
         """Take a chunk, checked by the caller; return what became known of the minimum."""
         given = dict(zip(self._names, columns, strict=True))
@@ -198,7 +198,7 @@ class DenseGroups:
         )
         return self._known(news, min(until))
 
-    @alone
+    @exclusive
     def finish(self) -> Samples:
         """End the trace; every requirement is known up to the last sample of any variable."""
         end = max(tick for tick, _ in self._last.values())
@@ -285,12 +285,12 @@ class DenseGroups:
         """The same of every output: a list for each, of pairs of tick and value."""
         return [list(zip(ticks.tolist(), values.tolist(), strict=True)) for ticks, values in self._told]
 
-    @alone
+    @exclusive
     def reset(self) -> None:
         """Forget the trace."""
         self._start_over()
 
-    @alone
+    @exclusive
     def state(self) -> tuple[Any, ...]:
         """Return the state after the samples so far."""
         mine = {name: copy(getattr(self, name)) for name in self._REMEMBERED}

@@ -9,9 +9,9 @@ import numpy as np
 from rtamt.engine.dense.backends import BACKENDS
 from rtamt.engine.dense.groups import GroupSession, own_variables
 from rtamt.engine.discrete.apart import Apart
-from rtamt.engine.gate import alone, in_use
 from rtamt.engine.native import DenseMonitorBase
 from rtamt.engine.online import OnlineMonitor, Watched, depth_of, time_of
+from rtamt.engine.usage_guard import exclusive, in_use
 from rtamt.errors import TraceError, UsageError
 from rtamt.language.undefined_value import undefined
 from rtamt.language.units import check_unit
@@ -135,7 +135,7 @@ class DenseMonitor(DenseMonitorBase, OnlineMonitor):
         arrays.require_no_unit(data, self._unit)
         return self._take(dense_arrays.columns_of(data, self.input_names, self._declared))
 
-    @alone
+    @exclusive
     def finish(self) -> Signal:
         """End the trace: every signal holds its last value. Returns the rest of the robustness."""
         return self._signal(self._rest())
@@ -171,7 +171,7 @@ class DenseMonitor(DenseMonitorBase, OnlineMonitor):
         known: Samples = self._backend.last_output(self._output(name))
         return known
 
-    @alone
+    @exclusive
     def reset(self) -> None:
         """Forget the trace; the next sample is the first."""
         self._backend.reset()
@@ -209,7 +209,7 @@ class DenseMonitor(DenseMonitorBase, OnlineMonitor):
         times = iter(plain_times(self._scale.times(ticks)))
         return [Episode(next(times), next(times), each.worst, next(times)) for each in found]
 
-    @alone
+    @exclusive
     def _take(self, columns: dict[str, tuple[Any, Any]]) -> Signal:
         if self._finished:
             raise UsageError("the monitor has finished its trace; call reset() before the next sample")

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rtamt.engine.backend import RefusedError
-from rtamt.engine.gate import Gate, alone
+from rtamt.engine.usage_guard import UsageGuard, exclusive
 from rtamt.reference.dense import DenseReferenceMonitor
 
 if TYPE_CHECKING:
@@ -32,7 +32,7 @@ class PythonDenseMonitor:
         self._tick = tick
         self._monitor = DenseReferenceMonitor(formulas, names, tick)
         self._outputs = len(formulas)
-        self._gate = Gate()
+        self._usage = UsageGuard()
         self._last: list[int | None]
         self._until: list[int | None]  # up to when each output was reported
         self._told: list[Samples]  # the results of the last update
@@ -40,19 +40,19 @@ class PythonDenseMonitor:
         self._start_over()
 
     @property
-    @alone
+    @exclusive
     def state_bytes(self) -> int:
         """Bytes of signal kept; grows with the trace."""
         return self._monitor.state_bytes
 
     @property
-    @alone
+    @exclusive
     def counts(self) -> list[int]:
         """The number of samples of each input."""
         return list(self._counts)
 
     @property
-    @alone
+    @exclusive
     def last_times(self) -> list[int | None]:
         """The tick of the last sample of each input, or None."""
         return list(self._last)
@@ -64,7 +64,7 @@ class PythonDenseMonitor:
         """Refuse: there is no fast path."""
         raise RefusedError("time")
 
-    @alone
+    @exclusive
     def push(self, columns: Sequence[Events]) -> Samples:
         """Take a chunk, checked by the caller; return what became known of the first output."""
         for (ticks, _), last in zip(columns, self._last, strict=True):
@@ -80,23 +80,23 @@ class PythonDenseMonitor:
                 self._last[i] = int(ticks[-1])
         return self._told[0]
 
-    @alone
+    @exclusive
     def finish(self) -> Samples:
         """End the trace; return the rest of the first output."""
         self._told = self._closed(self._monitor.finish())
         return self._told[0]
 
-    @alone
+    @exclusive
     def last_output(self, output: int) -> Samples:
         """Return what the last update made known of an output."""
         return self._told[output]
 
-    @alone
+    @exclusive
     def points(self) -> list[list[tuple[int, float]]]:
         """The same of every output: a list for each, of pairs of tick and value."""
         return [list(zip(ticks.tolist(), values.tolist(), strict=True)) for ticks, values in self._told]
 
-    @alone
+    @exclusive
     def part(self, formula: Formula) -> Samples:
         """Return the results of the last chunk for a formula, by repeating the chunk for this formula alone."""
         before, columns = self._latest
@@ -104,13 +104,13 @@ class PythonDenseMonitor:
         again.push([before.get(name, ([], [])) for name in self._names])
         return again.push(columns)
 
-    @alone
+    @exclusive
     def reset(self) -> None:
         """Forget the trace."""
         self._monitor.reset()
         self._start_over()
 
-    @alone
+    @exclusive
     def state(self) -> tuple[Any, ...]:
         """Return the state after the samples so far."""
         mine = self._counts, self._last, self._until, self._values, self._told

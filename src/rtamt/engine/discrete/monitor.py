@@ -11,9 +11,9 @@ from rtamt.engine.discrete.apart import Apart, inner_of
 from rtamt.engine.discrete.backends import BACKENDS
 from rtamt.engine.discrete.caller_times import CallerTimes
 from rtamt.engine.discrete.samples import read_time, read_values
-from rtamt.engine.gate import alone, in_use
 from rtamt.engine.native import MonitorBase
 from rtamt.engine.online import OnlineMonitor, Watched, depth_of, time_of
+from rtamt.engine.usage_guard import exclusive, in_use
 from rtamt.errors import TraceError, UsageError
 from rtamt.language.undefined_value import at_sample, undefined
 from rtamt.language.units import check_unit
@@ -154,7 +154,7 @@ class Monitor(MonitorBase, OnlineMonitor):
             return self._take(time, values)
         return self._take_alone(time, values)
 
-    @alone
+    @exclusive
     def _take_alone(self, time: Any, values: dict[str, Any]) -> float | None:
         """Take a sample whose time or value is remembered here."""
         robustness = self._take(time, values) if self._times.plain else self._take_told(time, values)
@@ -188,7 +188,7 @@ class Monitor(MonitorBase, OnlineMonitor):
             return self._take_row(values)
         return self._take_row_alone(values)
 
-    @alone
+    @exclusive
     def _take_row_alone(self, values: tuple[float, ...]) -> float | None:
         robustness = self._take_row(values) if self._times.plain else self._take_row_told(values)
         self._note_sample(robustness)
@@ -219,7 +219,7 @@ class Monitor(MonitorBase, OnlineMonitor):
             raise self._no_value(error) from None
         return robustness
 
-    @alone
+    @exclusive
     def update_many(self, data: Any) -> Signal:
         """Take a chunk of samples: a mapping (or frame) from variable to values, with ``"time"``.
 
@@ -255,7 +255,7 @@ class Monitor(MonitorBase, OnlineMonitor):
         self._note(news)
         return news[0]
 
-    @alone
+    @exclusive
     def finish(self) -> Signal:
         """End the trace and return the values that were still unknown.
 
@@ -310,7 +310,7 @@ class Monitor(MonitorBase, OnlineMonitor):
         value: float | None = self._backend.latest(output)
         return value
 
-    @alone
+    @exclusive
     def reset(self) -> None:
         """Forget the trace; the next sample is the first.
 

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rtamt.engine.backend import RefusedError
-from rtamt.engine.gate import Gate, alone, in_use
+from rtamt.engine.usage_guard import UsageGuard, exclusive, in_use
 from rtamt.reference.discrete import ReferenceMonitor, history
 from rtamt.rewrite.horizon import horizon
 from rtamt.signals import arrays
@@ -65,18 +65,18 @@ class PythonMonitor:
         self._stamps: deque[float] = deque(maxlen=max(lags, default=0) + 1)
         self._values: dict[str, float] = {}
         self._finished = False
-        self._gate = Gate()
+        self._usage = UsageGuard()
         self._news: list[FloatArray] = [np.empty(0) for _ in formulas]  # of the last update
         self.violations = 0
 
     @property
-    @alone
+    @exclusive
     def samples(self) -> int:
         """The number of samples."""
         return self._monitor.samples
 
     @property
-    @alone
+    @exclusive
     def last_time(self) -> float | None:
         """The timestamp of the last sample; None before the first."""
         return self._last_time
@@ -86,12 +86,12 @@ class PythonMonitor:
         return self._stamps[-1] if self._stamps else None
 
     @property
-    @alone
+    @exclusive
     def state_bytes(self) -> int:
         """Bytes of signal kept; grows with the trace where the past is unbounded."""
         return self._monitor.state_bytes
 
-    @alone
+    @exclusive
     def last(self, part: Formula) -> float:
         """Return the value of a past formula of the monitor, or a part of one, at the last sample."""
         return self._monitor.last(part)
@@ -101,7 +101,7 @@ class PythonMonitor:
         news = self._news[output]
         return float(news[-1]) if len(news) else None
 
-    @alone
+    @exclusive
     def recent(self, count: int) -> FloatArray:
         """Return the timestamps of the last ``count`` samples."""
         return np.array(list(self._stamps)[len(self._stamps) - count :], dtype=np.float64)
@@ -130,7 +130,7 @@ class PythonMonitor:
             raise RefusedError("number of values")
         return self._take(None, {n: _number(v) for n, v in zip(self._names, values, strict=True)})
 
-    @alone
+    @exclusive
     def push(
         self, times: FloatArray, columns: Sequence[FloatArray], after: int | None = None
     ) -> list[FloatArray]:
@@ -147,14 +147,14 @@ class PythonMonitor:
             self._values = {name: float(c[-1]) for name, c in zip(self._names, columns, strict=True)}
         return known
 
-    @alone
+    @exclusive
     def finish(self) -> list[FloatArray]:
         """Return the values that were still unknown; afterwards only ``reset`` is possible."""
         known = self._monitor.finish()
         self._finished = True
         return known
 
-    @alone
+    @exclusive
     def reset(self) -> None:
         """Forget the trace."""
         self._monitor.reset()
@@ -164,7 +164,7 @@ class PythonMonitor:
         self._news = [np.empty(0) for _ in self._news]
         self.violations = 0
 
-    @alone
+    @exclusive
     def state(self) -> tuple[Any, ...]:
         """Return the state after the samples so far."""
         mine = tuple(self._stamps), self._values, self._news, self._finished, self.violations
@@ -176,7 +176,7 @@ class PythonMonitor:
         self._stamps.extend(stamps)
         self._monitor.restore(definition)
 
-    @alone
+    @exclusive
     def _take(self, time: float | None, given: Mapping[str, float]) -> float | None:
         """Take a sample; variables left out keep their values, and the default time is one period after the last."""
         if self._finished:

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     R = TypeVar("R")
 
 
-class Gate:
+class UsageGuard:
     """Admits one call at a time; raises :class:`UsageError` for a second one."""
 
     __slots__ = ("_lock",)
@@ -34,23 +34,23 @@ class Gate:
     def __exit__(self, *_: object) -> None:
         self._lock.release()
 
-    def __reduce__(self) -> tuple[type[Gate], tuple[()]]:
-        return Gate, ()  # a copy is not in use
+    def __reduce__(self) -> tuple[type[UsageGuard], tuple[()]]:
+        return UsageGuard, ()  # a copy is not in use
 
 
 class _Guarded(Protocol):
-    _gate: Gate
+    _usage: UsageGuard
 
 
 G = TypeVar("G", bound=_Guarded)
 
 
-def alone(method: Callable[Concatenate[G, P], R]) -> Callable[Concatenate[G, P], R]:
-    """Make a method hold the ``_gate`` of its object."""
+def exclusive(method: Callable[Concatenate[G, P], R]) -> Callable[Concatenate[G, P], R]:
+    """Make a method hold the ``_usage`` of its object."""
 
     @wraps(method)
     def guarded(self: G, /, *args: P.args, **kwargs: P.kwargs) -> R:
-        with self._gate:
+        with self._usage:
             return method(self, *args, **kwargs)
 
     return guarded
