@@ -1,5 +1,5 @@
-// A monitor as the C API and its carriers have it: everything that comes in is checked, and refused
-// with a sentence (std::invalid_argument); a failed call leaves the monitor as it was.
+// The monitor behind the C API and FMUs. All input is checked; wrong input raises
+// std::invalid_argument with one sentence, and a failed call leaves the monitor unchanged.
 #pragma once
 
 #include "../program/metadata.hpp"

@@ -1,4 +1,4 @@
-// What running a program means in either time domain, for whoever need not know which one it is.
+// Runs a program in either time domain behind one interface.
 #pragma once
 
 #include "../dense/executor.hpp"

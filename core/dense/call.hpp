@@ -1,7 +1,7 @@
 // A kernel that is not of the core: stretches of time go to it through its table of functions.
 //
-// The kernel counts time as the trace does; here it is arrival time, later by the lag. What it
-// gives is checked: it may be anybody's.
+// The kernel uses the time of the trace; here it is arrival time, later by the lag. Its results are
+// checked, since it may be any user's code.
 //
 // Cost: a call a step of the frontier, a copy of the operands' times where they are late, and what
 // the kernel itself takes. Memory: the events of a step, and the kernel's own.

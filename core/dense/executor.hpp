@@ -69,7 +69,7 @@ class BasicExecutor {
     void reset() noexcept;
 
     // Writes or reads what the samples so far have left behind, for an executor of the same
-    // program. One that could not read is to be thrown away.
+    // program. Discard an executor that could not read.
     void transfer(Snapshot& snapshot);
 
     // A whole trace at once, the last values held for `extra` ticks more; what a failure leaves
@@ -86,7 +86,7 @@ class BasicExecutor {
     // Until when an output is known, that instant included.
     [[nodiscard]] std::optional<std::int64_t> known_until(std::size_t output) const noexcept;
 
-    // What an output is worth there; any number while it is known nowhere.
+    // The value of an output there; any number while it is known nowhere.
     [[nodiscard]] Formula value(std::size_t output) const noexcept { return outputs_[output].last; }
 
     [[nodiscard]] std::optional<std::int64_t> first_time(std::size_t input) const noexcept {

@@ -4,8 +4,8 @@
 // happens up to the frontier is known. A run moves the frontier: the operands bring their events
 // since the last one, and the kernel gives its own up to the new frontier, that instant included.
 // An instruction begins at its start, that of the trace plus its lag, and its first event is there.
-// No value is undefined: a kernel that can make such a value says when, and the executor takes the
-// update back. Of which type values are is known to the kernels alone (values/domain.hpp).
+// No value is undefined: a kernel that can compute such a value returns its time, and the executor
+// rolls the update back. Only kernels depend on the type of values (values/domain.hpp).
 #pragma once
 
 #include "../program/snapshot.hpp"

@@ -12,7 +12,7 @@
 
 namespace rtamt::dense {
 
-// What two step functions are worth at the frontier.
+// The values of two step functions at the frontier.
 template <class Value>
 struct Pair {
     Value a{};

@@ -31,8 +31,8 @@
 
 namespace rtamt::discrete {
 
-// An operation made NaN: which instruction, and the index of the sample its value is for. Or a call
-// failed: what it said.
+// An operation computed NaN: the instruction, and the index of the sample of its value. Or a call
+// failed: its message.
 struct Failure {
     std::uint32_t instruction;
     std::int64_t sample;
@@ -79,7 +79,7 @@ class BasicExecutor {
     void reset() noexcept;
 
     // Writes or reads what the samples so far have left behind, for an executor of the same
-    // program. One that could not read is to be thrown away.
+    // program. Discard an executor that could not read.
     void transfer(Snapshot& snapshot);
 
     // A whole trace at once, `count` values an output; what a failure leaves behind is unspecified.
@@ -105,7 +105,7 @@ class BasicExecutor {
 
   private:
     Wiring<D> wiring_;
-    ZeroCopy zero_copy_;    // of use to evaluate() alone, after which nobody looks at registers
+    ZeroCopy zero_copy_;    // used by evaluate() only, after which no register is read
     std::size_t last_ = 0;  // place of the last slot in the registers
     std::int64_t slot_ = 0; // the next slot
     std::int64_t samples_ = endless;

@@ -3,11 +3,11 @@
 // A value is present at slot s of an instruction with lag L where 0 <= s - L < samples. Registers
 // hold anything at all in absent slots, and kernels skip these in their operands: that one rule
 // cuts every window at both ends of the trace. Where values are present, they are never undefined:
-// a kernel that can make such a value says where it did, and the executor then takes the update
+// a kernel that can compute such a value returns its place, and the executor then rolls the update
 // back.
 //
-// What the registers hold is known to the kernel alone: of a value domain (values/domain.hpp) the
-// values of numbers or of formulas.
+// Only the kernel knows the type of its registers: numbers or formulas of a value domain
+// (values/domain.hpp).
 #pragma once
 
 #include "../program/snapshot.hpp"

@@ -1,9 +1,9 @@
 // Which kernels read a trace, and write results, where the caller has them: no copy to a register
 // and back.
 //
-// An input that kernels alone read has no use for its register, nor has an output that nobody else
-// reads: for each block these kernels are pointed at the caller's memory. Not where places of the
-// block are absent: kernels may write there what belongs to nobody.
+// An input that only kernels read needs no register, nor does an output that nothing else reads:
+// for each block these kernels use the caller's memory directly. Blocks with absent slots are
+// excluded, since kernels may write any value there.
 //
 // Cost: a store a block for each operand or result; what it saves is a pass over the memory of each
 // column. Memory: three words for each.

@@ -1,4 +1,4 @@
-// FMI 2.0 for co-simulation over Component. A step that is refused is answered with fmi2Discard:
+// FMI 2.0 for co-simulation over Component. A rejected step returns fmi2Discard:
 // the unit is as it was, and the simulator may try another step.
 
 #include "fmi2.hpp"
@@ -47,7 +47,7 @@ struct Instance {
     Component component;
 };
 
-// Does the work on the component; `refusal` is the status where it says no.
+// Does the work on the component; `refusal` is the status if the component rejects it.
 template <class Work>
 fmi2Status with(fmi2Component handle, fmi2Status refusal, Work&& work) noexcept {
     if (handle == nullptr) return fmi2Error;
@@ -87,7 +87,7 @@ RTAMT_FMI2_EXPORT const char* fmi2GetVersion() {
 RTAMT_FMI2_EXPORT fmi2Status fmi2SetDebugLogging(fmi2Component /*instance*/, fmi2Boolean /*on*/,
                                                  std::size_t /*count*/,
                                                  const fmi2String /*categories*/[]) {
-    return fmi2OK; // what is said is always said: there is nothing but refusals and errors
+    return fmi2OK; // logging cannot be switched off: there are only rejections and errors
 }
 
 RTAMT_FMI2_EXPORT fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid,

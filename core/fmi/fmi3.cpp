@@ -1,4 +1,4 @@
-// FMI 3.0 for co-simulation over Component. A step that is refused is answered with fmi3Discard:
+// FMI 3.0 for co-simulation over Component. A rejected step returns fmi3Discard:
 // the unit is as it was, and the simulator may try another step.
 
 #include "fmi3.hpp"
@@ -24,7 +24,7 @@ namespace {
 
 using State = std::vector<std::uint8_t>;
 
-// Does the work on the component; `refusal` is the status where it says no.
+// Does the work on the component; `refusal` is the status if the component rejects it.
 template <class Work>
 fmi3Status with(fmi3Instance handle, fmi3Status refusal, Work&& work) noexcept {
     if (handle == nullptr) return fmi3Error;
@@ -56,7 +56,7 @@ RTAMT_FMI3_EXPORT const char* fmi3GetVersion() {
 RTAMT_FMI3_EXPORT fmi3Status fmi3SetDebugLogging(fmi3Instance /*instance*/, fmi3Boolean /*on*/,
                                                  std::size_t /*count*/,
                                                  const fmi3String /*categories*/[]) {
-    return fmi3OK; // what is said is always said: there is nothing but refusals and errors
+    return fmi3OK; // logging cannot be switched off: there are only rejections and errors
 }
 
 RTAMT_FMI3_EXPORT fmi3Instance fmi3InstantiateCoSimulation(

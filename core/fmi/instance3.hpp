@@ -1,4 +1,4 @@
-// An instance of a unit of FMI 3.0, and what it says.
+// An instance of an FMU of FMI 3.0 and its log.
 #pragma once
 
 #include "component.hpp"
@@ -22,7 +22,7 @@ struct Instance3 {
     Component component;
 };
 
-// Says why a call is wrong here, whatever its arguments.
+// Logs why a call is wrong in this state and returns the error.
 [[nodiscard]] inline fmi3Status refuse(fmi3Instance handle, const char* sentence) noexcept {
     if (handle != nullptr) static_cast<Instance3*>(handle)->log.say(fmi3Error, sentence);
     return fmi3Error;

@@ -1,5 +1,5 @@
-// What a call said when it failed: a copy, because the call may be taken back or gone when it is
-// read.
+// The message of a call that failed: a copy, because the call may be rolled back or destroyed
+// before it is read.
 //
 // Memory: its own; longer sentences are cut.
 #pragma once

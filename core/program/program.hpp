@@ -15,7 +15,7 @@
 //         32         instructions, 40 bytes each: u8 opcode, 3 B 0, u32 a, u32 b, u32 0,
 //                    i64 n, f64 x, i64 lag; an operand that is not used is 0xFFFFFFFF
 //                    outputs, one u32 instruction index each
-//                    the note: what a carrier tells its users (metadata.hpp); may be empty
+//                    the note: names and meanings for users (metadata.hpp); may be empty
 //                    u32 CRC-32 of everything before it
 //
 // An instruction with lag L yields, at slot s, the value for time (sample index) s - L. In dense
@@ -51,8 +51,8 @@ struct Instruction {
     std::int64_t lag = 0;
 };
 
-// A kernel that is not of the core, and the instructions that it reads. Whoever runs the program
-// keeps the table; bytes alone hold none.
+// A kernel from outside the core, and the instructions that it reads. The caller that runs the
+// program owns the table; it is not part of the bytes.
 struct CallSite {
     const rtamt_kernel* kernel = nullptr;
     rtamt_setup setup{};

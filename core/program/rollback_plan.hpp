@@ -71,7 +71,7 @@ class RollbackPlan {
             run(unit);
     }
 
-    // Has `trial` run the guarded group and takes it back; answers what `trial` answers.
+    // Lets `trial` run the guarded group and rolls it back; returns the result of `trial`.
     template <class Trial, class... Arguments>
     [[nodiscard]] bool dry_run(Trial&& trial, Arguments... arguments) const {
         checkpoint(arguments...);

@@ -1,5 +1,5 @@
-// What samples have left behind in a monitor, as bytes: written by one, read by another one of the
-// same program, which then goes on as the first would.
+// The state of a monitor as bytes: written by one monitor and read by another one of the same
+// program, which then continues as the first would.
 //
 // Every part lists what it holds once, in its transfer(), for both directions. Buffers that only
 // serve within an update are no part of it. The bytes are those of this machine and this layout.

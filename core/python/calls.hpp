@@ -1,4 +1,4 @@
-// Kernels that are not of the core, as Python hands them over: the table of a loaded library, or a
+// Kernels from outside the core, as Python passes them: the table of a loaded library, or a
 // function that makes a driver (rtamt.engine.user_operators), which stands for any Python class.
 //
 // A call to Python takes the GIL. What it raises is kept until the failure is reported.
@@ -24,14 +24,14 @@ class Calls {
     // of the interval in steps (-1: none), seconds in a step, and the indices of the operands.
     explicit Calls(const nb::list& calls);
 
-    // The same for the program; this must live longer than whoever runs it.
+    // The same for the program; this object must outlive the executor that runs it.
     [[nodiscard]] std::vector<CallSite> sites() const { return sites_; }
 
     // The exception that a driver raised last, if any; it is forgotten here.
     [[nodiscard]] nb::object take_error();
 
-    // For Python's garbage collector: an operator's function knows the module that it is in, and
-    // that knows the monitor.
+    // For Python's garbage collector: an operator's function refers to its module, which may refer
+    // to the monitor.
     [[nodiscard]] int traverse(visitproc visit, void* arg) const;
     void clear() noexcept;
 

@@ -1,9 +1,9 @@
 // The online monitor of dense time as Python sees it: names, times and numbers checked, then the
 // executor.
 //
-// What an update makes known is reported as events, and a point at the last instant that is known,
-// so that a reader sees how far. update refuses what is wrong, or not plain, with a short Refused
-// and changes nothing; the Python caller goes the long way, and writes the sentence.
+// What an update makes known is reported as events, followed by a point at the last known instant.
+// update rejects input that is wrong or not plain with a short Refused and changes nothing; the
+// Python caller then reads the input with all checks and raises the full message.
 #pragma once
 
 #include "../dense/executor.hpp"
@@ -45,14 +45,14 @@ class DenseMonitor {
     DenseMonitor(Program program, const std::vector<nb::str>& names, const nb::object& ignored,
                  std::shared_ptr<Calls> calls, Exceptions exceptions);
 
-    // How update() tells time until the next reset(): in numbers of so many ticks, a whole number
-    // below 2^53; `whole`: in integers alone. It answers with objects of this class, whose `_scale`
-    // is the given one and whose `_events` are bytes: the times, then the values.
+    // The unit of times of update() until the next reset(), in ticks, a whole number below 2^53;
+    // `whole`: times are integers. Results are objects of this class, whose `_scale` is the given
+    // one and whose `_events` are bytes: the times, then the values.
     void set_time_scale(const nb::type_object& signal, const nb::object& scale, double rate,
                         bool whole);
 
-    // Any variables at one instant, by name: Named or InDict. What became known of the first
-    // output; null, with a Python exception set, is a refusal.
+    // Any variables at one instant, by name: Named or InDict. Returns what became known of the
+    // first output; null, with a Python exception set, if the sample is rejected.
     template <class Values>
     [[nodiscard]] PyObject* update(PyObject* time, const Values& values) noexcept;
 

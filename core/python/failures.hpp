@@ -15,7 +15,7 @@
 namespace rtamt::python {
 
 struct Exceptions {
-    nb::object refused;   // an update was refused
+    nb::object refused;   // an update was rejected
     nb::object in_use;    // makes the one for a monitor that is in the middle of another call
     nb::object undefined; // an operation made NaN: instruction, sample or tick; and, of a call that
                           // failed, what it said

@@ -1,7 +1,7 @@
 // The online monitor as Python sees it: names, times and numbers checked, then the executor.
 //
-// update, update_pairs and step refuse what is wrong with a short Refused and change nothing; the
-// Python caller looks again and writes the sentence. Nothing here formats a message a sample.
+// update, update_pairs and step reject wrong input with a short Refused and change nothing; the
+// Python caller checks the input again and raises the full message. No message is formatted here.
 #pragma once
 
 #include "../discrete/clock.hpp"
@@ -32,16 +32,16 @@ class Monitor {
             bool strict, const nb::object& ignored, std::shared_ptr<Calls> calls,
             Exceptions exceptions);
 
-    // One sample each. A float or None is what became known of the first output; null, with a
-    // Python exception set, is a refusal.
-    // Of update: values by name, Named or InDict.
+    // One sample each. Returns what became known of the first output, a float or None; null, with
+    // a Python exception set, if the sample is rejected. update takes values by name, Named or
+    // InDict.
     template <class Values>
     [[nodiscard]] PyObject* update(PyObject* time, const Values& values) noexcept;
     [[nodiscard]] PyObject* update_pairs(PyObject* time, PyObject* pairs) noexcept;
     [[nodiscard]] PyObject* step(std::span<PyObject* const> values) noexcept;
 
-    // `after`: how many samples the caller knows of; when there are others by now, nothing is
-    // taken.
+    // `after`: how many samples the caller has seen; if others came meanwhile, the chunk is
+    // rejected.
     [[nodiscard]] std::vector<Result> push(const std::optional<Column>& times,
                                            const std::vector<Column>& columns,
                                            std::optional<std::int64_t> after);
@@ -57,7 +57,7 @@ class Monitor {
 
     // None before the first sample.
     [[nodiscard]] std::optional<double> last(std::uint32_t instruction) const;
-    // What an output is worth that the last sample made known.
+    // The value of an output that the last sample made known.
     [[nodiscard]] std::optional<double> latest(std::size_t output) const;
     [[nodiscard]] Result recent(std::size_t count) const;
 

@@ -90,7 +90,8 @@ PyType_Slot monitor_slots[] = {
 PyMethodDef dense_hot_methods[] = {
     {"update", erased(update<DenseMonitor>), METH_FASTCALL,
      "update($self, t, values, /)\n--\n\n"
-     "Take a dict of any inputs at a time as set_time_scale() says; return what became known."},
+     "Take a dict of any inputs at a time in the unit of set_time_scale(); return what became "
+     "known."},
     {nullptr, nullptr, 0, nullptr},
 };
 
@@ -159,8 +160,8 @@ void add_monitors(const nanobind::module_& m, const Exceptions& exceptions) {
             nb::arg("calls") = nb::list())
         .def("set_time_scale", &DenseMonitor::set_time_scale, nb::arg("signal"), nb::arg("scale"),
              nb::arg("rate"), nb::arg("whole") = false,
-             "Say how update() tells time: in numbers of so many ticks, or in integers alone; and "
-             "of which class its answers are, with which scale.")
+             "Set the unit of times of update(), in ticks, and whether they are integers alone; "
+             "and the class of its results, with their scale.")
         .def("push", &DenseMonitor::push, nb::arg("columns"),
              "Take a chunk, times and values of each input; return what became known of the first "
              "output, times and values.")

@@ -11,10 +11,10 @@ namespace rtamt::python {
 
 namespace nb = nanobind;
 
-// Numbers from here on are no times in seconds: Python says why (IMPLAUSIBLE in counting.py).
+// Numbers from here on are not times in seconds (IMPLAUSIBLE in counting.py explains why).
 inline constexpr double implausible = 1e11;
 
-// Drops a Python exception that only says that an object is no number, or too large a one.
+// Clears a Python exception for an object that is not a number or is too large.
 inline bool forget_no_number() noexcept {
     if (PyErr_ExceptionMatches(PyExc_TypeError) != 0 ||
         PyErr_ExceptionMatches(PyExc_OverflowError) != 0) {
@@ -54,8 +54,8 @@ template <class Numbers>
     return Numbers::plain ? not_plain : wrong;
 }
 
-// What counts as a number: float and int at once; else whatever calls itself a numbers.Real, and
-// numpy's bool. Strings, decimals and arrays do not.
+// Reads numbers: float and int directly, and instances of numbers.Real and numpy's bool. Strings,
+// decimals and arrays are not numbers.
 class Numbers {
   public:
     static constexpr bool plain = false;
@@ -92,7 +92,7 @@ class Numbers {
             if (real <= 0 || PyObject_TypeCheck(object, duration()) != 0) return false;
         }
         value = PyFloat_AsDouble(object);
-        // Of a long double it may be an overflow: the long way finds out.
+        // A long double may have overflowed: the Python caller decides.
         if (std::isinf(value) && !PyFloat_Check(object)) return false;
         return value != -1.0 || PyErr_Occurred() == nullptr || forget_no_number();
     }

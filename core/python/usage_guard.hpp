@@ -1,4 +1,4 @@
-// Who may use a monitor: one thread at a time, and nobody brings samples after the end.
+// Rejects concurrent and reentrant use of a monitor, and samples after the end of the trace.
 //
 // A thread that is inside may have released the GIL, or run a Python operator that calls back. All
 // methods of a monitor hold the GIL or, without one, a critical section of the monitor's object
@@ -19,8 +19,8 @@ namespace nb = nanobind;
 
 class UsageGuard {
   public:
-    // `refused` is the class of the exception that says, in a word, why samples are not taken;
-    // `in_use` makes the exception for a monitor that is in the middle of another call.
+    // `refused` is the class of the exception for rejected samples, whose argument is a short
+    // reason; `in_use` makes the exception for a monitor that another call is using.
     UsageGuard(nb::object refused, nb::object in_use)
         : refused_(std::move(refused)), in_use_(std::move(in_use)) {}
 
@@ -41,7 +41,7 @@ class UsageGuard {
 
     void require_idle() const { require(!busy_); }
 
-    // What does not hold shows that somebody else has used the monitor meanwhile.
+    // Raises unless the condition holds: otherwise another call has used the monitor meanwhile.
     void require(bool holds) const {
         if (holds) return;
         set_in_use();

@@ -153,7 +153,7 @@ class KernelOf {
 
     static void destroy(void* state) noexcept { delete static_cast<State*>(state); }
 
-    // A failure here leaves no kernel, which the next run() tells.
+    // A failure here leaves no kernel; the next run() reports it.
     static void reset(void* state) noexcept {
         State& kernel = of(state);
         kernel.now.reset();
