@@ -132,6 +132,7 @@ void Graph::check() const {
         if (node.kind != Kind::atom) require(earlier(node.a));
         if (pair || (node.kind == Kind::map && node.b != none)) require(earlier(node.b));
         require(node.low <= node.high && node.high > -forever && node.low < forever);
+        require(node.low >= 0 || node.high <= 0);
         for (std::size_t s = 0; s < node.steps.size(); ++s) {
             const Step& step = node.steps[s];
             require(step.opcode < static_cast<Opcode>(opcodes.size()) &&

@@ -3,7 +3,7 @@
 // A reference to a node is twice its index, plus one where the formula is negated: the registers of
 // a node hold its lower bounds and its negated upper bounds, so that negation exchanges them.
 //
-//     kind         value at t, with w = [t + low, t + high]
+//     kind         value at t, with w = [t + low, t + high] all before t or all after it
 //     atom         an expression over the inputs at t
 //     map          a function of a and b at t
 //     both         the smaller of a and b
