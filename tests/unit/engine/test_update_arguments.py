@@ -8,8 +8,9 @@ import rtamt
 KINDS = [
     {"time": time, **verdict, **backend}
     for time in ("discrete", "dense")
-    for verdict in ({}, {"verdict": "eager"}, {"verdict": "interval"})
+    for verdict in ({}, {"verdict": "eager"}, {"verdict": "interval"}, {"verdict": "causation"})
     for backend in ({}, {"backend": "python"})
+    if time == "discrete" or verdict != {"verdict": "causation"}
 ]
 
 
