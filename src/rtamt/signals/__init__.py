@@ -13,6 +13,7 @@ instants          sets of times as intervals, and step functions of them
 outcomes          bounds and verdicts that are known before the whole trace is
 episodes          the maximal runs of violation
 trace             ``Trace``: named signals, each with its own time base; resampling
+resampling        signals at other instants: a regular grid, or those of other signals
 listing           a trace as text: its signals topic by topic
 arrays            data (lists, arrays, frames, objects) to float64 arrays
 dense_arrays      dense-time data to int64 ticks and float64 values

@@ -18,10 +18,10 @@ from typing import TYPE_CHECKING, Any, overload
 import numpy as np
 
 from rtamt.errors import TraceError, UsageError, choices, shown
-from rtamt.language.units import duration
 from rtamt.signals.arrays import TIME, Clocked, missing_sample, stamps
 from rtamt.signals.listing import extent, html, listing
 from rtamt.signals.regular import merged
+from rtamt.signals.resampling import grid_of, resampled
 from rtamt.signals.signal import Signal
 
 if TYPE_CHECKING:
@@ -32,9 +32,6 @@ if TYPE_CHECKING:
     from rtamt.signals.arrays import FloatArray
 
     Times = NDArray[Any]
-
-#: Ways of filling in what lies between two samples.
-HOW = ("hold", "linear")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -299,18 +296,7 @@ class Trace(Clocked):
         >>> trace.resample("500ms")["x"].values, trace.resample("500ms", how="linear")["x"].values
         (array([ 0.,  0., 10.]), array([ 0.,  5., 10.]))
         """
-        if how not in HOW:
-            raise UsageError(f"cannot resample by '{how}'{choices(how, HOW, 'methods')}")
-        step = duration(period)
-        if step <= 0:
-            raise UsageError(f"the sampling period is {period!r}; it must be positive")
-        timed = self._all_timed()
-        start = max(_exact(times[0]) for times in timed)
-        last = (max if how == "hold" else min)(_exact(times[-1]) for times in timed)
-        if last < start:
-            raise TraceError("the signals have no instant in common")
-        grid = _grid(start, step, int((last - start) / step) + 1, timed[0].dtype)
-        return self._at(grid, how)
+        return self._at(grid_of(self._all_timed(), period, how), how)
 
     def hold(self) -> Trace:
         """Return all signals at the timestamps of each, holding last values, from the latest first timestamp on.
@@ -329,17 +315,8 @@ class Trace(Clocked):
         losses: list[str] = []
         for name, channel in self._channels.items():
             assert channel.times is not None
-            places = np.searchsorted(channel.times, grid, side="right") - 1
-            if how == "hold":
-                values = channel.values[places]
-                losses += _passed_over(name, places, len(channel.times))
-            else:
-                # Differences first: timestamps of 10^18 ns do not fit into a double, their differences do.
-                zero = channel.times[0]
-                values = np.interp(_plain(grid - zero), _plain(channel.times - zero), channel.values)
-                between = channel.times[places] != grid
-                both = np.concatenate((places, places[between] + 1))
-                losses += _passed_over(name, both, len(channel.times))
+            values, left_out = resampled(name, channel.times, channel.values, grid, how)
+            losses += left_out
             channels[name] = replace(channel, times=grid, values=values, first_gap=None)
         return self._with(channels, losses)
 
@@ -403,48 +380,6 @@ def _bound(end: Any, dtype: np.dtype[Any]) -> Any:
         raise UsageError(f"{shown(end)} cannot begin or end a slice of this trace; give {kind}") from None
 
 
-def _passed_over(name: str, places: NDArray[np.intp], count: int) -> list[str]:
-    """Return the note on samples that were skipped by resampling, after the first one used."""
-    read = merged([places])
-    left_out = count - int(read[0]) - len(read)
-    if not left_out:
-        return []
-    return [
-        f"resampling left out {left_out:,} of {count:,} sample{'s' * (count != 1)} of {name}, between those it took"
-    ]
-
-
 def in_seconds(times: Times) -> FloatArray:
     """Return times as float64 seconds; datetimes count from 1970."""
     return stamps(times).seconds
-
-
-def _exact(time: Any) -> Fraction:
-    """Return a time in seconds: a float means the shortest decimal that prints it."""
-    if isinstance(time, np.datetime64 | np.timedelta64):
-        return Fraction(int(time.astype(np.int64)), 10**9)
-    return Fraction(repr(float(time)))
-
-
-def _grid(start: Fraction, step: Fraction, count: int, dtype: np.dtype[Any]) -> Times:
-    """Return ``count`` timestamps of kind ``dtype``, each correctly rounded."""
-    if dtype.kind == "f":
-        scale = step.denominator * start.denominator
-        zero, gap = int(start * scale), int(step * scale)
-        if max(abs(zero), abs(zero + gap * count), scale) < 2**53:
-            return (zero + gap * np.arange(count)) / scale
-        return np.array([float(start + i * step) for i in range(count)])
-    first, each = start * 10**9, step * 10**9
-    if each.denominator != 1:
-        raise UsageError(
-            f"the period {step} s is no whole number of nanoseconds, in which the stamps are counted"
-        )
-    stamps = int(first) + int(each) * np.arange(count, dtype=np.int64)
-    return stamps.astype(dtype)
-
-
-def _plain(gaps: Times) -> FloatArray:
-    return (gaps.astype(np.int64) if gaps.dtype.kind == "m" else gaps).astype(np.float64)
-
-
-__all__ = ["HOW", "Channel", "Trace", "in_seconds"]

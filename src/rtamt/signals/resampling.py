@@ -1,0 +1,91 @@
+"""Signals at other instants: those of a regular grid, or those of other signals."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rtamt.errors import TraceError, UsageError, choices
+from rtamt.language.units import duration
+from rtamt.signals.regular import merged
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import NDArray
+
+    from rtamt.signals.arrays import FloatArray
+
+    Times = NDArray[Any]
+
+#: Ways of filling in what lies between two samples.
+HOW = ("hold", "linear")
+
+
+def grid_of(timed: Sequence[Times], period: str | float | Fraction, how: str) -> Times:
+    """Return instants ``period`` apart, from the first at which all signals have a value; see ``Trace.resample``."""
+    if how not in HOW:
+        raise UsageError(f"cannot resample by '{how}'{choices(how, HOW, 'methods')}")
+    step = duration(period)
+    if step <= 0:
+        raise UsageError(f"the sampling period is {period!r}; it must be positive")
+    start = max(_exact(times[0]) for times in timed)
+    last = (max if how == "hold" else min)(_exact(times[-1]) for times in timed)
+    if last < start:
+        raise TraceError("the signals have no instant in common")
+    return _grid(start, step, int((last - start) / step) + 1, timed[0].dtype)
+
+
+def resampled(
+    name: str, times: Times, values: FloatArray, grid: Times, how: str
+) -> tuple[FloatArray, list[str]]:
+    """Return the values of a signal at the instants of a grid, and a note on samples that they leave out."""
+    places = np.searchsorted(times, grid, side="right") - 1
+    if how == "hold":
+        return values[places], _passed_over(name, places, len(times))
+    # Differences first: timestamps of 10^18 ns do not fit into a double, their differences do.
+    found = np.interp(_plain(grid - times[0]), _plain(times - times[0]), values)
+    between = times[places] != grid
+    both = np.concatenate((places, places[between] + 1))
+    return found, _passed_over(name, both, len(times))
+
+
+def _passed_over(name: str, places: NDArray[np.intp], count: int) -> list[str]:
+    """Return the note on samples that were skipped by resampling, after the first one used."""
+    read = merged([places])
+    left_out = count - int(read[0]) - len(read)
+    if not left_out:
+        return []
+    return [
+        f"resampling left out {left_out:,} of {count:,} sample{'s' * (count != 1)} of {name}, between those it took"
+    ]
+
+
+def _exact(time: Any) -> Fraction:
+    """Return a time in seconds: a float means the shortest decimal that prints it."""
+    if isinstance(time, np.datetime64 | np.timedelta64):
+        return Fraction(int(time.astype(np.int64)), 10**9)
+    return Fraction(repr(float(time)))
+
+
+def _grid(start: Fraction, step: Fraction, count: int, dtype: np.dtype[Any]) -> Times:
+    """Return ``count`` timestamps of kind ``dtype``, each correctly rounded."""
+    if dtype.kind == "f":
+        scale = step.denominator * start.denominator
+        zero, gap = int(start * scale), int(step * scale)
+        if max(abs(zero), abs(zero + gap * count), scale) < 2**53:
+            return (zero + gap * np.arange(count)) / scale
+        return np.array([float(start + i * step) for i in range(count)])
+    first, each = start * 10**9, step * 10**9
+    if each.denominator != 1:
+        raise UsageError(
+            f"the period {step} s is no whole number of nanoseconds, in which the stamps are counted"
+        )
+    stamps = int(first) + int(each) * np.arange(count, dtype=np.int64)
+    return stamps.astype(dtype)
+
+
+def _plain(gaps: Times) -> FloatArray:
+    return (gaps.astype(np.int64) if gaps.dtype.kind == "m" else gaps).astype(np.float64)
