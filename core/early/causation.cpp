@@ -3,6 +3,7 @@
 #include "../program/snapshot.hpp"
 
 #include <algorithm>
+#include <ranges>
 #include <stdexcept>
 #include <utility>
 
@@ -119,10 +120,10 @@ struct Until {
     View hold;
     View goal;
     View core; // the recursion without bounds
-    Tick low;
-    Tick high;
-    Tick first;
-    Tick last;
+    Tick low = 0;
+    Tick high = 0;
+    Tick first = 0;
+    Tick last = 0;
 
     // The newest sample is in the goal of [l, r].
     void by_goal(Pieces& pieces, const Run& run) const {
@@ -168,8 +169,8 @@ struct Until {
 [[nodiscard]] Pieces reversed(const Pieces& pieces) {
     Pieces result;
     result.reserve(pieces.size());
-    for (auto i = pieces.rbegin(); i != pieces.rend(); ++i)
-        result.push_back({-i->end, -i->begin, i->value});
+    for (const Run& run : std::views::reverse(pieces))
+        result.push_back({-run.end, -run.begin, run.value});
     return result;
 }
 

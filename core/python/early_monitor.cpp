@@ -371,7 +371,7 @@ nb::object EarlyMonitor::supposed(
 
 // No minus before a zero.
 std::pair<double, double> EarlyMonitor::causation_at_start() const {
-    const Bounds caused = causes_.value().at_start();
+    const Bounds caused = causes_ ? causes_->at_start() : bounds::anything;
     return {caused.upper + 0.0, caused.lower + 0.0};
 }
 
