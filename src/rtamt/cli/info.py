@@ -23,7 +23,7 @@ from rtamt.engine.domains import engine_of
 from rtamt.errors import BoundError, SpecificationError, UsageError, choices
 from rtamt.language.printer import excerpt
 from rtamt.language.units import format_duration
-from rtamt.rewrite.check import check_online
+from rtamt.rewrite.check import check_online, unbounded_future
 from rtamt.rewrite.desugar import desugar
 from rtamt.rewrite.early import ends_differently, loose
 from rtamt.rewrite.horizon import horizon
@@ -266,12 +266,13 @@ def _lines(facts: Facts) -> Iterator[str]:
     name = _loose(facts)
     wide = f"sound, but may be wider than necessary: '{name}' raises and lowers the robustness"
     yield f"intervals  {'tight' if name is None else wide}"
-    if not spec.domain.continuous:
-        late = _ending(facts)
-        changed = f"may change at the end of the trace, which cuts the windows of '{late}'"
-        yield f"early      verdicts {'hold at the end of the trace' if late is None else changed}"
+    late = None if spec.domain.continuous else _ending(facts)
+    changed = f"may change at the end of the trace, which cuts the windows of '{late}'"
+    yield f"early      verdicts {'hold at the end of the trace' if late is None else changed}"
     if facts.program is None:
         yield f"online     no: {facts.offline_only}"
+        if unbounded_future(spec.formula) is not None:
+            yield "           but verdicts and bounds can be monitored: rtamt monitor --verdict eager, or interval"
         return
     if spec.domain.continuous:
         yield "memory     that of the changes inside the windows, whatever the length of the trace"

@@ -58,7 +58,8 @@ def test_unbounded_future_is_offline_only_and_the_reason_is_given(run):
         "intervals  tight\n"
         "early      verdicts hold at the end of the trace\n"
         "online     no: 'always' without an upper bound needs the whole future and cannot be monitored "
-        "online; give it a bound, such as always[0:10], or evaluate the finished trace offline\n",
+        "online; give it a bound, such as always[0:10], or evaluate the finished trace offline\n"
+        "           but verdicts and bounds can be monitored: rtamt monitor --verdict eager, or interval\n",
         "",
     )
 
@@ -169,6 +170,7 @@ DENSE = (
     "horizon    10.07 s: the value at t is known at t + 10.07 s\n"
     "pastified  historically[0:10](once[70ms:70ms](req >= 3) -> once[0:70ms](gnt >= 3))\n"
     "intervals  tight\n"
+    "early      verdicts hold at the end of the trace\n"
     "memory     that of the changes inside the windows, whatever the length of the trace\n"
     "program\n"
     "  %0   lag 0    input req\n"
@@ -198,7 +200,7 @@ def test_json_in_dense_time(run):
 
 def test_unbounded_future_in_dense_time_is_offline_only(run):
     answer = run("info", "always(x >= 3)", "--time", "dense")
-    assert answer.out.splitlines()[-1] == (
+    assert answer.out.splitlines()[-2] == (
         "online     no: 'always' without an upper bound needs the whole future and cannot be monitored "
         "online; give it a bound, such as always[0:10], or evaluate the finished trace offline"
     )
