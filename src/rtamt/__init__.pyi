@@ -103,8 +103,8 @@ from rtamt.specification import Specification as Specification
 from rtamt.texts import load as load
 from rtamt.texts import parse as parse
 from rtamt.texts import robustness as robustness
+from rtamt.verdicts.chunks import StreamResult as StreamResult
 from rtamt.verdicts.prediction import calibrate as calibrate
-from rtamt.verdicts.streaming import StreamResult as StreamResult
 from rtamt.verdicts.streaming import check_stream as check_stream
 
 __version__: str

@@ -17,7 +17,8 @@ from rtamt.cli.reading_options import add_instant_option, add_reading_options, i
 from rtamt.cli.terminal import Progress, say
 from rtamt.errors import StlError
 from rtamt.files import replacing
-from rtamt.plot.figure import draw, matplotlib
+from rtamt.plot.axes import matplotlib
+from rtamt.plot.figure import draw
 from rtamt.plot.scene import scene
 from rtamt.plot.tree import draw_tree
 

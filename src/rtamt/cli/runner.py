@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     from rtamt.signals.outcomes import Interval
     from rtamt.signals.trace import Trace
     from rtamt.specification import Specification
-    from rtamt.verdicts.streaming import StreamResult
+    from rtamt.verdicts.chunks import StreamResult
 
 #: Bytes of a file from which on it is read in chunks, where format and formula allow it.
 LARGE = 256 * 2**20

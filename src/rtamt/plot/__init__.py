@@ -11,6 +11,8 @@ panels  which signals share a panel
 lines   points of lines, and intervals in which a formula does not hold
 clock   times as positions on an axis
 figure  draw a scene with matplotlib
+axes    matplotlib, and vertical axes with infinities
+texts   names and formulas as there is room for them
 tree    draw a formula as a tree
 style   colours and markers
 ======  ===============================================================

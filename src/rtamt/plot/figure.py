@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-import textwrap
 from math import isfinite
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rtamt.extras import library
 from rtamt.language.formula import variables
 from rtamt.plot import style
+from rtamt.plot.axes import Edges, matplotlib
 from rtamt.plot.lines import Line
+from rtamt.plot.texts import in_lines, names_height, room, shortened, wrapped
 from rtamt.signals.regular import merged
 
 if TYPE_CHECKING:
@@ -28,16 +28,8 @@ _LEFT, _RIGHT, _GAP = 0.75, 1.55, 0.34
 #: Points across that are drawn, and up to which each sample has a dot.
 _COLUMNS, _DOTS = 1200, 50
 
-#: Characters of a line of the formula, and panels that are drawn larger than rows.
-_TEXT, _FEW = 100, 4
-
-#: Characters of a signal's name in one line, and in each of two smaller ones.
-_NAME, _SMALL = 16, 21
-
-
-def matplotlib(module: str = "figure") -> Any:
-    """Return a module of matplotlib."""
-    return library(f"matplotlib.{module}", "a picture", "plot")
+#: Panels that are drawn larger than rows.
+_FEW = 4
 
 
 def new_figure() -> Any:
@@ -64,7 +56,7 @@ class _Drawing:
         self._scene = scene
         self._figure = figure
         self._chosen = scene.chosen(rows)
-        self._title = _wrapped(scene.explanation.formula)
+        self._title = wrapped(scene.explanation.formula)
         self._marks: dict[str, Any] = {}
         margin = 0.015 * (window[1] - window[0]) or 1.0
         self._window = window
@@ -72,7 +64,7 @@ class _Drawing:
 
     def draw(self) -> None:
         least = _ROW if len(self._scene.panels) > _FEW else _PANEL
-        heights = [max(least, _names_height(panel)) for panel in self._scene.panels] + [_ROW] * (
+        heights = [max(least, names_height(panel)) for panel in self._scene.panels] + [_ROW] * (
             len(self._chosen) + (self._scene.band is not None)
         )
         head = _HEAD + 0.19 * len(self._title) + 0.2
@@ -157,7 +149,7 @@ class _Drawing:
     def _panel(self, panel: Panel, axis: Any) -> None:
         lines = [self._seen(line).decimated(_COLUMNS) for line in panel.lines]
         finite = [line.values[np.isfinite(line.values)] for line in lines]
-        edges = _Edges(axis, np.concatenate([*finite, panel.thresholds]), lines)
+        edges = Edges(axis, np.concatenate([*finite, panel.thresholds]), lines)
         self._because(axis, panel.because)
         for limit in panel.thresholds:
             if isfinite(limit):
@@ -174,13 +166,13 @@ class _Drawing:
     def _names(self, axis: Any, labels: Sequence[tuple[float, str, str]]) -> None:
         """Write each signal's name at its end, the names apart from each other."""
         low, high = axis.get_ylim()
-        told = [_in_lines(name) for _, name, _ in labels]
+        told = [in_lines(name) for _, name, _ in labels]
         tall = axis.figure.get_size_inches()[1] * axis.get_position().height
-        room = _room(told) / tall * (high - low)
-        y = low - room
+        space = room(told) / tall * (high - low)
+        y = low - space
         places = []
         for (value, _, color), name in sorted(zip(labels, told, strict=True)):
-            y = max(value, y + room)
+            y = max(value, y + space)
             places.append((y, name, color))
         shift = max(places[-1][0] - high, 0.0)
         for y, name, color in places:
@@ -195,7 +187,7 @@ class _Drawing:
                 annotation_clip=False,
             )
 
-    def _on_signal(self, panel: Panel, axis: Any, edges: _Edges) -> None:
+    def _on_signal(self, panel: Panel, axis: Any, edges: Edges) -> None:
         if self._scene.critical is None or not self._sees(self._scene.critical[1]):
             return
         number, position = self._scene.critical
@@ -210,7 +202,7 @@ class _Drawing:
         node = self._scene.nodes[number]
         line = self._seen(node.line).decimated(_COLUMNS)
         finite = line.values[np.isfinite(line.values)]
-        edges = _Edges(axis, np.append(finite, 0.0), [line])
+        edges = Edges(axis, np.append(finite, 0.0), [line])
         self._fails(axis, node)
         self._because(axis, node.because)
         axis.axhline(0.0, color=style.QUIET, linewidth=0.9)
@@ -227,7 +219,7 @@ class _Drawing:
         self._trace(axis, line, edges, style.INK)
         title = f"{node.name} = {node.text}" if node.name else node.text
         axis.set_title(
-            _shortened(title, 92),
+            shortened(title, 92),
             loc="left",
             fontsize=8.5,
             family="monospace",
@@ -291,7 +283,7 @@ class _Drawing:
             for end, values in (("lower", band.lower), ("upper", band.upper))
         ]
         every = np.concatenate([line.values for line in both])
-        edges = _Edges(axis, np.append(every[np.isfinite(every)], (0.0, band.robustness)), both)
+        edges = Edges(axis, np.append(every[np.isfinite(every)], (0.0, band.robustness)), both)
         axis.axhline(0.0, color=style.QUIET, linewidth=0.9)
         places = merged([line.positions for line in both])
         lower, upper = (
@@ -368,7 +360,7 @@ class _Drawing:
 
     # ---- lines -------------------------------------------------------------------------------------
 
-    def _trace(self, axis: Any, line: Line, edges: _Edges, color: str) -> FloatArray:
+    def _trace(self, axis: Any, line: Line, edges: Edges, color: str) -> FloatArray:
         """Draw values; those in dense time hold, samples in discrete time have dots if there is room."""
         width = 0.7 if len(line.positions) > 2 * _COLUMNS else 1.4
         values = edges.shown(line.values)
@@ -393,65 +385,3 @@ class _Drawing:
 
     def _place(self, position: float) -> Any:
         return self._places(np.array([position]))[0]
-
-
-class _Edges:
-    """The vertical axis: finite values in the middle, infinities at the edges, where there are any."""
-
-    def __init__(self, axis: Any, finite: FloatArray, lines: Sequence[Line]) -> None:
-        low, high = (float(finite.min()), float(finite.max())) if len(finite) else (0.0, 0.0)
-        if low == high:
-            low, high = low - 1.0, high + 1.0
-        pad = 0.09 * (high - low)
-        self._ends = (low - 3 * pad, high + 3 * pad)
-        self.middle = (low + high) / 2
-        infinite = [any((line.values == sign * np.inf).any() for line in lines) for sign in (-1, 1)]
-        limits = [low - (4 if infinite[0] else 1) * pad, high + (4 if infinite[1] else 1) * pad]
-        ticks = [t for t in matplotlib("ticker").MaxNLocator(3).tick_values(low, high) if low <= t <= high]
-        labels = [style.number(t) for t in ticks]
-        for is_above, there in enumerate(infinite):
-            if there:
-                ticks.append(self._ends[is_above])
-                labels.append(style.INFINITE[bool(is_above)])
-                axis.axhline(self._ends[is_above], color=style.QUIET, linewidth=0.6, linestyle=":")
-        axis.set_ylim(*limits)
-        axis.set_yticks(ticks, labels)
-
-    def shown(self, values: FloatArray) -> FloatArray:
-        """Return values as they are drawn."""
-        return np.clip(values, *self._ends)
-
-
-def _in_lines(name: str) -> str:
-    r"""Return a signal's name as there is room for it beside a panel: in one line, or smaller in two.
-
-    >>> _in_lines("speed [m/s]"), _in_lines("vehicle_attitude.rollspeed")
-    ('speed [m/s]', 'vehicle_attitude.\nrollspeed')
-    """
-    if len(name) <= _NAME:
-        return name
-    middle = len(name) // 2
-    breaks = [i + 1 for i, character in enumerate(name[:-1]) if character in "._/ "] or [middle]
-    dots = [i for i in breaks if name[i - 1] == "."]
-    at = min(dots or breaks, key=lambda i: abs(i - middle))
-    return f"{_shortened(name[:at], _SMALL)}\n{_shortened(name[at:], _SMALL)}"
-
-
-def _room(names: Sequence[str]) -> float:
-    """Return the inches from one name beside a panel to the next."""
-    return 0.26 if any("\n" in name for name in names) else 0.17
-
-
-def _names_height(panel: Panel) -> float:
-    """Return the inches that the names of a panel's signals need."""
-    names = [_in_lines(line.label) for line in panel.lines]
-    return _room(names) * (len(names) + 0.5)
-
-
-def _wrapped(text: str) -> list[str]:
-    lines = textwrap.wrap(text, _TEXT)
-    return lines if len(lines) <= 4 else [*lines[:3], _shortened(lines[3], _TEXT - 2) + " …"]
-
-
-def _shortened(text: str, most: int) -> str:
-    return text if len(text) <= most else text[: most - 1] + "…"

@@ -10,6 +10,7 @@ decompose             split a formula into windows that start at the first sampl
 trackers              the value and the first violation of a formula that was split
 offline               first violations in a finished trace
 streaming             ``check_stream``: check a recording in chunks with bounded memory
+chunks                requirements over chunks: what a monitor computes for them, and their results
 modes                 the list of verdict modes of a monitor
 early                 what all monitors of verdicts and bounds before the horizon share
 discrete_early        what those of discrete time share

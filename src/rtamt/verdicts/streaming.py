@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import partial
 from types import MappingProxyType
@@ -14,12 +13,9 @@ import numpy as np
 from rtamt.engine.dense.groups import own_variables
 from rtamt.engine.dense.monitor import finish_ticks, known_ticks, push_ticks
 from rtamt.engine.discrete.monitor import push_samples
-from rtamt.engine.offline import Evaluators
 from rtamt.errors import TraceError, UsageError
-from rtamt.language.formula import Const
 from rtamt.language.units import check_unit, positive_period
 from rtamt.rewrite.check import check_bounds
-from rtamt.rewrite.horizon import horizon
 from rtamt.rewrite.semantics import semantics_of
 from rtamt.signals import arrays, dense_arrays
 from rtamt.signals.dense import Dense
@@ -28,44 +24,21 @@ from rtamt.signals.domains import time_domain
 from rtamt.signals.regular import TOLERANCE, check_increasing, infer_period
 from rtamt.signals.signal import Signal
 from rtamt.signals.ticks import TimeScale
-from rtamt.verdicts.decompose import Leaf, anchor, check_in_chunks
+from rtamt.verdicts.chunks import Group, Requirement, StreamResult
+from rtamt.verdicts.decompose import anchor, check_in_chunks
 from rtamt.verdicts.offline import end_of
-from rtamt.verdicts.robustness_and_truth import align_inputs, outputs_under
-from rtamt.verdicts.trackers import Tracker, Trackers
+from rtamt.verdicts.robustness_and_truth import outputs_under
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+    from collections.abc import Iterable, Iterator, Mapping
 
     from rtamt.engine.dense.monitor import DenseMonitor
     from rtamt.engine.discrete.monitor import Monitor
-    from rtamt.language.formula import Formula
     from rtamt.language.units import Duration
-    from rtamt.rewrite.semantics import PredicateSemantics
     from rtamt.settings import Semantics
-    from rtamt.signals.arrays import FloatArray, Stamps
+    from rtamt.signals.arrays import Stamps
     from rtamt.signals.dense_arrays import Samples
     from rtamt.specification import Specification
-    from rtamt.verdicts.trackers import Positions
-
-
-@dataclass(frozen=True, slots=True)
-class StreamResult:
-    """What a check in chunks gives.
-
-    ``robustness``: ρ at the first instant. ``satisfied``: whether the formula holds there (Boolean
-    semantics). ``first_violation``: when it is first violated, see :func:`rtamt.first_violation`; None
-    where it holds. ``minimum``: the smallest ρ at any instant; None where the future is unbounded and
-    chunks do not tell. ``samples``: rows in all chunks. ``period``: seconds from one sample to the
-    next; None in dense time. ``requirements``: the same for each requirement, by name.
-    """
-
-    robustness: float
-    satisfied: bool
-    first_violation: Any
-    minimum: float | None
-    samples: int
-    period: Fraction | None
-    requirements: Mapping[str, StreamResult] = field(default_factory=lambda: MappingProxyType({}))
 
 
 def check_stream(
@@ -110,103 +83,6 @@ def check_streamable(spec: Specification) -> None:
         check_in_chunks(anchor(outputs.robustness), alone.text)
 
 
-class _Requirement:
-    """One requirement over chunks: its robustness, its truth and its minimum, from the leaves of each."""
-
-    def __init__(self, spec: Specification, semantics: str | PredicateSemantics | None) -> None:
-        self.spec = spec
-        outputs = outputs_under(spec.formula, semantics or spec.semantics, spec.roles)
-        self._robust = anchor(outputs.robustness)
-        check_in_chunks(self._robust, spec.text)
-        self._truth = anchor(outputs.truth)
-        # The whole formula, for its minimum, where it can be known online.
-        bounded = horizon(outputs.robustness) is not None
-        self._whole = Leaf(outputs.robustness, "min", end=None) if bounded else None
-        self._robustness: Trackers
-        self._verdict: Trackers
-        self._minimum: Tracker | None = None
-
-    @property
-    def leaves(self) -> Iterator[Leaf]:
-        """The leaves of robustness and truth."""
-        yield from self._robust.leaves
-        yield from self._truth.leaves
-
-    @property
-    def formulas(self) -> Iterator[Formula]:
-        """The formulas whose signals this requirement reads."""
-        yield from (leaf.formula for leaf in self.leaves)
-        if self._whole is not None:
-            yield self._whole.formula
-
-    def begin(self, unit: Fraction, dense: bool, outputs: Mapping[Formula, _Output]) -> None:
-        """Make the trackers, once the length of a period or tick (``unit``, seconds) is known."""
-        self._robustness, self._verdict = (
-            Trackers(each, unit, dense) for each in (self._robust, self._truth)
-        )
-        for tracker in (*self._robustness.leaves, *self._verdict.leaves):
-            outputs[tracker.leaf.formula].trackers.append(tracker)
-        if self._whole is not None:
-            self._minimum = Tracker(self._whole, unit, dense)
-            outputs[self._whole.formula].minima.append(self._minimum)
-
-    def result(self, time: Callable[[int], Any], samples: int, period: Fraction | None) -> StreamResult:
-        """Return what came of all chunks; ``time``: from a position to a time as the caller tells it."""
-        evaluate = Evaluators(self.spec.backend)
-        self._robustness.finish()
-        self._verdict.finish()
-        violated = self._verdict.violation(evaluate)
-        if self._minimum is not None:
-            self._minimum.finish()
-        return StreamResult(
-            self._robustness.value(evaluate) + 0.0,  # as of an evaluation
-            violated is None,
-            None if violated is None else time(violated),
-            None if self._minimum is None else self._minimum.value,
-            samples,
-            period,
-        )
-
-
-class _Output:
-    """One output of a monitor: the trackers that read it, and how far it was known."""
-
-    def __init__(self) -> None:
-        self.trackers: list[Tracker] = []
-        #: Of minima, which end with the last sample.
-        self.minima: list[Tracker] = []
-        self.known = 0
-        self.last: Any = None  # the last stamp at which it was known
-
-    def take(self, positions: Positions, values: FloatArray, last: int | None = None) -> None:
-        """Take what became known; ``last``: the last position that minima are about."""
-        for tracker in self.trackers:
-            tracker.take(positions, values)
-        if last is not None:
-            inside = positions <= last
-            positions, values = positions[inside], values[inside]
-        for tracker in self.minima:
-            tracker.take(positions, values)
-
-
-class _Group:
-    """Requirements with a common trace: one program computes all leaves of all of them."""
-
-    def __init__(self, requirements: Mapping[str, _Requirement], names: Sequence[str]) -> None:
-        self.requirements = requirements
-        self.names = tuple(names)
-        formulas = dict.fromkeys(f for each in requirements.values() for f in each.formulas)
-        self.formulas = tuple(formulas) or (Const(float("inf")),)  # a constant has no leaves
-        self.outputs = {formula: _Output() for formula in self.formulas}
-        self.start: int | None = None
-
-    def begin(self, unit: Fraction, dense: bool, spec: Specification) -> Specification:
-        """Make the trackers; return the specification of the first formula, whose monitor watches the others."""
-        for each in self.requirements.values():
-            each.begin(unit, dense, self.outputs)
-        return spec.with_formula(align_inputs(self.formulas[0], self.names))
-
-
 class _Stream(ABC):
     """Requirements over chunks."""
 
@@ -217,7 +93,7 @@ class _Stream(ABC):
         self.spec = spec
         self.unit = None if unit is None else check_unit(unit)
         self.declared = tuple(declaration.name for declaration in spec.document.declarations)
-        self.requirements = {name: _Requirement(one, chosen) for name, one in spec.requirements.items()}
+        self.requirements = {name: Requirement(one, chosen) for name, one in spec.requirements.items()}
         self.samples = 0
 
     @abstractmethod
@@ -261,7 +137,7 @@ class _DiscreteStream(_Stream):
         super().__init__(spec, semantics, unit)
         self._period = spec.period if period is None else positive_period(period)
         self._tolerance = tolerance
-        self._group = _Group(self.requirements, spec.input_names)
+        self._group = Group(self.requirements, spec.input_names)
         self._monitor: Monitor | None = None
         # The stamps of positions where something is violated, and of the first.
         self._kept: dict[int, Any] = {}
@@ -334,16 +210,16 @@ class _DenseStream(_Stream):
         self._first: dict[str, int] = {}
         self._last: dict[str, tuple[int, float]] = {}
 
-    def _grouped(self) -> Iterator[_Group]:
+    def _grouped(self) -> Iterator[Group]:
         """Yield the requirements that read the same variables: each trace starts when its variables have started."""
-        alike: dict[frozenset[str], dict[str, _Requirement]] = {}
+        alike: dict[frozenset[str], dict[str, Requirement]] = {}
         for name, each in self.requirements.items():
             variables = own_variables(each.spec.formula, self.spec.input_names)
             alike.setdefault(frozenset(variables), {})[name] = each
         for names, some in alike.items():
-            yield _Group(some, [name for name in self.spec.input_names if name in names])
+            yield Group(some, [name for name in self.spec.input_names if name in names])
 
-    def _monitor(self, group: _Group) -> DenseMonitor:
+    def _monitor(self, group: Group) -> DenseMonitor:
         spec = group.begin(self.spec.resolution, True, self.spec)
         return spec.monitor(time=Dense(self.spec.resolution), semantics="standard", watch=group.formulas[1:])
 
@@ -372,11 +248,11 @@ class _DenseStream(_Stream):
             self._known(group, monitor, push_ticks(monitor, samples, self._scale))
         self.samples += max(map(len, times))
 
-    def _start(self, group: _Group) -> int:
+    def _start(self, group: Group) -> int:
         """Return when the trace of a group starts, once all of its variables have."""
         return max(self._first[name] for name in group.names)
 
-    def _known(self, group: _Group, monitor: DenseMonitor, first: Samples, end: int | None = None) -> None:
+    def _known(self, group: Group, monitor: DenseMonitor, first: Samples, end: int | None = None) -> None:
         """Hand on what became known, the first output and those that are watched; ``end``: that of the trace."""
         if not all(name in self._first for name in group.names):
             return

@@ -1,0 +1,48 @@
+"""matplotlib, and the vertical axis of a panel with infinities at its edges."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rtamt.extras import library
+from rtamt.plot import style
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from rtamt.plot.lines import Line
+    from rtamt.signals.arrays import FloatArray
+
+
+def matplotlib(module: str = "figure") -> Any:
+    """Return a module of matplotlib."""
+    return library(f"matplotlib.{module}", "a picture", "plot")
+
+
+class Edges:
+    """The vertical axis: finite values in the middle, infinities at the edges, where there are any."""
+
+    def __init__(self, axis: Any, finite: FloatArray, lines: Sequence[Line]) -> None:
+        low, high = (float(finite.min()), float(finite.max())) if len(finite) else (0.0, 0.0)
+        if low == high:
+            low, high = low - 1.0, high + 1.0
+        pad = 0.09 * (high - low)
+        self._ends = (low - 3 * pad, high + 3 * pad)
+        self.middle = (low + high) / 2
+        infinite = [any((line.values == sign * np.inf).any() for line in lines) for sign in (-1, 1)]
+        limits = [low - (4 if infinite[0] else 1) * pad, high + (4 if infinite[1] else 1) * pad]
+        ticks = [t for t in matplotlib("ticker").MaxNLocator(3).tick_values(low, high) if low <= t <= high]
+        labels = [style.number(t) for t in ticks]
+        for is_above, there in enumerate(infinite):
+            if there:
+                ticks.append(self._ends[is_above])
+                labels.append(style.INFINITE[bool(is_above)])
+                axis.axhline(self._ends[is_above], color=style.QUIET, linewidth=0.6, linestyle=":")
+        axis.set_ylim(*limits)
+        axis.set_yticks(ticks, labels)
+
+    def shown(self, values: FloatArray) -> FloatArray:
+        """Return values as they are drawn."""
+        return np.clip(values, *self._ends)

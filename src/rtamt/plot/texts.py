@@ -1,0 +1,54 @@
+"""Names and formulas as there is room for them in a figure."""
+
+from __future__ import annotations
+
+import textwrap
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from rtamt.plot.scene import Panel
+
+#: Characters of a line of the formula.
+_TEXT = 100
+
+#: Characters of a signal's name in one line, and in each of two smaller ones.
+_NAME, _SMALL = 16, 21
+
+
+def in_lines(name: str) -> str:
+    r"""Return a signal's name as there is room for it beside a panel: in one line, or smaller in two.
+
+    >>> in_lines("speed [m/s]"), in_lines("vehicle_attitude.rollspeed")
+    ('speed [m/s]', 'vehicle_attitude.\nrollspeed')
+    """
+    if len(name) <= _NAME:
+        return name
+    middle = len(name) // 2
+    breaks = [i + 1 for i, character in enumerate(name[:-1]) if character in "._/ "] or [middle]
+    dots = [i for i in breaks if name[i - 1] == "."]
+    at = min(dots or breaks, key=lambda i: abs(i - middle))
+    return f"{shortened(name[:at], _SMALL)}\n{shortened(name[at:], _SMALL)}"
+
+
+def room(names: Sequence[str]) -> float:
+    """Return the inches from one name beside a panel to the next."""
+    return 0.26 if any("\n" in name for name in names) else 0.17
+
+
+def names_height(panel: Panel) -> float:
+    """Return the inches that the names of a panel's signals need."""
+    names = [in_lines(line.label) for line in panel.lines]
+    return room(names) * (len(names) + 0.5)
+
+
+def wrapped(text: str) -> list[str]:
+    """Return the lines of a formula, at most four."""
+    lines = textwrap.wrap(text, _TEXT)
+    return lines if len(lines) <= 4 else [*lines[:3], shortened(lines[3], _TEXT - 2) + " …"]
+
+
+def shortened(text: str, most: int) -> str:
+    """Return a text of at most so many characters."""
+    return text if len(text) <= most else text[: most - 1] + "…"

@@ -1,0 +1,141 @@
+"""Requirements over the chunks of a recording: the formulas that a monitor computes, and what came of them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any
+
+from rtamt.engine.offline import Evaluators
+from rtamt.language.formula import Const
+from rtamt.rewrite.horizon import horizon
+from rtamt.verdicts.decompose import Leaf, anchor, check_in_chunks
+from rtamt.verdicts.robustness_and_truth import align_inputs, outputs_under
+from rtamt.verdicts.trackers import Tracker, Trackers
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Mapping, Sequence
+    from fractions import Fraction
+
+    from rtamt.language.formula import Formula
+    from rtamt.rewrite.semantics import PredicateSemantics
+    from rtamt.signals.arrays import FloatArray
+    from rtamt.specification import Specification
+    from rtamt.verdicts.trackers import Positions
+
+
+@dataclass(frozen=True, slots=True)
+class StreamResult:
+    """What a check in chunks gives.
+
+    ``robustness``: ρ at the first instant. ``satisfied``: whether the formula holds there (Boolean
+    semantics). ``first_violation``: when it is first violated, see :func:`rtamt.first_violation`; None
+    where it holds. ``minimum``: the smallest ρ at any instant; None where the future is unbounded and
+    chunks do not tell. ``samples``: rows in all chunks. ``period``: seconds from one sample to the
+    next; None in dense time. ``requirements``: the same for each requirement, by name.
+    """
+
+    robustness: float
+    satisfied: bool
+    first_violation: Any
+    minimum: float | None
+    samples: int
+    period: Fraction | None
+    requirements: Mapping[str, StreamResult] = field(default_factory=lambda: MappingProxyType({}))
+
+
+class Requirement:
+    """One requirement over chunks: its robustness, its truth and its minimum, from the leaves of each."""
+
+    def __init__(self, spec: Specification, semantics: str | PredicateSemantics | None) -> None:
+        self.spec = spec
+        outputs = outputs_under(spec.formula, semantics or spec.semantics, spec.roles)
+        self._robust = anchor(outputs.robustness)
+        check_in_chunks(self._robust, spec.text)
+        self._truth = anchor(outputs.truth)
+        # The whole formula, for its minimum, where it can be known online.
+        bounded = horizon(outputs.robustness) is not None
+        self._whole = Leaf(outputs.robustness, "min", end=None) if bounded else None
+        self._robustness: Trackers
+        self._verdict: Trackers
+        self._minimum: Tracker | None = None
+
+    @property
+    def leaves(self) -> Iterator[Leaf]:
+        """The leaves of robustness and truth."""
+        yield from self._robust.leaves
+        yield from self._truth.leaves
+
+    @property
+    def formulas(self) -> Iterator[Formula]:
+        """The formulas whose signals this requirement reads."""
+        yield from (leaf.formula for leaf in self.leaves)
+        if self._whole is not None:
+            yield self._whole.formula
+
+    def begin(self, unit: Fraction, dense: bool, outputs: Mapping[Formula, Output]) -> None:
+        """Make the trackers, once the length of a period or tick (``unit``, seconds) is known."""
+        self._robustness, self._verdict = (
+            Trackers(each, unit, dense) for each in (self._robust, self._truth)
+        )
+        for tracker in (*self._robustness.leaves, *self._verdict.leaves):
+            outputs[tracker.leaf.formula].trackers.append(tracker)
+        if self._whole is not None:
+            self._minimum = Tracker(self._whole, unit, dense)
+            outputs[self._whole.formula].minima.append(self._minimum)
+
+    def result(self, time: Callable[[int], Any], samples: int, period: Fraction | None) -> StreamResult:
+        """Return what came of all chunks; ``time``: from a position to a time as the caller tells it."""
+        evaluate = Evaluators(self.spec.backend)
+        self._robustness.finish()
+        self._verdict.finish()
+        violated = self._verdict.violation(evaluate)
+        if self._minimum is not None:
+            self._minimum.finish()
+        return StreamResult(
+            self._robustness.value(evaluate) + 0.0,  # as of an evaluation
+            violated is None,
+            None if violated is None else time(violated),
+            None if self._minimum is None else self._minimum.value,
+            samples,
+            period,
+        )
+
+
+class Output:
+    """One output of a monitor: the trackers that read it, and how far it was known."""
+
+    def __init__(self) -> None:
+        self.trackers: list[Tracker] = []
+        #: Of minima, which end with the last sample.
+        self.minima: list[Tracker] = []
+        self.known = 0
+        self.last: Any = None  # the last stamp at which it was known
+
+    def take(self, positions: Positions, values: FloatArray, last: int | None = None) -> None:
+        """Take what became known; ``last``: the last position that minima are about."""
+        for tracker in self.trackers:
+            tracker.take(positions, values)
+        if last is not None:
+            inside = positions <= last
+            positions, values = positions[inside], values[inside]
+        for tracker in self.minima:
+            tracker.take(positions, values)
+
+
+class Group:
+    """Requirements with a common trace: one program computes all leaves of all of them."""
+
+    def __init__(self, requirements: Mapping[str, Requirement], names: Sequence[str]) -> None:
+        self.requirements = requirements
+        self.names = tuple(names)
+        formulas = dict.fromkeys(f for each in requirements.values() for f in each.formulas)
+        self.formulas = tuple(formulas) or (Const(float("inf")),)  # a constant has no leaves
+        self.outputs = {formula: Output() for formula in self.formulas}
+        self.start: int | None = None
+
+    def begin(self, unit: Fraction, dense: bool, spec: Specification) -> Specification:
+        """Make the trackers; return the specification of the first formula, whose monitor watches the others."""
+        for each in self.requirements.values():
+            each.begin(unit, dense, self.outputs)
+        return spec.with_formula(align_inputs(self.formulas[0], self.names))
