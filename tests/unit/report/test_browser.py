@@ -237,3 +237,41 @@ def test_charts_are_described_to_those_who_do_not_see_them(page, small):
     named = "e.ariaLabel || e.textContent.trim() || e.labels?.length"
     controls = "[...document.querySelectorAll('button, select, input')]"
     assert page.run(f"{controls}.filter(e => !({named})).length") == 0
+
+
+def test_assistive_technology_finds_a_name_for_every_control(page, small):
+    opened(page, small)
+    nodes = [
+        (node["role"]["value"], node.get("name", {}).get("value", "").strip())
+        for node in page.send("Accessibility.getFullAXTree")["nodes"]
+        if not node["ignored"]
+    ]
+    controls = {"button", "link", "combobox", "searchbox", "DisclosureTriangle", "heading"}
+    assert [node for node in nodes if node[0] in controls and not node[1]] == []
+    found = {role for role, _ in nodes}
+    assert controls | {"main", "table"} <= found
+    assert "req from 0 to 6" in [name for role, name in nodes if role in ("image", "img")]  # as browsers call it
+    assert ("searchbox", "Search") in nodes
+    assert ("link", "Skip to the results") in nodes
+
+
+def test_real_keys_reach_the_results_from_the_start_of_the_page(page, small):
+    opened(page, small)
+    for kind in ("rawKeyDown", "keyUp"):
+        page.send("Input.dispatchKeyEvent", type=kind, key="Tab", code="Tab", windowsVirtualKeyCode=9)
+    assert page.run("document.activeElement.textContent") == "Skip to the results"
+    assert page.run("getComputedStyle(document.activeElement).outlineStyle") != "none"
+
+
+def test_a_narrow_touch_screen_needs_no_horizontal_scrolling(page, small):
+    page.send("Emulation.setDeviceMetricsOverride", width=390, height=800, deviceScaleFactor=2, mobile=True)
+    page.send("Emulation.setTouchEmulationEnabled", enabled=True)
+    try:
+        opened(page, small)
+        assert page.run("document.documentElement.scrollWidth") == 390
+        left, _, width, _ = plot(page)
+        assert 0 < left < left + width <= 390
+        assert page.errors == []
+    finally:
+        page.send("Emulation.setTouchEmulationEnabled", enabled=False)
+        page.send("Emulation.clearDeviceMetricsOverride")
