@@ -250,7 +250,9 @@ def test_assistive_technology_finds_a_name_for_every_control(page, small):
     assert [node for node in nodes if node[0] in controls and not node[1]] == []
     found = {role for role, _ in nodes}
     assert controls | {"main", "table"} <= found
-    assert "req from 0 to 6" in [name for role, name in nodes if role in ("image", "img")]  # as browsers call it
+    assert "req from 0 to 6" in [
+        name for role, name in nodes if role in ("image", "img")
+    ]  # as browsers call it
     assert ("searchbox", "Search") in nodes
     assert ("link", "Skip to the results") in nodes
 
