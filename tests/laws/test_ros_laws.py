@@ -251,3 +251,22 @@ def test_a_node_before_the_end_agrees_with_the_monitor_and_with_check_on_the_bag
     start.finish()
     assert start.satisfied == truth[0][1]
     assert records[-1].satisfied in (None, truth[0][1])
+
+
+@settings(max_examples=20)
+@given(st.data(), st.sampled_from(EARLY))
+def test_a_node_in_dense_time_agrees_with_check_on_the_bag_before_the_end(folders, data, formula):
+    sent = data.draw(traffic(SECOND))
+    text = f"{HEAD} rob.value = {formula.format(p='2s')}"
+    monitor = RosMonitor(bind(rtamt.parse(text)), time="dense", stale=0)
+    records = delivered(monitor, sent)
+    found = checked(folders(), text, sent, "--time", "dense")["/rob"]
+    (_, robustness), *_ = found[0]
+    (_, truth), *_ = found[1]
+    lower = upper = None
+    for record in records:
+        assert record.lower <= robustness <= record.upper
+        assert record.satisfied in (None, truth)
+        assert (record.decided_at is None) == (record.satisfied is None)
+        assert lower is None or (lower <= record.lower and record.upper <= upper)
+        lower, upper = record.lower, record.upper

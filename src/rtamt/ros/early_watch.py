@@ -1,10 +1,12 @@
-"""An output that is monitored before its horizon: bounds and verdict at the start of the trace, in discrete time."""
+"""An output that is monitored before its horizon: bounds and verdict at the start of the trace."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple
 
-from rtamt.ros.watch import SampledWatch
+from rtamt.ros.watch import MessageWatch, SampledWatch, Watch
+from rtamt.signals.dense import Dense
+from rtamt.signals.ticks import NANOSECOND
 from rtamt.verdicts.at_start import StartMonitor
 
 if TYPE_CHECKING:
@@ -60,13 +62,12 @@ class EarlyStanding:
         )
 
 
-class EarlyWatch(SampledWatch):
+class _AtStart(Watch):
     """One output whose bounds are reported whenever a sample is taken."""
 
-    def __init__(self, output: Output, topic_of: Mapping[str, str], period: Fraction) -> None:
-        super().__init__([output], topic_of, period)
-        self._start = StartMonitor(output.specification, period=period, time_unit="ns")
-        self.standings: tuple[EarlyStanding, ...] = (EarlyStanding(output, self._start),)
+    def __init__(self, output: Output, monitor: StartMonitor) -> None:
+        self._start = monitor
+        self.standings: tuple[EarlyStanding, ...] = (EarlyStanding(output, monitor),)
 
     @property
     def samples(self) -> int:
@@ -76,22 +77,14 @@ class EarlyWatch(SampledWatch):
     def take(
         self, stamp: int, values: Mapping[str, float], wanted: Container[str] | None = None
     ) -> list[Record]:
-        """Take one sample, return the record of its output if its topic is wanted (None: all are)."""
-        self._start.update(stamp, **{name: values[name] for name in self.names})
+        """Take numbers of one instant, return the record of the output if its topic is wanted (None: all are)."""
+        self._start.update(stamp, **{name: values[name] for name in self.names if name in values})
         (standing,) = self.standings
         if wanted is not None and standing.output.bounds not in wanted:
             return []
         known = self._start.interval()
-        return [
-            Bounds(
-                standing.output,
-                stamp,
-                known.lower,
-                known.upper,
-                self._start.satisfied,
-                self._start.decided_at,
-            )
-        ]
+        decided = self._start.decided_at
+        return [Bounds(standing.output, stamp, known.lower, known.upper, self._start.satisfied, decided)]
 
     def look(self) -> None:
         """Bring the standings up to date: they always are."""
@@ -99,3 +92,38 @@ class EarlyWatch(SampledWatch):
     def reset(self) -> None:
         """Forget all samples."""
         self._start.reset()
+
+
+class EarlyWatch(_AtStart, SampledWatch):
+    """Samples one period apart."""
+
+    def __init__(self, output: Output, topic_of: Mapping[str, str], period: Fraction) -> None:
+        SampledWatch.__init__(self, [output], topic_of, period)
+        _AtStart.__init__(
+            self, output, StartMonitor(output.specification, time="discrete", period=period, time_unit="ns")
+        )
+
+
+class EarlyDenseWatch(_AtStart, MessageWatch):
+    """Samples at the times in the messages' headers, each topic on its own time base."""
+
+    def __init__(self, output: Output, topic_of: Mapping[str, str]) -> None:
+        MessageWatch.__init__(self, [output], topic_of)
+        _AtStart.__init__(
+            self, output, StartMonitor(output.specification, time=Dense(NANOSECOND), time_unit="ns")
+        )
+
+    def take(
+        self, stamp: int, values: Mapping[str, float], wanted: Container[str] | None = None
+    ) -> list[Record]:
+        """Take the numbers of one message, and of those that waited for it."""
+        records: list[Record] = []
+        while self._held:
+            before, held = self._held.popleft()
+            records += super().take(before, held, wanted)
+        return records + super().take(stamp, values, wanted)
+
+    def reset(self) -> None:
+        """Forget all samples."""
+        super().reset()
+        self._held.clear()

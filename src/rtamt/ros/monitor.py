@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 from rtamt.errors import StlError, UsageError
 from rtamt.language.units import duration, positive_period
 from rtamt.ros.diagnostics import Condition, Level, Notice
-from rtamt.ros.early_watch import Bounds, EarlyWatch
+from rtamt.ros.early_watch import Bounds, EarlyDenseWatch, EarlyWatch
 from rtamt.ros.fields import reader, stamp_of
-from rtamt.ros.output_group import DenseWatch, DiscreteWatch, delayed, group_outputs
+from rtamt.ros.output_group import DenseWatch, DiscreteWatch, group_outputs
 from rtamt.ros.watch import Robustness, Verdict
 from rtamt.signals.domains import DEFAULT, time_domain
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from rtamt.ros.binding import Binding
     from rtamt.ros.early_watch import EarlyStanding
     from rtamt.ros.output_group import Standing
-    from rtamt.ros.watch import Record, SampledWatch, Watch
+    from rtamt.ros.watch import MessageWatch, Record, SampledWatch, Watch
 
 #: The default number of silent periods after which a topic is stale; in dense time, seconds.
 STALE_PERIODS = 10
@@ -99,11 +99,12 @@ class RosMonitor:
         for known in binding.inputs:
             self._readers.setdefault(known.topic, []).extend((name, reader(name)) for name in known.fields)
         topic_of = {name: known.topic for known in binding.inputs for name in known.fields}
-        self._dense: list[DenseWatch] = []
+        self._dense: list[MessageWatch] = []
         self._discrete: list[SampledWatch] = []
         if self._domain.continuous:
             self._dense = [
-                DenseWatch(outputs, topic_of) for outputs in group_outputs(delayed(binding.outputs))
+                *(DenseWatch(outputs, topic_of) for outputs in group_outputs(binding.outputs)),
+                *(EarlyDenseWatch(output, topic_of) for output in binding.outputs if output.early),
             ]
         else:
             assert self.period is not None

@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
-from collections import deque
-from dataclasses import replace
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from rtamt.engine.dense.monitor import points_of
-from rtamt.errors import SpecificationError, UsageError
+from rtamt.errors import SpecificationError
 from rtamt.language.formula import variables
-from rtamt.rewrite.check import always_has_a_value, unbounded_future
+from rtamt.rewrite.check import always_has_a_value
 from rtamt.rewrite.horizon import horizon
-from rtamt.ros.binding import INTERVAL
-from rtamt.ros.watch import HELD, Robustness, SampledWatch, Verdict, Watch
+from rtamt.ros.watch import MessageWatch, Robustness, SampledWatch, Verdict
 from rtamt.signals.dense import Dense
 from rtamt.signals.discrete import Discrete
 from rtamt.signals.ticks import NANOSECOND
@@ -67,17 +64,6 @@ class Standing:
             ("robustness", "none" if self.latest is None else f"{self.latest:.6g}"),
             ("horizon", f"{self.horizon:.6g} s"),
         )
-
-
-def delayed(outputs: Sequence[Output]) -> list[Output]:
-    """Return outputs as dense time has them; unbounded future is refused later, with its place."""
-    for output in outputs:
-        if output.early and unbounded_future(output.specification.formula) is None:
-            raise UsageError(
-                f"'{output.name}': bounds at the start of the trace need discrete time: leave out the verdict "
-                f"{INTERVAL}, or dense time"
-            )
-    return [replace(output, early=False) if output.early else output for output in outputs]
 
 
 def group_outputs(outputs: Sequence[Output]) -> list[list[Output]]:
@@ -167,7 +153,7 @@ class DiscreteWatch(SampledWatch):
             standing.satisfied = self._held(standing, truth)
 
 
-class DenseWatch(Watch):
+class DenseWatch(MessageWatch):
     """Samples at the times in the messages' headers, each topic on its own time base."""
 
     def __init__(self, outputs: Sequence[Output], topic_of: Mapping[str, str]) -> None:
@@ -183,13 +169,8 @@ class DenseWatch(Watch):
         #: Of each output the places of robustness and truth in what became known.
         self._places = [(places[both.robustness], places[both.truth]) for both in formulas]
         self._start: int | None = None
-        self._held: deque[tuple[int, dict[str, float]]] = deque(maxlen=HELD)
         #: The latest points of the result, and then of each watched formula.
         self._points: list[list[tuple[int, float]]] = []
-
-    def hold(self, stamp: int, values: Mapping[str, float]) -> None:
-        """Keep the latest messages until every topic has one, which starts the trace."""
-        self._held.append((stamp, self._mine(values)))
 
     def take(
         self, stamp: int, values: Mapping[str, float], wanted: Container[str] | None = None
@@ -203,9 +184,6 @@ class DenseWatch(Watch):
             before, held = self._held.popleft()
             records += self._update(before, held, wanted)
         return records + self._update(stamp, self._mine(values), wanted)
-
-    def _mine(self, values: Mapping[str, float]) -> dict[str, float]:
-        return {name: values[name] for name in self.names if name in values}
 
     def _update(self, stamp: int, values: dict[str, float], wanted: Container[str] | None) -> list[Record]:
         # All outputs are known up to the same instant.
@@ -250,14 +228,6 @@ class DenseWatch(Watch):
         for standing, (robustness, truth) in zip(self.standings, self._places, strict=True):
             standing.latest = self._points[robustness][-1][1]
             standing.satisfied = self._judge(standing, *self._points[truth][-1])
-
-    def drop(self, topic: str) -> None:  # noqa: ARG002 - in dense time messages are samples
-        """Restart when a stale topic resumes."""
-        self.reset()
-
-    def forget(self) -> None:
-        """Be as before the first message."""
-        self.reset()
 
     @property
     def samples(self) -> int:

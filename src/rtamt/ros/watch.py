@@ -90,6 +90,29 @@ class Watch(ABC):
         """Forget all samples."""
 
 
+class MessageWatch(Watch):
+    """Every message is a sample at the time in its header, each topic on its own time base."""
+
+    def __init__(self, outputs: Sequence[Output], topic_of: Mapping[str, str]) -> None:
+        super().__init__(outputs, topic_of)
+        self._held: deque[tuple[int, dict[str, float]]] = deque(maxlen=HELD)
+
+    def hold(self, stamp: int, values: Mapping[str, float]) -> None:
+        """Keep the latest messages until every topic has one, which starts the trace."""
+        self._held.append((stamp, self._mine(values)))
+
+    def _mine(self, values: Mapping[str, float]) -> dict[str, float]:
+        return {name: values[name] for name in self.names if name in values}
+
+    def drop(self, topic: str) -> None:  # noqa: ARG002 - in dense time messages are samples
+        """Restart when a stale topic resumes."""
+        self.reset()
+
+    def forget(self) -> None:
+        """Be as before the first message."""
+        self.reset()
+
+
 class SampledWatch(Watch):
     """Samples one period apart, each with the latest message of every topic at its instant.
 

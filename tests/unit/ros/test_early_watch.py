@@ -100,9 +100,19 @@ def test_bounds_are_messages_on_a_topic_of_their_own():
     assert SATISFIED != VIOLATED
 
 
-def test_dense_time_has_no_bounds_at_the_start():
-    with pytest.raises(UsageError, match="need discrete time: leave out the verdict interval, or dense time"):
-        monitor("rob.value = req.value >= 0", time="dense", verdict="interval")
+def test_dense_time_has_a_record_for_every_message():
+    watched = monitor("rob.value = always(req.value >= gnt.value)", time="dense")
+    assert watched.message("/req", message(5, at=1), SECOND) == []
+    records = watched.message("/gnt", message(3, at=1.5), 2 * SECOND)
+    records += watched.message("/gnt", message(7, at=2.5), 3 * SECOND)
+    records += watched.message("/req", message(9, at=2.75), 3 * SECOND)
+    # The grant counts once a request is known up to its time.
+    assert [(r.stamp / SECOND, r.upper, r.satisfied, r.decided_at) for r in records] == [
+        (1, inf, None, None),
+        (1.5, inf, None, None),
+        (2.5, inf, None, None),
+        (2.75, -2.0, False, 2.75 * SECOND),
+    ]
 
 
 def test_unknown_verdict_is_refused():
