@@ -181,7 +181,7 @@ inline Program everything() {
     const auto ratio = builder.pointwise(Opcode::div, both, builder.later(before, 4));
     builder.output(builder.unary(Opcode::slide_min, ratio, 3, 6));
     Program program = builder.program();
-    program.note = note_of({1, 10, "", "everything", {"x", "y"}, {"robustness"}, {}, {}});
+    program.note = note_of({1, 10, "", "everything", {"x", "y"}, {"robustness"}, {}, {}, ""});
     return program;
 }
 
@@ -201,7 +201,7 @@ inline Program everything_dense() {
     builder.output(builder.pointwise(Opcode::abs, all));
     Program program = builder.program();
     program.domain = rtamt::Domain::dense;
-    program.note = note_of({1, 1000, "", "everything", {"x", "y"}, {"robustness"}, {}, {}});
+    program.note = note_of({1, 1000, "", "everything", {"x", "y"}, {"robustness"}, {}, {}, ""});
     return program;
 }
 

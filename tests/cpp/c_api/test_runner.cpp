@@ -14,8 +14,11 @@ using rtamt::c_api::make_runner;
 using rtamt::c_api::Undefined;
 
 TEST_CASE("a runner is for the domain of its program") {
-    CHECK(dynamic_cast<DiscreteRunner*>(make_runner(carried()).get()) != nullptr);
-    CHECK(dynamic_cast<DenseRunner*>(make_runner(carried(Domain::dense)).get()) != nullptr);
+    const auto made = [](const rtamt::Program& program) {
+        return make_runner(program, rtamt::Metadata::parse(program));
+    };
+    CHECK(dynamic_cast<DiscreteRunner*>(made(carried()).get()) != nullptr);
+    CHECK(dynamic_cast<DenseRunner*>(made(carried(Domain::dense)).get()) != nullptr);
 }
 
 TEST_CASE("in discrete time known values follow their lags") {
