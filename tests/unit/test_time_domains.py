@@ -1,17 +1,18 @@
-"""Time domains are objects: no other code compares their names or asks for the class of a trace."""
+"""Time domains and back ends are objects: no other code compares their names or asks for the class of a trace."""
 
 import ast
-from collections.abc import Iterator
+from collections.abc import Container, Iterator
 from pathlib import Path
 
 import pytest
 
 import rtamt
+from rtamt.engine.backend import BACKENDS
 from rtamt.signals.domains import DOMAINS
 
 SRC = Path(rtamt.__file__).parent
 #: Where time domains and their traces are defined.
-HOME = {SRC / "signals" / f"{name}.py" for name in ("domain", "domains", *DOMAINS)}
+HOME = {SRC / "signals" / f"{name}.py" for name in ("domain_interface", "domains", *DOMAINS)}
 MODULES = sorted(set(SRC.rglob("*.py")) - HOME)
 CLASSES = {"TimeDomain", "DomainTrace", "Discrete", "Dense", "DiscreteTrace", "DenseTrace"}
 
@@ -20,10 +21,10 @@ def name_of(node: ast.expr) -> str:
     return node.attr if isinstance(node, ast.Attribute) else node.id if isinstance(node, ast.Name) else ""
 
 
-def has_name(node: ast.expr) -> bool:
+def has_name(node: ast.expr, names: Container[object] = DOMAINS) -> bool:
     """Return whether an operand is the name of a time domain, or a display or constant that holds one."""
     parts = node.elts if isinstance(node, ast.Tuple | ast.List | ast.Set) else [node]
-    return any(isinstance(part, ast.Constant) and part.value in DOMAINS for part in parts)
+    return any(isinstance(part, ast.Constant) and part.value in names for part in parts)
 
 
 def defaults(node: ast.FunctionDef) -> Iterator[ast.expr]:
@@ -36,6 +37,8 @@ def problems(tree: ast.Module) -> Iterator[tuple[int, str]]:
         if isinstance(node, ast.Compare):
             if any(map(has_name, (node.left, *node.comparators))):
                 yield node.lineno, "compares the name of a time domain"
+            if any(has_name(side, BACKENDS) for side in (node.left, *node.comparators)):
+                yield node.lineno, "compares the name of a back end"
             for side in (node.left, *node.comparators):
                 if isinstance(side, ast.Call) and name_of(side.func) == "type":
                     others = {name_of(other) for other in (node.left, *node.comparators)}
@@ -66,6 +69,8 @@ def test_a_module_leaves_the_choice_of_a_time_domain_to_its_object(path: Path) -
         "isinstance(trace, DenseTrace)",
         "isinstance(trace, signals.DiscreteTrace | DenseTrace)",
         "type(domain) is Dense",
+        "backend == 'cpp'",
+        "self._backend in ('python', 'other')",
         "match time:\n    case 'dense': pass",
         "match trace:\n    case DenseTrace(): pass",
         "def f(time='discrete'): pass",

@@ -70,7 +70,7 @@ def monitors() -> None:
     runs = assert_type(spec.monitor(time="dense", verdict="eager"), DenseEagerMonitor)
     assert_type(runs.update(0.0, x=4), list[rtamt.VerdictRun])
     bounds = assert_type(spec.monitor(time="dense", verdict="interval", lateness="1s"), IntervalMonitor)
-    assert_type(bounds.interval(0.0), rtamt.Interval)
+    assert_type(bounds.interval(), rtamt.Interval)
 
 
 def recordings(path: str) -> None:

@@ -47,6 +47,10 @@ class Backend(ABC):
         """Raise :class:`UsageError` where this back end cannot run."""
 
     @abstractmethod
+    def choose(self, compiled: Callable[[], Session], defined: Callable[[], Session]) -> Session:
+        """Return the session for what the core runs, or for what is evaluated by definition."""
+
+    @abstractmethod
     def memory(self, program: Program) -> int | None:
         """Return the bytes of state of a monitor that runs a program; None where that depends on the samples."""
 
@@ -117,12 +121,20 @@ class Compiled(Backend):
         """See :class:`Backend`."""
         core()
 
+    def choose(self, compiled: Callable[[], Session], defined: Callable[[], Session]) -> Session:  # noqa: ARG002
+        """See :class:`Backend`."""
+        return compiled()
+
 
 class Defined(Backend):
     """A back end that is the definition in Python."""
 
     def require(self) -> None:
         """See :class:`Backend`: it runs everywhere."""
+
+    def choose(self, compiled: Callable[[], Session], defined: Callable[[], Session]) -> Session:  # noqa: ARG002
+        """See :class:`Backend`."""
+        return defined()
 
     def memory(self, program: Program) -> None:  # noqa: ARG002 - its monitors keep samples
         """See :class:`Backend`."""

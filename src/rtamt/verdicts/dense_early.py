@@ -69,23 +69,26 @@ class DenseEarlyMonitor(EarlyMonitor):
     def _prepare(self) -> None:
         """Open the first monitor of the back end."""
         traces = {frozenset(own_variables(each, self.input_names)) for each in self._requirements}
-        if self._backend_name == "cpp" and len(traces) == 1:
-            self._session = GraphSession(
-                self._graph,
-                "DenseEarlyMonitor",
-                self._graph.nodes,
-                self._outputs,
-                self._graph.items,
-                self._known_ranges(),
-                list(self.input_names),
-                self._unread,
-                self._late,
-                self._verdict is not None,
-                self._replays,
-            )
+        if len(traces) == 1:
+            self._session = self._chosen.choose(self._compiled, self._defined)
         else:  # requirements whose traces start at different instants are left to the definition
             self._session = self._defined()
         self._connect(self._session.open())
+
+    def _compiled(self) -> GraphSession:
+        return GraphSession(
+            self._graph,
+            "DenseEarlyMonitor",
+            self._graph.nodes,
+            self._outputs,
+            self._graph.items,
+            self._known_ranges(),
+            list(self.input_names),
+            self._unread,
+            self._late,
+            self._verdict is not None,
+            self._replays,
+        )
 
     def _defined(self) -> DenseDefinition:
         return DenseDefinition(

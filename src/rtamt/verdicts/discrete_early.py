@@ -73,22 +73,22 @@ class DiscreteEarlyMonitor(EarlyMonitor):
 
     def _prepare(self) -> None:
         """Open the first monitor of the back end."""
-        if self._backend_name == "python":
-            self._session = GraphDefinition(
-                self._graph,
-                self._formulas,
-                self._hidden,
-                self._known_ranges(),
-                self.input_names,
-                self._step,
-                self._tolerance,
-                self._late,
-                self._verdict,
-                self._causes is not None,
-            )
-        else:
-            self._session = self._compiled()
+        self._session = self._chosen.choose(self._compiled, self._defined)
         self._connect(self._session.open())
+
+    def _defined(self) -> GraphDefinition:
+        return GraphDefinition(
+            self._graph,
+            self._formulas,
+            self._hidden,
+            self._known_ranges(),
+            self.input_names,
+            self._step,
+            self._tolerance,
+            self._late,
+            self._verdict,
+            self._causes is not None,
+        )
 
     def _compiled(self) -> GraphSession:
         return GraphSession(

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from rtamt.compiler.early import compile_graph
 from rtamt.engine.backend import Session
+from rtamt.engine.domains import engine_of
 from rtamt.engine.native import core
 from rtamt.engine.online import OnlineMonitor, Watched
 from rtamt.engine.usage_guard import exclusive
@@ -72,7 +73,7 @@ class EarlyMonitor(OnlineMonitor):
         step = domain.step
         assert step is not None
         OnlineMonitor.__init__(self, formula, watch, declared, factory)
-        self._backend_name = backend
+        self._chosen = engine_of(domain).backends[backend]
         self._step = step
         self._ranges = self._read_ranges(ranges or {})
         cores = [desugar(each) for each in self._formulas]
