@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property, partial
-from html import escape
 from typing import TYPE_CHECKING, Any, Literal, overload
 
 from rtamt.engine.domains import engine_of
 from rtamt.engine.offline import Evaluators, Query
 from rtamt.errors import TraceError, UsageError
-from rtamt.language.printer import excerpt, to_text
+from rtamt.language.printer import to_text
 from rtamt.language.specfile import parse_document
 from rtamt.language.units import check_unit
 from rtamt.results import Result, requirements_of
@@ -53,17 +52,6 @@ class Specification(SpecificationText):
     >>> rtamt.parse("specification slow always(speed <= 30)")
     <specification slow: always(speed <= 30)>
     """
-
-    def _repr_html_(self) -> str:
-        name = f"<b>{escape(self.name)}</b>" if self.name else ""
-        rows = [
-            f"<tr><td>{escape(known.name)}</td><td><code>{escape(excerpt(known.formula))}</code></td>"
-            f"<td>{escape(known.description)}</td></tr>"
-            for known in self.document.requirements
-        ]
-        return (
-            f"{name}<table><tr><th>requirement</th><th>formula</th><th>text</th></tr>{''.join(rows)}</table>"
-        )
 
     def evaluate(
         self,
@@ -229,12 +217,8 @@ class Specification(SpecificationText):
         self,
         *,
         time: Literal["discrete"] | Discrete | None = None,
-        period: Duration | None = None,
-        tolerance: float | None = None,
-        semantics: Semantics | None = None,
-        watch: Watch = (),
-        time_unit: str | None = None,
         verdict: Literal["causation"],
+        **settings: Unpack[DiscreteSettings],
     ) -> CausationMonitor: ...
 
     def monitor(

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property
+from html import escape
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
@@ -14,7 +15,7 @@ from rtamt.language.grammar import is_number
 from rtamt.language.lint import LintWarning, warnings_of
 from rtamt.language.operators import STL, Language
 from rtamt.language.parser import parse_formula
-from rtamt.language.printer import to_text
+from rtamt.language.printer import excerpt, to_text
 from rtamt.language.units import positive_period
 from rtamt.rewrite.horizon import horizon
 from rtamt.rewrite.pastify import pastify
@@ -54,6 +55,17 @@ class SpecificationText:
 
     def __repr__(self) -> str:
         return f"<specification {f'{self.name}: ' if self.name else ''}{self.formula}>"
+
+    def _repr_html_(self) -> str:
+        name = f"<b>{escape(self.name)}</b>" if self.name else ""
+        rows = [
+            f"<tr><td>{escape(known.name)}</td><td><code>{escape(excerpt(known.formula))}</code></td>"
+            f"<td>{escape(known.description)}</td></tr>"
+            for known in self.document.requirements
+        ]
+        return (
+            f"{name}<table><tr><th>requirement</th><th>formula</th><th>text</th></tr>{''.join(rows)}</table>"
+        )
 
     @property
     def time(self) -> str:
