@@ -85,6 +85,7 @@ costs: $(VENV)/.core $(VENV)/.extras ## what a sample costs us, beside the figur
 	$(RUN) benchmarks/costs.py
 	$(RUN) benchmarks/dense_memory.py
 	$(RUN) benchmarks/early.py
+	$(RUN) benchmarks/early.py 100000 dense
 	$(RUN) benchmarks/stream.py
 
 peers: $(VENV)/.made ## install the tools that we are compared with, each into an environment of its own

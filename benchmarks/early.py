@@ -1,6 +1,6 @@
 """What an update costs before the horizon: eager verdicts and bounds, by the length of the bounds.
 
-    python benchmarks/early.py [SAMPLES]
+    python benchmarks/early.py [SAMPLES [dense]]
 
 Microseconds of processor time an update from Python, the verdicts in it included, beside the delayed mode.
 The aims: eager 0.3 µs for three operators; bounds at the start 0.3 µs; at every sample 1 µs for
@@ -36,7 +36,7 @@ MODES: Mapping[str, dict[str, str]] = {
 }
 
 
-def cost(formula: str, settings: dict[str, str], samples: int) -> float:
+def cost(formula: str, settings: Mapping[str, str], samples: int) -> float:
     """Return the microseconds of an update, the least of three runs."""
     random = np.random.default_rng(1)
     spec = rtamt.parse(formula)
@@ -60,13 +60,16 @@ def cost(formula: str, settings: dict[str, str], samples: int) -> float:
 def main() -> None:
     """Print a row for each formula and length."""
     samples = int(sys.argv[1]) if len(sys.argv) > 1 else 300_000
+    domain = {"time": sys.argv[2]} if len(sys.argv) > 2 else {}
     print(f"{'formula':<52} {'k':>7}", *(f"{mode:>8}" for mode in MODES))
     for formula in FORMULAS:
         for k in LENGTHS:
-            row = [cost(formula.format(k=k), settings, samples) for settings in MODES.values()]
+            row = [cost(formula.format(k=k), {**settings, **domain}, samples) for settings in MODES.values()]
             print(f"{formula:<52} {k:>7}", *(f"{each:8.2f}" for each in row), flush=True)
     for formula in ("always(x >= -2)", "eventually(x >= 5)", "(x >= -2) until (y >= 5)"):
-        print(f"{formula:<52} {'':>7} {'':>8} {'':>8} {cost(formula, MODES['start'], samples):8.2f}")
+        print(
+            f"{formula:<52} {'':>7} {'':>8} {'':>8} {cost(formula, {**MODES['start'], **domain}, samples):8.2f}"
+        )
 
 
 if __name__ == "__main__":
