@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rtamt.cli.arguments import each_requirement, requirements_and_traces, variables_of
-from rtamt.cli.bag import write_bag
 from rtamt.cli.command import (
     ERROR,
     OK,
@@ -181,6 +180,8 @@ def run(args: argparse.Namespace) -> int:
     results = [outcome.result for outcome in found if outcome.result is not None]
     if args.output is not None and len(results) == len(found):
         if args.output.lower().endswith(".mcap"):
+            from rtamt.cli.bag import write_bag
+
             write_bag(given[0], traces[0], reading, results, args.output)
         else:
             _write(requirements, results, args.output)

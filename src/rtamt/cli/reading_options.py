@@ -14,7 +14,6 @@ from rtamt.readers.assemble import trace_of
 from rtamt.readers.dates import EXAMPLE, date_in
 from rtamt.readers.formats import is_bag
 from rtamt.readers.read import choice, opened
-from rtamt.ros.bags import columns_of
 from rtamt.signals.arrays import TIME, stamps
 from rtamt.signals.regular import check_regular, infer_period
 
@@ -170,6 +169,8 @@ def choice_for(specs: Sequence[Specification], trace: str, reading: Reading) -> 
     gaps = has_own_clocks(specs[0], trace, reading)
     names = dict(reading.names)
     if is_bag(trace):
+        from rtamt.ros.bags import columns_of
+
         for spec in specs:
             names = {**columns_of(spec), **names}
     skipped = [name for name in reading.skip_nan if name in columns]

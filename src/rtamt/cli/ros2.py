@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 
 from rtamt.cli.command import OK, Command
 from rtamt.cli.terminal import say
-from rtamt.ros.options import add_options, options
 
 if TYPE_CHECKING:
     import argparse
@@ -28,6 +27,8 @@ examples:
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
+    from rtamt.ros.options import add_options
+
     parser.description = _DESCRIPTION
     parser.epilog = _EPILOG
     add_options(parser)
@@ -63,6 +64,7 @@ def run(args: argparse.Namespace) -> int:
     from rtamt.ros.dds.node import Node
     from rtamt.ros.dds.participant import Participant, Quality
     from rtamt.ros.dds.types import Types
+    from rtamt.ros.options import options
 
     quality = Quality(args.reliability, args.durability, args.depth)
     monitor = options(args, {}).monitor()

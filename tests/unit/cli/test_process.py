@@ -116,3 +116,15 @@ def test_a_reader_that_goes_away_ends_the_command_with_2_and_without_a_word(tmp_
     source = "for i in $(seq 20000); do echo '{\"x\": 1}'; done"
     codes, out, told = shell(f"{source} | rtamt monitor 'x >= 0' --keep-going | head -1", tmp_path)
     assert (codes[1:], out, told) == ([2, 0], b'{"time": 0.0, "robustness": 1.0}\n', b"")
+
+
+def test_checking_a_csv_file_loads_nothing_of_ros(tmp_path):
+    (tmp_path / "log.csv").write_text("time,x\n0,5\n1,4\n")
+    program = (
+        "import sys\nfrom rtamt.cli import main\ncode = main(['check', 'always(x >= 3)', 'log.csv', '--quiet'])\n"
+        "assert code == 0 and not [name for name in sys.modules if name.startswith('rtamt.ros')]"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", program], cwd=tmp_path, check=False, capture_output=True, text=True
+    )
+    assert (done.returncode, done.stderr) == (0, "")
