@@ -37,11 +37,11 @@ using EarlyCauses = std::tuple<std::vector<EarlyCause>, std::vector<std::uint32_
                                std::vector<EarlyStart>, nb::object>;
 
 struct EarlySettings {
-    double period;
-    double tolerance;
-    bool late;                             // samples may come in any order
-    early::Tick lateness;                  // by how many samples at most
-    bool replays;                          // update() takes nothing by itself
+    double period = 0;
+    double tolerance = 0;
+    bool late = false;                     // samples may come in any order
+    early::Tick lateness = 0;              // by how many samples at most
+    bool replays = false;                  // update() takes nothing by itself
     std::optional<ResultClass<3>> verdict; // of what update() returns; none: bounds
 };
 

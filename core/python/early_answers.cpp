@@ -1,0 +1,187 @@
+// What EarlyMonitor answers, and its state.
+#include "early_monitor.hpp"
+
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
+#include <nanobind/stl/tuple.h>
+#include <nanobind/stl/vector.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace rtamt::python {
+
+using early::Decision;
+using early::forever;
+using early::Tick;
+
+// ---- answers ------------------------------------------------------------------------------------
+
+PyObject* EarlyMonitor::answer() noexcept {
+    if (settings_.verdict) return news(0);
+    if (causation_ && !finished_) {
+        const auto [violation, satisfaction] = causation_at_start();
+        return causation_->make({nb::steal(PyFloat_FromDouble(violation)),
+                                 nb::steal(PyFloat_FromDouble(satisfaction))});
+    }
+    Py_RETURN_NONE;
+}
+
+PyObject* EarlyMonitor::news(std::size_t output) noexcept {
+    Py_ssize_t count = 0;
+    auto& decisions = news_[output];
+    for (const Decision& decision : decisions)
+        count += decision.r - decision.l + 1;
+    if (decisions.size() > 1) std::ranges::sort(decisions, {}, &Decision::l);
+    auto list = nb::steal(PyList_New(count));
+    if (!list.is_valid()) return nullptr;
+    Py_ssize_t place = 0;
+    for (const Decision& decision : decisions) {
+        for (Tick t = decision.l; t <= decision.r; ++t) {
+            PyObject* one =
+                settings_.verdict->make({nb::steal(PyFloat_FromDouble(times_.at(t))),
+                                         nb::borrow(decision.satisfied ? Py_True : Py_False),
+                                         nb::steal(PyFloat_FromDouble(times_.at(decision.at)))});
+            if (one == nullptr) return nullptr;
+            PyList_SET_ITEM(list.ptr(), place++, one);
+        }
+    }
+    return list.release().ptr();
+}
+
+nb::object EarlyMonitor::verdicts(std::size_t output) {
+    guard_.require_idle();
+    if (output >= outputs_.size()) throw std::out_of_range("There is no such output.");
+    return checked(news(output));
+}
+
+std::optional<std::pair<double, double>> EarlyMonitor::origin() const {
+    if (!origin_) return std::nullopt;
+    const Bounds value = origin_->value();
+    return std::pair{value.lower, value.upper};
+}
+
+std::optional<std::pair<double, double>> EarlyMonitor::bounds(std::size_t output,
+                                                              Tick sample) const {
+    if (output >= outputs_.size()) throw std::out_of_range("There is no such output.");
+    if (sample < held(output)) return std::nullopt;
+    const Bounds value = engine_.at(outputs_[output], sample);
+    return std::pair{value.lower, value.upper};
+}
+
+Tick EarlyMonitor::held(std::size_t output) const {
+    return std::max<Tick>(0, early::plus(closed_ + 1, -lag(output)) - 1);
+}
+
+std::vector<std::tuple<Tick, Tick, double, double>>
+EarlyMonitor::changes(std::size_t output) const {
+    if (output >= outputs_.size()) throw std::out_of_range("There is no such output.");
+    std::vector<std::tuple<Tick, Tick, double, double>> result;
+    for (const early::Change& run : changes_[output].runs(engine_, outputs_[output]))
+        result.emplace_back(run.l, run.r, run.bounds.lower, run.bounds.upper);
+    return result;
+}
+
+nb::object EarlyMonitor::supposed(
+    std::optional<std::size_t> output, Tick sample,
+    const std::vector<std::tuple<Tick, Tick, std::vector<double>, std::vector<double>>>& later) {
+    guard_.require_idle();
+    if (output.value_or(0) >= outputs_.size() && output) {
+        throw std::out_of_range("There is no such output.");
+    }
+    if (output && sample < held(*output)) return nb::none();
+    const Tick next = times_.newest() + 1;
+    std::vector<early::Engine::Supposition> suppositions;
+    for (const auto& [first, last, lower, upper] : later) {
+        if (lower.size() != row_.size() || upper.size() != row_.size() || first < 0) {
+            throw std::invalid_argument("There is a bound of every input.");
+        }
+        early::Engine::Supposition supposed{next + first, early::plus(next, last), {}};
+        for (std::size_t i = 0; i < lower.size(); ++i)
+            supposed.row.push_back({lower[i], upper[i]});
+        suppositions.push_back(std::move(supposed));
+    }
+    if (const auto failure = engine_.suppose(suppositions)) {
+        const Tick t = failure->tick;
+        return checked(fail(*failure, next > 0 ? times_.at(t) : static_cast<double>(t)));
+    }
+    Bounds value{};
+    if (output) {
+        value = engine_.at(outputs_[*output], sample);
+    } else {
+        early::Origin origin = origin_.value();
+        origin.look(engine_);
+        value = origin.value();
+    }
+    engine_.revert();
+    return nb::make_tuple(value.lower, value.upper);
+}
+
+// No minus before a zero.
+std::pair<double, double> EarlyMonitor::causation_at_start() const {
+    const Bounds caused = causes_ ? causes_->at_start() : bounds::anything;
+    return {caused.upper + 0.0, caused.lower + 0.0};
+}
+
+std::pair<double, double> EarlyMonitor::causation(std::size_t output, Tick sample) const {
+    if (output >= outputs_.size()) throw std::out_of_range("There is no such output.");
+    const Bounds caused = causes_.value().at(output, sample);
+    return {caused.upper + 0.0, caused.lower + 0.0};
+}
+
+std::optional<Tick> EarlyMonitor::place(double time) const {
+    return times_.place(time);
+}
+
+std::pair<double, double> EarlyMonitor::known(std::uint32_t input, Tick sample) const {
+    if (input >= row_.size()) throw std::out_of_range("There is no such input.");
+    const Bounds known = sample < 0 ? ranges_[input] : engine_.known(input, sample);
+    return {known.lower, known.upper};
+}
+
+double EarlyMonitor::time(Tick sample) const {
+    if (times_.newest() < 0) throw std::out_of_range("There is no sample.");
+    return times_.at(sample);
+}
+
+// ---- state --------------------------------------------------------------------------------------
+
+nb::bytes EarlyMonitor::state() {
+    guard_.require_idle();
+    settle();
+    Snapshot snapshot;
+    transfer(snapshot);
+    return bytes_of(snapshot);
+}
+
+void EarlyMonitor::restore(const nb::bytes& state) {
+    guard_.require_idle();
+    Snapshot snapshot = snapshot_of(state);
+    transfer(snapshot);
+    snapshot.end();
+}
+
+void EarlyMonitor::transfer(Snapshot& snapshot) {
+    engine_.transfer(snapshot);
+    if (origin_) origin_->transfer(snapshot);
+    if (causes_) causes_->transfer(snapshot);
+    for (auto& decisions : decisions_)
+        decisions.transfer(snapshot);
+    times_.transfer(snapshot);
+    snapshot.values(open_.data(), open_.size());
+    snapshot.item(closed_);
+    snapshot.item(samples_);
+    snapshot.item(finished_);
+    snapshot.require(closed_ >= -1 && closed_ < forever);
+    for (const Tick open : open_)
+        snapshot.require(open >= 0);
+}
+
+std::size_t EarlyMonitor::state_bytes() const {
+    std::size_t sum = engine_.bytes() + times_.bytes();
+    for (const auto& decisions : decisions_)
+        sum += decisions.bytes();
+    return sum;
+}
+
+} // namespace rtamt::python
