@@ -190,8 +190,8 @@ TEST_CASE("a forged state with a right checksum is refused or does no harm") {
         set(component, 3.0, 1.0);
         component.advance(0.0, 0.1);
         const auto state = component.save();
-        // Layout, phase, five numbers, known, two inputs, checksum; then the state of the monitor.
-        constexpr std::ptrdiff_t size = 66;
+        // Layout, phase, six numbers, known, two inputs, checksum; then the state of the monitor.
+        constexpr std::ptrdiff_t size = 74;
         const auto outside = state.begin() + size;
         const std::vector<std::uint8_t> head(state.begin(), outside);
         CHECK(programs::sealed(head) == head);
