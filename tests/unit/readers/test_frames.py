@@ -92,7 +92,7 @@ def test_a_missing_value_is_no_sample(data):
     assert trace["y"].times.tolist() == [0, 1, 2]
     assert rtamt.parse("always(y >= x)").evaluate(trace, time="dense").robustness == 0
     with pytest.raises(
-        rtamt.TraceError, match=r"^'x' is missing at sample 1 of .*: fill the gap, use dense time"
+        rtamt.TraceError, match=r"^'x' is missing at sample 1 of .*: fill the gap, hold the value before it"
     ):
         rtamt.parse("always(y >= x)").evaluate(trace)
 
