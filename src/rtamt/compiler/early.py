@@ -133,7 +133,7 @@ def compile_graph(
         graph._depths.update(horizons(formula, period))
         _lower(graph, formula, only_start=start and position == 0)
         if start and position == 0:
-            _at_start(graph, formula, negated=False)
+            _at_start(graph, formula, {}, negated=False)
             if graph._depths[id(formula)] is None:
                 graph.outputs.append(NO_OPERAND)
                 continue
@@ -153,7 +153,7 @@ def compile_starts(
     for formula in formulas:
         graph._depths.update(horizons(formula, period))
         _lower(graph, formula, only_start=True)
-        _at_start(graph, formula, negated=False)
+        _at_start(graph, formula, {}, negated=False)
         ends.append(len(graph.items))
     return graph, tuple(ends)
 
@@ -359,8 +359,17 @@ def _above(graph: Graph, formula: Formula) -> set[int]:
     return found
 
 
-def _at_start(graph: Graph, formula: Formula, *, negated: bool) -> int:
-    """Add the items of a formula's value at the start, and return the place of the last one."""
+def _at_start(graph: Graph, formula: Formula, placed: dict[tuple[int, bool], int], *, negated: bool) -> int:
+    """Add the items of a formula's value at the start once, and return the place of the last one."""
+    key = id(formula), negated
+    if key not in placed:
+        placed[key] = _placed_at_start(graph, formula, placed, negated=negated)
+    return placed[key]
+
+
+def _placed_at_start(
+    graph: Graph, formula: Formula, placed: dict[tuple[int, bool], int], *, negated: bool
+) -> int:
 
     def add(kind: str, a: int, b: int = NO_OPERAND, c: int = NO_OPERAND, tick: int = 0) -> int:
         graph.items.append(Item(ITEMS.index(kind), negated, a, b, c, tick))
@@ -373,8 +382,8 @@ def _at_start(graph: Graph, formula: Formula, *, negated: bool) -> int:
     kernel = formula.op.kernel
     if isinstance(kernel, Pointwise):
         if kernel.opcode == "neg":
-            return _at_start(graph, formula.args[0], negated=not negated)
-        operands = [_at_start(graph, arg, negated=False) for arg in formula.args]
+            return _at_start(graph, formula.args[0], placed, negated=not negated)
+        operands = [_at_start(graph, arg, placed, negated=False) for arg in formula.args]
         return add(_LATTICE[kernel.opcode], *operands)
     args = [_ref(graph, arg) for arg in formula.args]
     begin, _ = interval_in_steps(graph, formula)
