@@ -42,7 +42,8 @@ def test_unbounded_future_online() -> None:
         rtamt.parse("x >= 1 and (eventually y >= 1)").monitor()
     assert str(info.value) == (
         "'eventually' without an upper bound needs the whole future and cannot be monitored online; "
-        "give it a bound, such as eventually[0:10], or evaluate the finished trace offline\n"
+        "give it a bound, such as eventually[0:10], evaluate the finished trace offline, "
+        "or monitor its bounds or verdicts (verdict='interval', 'eager')\n"
         "  line 1, column 13:\n"
         "    x >= 1 and (eventually y >= 1)\n"
         "                ^^^^^^^^^^^^^^^^^"

@@ -123,7 +123,8 @@ def run(capsys, monkeypatch, tmp_path):
         (
             ["monitor", "always(x)", "--verdict", "delayed"],
             "'always' without an upper bound needs the whole future and cannot be monitored online; "
-            "give it a bound, such as always[0:10], or evaluate the finished trace offline\n"
+            "give it a bound, such as always[0:10], evaluate the finished trace offline, "
+            "or monitor its bounds or verdicts (verdict='interval', 'eager')\n"
             "  line 1, column 1:\n"
             "    always(x)\n"
             "    ^^^^^^^^^",

@@ -77,7 +77,8 @@ def test_the_other_sentences_are_the_same_under_every_semantics(semantics):
         spec.monitor()
     assert str(info.value) == (
         "'always' without an upper bound needs the whole future and cannot be monitored online; "
-        "give it a bound, such as always[0:10], or evaluate the finished trace offline\n"
+        "give it a bound, such as always[0:10], evaluate the finished trace offline, "
+        "or monitor its bounds or verdicts (verdict='interval', 'eager')\n"
         "  line 1, column 12:\n"
         "    x >= 3 and always(y >= 3)\n"
         "               ^^^^^^^^^^^^^^"

@@ -23,7 +23,7 @@ from rtamt.engine.domains import engine_of
 from rtamt.errors import BoundError, SpecificationError, UsageError, choices
 from rtamt.language.printer import excerpt
 from rtamt.language.units import format_duration
-from rtamt.rewrite.check import check_online, unbounded_future
+from rtamt.rewrite.check import check_online
 from rtamt.rewrite.desugar import desugar
 from rtamt.rewrite.early import ends_differently, loose
 from rtamt.rewrite.horizon import horizon
@@ -271,8 +271,6 @@ def _lines(facts: Facts) -> Iterator[str]:
     yield f"early      verdicts {'hold at the end of the trace' if late is None else changed}"
     if facts.program is None:
         yield f"online     no: {facts.offline_only}"
-        if unbounded_future(spec.formula) is not None:
-            yield "           but verdicts and bounds can be monitored: rtamt monitor --verdict eager, or interval"
         return
     if spec.domain.continuous:
         yield "memory     that of the changes inside the windows, whatever the length of the trace"

@@ -110,7 +110,8 @@ def check_online(formula: Formula, text: str | None = None) -> None:
     if node is not None:
         raise BoundError(
             f"'{node.op.name}' without an upper bound needs the whole future and cannot be monitored online; "
-            f"give it a bound, such as {node.op.name}[0:10], or evaluate the finished trace offline",
+            f"give it a bound, such as {node.op.name}[0:10], evaluate the finished trace offline, "
+            "or monitor its bounds or verdicts (verdict='interval', 'eager')",
             text,
             node.span,
         )

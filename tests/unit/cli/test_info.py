@@ -58,8 +58,8 @@ def test_unbounded_future_is_offline_only_and_the_reason_is_given(run):
         "intervals  tight\n"
         "early      verdicts hold at the end of the trace\n"
         "online     no: 'always' without an upper bound needs the whole future and cannot be monitored "
-        "online; give it a bound, such as always[0:10], or evaluate the finished trace offline\n"
-        "           but verdicts and bounds can be monitored: rtamt monitor --verdict eager, or interval\n",
+        "online; give it a bound, such as always[0:10], evaluate the finished trace offline, "
+        "or monitor its bounds or verdicts (verdict='interval', 'eager')\n",
         "",
     )
 
@@ -200,9 +200,10 @@ def test_json_in_dense_time(run):
 
 def test_unbounded_future_in_dense_time_is_offline_only(run):
     answer = run("info", "always(x >= 3)", "--time", "dense")
-    assert answer.out.splitlines()[-2] == (
+    assert answer.out.splitlines()[-1] == (
         "online     no: 'always' without an upper bound needs the whole future and cannot be monitored "
-        "online; give it a bound, such as always[0:10], or evaluate the finished trace offline"
+        "online; give it a bound, such as always[0:10], evaluate the finished trace offline, "
+        "or monitor its bounds or verdicts (verdict='interval', 'eager')"
     )
 
 
