@@ -11,7 +11,7 @@ import pytest
 import rtamt
 from rtamt.extend import STL, Blocks, Operator
 from rtamt.testing import check_operator
-from tests.unit.test_extend import CLIP, FLIPS, MEAN, TOTAL
+from tests.unit.test_extend import BETWEEN, FLIPS, MEAN, TOTAL
 
 
 def by_definition_alone(name: str) -> Operator:
@@ -28,7 +28,7 @@ def test_a_definition_alone_obeys_the_laws_in_every_mode(name: str) -> None:
     check_operator(by_definition_alone(name), examples=6)
 
 
-@pytest.mark.parametrize("op", [MEAN, FLIPS, CLIP, STL["once"]], ids=lambda op: op.name)
+@pytest.mark.parametrize("op", [MEAN, FLIPS, BETWEEN, STL["once"]], ids=lambda op: op.name)
 def test_these_obey_the_laws(op: Operator) -> None:
     check_operator(op, infinite=False, examples=6)
 
@@ -121,9 +121,9 @@ def test_a_wrong_dual_is_found() -> None:
 
 def test_an_example_that_does_not_show_the_operator_is_found() -> None:
     with pytest.raises(AssertionError, match="the example shows the operator"):
-        check_operator(replace(CLIP, example="x >= 3"))
+        check_operator(replace(BETWEEN, example="x >= 3"))
 
 
 def test_what_an_operator_raises_is_told() -> None:
-    with pytest.raises(rtamt.EvaluationError, match="the operator 'clip' failed in"):
-        check_operator(replace(CLIP, definition=lambda x, _low, _high: x[99]))
+    with pytest.raises(rtamt.EvaluationError, match="the operator 'between' failed in"):
+        check_operator(replace(BETWEEN, definition=lambda x, _low, _high: x[99]))
