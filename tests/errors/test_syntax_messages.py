@@ -65,14 +65,14 @@ FORMULAS = [
         "^^^^^^",
         ParseError,
         "'zigzag' is not a function; functions: abs, sqrt, exp, pow, log, ln, min, max, sin, cos, tan, asin, acos, "
-        "atan, atan2, hypot and 14 more",
+        "atan, atan2, hypot and 16 more",
     ),
     (
         "abz(x)",
         "^^^",
         ParseError,
         "'abz' is not a function; did you mean 'abs'? (functions: abs, sqrt, exp, pow, log, ln, min, max, sin, cos, "
-        "tan, asin, acos, atan, atan2, hypot and 14 more)",
+        "tan, asin, acos, atan, atan2, hypot and 16 more)",
     ),
     ("min(x)", "^^^^^^", ParseError, "'min' takes 2 or more operands, got 1"),
     ("abs(x, y)", "^^^^^^^^^", ParseError, "'abs' takes 1 operand, got 2"),
