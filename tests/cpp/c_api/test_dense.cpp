@@ -97,7 +97,8 @@ TEST_CASE("a refused sample leaves the monitor as it was") {
           "'a' has a sample at tick 9223372036854775807, too far from 0: subtract a start time, or "
           "choose a coarser resolution.");
     CHECK(refusal({{4, 0.0, 0}, {4, 0.0, 1}}, RTAMT_UNDEFINED) ==
-          "'a / b' has no value at time 0.4 s: it is 0/0, inf - inf, 0 * inf, or a function outside its domain; change the formula or the data so that this cannot "
+          "'a / b' has no value at time 0.4 s: it is 0/0, inf - inf, 0 * inf, or a function "
+          "outside its domain; change the formula or the data so that this cannot "
           "happen.");
     std::uint32_t instruction = 0;
     std::int64_t tick = 0;

@@ -225,7 +225,8 @@ TEST_CASE("a refused sample leaves the monitor as it was") {
     CHECK(refused(wide, 2) == "Sample 1 has the wrong number of values: expected 2 (a, b), got 3.");
     CHECK(refused(Row{1.0, 1.0}, 3) == "The program has 2 outputs, not 3.");
     CHECK(refused(Row{0.0, 0.0}, 2) ==
-          "'a / b' has no value at sample 1, time 0.1 s: it is 0/0, inf - inf, 0 * inf, or a function outside its domain; change the formula or the data so that this cannot "
+          "'a / b' has no value at sample 1, time 0.1 s: it is 0/0, inf - inf, 0 * inf, or a "
+          "function outside its domain; change the formula or the data so that this cannot "
           "happen.");
     const Row zero{0.0, 0.0};
     CHECK(rtamt_step(monitor.get(), zero.data(), 2, known.data(), 2) == RTAMT_UNDEFINED);

@@ -40,6 +40,7 @@ def build(home, *packages):
     active = {
         "PATH": f"{python.parent}{os.pathsep}{env['PATH']}",
         "VIRTUAL_ENV": str(python.parent.parent),
+        "CMAKE_POLICY_VERSION_MINIMUM": "3.5",
     }
     env = {**env, **active, "PYTHONDONTWRITEBYTECODE": "1"}
     built = subprocess.run(
