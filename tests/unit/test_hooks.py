@@ -138,13 +138,53 @@ def test_no_command_takes_what_follows_two_dashes_for_an_option(tmp_path, monkey
 
 
 def test_the_action_installs_extras_that_exist():
-    (extras,) = re.findall(r"\[([\w,]+)\]", ACTION["runs"]["steps"][1]["run"])
-    assert set(extras.split(",")) <= set(PROJECT["project"]["optional-dependencies"])
+    wheel, sources = re.findall(r"\[([\w,]+)\]", ACTION["runs"]["steps"][1]["run"])
+    assert wheel == sources
+    assert set(sources.split(",")) <= set(PROJECT["project"]["optional-dependencies"])
+
+
+#: Stands for Python: writes down its arguments, and downloads a wheel if the release has one.
+PIP = """#!/bin/bash
+echo "$@" >> "$CALLS"
+if [[ $3 == download ]]; then
+  [[ -n $WHEEL ]] || exit 1
+  mkdir -p "${@: -2:1}"
+  touch "${@: -2:1}/$WHEEL"
+fi
+"""
+
+
+@pytest.mark.parametrize("wheel", ["rtamt-1.0-cp312-abi.whl", ""])
+def test_the_action_installs_a_wheel_and_compiles_only_if_there_is_none(tmp_path, wheel):
+    step = ACTION["runs"]["steps"][1]
+    python = tmp_path / "python"
+    python.write_text(PIP, encoding="utf-8")
+    python.chmod(0o755)
+    environment = {
+        "RELEASE": "https://host/owner/rtamt/releases/expanded_assets/v1",
+        "RUNNER_TEMP": str(tmp_path / "temp"),
+        "GITHUB_ACTION_PATH": "/action",
+        "CALLS": str(tmp_path / "calls"),
+        "WHEEL": wheel,
+        "PATH": f"{tmp_path}{os.pathsep}{os.environ['PATH']}",
+    }
+    done = subprocess.run(
+        ["bash", "--noprofile", "--norc", "-eo", "pipefail", "-c", step["run"]],
+        env={**os.environ, **environment}, capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    download, install = (tmp_path / "calls").read_text(encoding="utf-8").splitlines()
+    assert f"--find-links {environment['RELEASE']} " in download
+    # On PyPI the name belongs to another project.
+    assert " --no-index " in download
+    what = f"{tmp_path}/temp/rtamt-wheels/{wheel}" if wheel else "/action"
+    assert install == f"-m pip install {what}[data,report]"
 
 
 def test_wheels_are_for_every_python_that_we_support():
     wheels = re.findall(r"cp3(\d+)-", PROJECT["tool"]["cibuildwheel"]["build"])
     assert list(map(int, wheels)) == [10, 11, 12, 13, 14]
+    assert "cp313t-* cp314t-*" in PROJECT["tool"]["cibuildwheel"]["build"]
     assert PROJECT["project"]["requires-python"] == ">=3.10"
 
 
