@@ -35,7 +35,7 @@ static int fail(const char* what) {
 }
 
 int main(void) {
-    const size_t length = 8 + 8 + 4 + 4 + 1 + 4 + 1 + 4 + 10 + 4 + 4;
+    const size_t length = 8 + 8 + 4 + 4 + 1 + 4 + 1 + 4 + 10 + 4 + 4 + 4;
     memcpy(program, "RTAMTPRG", 8);
     end = 8;
     put(1, 2); /* version */
@@ -56,6 +56,7 @@ int main(void) {
     put_text("x");
     put_text("x");
     put_text("robustness");
+    put(0, 4); /* parameters, labels, bytes of a graph */
     put(0, 4);
     put(0, 4);
     put(crc32(program, end), 4);

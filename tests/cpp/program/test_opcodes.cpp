@@ -7,7 +7,7 @@
 using rtamt::Opcode;
 
 TEST_CASE("codes are the ones of the program format") {
-    CHECK(rtamt::opcodes.size() == 26);
+    CHECK(rtamt::opcodes.size() == 45);
     CHECK((rtamt::info(Opcode::input).name == "input" && static_cast<int>(Opcode::input) == 0));
     CHECK(
         (rtamt::info(Opcode::constant).name == "const" && static_cast<int>(Opcode::constant) == 1));
@@ -20,6 +20,9 @@ TEST_CASE("codes are the ones of the program format") {
            static_cast<int>(Opcode::run_min) == 22));
     CHECK((rtamt::info(Opcode::until).name == "until" && static_cast<int>(Opcode::until) == 24));
     CHECK((rtamt::info(Opcode::call).name == "call" && static_cast<int>(Opcode::call) == 25));
+    CHECK((rtamt::info(Opcode::sin).name == "sin" && static_cast<int>(Opcode::sin) == 26));
+    CHECK((rtamt::info(Opcode::at_least).name == "at_least" &&
+           static_cast<int>(Opcode::at_least) == 44));
 }
 
 TEST_CASE("names are unique") {
