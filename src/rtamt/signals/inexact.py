@@ -60,6 +60,10 @@ class Uncertainty:
 
         Raises :class:`TraceError` at a sample that cannot lie in its declared range.
         """
+        if not any(
+            name in each for each in (missing, self.errors, self.ranges) for name in recording.columns
+        ):
+            return recording
         bounds = {}
         for name in recording.columns:
             values = _values(recording, name)
