@@ -204,3 +204,14 @@ def test_wrong_settings() -> None:
     assert said(rtamt.UsageError, rtamt.load, "nowhere.stl") == (
         "cannot read the specification 'nowhere.stl': No such file or directory"
     )
+
+
+@pytest.mark.parametrize("backend", ["cpp", "python"])
+@pytest.mark.parametrize("time", ["discrete", "dense"])
+@pytest.mark.parametrize("text", ["clip(x, y, 1)", "wrap(x, y, 1)", "wrap(x, x, y)"])
+def test_a_value_missing_inside_an_expansion_named_operators_that_nobody_had_written(text, time, backend):
+    spec = rtamt.parse(f"always({text} > 0 and x < 9)", time=time, backend=backend)
+    data = {"x": [4.0, 4.0], "y": [3.0, 3.0]}
+    with pytest.raises(rtamt.EvaluationError) as error:
+        spec.evaluate(data if time == "discrete" else {name: ([0, 1], each) for name, each in data.items()})
+    assert str(error.value).startswith(f"'{text}' has no value at ")

@@ -37,12 +37,18 @@ def written(core: Formula, formulas: Iterable[Formula]) -> Formula:
 
 
 def as_written(formulas: Iterable[Formula]) -> dict[Formula, Formula]:
-    """Return, for each core formula that a part of ``formulas`` expands to, the first such part."""
+    """Return, for each core formula in the expansion of a part of ``formulas``, the first such part."""
     found: dict[Formula, Formula] = {}
 
     def step(node: Formula, args: tuple[Formula, ...]) -> Formula:
         expanded = expand(node, args)
         found.setdefault(expanded, node)
+
+        def within(inner: Formula, _below: tuple[Formula, ...]) -> Formula:
+            found.setdefault(inner, node)
+            return inner
+
+        _rebuild_above(expanded, {id(arg) for arg in args}, within)
         return expanded
 
     folds(tuple(formulas), step)
@@ -112,7 +118,15 @@ def rebuilt(node: Apply, args: tuple[Formula, ...]) -> Apply:
 def _rebuild_above(
     formula: Formula, stop: set[int], step: Callable[[Formula, tuple[Formula, ...]], Formula]
 ) -> Formula:
-    # Expansions are a few nodes deep, so plain recursion is safe here.
-    if id(formula) in stop:
-        return formula
-    return step(formula, tuple(_rebuild_above(child, stop, step) for child in children(formula)))
+    """Apply a step to each node of an expansion once, operands first, except for those below ``stop``."""
+    done: dict[int, Formula] = {}
+
+    def rebuild(node: Formula) -> Formula:
+        # Expansions are a few nodes deep, so plain recursion is safe here.
+        if id(node) in stop:
+            return node
+        if id(node) not in done:
+            done[id(node)] = step(node, tuple(rebuild(child) for child in children(node)))
+        return done[id(node)]
+
+    return rebuild(formula)
