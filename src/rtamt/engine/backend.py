@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
 from rtamt.engine.native import core, culprit
 from rtamt.errors import UsageError
@@ -27,6 +27,9 @@ class RefusedError(Exception):
 class Backend(ABC):
     """Evaluates and monitors formulas in one time domain."""
 
+    #: Whether the compiled core computes; else the definition does.
+    compiled: ClassVar[bool]
+
     @abstractmethod
     def evaluator(
         self, formulas: tuple[Formula, ...], step: Fraction, inputs: tuple[str, ...]
@@ -45,10 +48,6 @@ class Backend(ABC):
     @abstractmethod
     def require(self) -> None:
         """Raise :class:`UsageError` where this back end cannot run."""
-
-    @abstractmethod
-    def choose(self, compiled: Callable[[], Session], defined: Callable[[], Session]) -> Session:
-        """Return the session for what the core runs, or for what is evaluated by definition."""
 
     @abstractmethod
     def memory(self, program: Program) -> int | None:
@@ -117,28 +116,23 @@ D = TypeVar("D", bound=Backend)
 class Compiled(Backend):
     """A back end that is the compiled core."""
 
+    compiled = True
+
     def require(self) -> None:
         """See :class:`Backend`."""
         core()
-
-    def choose(self, compiled: Callable[[], Session], defined: Callable[[], Session]) -> Session:  # noqa: ARG002
-        """See :class:`Backend`."""
-        return compiled()
 
 
 class Defined(Backend):
     """A back end that is the definition in Python."""
 
+    compiled = False
+
     def require(self) -> None:
         """See :class:`Backend`: it runs everywhere."""
 
-    def choose(self, compiled: Callable[[], Session], defined: Callable[[], Session]) -> Session:  # noqa: ARG002
-        """See :class:`Backend`."""
-        return defined()
-
-    def memory(self, program: Program) -> None:  # noqa: ARG002 - its monitors keep samples
-        """See :class:`Backend`."""
-        return
+    def memory(self, program: Program) -> None:
+        """See :class:`Backend`: its monitors keep samples."""
 
 
 class CompiledSession(Session):

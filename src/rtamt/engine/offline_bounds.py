@@ -40,10 +40,11 @@ def dense(formula: Formula, trace: DenseTrace) -> BoundedSignal:
 
 def signal_bounds(trace: DenseTrace) -> dict[str, StepBounds]:
     """Return ticks, lower and upper bounds of each variable of a recording."""
-    return {
-        name: (ticks, *(_held(ends, len(ticks)) for ends in trace.bounds[name]))  # type: ignore[misc]
-        for name, (ticks, _) in trace.columns.items()
-    }
+    found = {}
+    for name, (ticks, _) in trace.columns.items():
+        lower, upper = (_held(ends, len(ticks)) for ends in trace.bounds[name])
+        found[name] = ticks, lower, upper
+    return found
 
 
 def bounded_signal(

@@ -81,8 +81,9 @@ class CallerClock:
         if not self._seconds:
             return False
         steps = round((stamp.seconds - self._seconds[-1]) / float(self._period))
-        same = self._seconds[-1] + steps * float(self._period) == stamp.seconds
-        return same and bool(self._after(self._originals[-1], steps) == stamp.original[0])  # type: ignore[index]
+        if stamp.original is None or self._seconds[-1] + steps * float(self._period) != stamp.seconds:
+            return False
+        return bool(self._after(self._originals[-1], steps) == stamp.original[0])
 
     def forget(self, earliest: float) -> None:
         """Forget times that are not needed for any time from ``earliest`` on."""

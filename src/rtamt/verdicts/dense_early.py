@@ -70,7 +70,7 @@ class DenseEarlyMonitor(EarlyMonitor):
         """Open the first monitor of the back end."""
         traces = {frozenset(own_variables(each, self.input_names)) for each in self._requirements}
         if len(traces) == 1:
-            self._session = self._chosen.choose(self._compiled, self._defined)
+            self._session = self._compiled() if self._chosen.compiled else self._defined()
         else:  # requirements whose traces start at different instants are left to the definition
             self._session = self._defined()
         self._connect(self._session.open())

@@ -73,7 +73,7 @@ class DiscreteEarlyMonitor(EarlyMonitor):
 
     def _prepare(self) -> None:
         """Open the first monitor of the back end."""
-        self._session = self._chosen.choose(self._compiled, self._defined)
+        self._session = self._compiled() if self._chosen.compiled else self._defined()
         self._connect(self._session.open())
 
     def _defined(self) -> GraphDefinition:

@@ -113,9 +113,8 @@ class PythonDenseEarlyMonitor:
     def _take(self, came: _Came, now: int) -> None:
         """Go on with all that came; an operation without a value leaves everything as it was."""
         found = [self._bounds(formula, came) for formula in self._formulas]
-        look = self._verdicts if self._decides else self._changes
         self._told = tuple(
-            told if each is None else look(told, each, came, now)
+            told if each is None else self._reported(told, each, came.newest, now)
             for told, each in zip(self._told, found[self._hidden :], strict=True)
         )
         self._came, self._found = came, found
@@ -142,22 +141,9 @@ class PythonDenseEarlyMonitor:
             self._found = [self._bounds(each, self._came) for each in self._formulas]
         return self._found[formula]
 
-    def _verdicts(self, told: _Told, found: StepBounds, came: _Came, now: int) -> _Told:
-        newest = came.newest
-        signs = [(begin, end, low > 0, now) for begin, end, low, high in _runs(found) if low > 0 or high < 0]
-        fresh = list(without(signs, told.decided))
-        reached = [
-            *clipped(fresh, NEVER, newest + 1),
-            *clipped(told.decided, told.until + 1, newest + 1),
-        ]
-        decided = merged(sorted([*told.decided, *fresh]))
-        return _Told(decided=decided, until=newest, reached=merged(sorted(reached)))
-
-    def _changes(self, told: _Told, found: StepBounds, came: _Came, now: int) -> _Told:  # noqa: ARG002
-        newest = came.newest
-        runs = tuple(clipped(_runs(found), NEVER, newest + 1))
-        changed = ((begin, end, *now) for begin, end, was, now in compared(told.runs, runs) if was != now)
-        return _Told(runs=runs, until=newest, changed=merged(changed))
+    def _reported(self, told: _Told, found: StepBounds, newest: int, now: int) -> _Told:
+        """Return what is reported of an output from now on."""
+        return _verdicts(told, found, newest, now) if self._decides else _changes(told, found, newest)
 
     # ---- answers ---------------------------------------------------------------------------------
 
@@ -254,3 +240,20 @@ class PythonDenseEarlyMonitor:
 def _runs(found: StepBounds) -> list[Run]:
     ends = [*found.times[1:], FOREVER]
     return list(zip(found.times, ends, found.lower, found.upper, strict=True))
+
+
+def _verdicts(told: _Told, found: StepBounds, newest: int, now: int) -> _Told:
+    signs = [(begin, end, low > 0, now) for begin, end, low, high in _runs(found) if low > 0 or high < 0]
+    fresh = list(without(signs, told.decided))
+    reached = [
+        *clipped(fresh, NEVER, newest + 1),
+        *clipped(told.decided, told.until + 1, newest + 1),
+    ]
+    decided = merged(sorted([*told.decided, *fresh]))
+    return _Told(decided=decided, until=newest, reached=merged(sorted(reached)))
+
+
+def _changes(told: _Told, found: StepBounds, newest: int) -> _Told:
+    runs = tuple(clipped(_runs(found), NEVER, newest + 1))
+    changed = ((begin, end, *now) for begin, end, was, now in compared(told.runs, runs) if was != now)
+    return _Told(runs=runs, until=newest, changed=merged(changed))

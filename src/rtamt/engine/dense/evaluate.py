@@ -80,16 +80,17 @@ class BoundsEvaluator(Evaluator):
         inputs = [columns[name] for name in program.inputs]
         signals = [(ticks, np.stack((lower, upper), axis=1)) for ticks, lower, upper in inputs]
         try:
-            return _core.dense_evaluate_bounds(program.code(), signals, extra)  # type: ignore[no-any-return]
+            found: list[StepBounds] = _core.dense_evaluate_bounds(program.code(), signals, extra)
         except _core.Undefined as error:
             raise _undefined(error, program, recording.scale, self._plan, self._asked) from None
+        return found
 
 
 def _joined(lower: Samples, upper: Samples) -> StepBounds:
     """Return two step functions from the same instant on as one pair of bounds."""
     ticks = merged([lower[0], upper[0]])
-    ends = (values[own.searchsorted(ticks, "right") - 1] for own, values in (lower, upper))
-    return ticks, *ends  # type: ignore[return-value]
+    low, high = (values[own.searchsorted(ticks, "right") - 1] for own, values in (lower, upper))
+    return ticks, low, high
 
 
 def run(
