@@ -41,21 +41,31 @@ class Anchored:
     leaves: tuple[Leaf, ...]
 
     def conjuncts(self) -> Iterator[Formula]:
-        """Yield the parts of the skeleton that must all hold, each once."""
-        stack, seen = [self.skeleton], set[int]()
-        while stack:
-            node = stack.pop()
-            if id(node) in seen:
-                continue
-            seen.add(id(node))
-            if isinstance(node, Apply) and node.op.kernel == Pointwise("min"):
-                stack.extend(reversed(node.args))
-            else:
-                yield node
+        """Yield the parts of the skeleton that must all hold."""
+        return conjuncts(self.skeleton)
 
     def leaf(self, part: Formula) -> Leaf | None:
         """Return the leaf that a part of the skeleton is, if it is one."""
         return self.leaves[int(part.name[1:])] if isinstance(part, Var) else None
+
+
+def conjuncts(formula: Formula) -> Iterator[Formula]:
+    """Yield the parts of a formula that must all hold, each once.
+
+    >>> from rtamt.language.parser import parse_formula
+    >>> list(conjuncts(parse_formula("x and (y or z)")))
+    [<formula x>, <formula y or z>]
+    """
+    stack, seen = [formula], set[int]()
+    while stack:
+        node = stack.pop()
+        if id(node) in seen:
+            continue
+        seen.add(id(node))
+        if isinstance(node, Apply) and node.op.kernel == Pointwise("min"):
+            stack.extend(reversed(node.args))
+        else:
+            yield node
 
 
 def anchor(formula: Formula) -> Anchored:

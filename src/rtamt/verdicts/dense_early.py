@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from rtamt.engine.backend import Session
 from rtamt.engine.dense.early_python_backend import PythonDenseEarlyMonitor
 from rtamt.engine.dense.groups import own_variables
 from rtamt.engine.native import EarlyMonitorBase
@@ -19,7 +18,7 @@ from rtamt.rewrite.desugar import written
 from rtamt.signals import arrays, dense_arrays
 from rtamt.signals.outcomes import VerdictRun
 from rtamt.signals.ticks import TimeScale
-from rtamt.verdicts.early import EarlyMonitor, GraphSession
+from rtamt.verdicts.early import DefinitionSession, EarlyMonitor, GraphSession
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -27,23 +26,6 @@ if TYPE_CHECKING:
     from rtamt.engine.dense.early_python_backend import Output
     from rtamt.language.formula import Formula
     from rtamt.signals.domain_interface import TimeDomain
-
-
-class DenseDefinition(Session):
-    """Outputs that are evaluated by definition; see ``PythonDenseEarlyMonitor`` for the other arguments."""
-
-    def __init__(self, fingerprint: bytes, *settings: Any) -> None:
-        self._fingerprint = fingerprint
-        self._settings = settings
-
-    def open(self) -> PythonDenseEarlyMonitor:
-        """See :class:`Session`."""
-        return PythonDenseEarlyMonitor(*self._settings)
-
-    @property
-    def fingerprint(self) -> bytes:
-        """See :class:`Session`."""
-        return self._fingerprint
 
 
 class DenseEarlyMonitor(EarlyMonitor):
@@ -90,9 +72,10 @@ class DenseEarlyMonitor(EarlyMonitor):
             self._replays,
         )
 
-    def _defined(self) -> DenseDefinition:
-        return DenseDefinition(
-            self._graph.fingerprint(),
+    def _defined(self) -> DefinitionSession:
+        return DefinitionSession(
+            self._graph,
+            PythonDenseEarlyMonitor,
             [self._output_with_names(formula) for formula in self._formulas],
             self._hidden,
             self._known_ranges(),

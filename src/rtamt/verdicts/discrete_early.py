@@ -5,7 +5,6 @@ from __future__ import annotations
 from math import isfinite
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from rtamt.engine.backend import Session
 from rtamt.engine.discrete.apart import Apart
 from rtamt.engine.discrete.early_python_backend import PythonEarlyMonitor
 from rtamt.engine.discrete.samples import read_time
@@ -19,33 +18,15 @@ from rtamt.signals import arrays
 from rtamt.signals.outcomes import Causation
 from rtamt.signals.regular import irregular, not_increasing
 from rtamt.verdicts.caller_clock import CallerClock, Stamp
-from rtamt.verdicts.early import EarlyMonitor, GraphSession
+from rtamt.verdicts.early import DefinitionSession, EarlyMonitor, GraphSession
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
     from fractions import Fraction
 
     from rtamt.compiler.causation import Causes
-    from rtamt.compiler.early import Graph
     from rtamt.language.formula import Formula
     from rtamt.signals.domain_interface import TimeDomain
-
-
-class GraphDefinition(Session):
-    """Formulas that are evaluated by definition; see ``PythonEarlyMonitor`` for the other arguments."""
-
-    def __init__(self, graph: Graph, *settings: Any) -> None:
-        self._graph = graph
-        self._settings = settings
-
-    def open(self) -> PythonEarlyMonitor:
-        """See :class:`Session`."""
-        return PythonEarlyMonitor(*self._settings)
-
-    @property
-    def fingerprint(self) -> bytes:
-        """See :class:`Session`."""
-        return self._graph.fingerprint()
 
 
 class DiscreteEarlyMonitor(EarlyMonitor):
@@ -76,9 +57,10 @@ class DiscreteEarlyMonitor(EarlyMonitor):
         self._session = self._compiled() if self._chosen.compiled else self._defined()
         self._connect(self._session.open())
 
-    def _defined(self) -> GraphDefinition:
-        return GraphDefinition(
+    def _defined(self) -> DefinitionSession:
+        return DefinitionSession(
             self._graph,
+            PythonEarlyMonitor,
             self._formulas,
             self._hidden,
             self._known_ranges(),

@@ -48,6 +48,24 @@ class GraphSession(Session):
         return self._graph.fingerprint()
 
 
+class DefinitionSession(Session):
+    """A graph whose formulas are evaluated by definition: ``monitor`` does, the rest are its arguments."""
+
+    def __init__(self, graph: Graph, monitor: Callable[..., Any], *settings: Any) -> None:
+        self._graph = graph
+        self._monitor = monitor
+        self._settings = settings
+
+    def open(self) -> Any:
+        """See :class:`Session`."""
+        return self._monitor(*self._settings)
+
+    @property
+    def fingerprint(self) -> bytes:
+        """See :class:`Session`."""
+        return self._graph.fingerprint()
+
+
 class EarlyMonitor(OnlineMonitor):
     """What the monitors of verdicts and of bounds share. Not instantiated by users."""
 

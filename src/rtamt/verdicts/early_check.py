@@ -9,8 +9,8 @@ from math import inf
 from typing import TYPE_CHECKING, Any
 
 from rtamt.engine.online import Watched
-from rtamt.language.formula import Apply, Formula
-from rtamt.language.operators import Pointwise, Tense, Window
+from rtamt.language.formula import Apply
+from rtamt.language.operators import Tense, Window
 from rtamt.rewrite.check import check_bounds
 from rtamt.rewrite.early import ends_differently
 from rtamt.rewrite.semantics import boolean
@@ -18,13 +18,15 @@ from rtamt.signals import arrays
 from rtamt.signals.discrete import Discrete
 from rtamt.signals.outcomes import Interval
 from rtamt.signals.regular import TOLERANCE, check_increasing, check_regular, infer_period
+from rtamt.verdicts.decompose import conjuncts
 from rtamt.verdicts.discrete_interval import DiscreteIntervalMonitor
 from rtamt.verdicts.eager import EagerMonitor
 from rtamt.verdicts.robustness_and_truth import align_inputs, outputs_under
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
+    from collections.abc import Mapping, Sequence
 
+    from rtamt.language.formula import Formula
     from rtamt.signals.outcomes import Verdict
     from rtamt.specification import Specification
 
@@ -148,7 +150,7 @@ class _Requirement:
         self._step = float(period)
         #: Whether bounds hold at the end too; otherwise the verdict tells the sign.
         self._bounded = ends_differently(outputs.robustness, {}) is None
-        self._parts = [_Part(part, period) for part in _conjuncts(outputs.truth)]
+        self._parts = [_Part(part, period) for part in conjuncts(outputs.truth)]
         first, *others = (part.formula for part in self._parts)
         watch = [Watched(str(i), formula, None) for i, formula in enumerate(others, 1)]
         self._verdicts = EagerMonitor(
@@ -229,17 +231,3 @@ class _Part:
             self.certain += 1
         if self.satisfied:
             self.certain = sys.maxsize
-
-
-def _conjuncts(formula: Formula) -> Iterator[Formula]:
-    """Yield the parts of a formula that must all hold, each once."""
-    stack, seen = [formula], set[int]()
-    while stack:
-        node = stack.pop()
-        if id(node) in seen:
-            continue
-        seen.add(id(node))
-        if isinstance(node, Apply) and node.op.kernel == Pointwise("min"):
-            stack.extend(reversed(node.args))
-        else:
-            yield node
