@@ -74,6 +74,18 @@ FORMULAS = [
         "'abz' is not a function; did you mean 'abs'? (functions: abs, sqrt, exp, pow, log, ln, min, max, sin, cos, "
         "tan, asin, acos, atan, atan2, hypot and 16 more)",
     ),
+    (
+        "wrap(x, 0, y > 3) > 1",
+        "           ^^^^^",
+        ParseError,
+        "'wrap' takes a number, and 'y > 3' is a formula, true or false; write a signal or arithmetic",
+    ),
+    (
+        "minimum[0:2](once x) > 1",
+        "             ^^^^^^",
+        ParseError,
+        "'minimum' takes a number, and 'once x' is a formula, true or false; write a signal or arithmetic",
+    ),
     ("min(x)", "^^^^^^", ParseError, "'min' takes 2 or more operands, got 1"),
     ("abs(x, y)", "^^^^^^^^^", ParseError, "'abs' takes 1 operand, got 2"),
     ("abs[0:1](x)", "   ^", ParseError, "'abs' takes no interval"),

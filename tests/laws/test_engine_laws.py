@@ -17,6 +17,7 @@ from rtamt.engine.discrete.evaluate import Evaluator
 from rtamt.engine.discrete.monitor import Monitor
 from rtamt.errors import EvaluationError
 from rtamt.language.formula import Apply, Formula, Var, fold, variables
+from rtamt.language.grammar import is_number
 from rtamt.language.operators import STL, Bounds, Pointwise, Sort, Tense
 from rtamt.reference import discrete as reference
 from rtamt.rewrite.desugar import desugar
@@ -250,7 +251,8 @@ def fragile(draw: st.DrawFn) -> Formula:
     partial = [op for op in STL if isinstance(op.kernel, Pointwise) and op.kernel.partial]
     op = draw(st.sampled_from(partial))
     below = formulas(max_depth=2)
-    return STL["or"](draw(below), STL["once"](op(*(draw(below) for _ in op.operands))))
+    operand = below.map(lambda each: each if is_number(each) else Var("x")) if op.strict else below
+    return STL["or"](draw(below), STL["once"](op(*(draw(operand) for _ in op.operands))))
 
 
 @settings(suppress_health_check=[HealthCheck.filter_too_much])

@@ -10,6 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rtamt.language.formula import Apply, Const, Interval, Var, variables
+from rtamt.language.grammar import is_number
 from rtamt.language.operators import STL, Bounds, Fixity
 from rtamt.language.parser import parse_formula as parse
 from rtamt.language.printer import canonical, to_latex, to_text
@@ -53,7 +54,8 @@ def spelled(draw, language):
     @st.composite
     def applied(inner, below):
         operator = inner(st.sampled_from(language.operators))
-        args = tuple(inner(below) for _ in operator.operands)
+        operand = below.filter(is_number) if operator.strict else below
+        args = tuple(inner(operand) for _ in operator.operands)
         return Apply(operator, args, inner(intervals(operator.bounds)))
 
     leaf = st.sampled_from(NUMBERS).map(Const) | st.sampled_from(NAMES).map(Var)

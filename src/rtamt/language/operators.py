@@ -186,6 +186,7 @@ def _math(
     definition = definition or getattr(f, name)
     more["extension"] = getattr(fe, name, None) or fe.rising(definition)
     more["kernel"] = Pointwise(name, more.pop("partial", False))
+    more["strict"] = True
     return _function(name, len(slopes), doc, example, definition=definition, slopes=e.slopes(*slopes), **more)
 
 
@@ -237,9 +238,9 @@ STL: Language = Language.of((
     _math("mod", "The remainder of a division, with the sign of the divisor.", "mod(x, 360) <= 180", 0, None,
           partial=True),
     _function("clip", 3, "The number of [second, third operand] next to the first; an error where they are reversed.",
-              "clip(x, -1, 1) >= 0", definition=f.clip, expansion=_clip),
+              "clip(x, -1, 1) >= 0", definition=f.clip, expansion=_clip, strict=True),
     _function("wrap", 3, "The first operand moved into [second, third) by whole multiples of their difference.",
-              "wrap(x, -180, 180) <= 90", definition=f.wrap, expansion=_wrap),
+              "wrap(x, -180, 180) <= 90", definition=f.wrap, expansion=_wrap, strict=True),
     _prefix("neg", "-", 120, "Minus.", "-x >= 2", operands=(N,), result=N, latex="-{0}",
             definition=d.neg, kernel=Pointwise("neg"), extension=e.neg, slopes=e.slopes(-1)),
     _infix("mul", "*", 110, "Product.", "2 * x <= 3", operands=(N, N), result=N, latex=r"{0} \cdot {1}",
@@ -298,10 +299,11 @@ STL: Language = Language.of((
     # ---- numbers over time -------------------------------------------------------------------
     _function("minimum", 1, "The least number of the window behind.", "minimum[0:5](x) >= 3",
               latex=r"\mathrm{{minimum}}_{I}({0})", tense=Tense.PAST, bounds=Bounds.OPTIONAL,
-              definition=d.historically, dense=dense.historically, kernel=Window("min"), guards=("implies",)),
+              definition=d.historically, dense=dense.historically, kernel=Window("min"), guards=("implies",),
+              strict=True),
     _function("maximum", 1, "The greatest number of the window behind.", "maximum[0:5](x) - x <= 3",
               latex=r"\mathrm{{maximum}}_{I}({0})", tense=Tense.PAST, bounds=Bounds.OPTIONAL,
-              definition=d.once, dense=dense.once, kernel=Window("max"), guards=("and",)),
+              definition=d.once, dense=dense.once, kernel=Window("max"), guards=("and",), strict=True),
     # ---- one sample away ---------------------------------------------------------------------
     _prefix("prev", "prev Y previous", 70, "One sample ago; holds where there is none.", "prev(x >= 3)",
             latex=r"\mathbf{{Y}} {0}", tense=Tense.PAST, reach=1, discrete_only=True,

@@ -25,7 +25,7 @@ from typing import TYPE_CHECKING
 from rtamt.errors import NameInFormulaError, ParseError, SpecificationError, did_you_mean
 from rtamt.language import diagnostics
 from rtamt.language.formula import Apply, Const, Formula, Span, Var
-from rtamt.language.grammar import INFINITY, MAX_DEPTH, chains, is_predicate, passes_on, sign
+from rtamt.language.grammar import INFINITY, MAX_DEPTH, chains, is_number, is_predicate, passes_on, sign
 from rtamt.language.intervals import parse_interval
 from rtamt.language.lexer import Token, quoted, tokenize, unquoted
 from rtamt.language.operators import STL, Bounds, Fixity, Language, Operator
@@ -173,9 +173,9 @@ class FormulaParser:
         opening = self.token
         if not self.accept("("):
             raise self.error(f"expected '(' after '{name.text}', got {opening}", opening.span)
-        operands = [self.expression()]
+        operands = [self.argument(op)]
         while self.accept(","):
-            operands.append(self.expression())
+            operands.append(self.argument(op))
         if not self.accept(")"):
             raise self.error(
                 *diagnostics.no_close(self.language, self.tokens, self.index, opening, "',' or ')'")
@@ -190,6 +190,19 @@ class FormulaParser:
         for operand in operands[count:]:
             result = Apply(op, (result, operand), interval, span)
         return result
+
+    def argument(self, op: Operator) -> Formula:
+        """Parse an operand of a function; strict functions take no formula for a number."""
+        start = self.token.start
+        operand = self.expression()
+        if op.strict and not is_number(operand):
+            end = self.tokens[self.index - 1].end
+            raise self.error(
+                f"'{op.spellings[0]}' takes a number, and '{self.text[start:end]}' is a formula, true or false; "
+                f"write a signal or arithmetic",
+                Span(start, end),
+            )
+        return operand
 
     def prefix(self, op: Operator, power: int, under: Operator | None) -> Formula:
         """``prefix = prefix operator , [ interval ] , expression``; a minus before a number is its sign."""

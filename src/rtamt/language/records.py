@@ -150,6 +150,7 @@ class Operator:
     dual: str | None = None
     twin: str | None = None
     guards: tuple[str | None, ...] = ()
+    strict: bool = False  # a formula is no operand, though others read its robustness as a number
     folds: bool = False  # a function that accepts more operands: f(a, b, c) is f(f(a, b), c)
     truth: Expansion | None = None  # of a predicate: the formula that is +inf where it holds, else -inf
     # Interval extension of a pointwise operator (enclosures.py): the bounds of the result from those of

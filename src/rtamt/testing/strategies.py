@@ -120,17 +120,17 @@ def formulas(
         depth = 1 + max((o.depth for o in operands), default=0)
         return _Drawn(Apply(op, tuple(o.formula for o in operands), window), op.result, probe, depth)
 
-    def draw_one(depth: int, sort: Sort) -> _Drawn:
+    def draw_one(depth: int, sort: Sort, *, strict: bool = False) -> _Drawn:
         reusable = [d for d in pool if d.depth <= depth and (d.sort is sort or sort is Sort.FORMULA)]
         if reusable and chance(4):
             return draw(st.sampled_from(reusable))
-        # Sometimes a number where a formula is expected, or the reverse: both are legal.
-        odd = arithmetic and chance(8)
+        # Sometimes a number where a formula is expected, or the reverse: both are legal but for strict functions.
+        odd = arithmetic and not strict and chance(8)
         candidates = by_sort[sort] if not odd else operators
         if depth == 0 or not candidates or chance(10):
             return leaf(sort)
         op = draw(st.sampled_from(candidates))
-        operands = [draw_one(depth - 1, operand) for operand in op.operands]
+        operands = [draw_one(depth - 1, operand, strict=op.strict) for operand in op.operands]
         window = interval(op)
         drawn = apply(op, operands, window)
         for kept in reversed(range(len(operands))):
