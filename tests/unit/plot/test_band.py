@@ -42,7 +42,7 @@ def test_dates_and_the_sample_that_decided():
 
 def test_dense_time_has_no_band():
     result = rtamt.parse("always(x >= 3)", time="dense").evaluate({"x": ([0, 1], [4, 1])})
-    with pytest.raises(UsageError, match="bounds after each sample are drawn in discrete time"):
+    with pytest.raises(UsageError, match="bounds are drawn in discrete time only"):
         result.plot(bounds=True, figure=Figure())
 
 
