@@ -205,7 +205,7 @@ def _early(requirement: Requirement, trace: str, reading: Reading) -> list[Outco
             chunks = _Chunks(chunks_of(source, choice_for([requirement.spec], trace, reading)))
             if not any(map(check.take, chunks)):
                 return None
-    except StlError:  # the check of the whole recording says what is wrong
+    except StlError:  # the check of the whole recording reports what is wrong
         return None
     assert check.decided is not None
     seconds = (time.perf_counter() - begin) / len(rows)

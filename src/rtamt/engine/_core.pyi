@@ -67,7 +67,7 @@ class Monitor:
         """What the samples so far have left behind; in dense time but for what set_time_scale() says."""
 
     def restore(self, state: bytes) -> None:
-        """Go on as the monitor of this state would, which was made like this one."""
+        """Restore the state of a monitor that was made with the same arguments."""
 
     def last(self, instruction: int) -> float | None:
         """The value of an instruction at the last slot, or None before the first."""
@@ -133,7 +133,7 @@ class DenseMonitor:
         """What the samples so far have left behind; in dense time but for what set_time_scale() says."""
 
     def restore(self, state: bytes) -> None:
-        """Go on as the monitor of this state would, which was made like this one."""
+        """Restore the state of a monitor that was made with the same arguments."""
 
     def known(self, output: int) -> int | None:
         """The last tick at which an output is known, or None."""
@@ -240,10 +240,10 @@ class EarlyMonitor:
         """The first sample that is held."""
 
     def state(self) -> bytes:
-        """What the samples so far have left behind."""
+        """The state after the samples so far."""
 
     def restore(self, state: bytes) -> None:
-        """Go on as the monitor of this state would, which was made like this one."""
+        """Restore the state of a monitor that was made with the same arguments."""
 
     @property
     def samples(self) -> int: ...
@@ -316,10 +316,10 @@ class DenseEarlyMonitor:
         """The first tick that is held, None before the trace has started."""
 
     def state(self) -> bytes:
-        """What the samples so far have left behind."""
+        """The state after the samples so far."""
 
     def restore(self, state: bytes) -> None:
-        """Go on as the monitor of this state would, which was made like this one."""
+        """Restore the state of a monitor that was made with the same arguments."""
 
     @property
     def samples(self) -> int: ...

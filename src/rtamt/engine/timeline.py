@@ -37,7 +37,7 @@ class Timeline(ABC):
 
     @abstractmethod
     def cell(self, at: Any) -> int:
-        """Return the cell of a time as the caller tells it; raise :class:`UsageError` outside the recording."""
+        """Return the cell of a time in the caller's form; raise :class:`UsageError` outside the recording."""
 
     @abstractmethod
     def later(self, time: Any) -> int:
@@ -45,7 +45,7 @@ class Timeline(ABC):
 
     @abstractmethod
     def time(self, cell: int) -> Any:
-        """Return the time of a cell as the caller tells it; None where there is none so late."""
+        """Return the time of a cell in the caller's form; None where there is none so late."""
 
     @abstractmethod
     def show(self, cell: int) -> str:

@@ -44,7 +44,9 @@ def band(result: Result) -> Band:
     trace, spec = result.trace, result.specification
     period = trace.domain.period
     if period is None:
-        raise UsageError("bounds are drawn in discrete time only; plot without them, or evaluate in discrete time")
+        raise UsageError(
+            "bounds are drawn in discrete time only; plot without them, or evaluate in discrete time"
+        )
     monitor = StartMonitor(spec, period=period, semantics=result.semantics)
     columns = {name: trace.columns[name].tolist() for name in monitor.input_names}
     clock = Clock.of(trace)

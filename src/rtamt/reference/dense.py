@@ -128,7 +128,7 @@ class DenseReferenceMonitor:
         return self._kept, self._until, self._finished
 
     def restore(self, state: tuple[Any, ...]) -> None:
-        """Go on as the monitor of this state would, which was made like this one."""
+        """Restore the state of a monitor that was made with the same arguments."""
         self._kept, self._until, self._finished = state
 
     def push(self, chunks: Mapping[str, Events]) -> list[Known]:

@@ -83,7 +83,7 @@ class Watch(ABC):
 
     @abstractmethod
     def forget(self) -> None:
-        """Be as before the first message."""
+        """Return to the state before the first message."""
 
     @abstractmethod
     def reset(self) -> None:
@@ -109,7 +109,7 @@ class MessageWatch(Watch):
         self.reset()
 
     def forget(self) -> None:
-        """Be as before the first message."""
+        """Return to the state before the first message."""
         self.reset()
 
 
@@ -182,7 +182,7 @@ class SampledWatch(Watch):
         self.leap(now)
 
     def forget(self) -> None:
-        """Be as before the first message."""
+        """Return to the state before the first message."""
         self._channels = {topic: _Channel() for topic in self.topics}
         self._earliest, self.due = 0, None
         self.reset()

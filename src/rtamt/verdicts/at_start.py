@@ -63,7 +63,7 @@ class StartMonitor:
         self._look(time)
 
     def finish(self) -> None:
-        """Say that no more samples will come."""
+        """End the trace."""
         self.bounds.finish()
         self._truth.finish()
         self.finished = True

@@ -69,7 +69,7 @@ class CausationMonitor(DiscreteEarlyMonitor, EarlyMonitorBase):
             """
 
     def _update_carefully(self, *given: Any, **values: Any) -> Causation:
-        """Take a sample that the core did not take, or find out what is wrong with it."""
+        """Take a sample that the core rejected, or report what is wrong with it."""
         return self._take_in_order(time_of(given), values)  # type: ignore[no-any-return]
 
     def _bounds_of(
@@ -110,6 +110,6 @@ class CausationMonitor(DiscreteEarlyMonitor, EarlyMonitorBase):
 
     @exclusive
     def finish(self) -> None:
-        """Say that no more samples will come; what samples cause is known when they come."""
+        """End the trace; the causation of every sample is already known."""
         self._finished = True
         self._backend.finish()

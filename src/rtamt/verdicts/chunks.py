@@ -85,7 +85,7 @@ class Requirement:
             outputs[self._whole.formula].minima.append(self._minimum)
 
     def result(self, time: Callable[[int], Any], samples: int, period: Fraction | None) -> StreamResult:
-        """Return what came of all chunks; ``time``: from a position to a time as the caller tells it."""
+        """Return what came of all chunks; ``time``: from a position to a time in the caller's form."""
         evaluate = Evaluators(self.spec.backend)
         self._robustness.finish()
         self._verdict.finish()

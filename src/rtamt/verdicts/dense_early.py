@@ -163,7 +163,7 @@ class DenseEarlyMonitor(EarlyMonitor):
                 raise TraceError(f"'{name}' has no samples; provide one before finish()", variable=name)
 
     def _row_of(self, known: Mapping[str, Any]) -> list[tuple[int, float, float]]:
-        """Return samples as the back end takes them; of a missing one the range is known."""
+        """Return samples in the form of the back end; of a missing one the range is known."""
         ranges = self._known_ranges()
         numbers = {name: self.input_names.index(name) for name in known}
         return [(i, *(known[name] or ranges[i])) for name, i in numbers.items()]
@@ -201,7 +201,7 @@ class DenseEagerMonitor(DenseEarlyMonitor, EarlyMonitorBase):
             """
 
     def _update_carefully(self, *given: Any, **values: Any) -> list[VerdictRun]:
-        """Take an instant that the core did not take, or find out what is wrong with it."""
+        """Take an instant that the core rejected, or report what is wrong with it."""
         time = time_of(given)
         with self._usage:
             scale, tick, known = self._lessons(time, values)
@@ -218,7 +218,7 @@ class DenseEagerMonitor(DenseEarlyMonitor, EarlyMonitorBase):
 
     @exclusive
     def finish(self) -> list[VerdictRun]:
-        """Say that no more samples will come, so that each variable holds its value; return what was still open."""
+        """End the trace, so that each variable holds its last value; return the verdicts that were still open."""
         if self._finished:
             return []
         self._require_samples()

@@ -161,7 +161,7 @@ class DenseIntervalMonitor(DenseEarlyMonitor, IntervalMonitor, EarlyMonitorBase)
 
     @exclusive
     def finish(self) -> list[Change]:
-        """Say that no more samples will come: every variable holds its value. Return the bounds that were open."""
+        """End the trace: every variable holds its last value. Return the bounds that were still open."""
         if not self._finished:
             self._require_samples()
             backend = self._backend

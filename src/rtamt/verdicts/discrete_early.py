@@ -114,7 +114,7 @@ class DiscreteEarlyMonitor(EarlyMonitor):
         return self.samples
 
     def _stamp(self, time: Any) -> Stamp:
-        """Return a time in seconds and as it was given; raise :class:`TraceError` for what is none."""
+        """Return a time in seconds and as it was given; raise :class:`TraceError` for anything else."""
         stamp = self._clock.read(time, self._count)
         if stamp is None:
             return Stamp(read_time(time, self.samples, None))
@@ -173,7 +173,7 @@ class DiscreteEarlyMonitor(EarlyMonitor):
             raise irregular(self.samples, time, last, self._step, self._tolerance)
 
     def _take_in_order(self, time: Any, values: dict[str, Any]) -> Any:
-        """Take a sample that comes after all others, or find out what is wrong with it."""
+        """Take a sample that comes after all others, or report what is wrong with it."""
         with self._usage:
             flat = self._read_by_formula(values)
             if self._finished:

@@ -118,7 +118,7 @@ class DiscreteIntervalMonitor(DiscreteEarlyMonitor, IntervalMonitor, EarlyMonito
             )
 
     def _moment(self, time: float) -> str:
-        """Return a time as the back end takes it for a message."""
+        """Return a time in the form of the back end for a message."""
         return f"time {time:.15g} s"
 
     def _differences(self, before: Any, after: Any) -> tuple[Change, ...]:
@@ -170,7 +170,7 @@ class DiscreteIntervalMonitor(DiscreteEarlyMonitor, IntervalMonitor, EarlyMonito
         return Interval(*found)
 
     def _later(self, prediction: Mapping[str, Any]) -> list[Later]:
-        """Return predictions as the back end takes them."""
+        """Return predictions in the form of the back end."""
         if self._finished:
             raise UsageError("the trace has ended, so that there is nothing to predict")
         if self._early:
@@ -202,7 +202,7 @@ class DiscreteIntervalMonitor(DiscreteEarlyMonitor, IntervalMonitor, EarlyMonito
 
     @exclusive
     def finish(self) -> list[Change]:
-        """Say that no more samples will come; return the bounds that were still open, which are final now."""
+        """End the trace; return the bounds that were still open, which are final now."""
         if not self._finished:
             if self._early:
                 self._start()

@@ -46,12 +46,12 @@ class EagerMonitor(DiscreteEarlyMonitor, EarlyMonitorBase):
             """
 
     def _update_carefully(self, *given: Any, **values: Any) -> list[Verdict]:
-        """Take a sample that the core did not take, or find out what is wrong with it."""
+        """Take a sample that the core rejected, or report what is wrong with it."""
         return self._take_in_order(time_of(given), values)  # type: ignore[no-any-return]
 
     @exclusive
     def finish(self) -> list[Verdict]:
-        """Say that no more samples will come; return the verdicts that were still open."""
+        """End the trace; return the verdicts that were still open."""
         if self._finished:
             return []
         self._finished = True

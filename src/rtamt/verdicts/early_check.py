@@ -148,7 +148,7 @@ class _Requirement:
         domain = Discrete(period).online
         self._names = spec.input_names
         self._step = float(period)
-        #: Whether bounds hold at the end too; otherwise the verdict tells the sign.
+        #: Whether bounds hold at the end too; otherwise only the verdict gives the sign.
         self._bounded = ends_differently(outputs.robustness, {}) is None
         self._parts = [_Part(part, period) for part in conjuncts(outputs.truth)]
         first, *others = (part.formula for part in self._parts)

@@ -118,7 +118,7 @@ class IntervalMonitor(EarlyMonitor):
             """
 
     def _update_carefully(self, *given: Any, **values: Any) -> None:
-        """Take a sample that the core did not take, or find out what is wrong with it."""
+        """Take a sample that the core rejected, or report what is wrong with it."""
         time = time_of(given)
         with self._usage:
             self._take(time, values)
@@ -129,7 +129,7 @@ class IntervalMonitor(EarlyMonitor):
 
     @abstractmethod
     def _moment(self, time: float) -> str:
-        """Return a time as the back end takes it for a message."""
+        """Return a time in the form of the back end for a message."""
 
     def _learn(self, time: float, known: Mapping[str, tuple[float, float] | None]) -> None:
         """Take a sample in whatever order; replay the trace from before where it corrects an earlier one."""
@@ -202,7 +202,7 @@ class IntervalMonitor(EarlyMonitor):
 
     @exclusive
     def watermark(self, time: Any) -> None:
-        """Say that nothing at or before a time will come.
+        """Declare that no sample at or before a time will come.
 
         In discrete time what is missing up to it stays unknown; in dense time every variable holds its value.
         """
@@ -210,7 +210,7 @@ class IntervalMonitor(EarlyMonitor):
 
     @exclusive
     def advance(self, now: Any) -> None:
-        """Say what time it is: nothing that is later than the lateness will come."""
+        """Set the current time: samples older than the lateness will not come."""
         self._mark_at(now, late=True)
 
     @abstractmethod
@@ -259,7 +259,7 @@ class IntervalMonitor(EarlyMonitor):
 
     @abstractmethod
     def finish(self) -> list[Change]:
-        """Say that no more samples will come; return the bounds that were still open, which are final now."""
+        """End the trace; return the bounds that were still open, which are final now."""
 
 
 def _text(bounds: tuple[float, float]) -> str:

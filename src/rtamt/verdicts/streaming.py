@@ -102,7 +102,7 @@ class _Stream(ABC):
 
     @abstractmethod
     def finish(self) -> StreamResult:
-        """Say that no more chunks will come; return what came of all of them."""
+        """End the recording; return the outcome of all chunks."""
 
     def result(self, found: Mapping[str, StreamResult], period: Fraction | None) -> StreamResult:
         """Return what came of all chunks, from the results of the requirements."""

@@ -228,11 +228,11 @@ class PythonDenseEarlyMonitor:
         return self._came.known[number].get(tick, self._ranges[self._names[number]])
 
     def state(self) -> bytes:
-        """What the samples so far have left behind."""
+        """The state after the samples so far."""
         return pickle.dumps((self._came, self._told))
 
     def restore(self, state: bytes) -> None:
-        """Go on as the monitor of this state would, which was made like this one."""
+        """Restore the state of a monitor that was made with the same arguments."""
         self._came, self._told = pickle.loads(state)  # noqa: S301 - its own
         self._found = None
 

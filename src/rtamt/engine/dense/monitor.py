@@ -117,7 +117,7 @@ class DenseMonitor(DenseMonitorBase, OnlineMonitor):
             """
 
     def _update_carefully(self, *given: Any, **values: Any) -> Signal:
-        """Take an instant that the core did not take, or find out what is wrong with it."""
+        """Take an instant that the core rejected, or report what is wrong with it."""
         time = time_of(given)
         flat = self._read_by_formula(values)
         for name in flat:

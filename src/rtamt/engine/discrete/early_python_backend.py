@@ -251,10 +251,10 @@ class PythonEarlyMonitor:
         return 0
 
     def state(self) -> bytes:
-        """What the samples so far have left behind."""
+        """The state after the samples so far."""
         kept = ("_known", "_times", "samples", "newest", "closed", "finished", "_told", "_decided", "_news")
         return pickle.dumps({name: getattr(self, name) for name in kept})
 
     def restore(self, state: bytes) -> None:
-        """Go on as the monitor of this state would, which was made like this one."""
+        """Restore the state of a monitor that was made with the same arguments."""
         self.__dict__.update(pickle.loads(state))  # noqa: S301 - its own

@@ -148,7 +148,7 @@ class Monitor(MonitorBase, OnlineMonitor):
             """
 
     def _update_carefully(self, *given: Any, **values: Any) -> float | None:
-        """Take a sample that the core did not take, or find out what is wrong with it."""
+        """Take a sample that the core rejected, or report what is wrong with it."""
         time = time_of(given)
         if self._times.plain and self._episodes is None:
             return self._take(time, values)
