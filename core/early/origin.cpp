@@ -108,8 +108,26 @@ void Origin::settle(const Engine& engine, Tick closed, std::span<Tick> wanted) {
             fold(engine, i, open);
             state.next = open;
         }
-        if (!follows_ && state.value[0] == -state.value[1]) state.next = forever;
+        if (!follows_ && decided(i)) state.next = forever;
         wanted[item.a / 2] = std::min(wanted[item.a / 2], state.next);
+    }
+}
+
+// Whether no later tick can change the value, nor the end of the trace: it cuts windows, so that
+// bounds which meet are not enough.
+bool Origin::decided(std::size_t index) const noexcept {
+    const State& state = states_[index];
+    const Bounds best{state.best[0], -state.best[1]};
+    const Bounds held{state.held[0], -state.held[1]};
+    switch (items_[index].kind) {
+    case Item::Kind::all:
+        return best == Interval::bottom;
+    case Item::Kind::some:
+        return best == Interval::top;
+    case Item::Kind::until:
+        return best == Interval::top || (held == Interval::bottom && best.lower == best.upper);
+    default:
+        return false; // settled by its horizon
     }
 }
 

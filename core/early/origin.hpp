@@ -72,6 +72,7 @@ class Origin {
     bool follows_;
 
     [[nodiscard]] Bounds bounds_of(std::size_t item) const noexcept;
+    [[nodiscard]] bool decided(std::size_t item) const noexcept;
     void look_at(const Engine& engine, std::size_t item) noexcept;
     void fold(const Engine& engine, std::size_t item, Tick end) noexcept;
 };

@@ -11,9 +11,12 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
+import rtamt
 from rtamt.engine.discrete.monitor import Monitor
+from rtamt.errors import EvaluationError
 from rtamt.language.formula import Apply, Formula, Interval, fold
 from rtamt.language.operators import STL, Bounds
+from rtamt.language.printer import to_text
 from tests.laws.test_engine_laws import by_definition, by_engine, online
 from tests.strategies import formulas
 
@@ -79,3 +82,21 @@ def test_traces_that_end_at_a_block(n: int, formula: Formula, seed: int) -> None
     assume(expected is not None)
     np.testing.assert_array_equal(by_engine(formula, columns), expected)
     np.testing.assert_array_equal(online(Monitor(formula), columns, [n]), expected)
+
+
+@given(formulas(unbounded_future=True), long_traces(), st.sampled_from(("standard", "boolean")))
+def test_bounds_at_the_start_of_a_long_trace_end_in_the_robustness(
+    formula: Formula, columns: dict[str, Any], semantics: str
+) -> None:
+    spec = rtamt.parse(to_text(formula), period=1, semantics=semantics)
+    names = spec.input_names
+    assume(names)
+    monitor = spec.monitor(verdict="interval", at="start")
+    try:
+        expected = spec.evaluate({name: columns[name] for name in names}).robustness
+        for t, row in enumerate(zip(*(columns[name].tolist() for name in names), strict=True)):
+            monitor.update(t, **dict(zip(names, row, strict=True)))
+        monitor.finish()
+    except EvaluationError:
+        assume(False)
+    assert monitor.interval() == rtamt.Interval(expected, expected)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 import pickle
+from math import inf
 
 import pytest
 
@@ -59,6 +60,30 @@ def test_unbounded_future_has_bounds_at_the_start(text, before, after):
     assert ends(monitor) == before
     monitor.update(1, x=1)
     assert ends(monitor) == after
+
+
+@pytest.mark.parametrize("copied", [False, True])
+@pytest.mark.parametrize("backend", ["cpp", "python"])
+@pytest.mark.parametrize(
+    ("text", "at_end"),
+    [
+        ("always(s_next true) and always(x < 9)", -inf),
+        ("always(s_next true) or eventually(x > 9)", -9),
+        ("always(x < 9 until s_next true)", -inf),
+        ("not eventually(next false) and x < 9", -inf),
+        ("eventually(not s_next true) or x > 9", inf),
+    ],
+)
+def test_after_64_samples_or_a_copy_the_end_of_the_trace_no_longer_cut_windows(text, at_end, backend, copied):
+    spec = rtamt.parse(text, backend=backend)
+    monitor = spec.monitor(verdict="interval", at="start")
+    for t in range(70):
+        monitor.update(t, x=0)
+        if copied and t == 1:
+            monitor = copy.copy(monitor)
+    monitor.finish()
+    offline = spec.evaluate({"x": [0] * 70}).robustness
+    assert ends(monitor) == (offline, offline) == (at_end, at_end)
 
 
 def test_correction_is_replayed_and_reported_as_a_retraction():
