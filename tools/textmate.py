@@ -12,7 +12,7 @@ import re
 from pathlib import Path
 
 from rtamt.highlight import DECLARING, functions, logical, symbols, temporal
-from rtamt.language.specfile import TYPES
+from rtamt.language.declarations import TYPES
 from rtamt.language.units import UNITS
 
 FILE = Path(__file__).parents[1] / "editors" / "stl.tmLanguage.json"

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING
 from pygments.lexer import RegexLexer, words
 from pygments.token import Comment, Keyword, Name, Number, Operator, Punctuation, String, Whitespace
 
+from rtamt.language.declarations import TYPES
 from rtamt.language.lexer import is_word
 from rtamt.language.operators import STL, Fixity, Tense
-from rtamt.language.specfile import TYPES
 from rtamt.language.units import UNITS
 
 if TYPE_CHECKING:

@@ -19,7 +19,9 @@ parser               tokens to a formula, and the grammar of formulas
 grammar              rules shared by parser and printer: chaining, signs, nesting depth
 intervals            bounds of temporal operators: units, exact values, errors
 units                durations with units
+names                a position in a text, and what a name there stands for
 scope                names in a formula: constants, named formulas, declared variables
+declarations         what stands before the formulas of a file: imports, declarations, annotations
 specfile             specification files (``.stl``) to a document, and their grammar
 document             the content of a specification file
 requirements         ``require ID "text" severity WORD: formula``

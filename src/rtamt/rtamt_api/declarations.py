@@ -14,10 +14,11 @@ from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import NameInFormulaError, StlError, UsageError, did_you_mean, with_article
 from rtamt.extras import message_class
+from rtamt.language.declarations import TYPES
 from rtamt.language.formula import Var, postorder, variables
 from rtamt.language.operators import STL, Language
 from rtamt.language.parser import parse_formula
-from rtamt.language.specfile import TYPES, parse_document
+from rtamt.language.specfile import parse_document
 from rtamt.language.units import check_unit
 from rtamt.rtamt_api.associativity import warn_of_chains
 from rtamt.rtamt_api.failures import raises_rtamt

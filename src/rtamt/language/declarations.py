@@ -1,0 +1,225 @@
+"""Parse what stands before the formulas of a specification file: header, imports, declarations, annotations."""
+
+from __future__ import annotations
+
+from math import inf
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Literal
+
+from rtamt.errors import NameInFormulaError, did_you_mean
+from rtamt.language.document import Declaration, Import
+from rtamt.language.formula import Span
+from rtamt.language.grammar import INFINITY
+from rtamt.language.lexer import Token, quoted
+from rtamt.language.operators import Fixity, Language
+from rtamt.language.requirements import RequirementParser
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from rtamt.language.scope import Scope
+
+#: The types that need no import.
+TYPES = ("float", "int", "long", "complex", "bool")
+
+_ROLES: Mapping[str, Literal["input", "output"]] = MappingProxyType({"input": "input", "output": "output"})
+
+
+class DeclarationParser(RequirementParser):
+    """The grammar productions of declarations, in addition to those of a requirement."""
+
+    def __init__(self, text: str, language: Language, unit: str, scope: Scope) -> None:
+        super().__init__(text, language, unit, scope)
+        self._constants = dict(scope.constants)
+        self._given = tuple(scope.variables or ())
+        self._declarations: dict[str, Declaration] = {}
+        self._topics: dict[str, str] = {}
+
+    def _header(self) -> str | None:
+        """``header = "specification" , word``."""
+        if not (self._word("specification") and self._plain_name(1)):
+            return None
+        self.next()
+        name = self.next().text
+        self.accept(";")
+        return name
+
+    def _import(self) -> bool:
+        """``import = "from" , module , "import" , word , [ ";" ]``."""
+        if not (self._word("from") and self._plain_name(1)):
+            return False
+        self.next()
+        module = self.next()
+        if not self.accept("import"):
+            raise self._expected(f"'import' after 'from {module.text}'")
+        name = self._taken("the name of a class")
+        if name.text in self._imports:
+            raise self.error(f"'{name.text}' is imported twice", name.span)
+        self._imports[name.text] = Import(module.text, name.text)
+        self.accept(";")
+        return True
+
+    def _declaration(self) -> bool:
+        """``declaration = ( [ role ] , type , name | "const" , type , name , "=" , value ) , [ unit ] , [ ";" ]``."""
+        if not self._declares():
+            return False
+        constant = self._word("const")
+        role = None if constant else _ROLES.get(self.token.text) if self._plain_type(1) else None
+        if constant or role:
+            self.next()
+        type_name = self.next()
+        if not self._is_type(type_name):
+            types = (*TYPES, *self._imports)
+            hint = did_you_mean(type_name.text, types)
+            raise self.error(
+                f"'{type_name.text}' is not a type{hint or '; types are ' + ', '.join(types[:20])}"
+                f"{'' if hint else ', and classes that are imported'}",
+                type_name.span,
+            )
+        name = self._taken("the name of a constant" if constant else "the name of a variable", quotes=True)
+        name = self._with_slashes(name)
+        self._declare(name, type_name.text, role, constant=constant)
+        self.accept(";")
+        return True
+
+    def _declare(
+        self, token: Token, type_name: str, role: Literal["input", "output"] | None, *, constant: bool
+    ) -> None:
+        name = token.name
+        self._check_nameable(token)
+        head = name.split(".", 1)[0]
+        if head != name and head in self._declarations:
+            raise self.error(f"'{name}' is a field of '{head}', which is declared", token.span)
+        if name in self._declarations or name in self._constants or (constant and name in self._given):
+            raise self.error(f"'{name}' is declared twice", token.span)
+        value = None
+        if self.accept("="):
+            if not constant:
+                raise self.error(
+                    f"a variable has no value of its own; define it after the declarations: {name} = ...",
+                    self.tokens[self.index - 1].span,
+                )
+            value = self._value()
+            self._constants[name] = value
+        elif constant:
+            raise self.error(
+                f"the constant '{name}' has no value; write const {type_name} {name} = ...", token.span
+            )
+        self._declarations[name] = Declaration(
+            name, type_name, "const" if constant else "var", role, value, self._unit(token), token.span
+        )
+
+    def _unit(self, name: Token) -> str:
+        """``[ "[" , unit , "]" ]``: the unit of what is called ``name``, "" where none is written."""
+        opening = self.token
+        if opening.text != "[":
+            return ""
+        start = self.next().end
+        while self.token.text not in ("]", "", '"', "/*"):
+            self.next()
+        unit = self.text[start : self.token.start].strip()
+        if unit.isdigit() and opening.start == name.end:
+            whole = f"{name.name}[{unit}]"
+            raise self.error(
+                f"'{unit}' is not a unit; a name with brackets is written in quotes: {quoted(whole)}",
+                Span(name.start, self.token.end),
+            )
+        if not unit or not self.accept("]"):
+            raise self.error(f"expected a unit and ']' after '{name.name} [', such as [m/s]", opening.span)
+        return unit
+
+    def _value(self) -> float:
+        """``value = [ "-" ] , number | "-inf" | "inf"``."""
+        minus = self.accept("-")
+        if self.token.kind == "number":
+            value = self.number().value
+        elif self.accept(INFINITY):
+            value = inf
+        else:
+            raise self._expected("a number")
+        return -value if minus else value
+
+    def _annotation(self) -> bool:
+        """``annotation = "@" , "topic" , "(" , name , "," , topic , ")" , [ ";" ]``."""
+        if not self.accept("@"):
+            return False
+        kind = self.next()
+        if kind.text != "topic":
+            raise self.error(f"expected 'topic' after '@', got {kind}", kind.span)
+        if not self.accept("("):
+            raise self._expected("'(' after '@ topic'")
+        token = self._taken("the name of a variable", quotes=True)
+        name = token.name
+        declared = self._declarations.get(name)
+        if name not in self._given and (declared is None or declared.kind != "var"):
+            known = [*self._given, *(d.name for d in self._declarations.values() if d.kind == "var")]
+            hint = did_you_mean(name, known) or "; declare it before its topic"
+            raise self.error(f"'{name}' is not a declared variable{hint}", token.span, NameInFormulaError)
+        if name in self._topics:
+            raise self.error(f"'{name}' has two topics", token.span)
+        if not self.accept(","):
+            raise self._expected(f"',' after '{name}'")
+        self._topics[name] = self._topic()
+        if not self.accept(")"):
+            raise self._expected("')' after the topic")
+        self.accept(";")
+        return True
+
+    def _topic(self) -> str:
+        """``topic``: characters without spaces, up to the parenthesis."""
+        first = self.token
+        end = first.start
+        while self.token.text not in (")", "") and self.token.start == end:
+            end = self.next().end
+        if end == first.start:
+            raise self._expected("the name of a topic")
+        return self.text[first.start : end]
+
+    # ---- looking ahead ---------------------------------------------------------------------------
+
+    def _is_type(self, token: Token) -> bool:
+        return token.text in TYPES or token.text in self._imports
+
+    def _plain_type(self, ahead: int) -> bool:
+        """Return whether a type and a name follow at this offset; the name may be ``S``, the type may not."""
+        typed = self._is_type(self._at(ahead)) or self._plain_name(ahead)
+        return typed and self._at(ahead).kind == "name" and self._at(ahead + 1).kind in ("name", "quoted")
+
+    def _declares(self) -> bool:
+        """Return whether a declaration begins here, of a known or unknown type."""
+        first = self.token
+        if first.kind != "name" or self._requires():
+            return False
+        if (first.text in _ROLES or first.text == "const") and self._plain_type(1):
+            return True
+        if self._is_type(first):
+            return self._at(1).kind in ("name", "quoted")
+        # Two names in a row are a declaration of unknown type if no formula could continue after them.
+        if self.language.opening(first.text) is not None or not (self._plain_name(0) and self._plain_name(1)):
+            return False
+        third = self._at(2)
+        return third.text in ("@", "=") or (third.kind == "name" and self.language.infix(third.text) is None)
+
+    def _with_slashes(self, token: Token) -> Token:
+        """Consume a slash and a name that directly follow a name: ``robot/speed`` is one name."""
+        while token.kind == "name" and self.token.text == "/" and self._at(1).kind == "name":
+            slash, tail = self.token, self._at(1)
+            if slash.start != token.end or tail.start != slash.end:
+                break
+            self.next()
+            self.next()
+            token = Token("name", f"{token.text}/{tail.text}", token.start, tail.end)
+        return token
+
+    # ---- names -----------------------------------------------------------------------------------
+
+    def _taken(self, what: str, *, quotes: bool = False) -> Token:
+        """Consume a name, or raise an error."""
+        if self.token.kind != "name" and not (quotes and self.token.kind == "quoted"):
+            raise self._expected(what)
+        return self.next()
+
+    def _check_nameable(self, token: Token) -> None:
+        op = self.language.opening(token.text)
+        if op is not None and op.fixity is Fixity.ATOM:
+            raise self.error(f"'{token.text}' is a word of the language and cannot be a name", token.span)

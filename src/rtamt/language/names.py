@@ -1,0 +1,149 @@
+"""Names in a text of formulas: the tokens, a position in them, and what a name there stands for."""
+
+from __future__ import annotations
+
+from math import inf
+from typing import TYPE_CHECKING
+
+from rtamt.errors import NameInFormulaError, ParseError, SpecificationError, did_you_mean
+from rtamt.language import diagnostics
+from rtamt.language.formula import Const, Formula, Span, Var
+from rtamt.language.grammar import INFINITY, sign
+from rtamt.language.lexer import Token, quoted, tokenize, unquoted
+from rtamt.language.operators import Fixity, Language
+from rtamt.language.units import check_unit
+
+if TYPE_CHECKING:
+    from rtamt.language.scope import Scope
+
+
+class NameParser:
+    """A position in a text, and the production of a name."""
+
+    def __init__(self, text: str, language: Language, unit: str, scope: Scope) -> None:
+        self.text = text
+        self.language = language
+        self.unit = check_unit(unit)
+        self.scope = scope
+        self.tokens = tokenize(text, language)
+        self.index = 0
+        #: The names of the definitions that have been used so far.
+        self.used: set[str] = set()
+        self._depth = 0
+        self._sign = sign(language)
+        self._slashes = scope.slashes  # as many as any declared name has
+
+    @property
+    def token(self) -> Token:
+        """The next token."""
+        return self.tokens[self.index]
+
+    def next(self) -> Token:
+        """Consume the next token; the end token is never consumed."""
+        token = self.tokens[self.index]
+        if token.kind != "end":
+            self.index += 1
+        return token
+
+    def accept(self, symbol: str) -> bool:
+        """Consume the next token if it is this symbol."""
+        if self.tokens[self.index].text == symbol:
+            self.index += 1
+            return True
+        return False
+
+    def error(
+        self, message: str, span: Span, kind: type[SpecificationError] = ParseError
+    ) -> SpecificationError:
+        """Return an error that points at the text."""
+        return kind(message, self.text, span)
+
+    # ---- names ---------------------------------------------------------------------------------
+
+    def name(self) -> Formula:
+        """``name = word , { "." , word } | topic | '"' , characters , '"'``."""
+        first = self.tokens[self.index]
+        if first.kind == "quoted":
+            self.index += 1
+            return self._meaning(unquoted(first.text), first.span, plain=False)
+        last = self.index
+        if first.text == "/" or self.tokens[last + 1].text == "/":
+            last = self._last_of_path()
+        self.index = last + 1
+        span = Span(first.start, self.tokens[last].end)
+        return self._meaning(self.text[span.start : span.end], span)
+
+    def _last_of_path(self) -> int:
+        """Return the index of the last token of the name here: ``a/b`` is a name only if it is declared."""
+        first = self.index
+        start = self.tokens[first].start
+        topic = self.tokens[first].kind == "symbol"
+        free = topic and self.scope.variables is None
+        last = self._after_slash(first if topic else first + 1)
+        ends: list[int] = []
+        while last and (topic or len(ends) < self._slashes):
+            ends.append(last)
+            last = self._after_slash(last + 1)
+        if free:
+            return ends[-1]
+        for end in reversed(ends[: self._slashes]):
+            if self.text[start : self.tokens[end].end] in self.scope:
+                return end
+        return ends[-1] if topic else first
+
+    def _after_slash(self, at: int) -> int:
+        """Return the index of the word after a slash at ``at`` if there is no space around it, else 0."""
+        slash, word = self.tokens[at], self.tokens[min(at + 1, len(self.tokens) - 1)]
+        glued = at == self.index or self.tokens[at - 1].end == slash.start
+        found = slash.text == "/" and glued and word.kind == "name" and word.start == slash.end
+        return at + 1 if found else 0
+
+    def _begins_topic(self, at: int) -> bool:
+        """Return whether a topic such as ``/ns/req`` begins here: a slash after a space and before a word."""
+        slash = self.tokens[at]
+        if slash.text != "/" or self.tokens[at + 1].kind != "name" or self.tokens[at + 1].start != slash.end:
+            return False
+        before = self.tokens[at - 1] if at else None
+        return before is None or before.kind == "symbol" or before.end < slash.start
+
+    def _meaning(self, name: str, span: Span, *, plain: bool = True) -> Formula:
+        """Return the formula that a name stands for."""
+        scope = self.scope
+        if name in scope.pending:
+            raise self.error(scope.pending[name], span, NameInFormulaError)
+        definition = scope.definitions.get(name)
+        if definition is not None:
+            self.used.add(name)
+            return definition
+        value = scope.constants.get(name)
+        if value is not None:
+            return Const(float(value), span, name)
+        if scope.variables is not None and name in scope:
+            return Var(name, span)
+        if name == INFINITY and plain:
+            return Const(inf, span)
+        if plain:
+            self._not_an_operator(name, span)
+        if scope.variables is None:
+            return Var(name, span)
+        known = ", ".join(sorted(scope.names)[:8]) or "none"
+        hint = did_you_mean(name, scope.names) or f"; declared names: {known}"
+        raise self.error(f"'{name}' is not declared{hint}", span, NameInFormulaError)
+
+    def _not_an_operator(self, name: str, span: Span) -> None:
+        """Raise an error for a word operator in the wrong place, unless it may be a variable.
+
+        ``G`` may be a variable, and so may ``next`` in ``next >= 3``; ``next`` with nothing after it may not.
+        """
+        opening, follows = self.language.opening(name), self.token
+        prefix = opening is not None and opening.fixity is Fixity.PREFIX and len(name) > 2
+        infix = self.language.infix(name) is not None and len(name) > 1
+        compared = follows.kind == "symbol" and self.language.infix(follows.text) is not None
+        if not (prefix or infix) or (compared and self.scope.variables is None):
+            return
+        if infix:
+            raise self.error(*diagnostics.no_operand(self.tokens, self.index - 1))
+        raise self.error(
+            f"expected an operand after '{name}', got {follows}; if it is a variable, write {quoted(name)}",
+            span,
+        )
