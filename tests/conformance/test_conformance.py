@@ -84,7 +84,7 @@ def test_the_corpus_has_every_operator_and_names_each_case_once() -> None:
     }
     assert {op.name for op in STL} <= asked["discrete"]
     assert {op.name for op in STL if not op.discrete_only} <= asked["dense"]
-    assert {op.name for op in STL} == meaning.COVERED
+    assert {op.name for op in STL} <= meaning.COVERED
     assert sum(case.id.startswith("discrete/until/") for case in CORPUS) == ALONE
 
 

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 from rtamt.language.formula import Apply, Formula, fold
 from rtamt.language.operators import Bounds, Sort
 from rtamt.reference.discrete import evaluate
+from tests.oracle import over_time
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -93,7 +94,9 @@ IN_TIME: dict[str, Callable[..., bool]] = {
 
 ATOMS = {"true": True, "false": False}
 
-COVERED = {*COMPARISONS, *POINTWISE, *IN_TIME, *ATOMS}
+SHARES = {"atleast", "wasatleast"}
+
+COVERED = {*COMPARISONS, *POINTWISE, *IN_TIME, *ATOMS, *SHARES}
 
 
 def satisfied(
@@ -114,8 +117,11 @@ def satisfied(
             return [ATOMS[name]] * n
         window: tuple[float, ...] = ()
         if node.op.bounds is not Bounds.NONE:
-            begin, end = (0, None) if node.interval is None else (node.interval.begin, node.interval.end)
-            window = (int(begin / period), float("inf") if end is None else int(end / period))
+            window = over_time.window_of(node.interval, period)
+        if name in SHARES:
+            time = over_time.Time(period, False, int(window[0]), window[1], node.interval)
+            past = name == "wasatleast"
+            return [over_time.share_at(time, below[0], t, False, True, past=past) for t in range(n)]
         return [IN_TIME[name](*below, t, *window) for t in range(n)]
 
     return fold(formula, step)

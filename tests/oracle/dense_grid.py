@@ -15,6 +15,7 @@ import numpy as np
 
 from rtamt.language.formula import Apply, Const, Formula, Var, fold, postorder
 from rtamt.language.operators import Bounds, Sort
+from tests.oracle import over_time
 from tests.oracle.boolean import ATOMS, COMPARISONS, POINTWISE
 from tests.oracle.interface import is_predicate
 
@@ -83,6 +84,9 @@ IN_TIME: dict[str, Callable[..., Any]] = {
     "unless": lambda p, q, t, a, b: max(min(_ahead(p, t, 0, b)), _until(p, q, t, a, b)),
 }
 
+SHARES = {"atleast", "wasatleast"}
+EDGES = {"rise", "fall"}
+
 
 def on_grid(
     formula: Formula,
@@ -111,7 +115,9 @@ def on_grid(
             value = [node.value] * size
         else:
             assert isinstance(node, Apply)
-            value = _in_time(node, below, tick) or _by_definition(node, below, size)
+            conditions = over_time.CONDITIONS.get(node.op.name, ())
+            operands = tuple(fold(node.args[k], holds) if k in conditions else p for k, p in enumerate(below))
+            value = _in_time(node, operands, tick) or _by_definition(node, operands, size)
         numbers[id(node)] = value
         return value
 
@@ -148,15 +154,39 @@ def on_grid(
 
 def _in_time(node: Apply, below: tuple[Gapped, ...], tick: Fraction) -> Gapped:
     """The values of an operator in time, [] of another; right-continuous by convention."""
-    if node.op.name not in IN_TIME:
+    name = node.op.name
+    size = len(below[0]) if below else 0
+    begin, end = over_time.window_of(node.interval, tick)
+    time = over_time.Time(tick, True, begin, end, node.interval)
+    if name in over_time.NUMBERS:
+        values = over_time.NUMBERS[name](time, *(p[1::2] for p in below))
+    elif name in SHARES:
+        cells, past = below[0][1::2], name == "wasatleast"
+        bottom, top = (False, True) if isinstance(cells[0], bool) else (BOTTOM, TOP)
+        values = [over_time.share_at(time, cells, t, bottom, top, past=past) for t in range(size // 2)]
+    elif name in EDGES:
+        values = [_edge(name, below[0], t) for t in range(1, size, 2)]
+    elif name in IN_TIME:
+        # An unbounded window reaches past the end of the list in any case.
+        window = (2 * begin, max(2 * begin, size if end == TOP else 2 * int(end)))
+        values = [IN_TIME[name](*below, t, *window) for t in range(1, size, 2)]
+    else:
         return []
-    size = len(below[0])
-    begin, end = (0, None) if node.interval is None else (node.interval.begin, node.interval.end)
-    window = (2 * int(begin / tick), size if end is None else 2 * int(end / tick))
-    # An unbounded window reaches past the end of the list in any case.
-    window = (window[0], max(window))
-    values = [IN_TIME[node.op.name](*below, t, *window) for t in range(1, size, 2)]
     return [v for v in values for _ in range(2)]
+
+
+def _edge(name: str, p: Gapped, t: int) -> Any:
+    """A pulse of one tick where φ begins or ends to hold; before the trace it was otherwise."""
+    truth = isinstance(p[t], bool)
+    now = p[t] if name == "rise" else _not(p[t])
+    if t < 2:
+        return now
+    before = _not(p[t - 2]) if name == "rise" else p[t - 2]
+    return now and before if truth else min(now, before)
+
+
+def _not(value: Any) -> Any:
+    return not value if isinstance(value, bool) else -value
 
 
 def _by_definition(node: Apply, below: tuple[Gapped, ...], size: int) -> Gapped:

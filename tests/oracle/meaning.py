@@ -15,6 +15,8 @@ import math
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rtamt.language.formula import Apply, Const, Formula, Var, fold, postorder, variables
+from tests.oracle import over_time
+from tests.oracle.arithmetic import COMPARISONS, NUMBERS
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Mapping, Sequence
@@ -22,7 +24,7 @@ if TYPE_CHECKING:
 
     Values = list[Any]  # floats, or Booleans
 
-inf, nan = math.inf, math.nan
+inf = math.inf
 
 
 class NoValueError(Exception):
@@ -40,125 +42,6 @@ class Algebra(NamedTuple):
 ROBUSTNESS = Algebra(-inf, inf, lambda v: -v)
 TRUTH = Algebra(bottom=False, top=True, negate=lambda v: not v)
 
-
-# ---- numbers: IEEE double, where Python would raise ---------------------------------------------
-
-
-def _divided(x: float, y: float) -> float:
-    if y != 0:
-        return x / y
-    return nan if x == 0 or math.isnan(x) else math.copysign(inf, x) * math.copysign(1.0, y)
-
-
-def _ln(x: float) -> float:
-    return nan if x < 0 else -inf if x == 0 else math.log(x)
-
-
-def _exp(x: float) -> float:
-    return inf if x > 709.8 else math.exp(x)
-
-
-def _power(x: float, y: float) -> float:
-    odd = math.isfinite(y) and math.fmod(y, 2.0) in (1.0, -1.0)
-    if x == 0 and y < 0:
-        return math.copysign(inf, x) if odd else inf
-    if x < 0 and math.isfinite(x) and math.isfinite(y) and y != math.trunc(y):
-        return nan
-    try:
-        return float(x**y)
-    except OverflowError:
-        return -inf if x < 0 and odd else inf
-
-
-def _angle(function: Callable[[float], float]) -> Callable[[float], float]:
-    return lambda x: nan if math.isinf(x) else function(x)
-
-
-def _arc(function: Callable[[float], float]) -> Callable[[float], float]:
-    return lambda x: function(x) if -1 <= x <= 1 else nan
-
-
-def _hyperbolic(function: Callable[[float], float], sign: float) -> Callable[[float], float]:
-    def of(x: float) -> float:
-        try:
-            return function(x)
-        except OverflowError:
-            return math.copysign(inf, x) if sign < 0 else inf
-
-    return of
-
-
-def _rounded(function: Callable[[float], float]) -> Callable[[float], float]:
-    return lambda x: x if math.isinf(x) else float(function(x))
-
-
-def _half_away(x: float) -> float:
-    lower = math.floor(abs(x))
-    return math.copysign(lower + (abs(x) - lower >= 0.5), x)
-
-
-def _mod(x: float, y: float) -> float:
-    return nan if y == 0 or math.isinf(x) else x % y
-
-
-def _clip(x: float, lo: float, hi: float) -> float:
-    return nan if lo > hi else min(max(x, lo), hi)
-
-
-def _wrap(x: float, lo: float, hi: float) -> float:
-    if lo <= x < hi:
-        return x
-    if lo >= hi or math.isinf(x):
-        return nan
-    around = lo + _mod(x - lo, hi - lo)
-    return lo if around >= hi else around
-
-
-NUMBERS: dict[str, Callable[..., float]] = {
-    "abs": abs,
-    "sqrt": lambda x: nan if x < 0 else math.sqrt(x),
-    "exp": _exp,
-    "ln": _ln,
-    "log": lambda x, base: _divided(_ln(x), _ln(base)),
-    "pow": _power,
-    "min": min,
-    "max": max,
-    "sin": _angle(math.sin),
-    "cos": _angle(math.cos),
-    "tan": _angle(math.tan),
-    "asin": _arc(math.asin),
-    "acos": _arc(math.acos),
-    "atan": math.atan,
-    "atan2": lambda y, x: math.atan2(y + 0.0, x + 0.0),
-    "hypot": math.hypot,
-    "sinh": _hyperbolic(math.sinh, -1),
-    "cosh": _hyperbolic(math.cosh, 1),
-    "tanh": math.tanh,
-    "degrees": math.degrees,
-    "radians": math.radians,
-    "floor": _rounded(math.floor),
-    "ceil": _rounded(math.ceil),
-    "round": _rounded(_half_away),
-    "sign": lambda x: float((x > 0) - (x < 0)),
-    "mod": _mod,
-    "clip": _clip,
-    "wrap": _wrap,
-    "neg": lambda x: -x,
-    "mul": lambda x, y: x * y,
-    "div": _divided,
-    "add": lambda x, y: x + y,
-    "sub": lambda x, y: x - y,
-}
-
-# Of each comparison its robustness and its truth.
-COMPARISONS: dict[str, tuple[Callable[[float, float], float], Callable[[float, float], bool]]] = {
-    "ge": (lambda x, y: x - y, lambda x, y: x >= y),
-    "gt": (lambda x, y: x - y, lambda x, y: x > y),
-    "le": (lambda x, y: y - x, lambda x, y: x <= y),
-    "lt": (lambda x, y: y - x, lambda x, y: x < y),
-    "eq": (lambda x, y: -abs(x - y), lambda x, y: x == y),
-    "ne": (lambda x, y: abs(x - y), lambda x, y: x != y),
-}
 
 # ---- formulas of one instant --------------------------------------------------------------------
 
@@ -221,6 +104,8 @@ DISCRETE: dict[str, Callable[..., Any]] = {
     "fall": lambda alg, p, t, _a, _b: min(_sample(p, t - 1, alg.top), alg.negate(p[t])),
 }
 
+EDGES = {name: DISCRETE[name] for name in ("rise", "fall")}
+
 # ---- formulas in dense time: k, j are cells, t is any instant inside cell k ---------------------------
 
 
@@ -261,6 +146,8 @@ DENSE: dict[str, Callable[..., Any]] = {
     "since": _dense_since,
     "precedes": lambda alg, p, q, k, a, b: _dense_until(alg, p, q, k - b, a, k),
     "unless": lambda alg, p, q, k, a, b: max(min(_cells(p, k, k + b)), _dense_until(alg, p, q, k, a, k + b)),
+    # A pulse of one tick: what was so a tick ago is what is so in the cell before.
+    **EDGES,
 }
 
 ATOMS = {"true": True, "false": False}
@@ -268,7 +155,18 @@ ATOMS = {"true": True, "false": False}
 # Numbers over time, each with the formula of the same window.
 AGGREGATES = {"minimum": "historically", "maximum": "once"}
 
-COVERED = {*NUMBERS, *COMPARISONS, *POINTWISE, *DISCRETE, *ATOMS, *AGGREGATES}
+SHARES = {"atleast", "wasatleast"}
+
+COVERED = {
+    *NUMBERS,
+    *COMPARISONS,
+    *POINTWISE,
+    *DISCRETE,
+    *ATOMS,
+    *AGGREGATES,
+    *SHARES,
+    *over_time.NUMBERS,
+}
 
 # ---- semantics: (U, V), of which change is measured and which are fixed ------------------------------
 
@@ -318,9 +216,20 @@ def horizon(formula: Formula, step: Fraction) -> int | None:
         if None in below:
             return None
         deepest = max((d for d in below if d is not None), default=0)
-        if isinstance(node, Apply) and node.op.name in ("always", "eventually", "until", "unless"):
-            end = node.interval.end if node.interval else None
-            return None if end is None else int(end / step) + deepest
+        if isinstance(node, Apply) and node.op.name in (
+            "always",
+            "eventually",
+            "until",
+            "unless",
+            "ahead",
+            *SHARES,
+        ):
+            end = over_time.window_of(node.interval, step)[1]
+            if node.op.name == "ahead" and node.interval is None:
+                end = 1
+            if node.op.name == "wasatleast":
+                end = 0
+            return None if math.isinf(end) else int(end) + deepest
         return deepest + (isinstance(node, Apply) and node.op.name in ("next", "s_next"))
 
     return fold(formula, depth)
@@ -344,6 +253,14 @@ def _evaluate(
 ) -> Values:
     alg = TRUTH if semantics == "boolean" else ROBUSTNESS
 
+    dense = in_time is DENSE
+
+    def truth(node: Formula) -> Values:
+        return _evaluate(node, signals, size, step, in_time, "boolean", inputs)
+
+    def window_of(node: Apply) -> over_time.Time:
+        return over_time.Time(step, dense, *over_time.window_of(node.interval, step), node.interval)
+
     def apply(alg: Algebra, node: Apply, below: list[Values]) -> Values:
         """Return the values of an operator that makes a formula out of formulas."""
         name = node.op.name
@@ -351,33 +268,54 @@ def _evaluate(
             return [alg.top if ATOMS[name] else alg.bottom] * size
         if name in POINTWISE:
             return [POINTWISE[name](alg, *values) for values in zip(*below, strict=True)]
-        begin, end = (0, None) if node.interval is None else (node.interval.begin, node.interval.end)
-        window = (int(begin / step), inf if end is None else int(end / step))
-        return [in_time[AGGREGATES.get(name, name)](alg, *below, t, *window) for t in range(size)]
+        time = window_of(node)
+        if name in SHARES:
+            (values,) = below
+            past = name == "wasatleast"
+            return [over_time.share_at(time, values, t, alg.bottom, alg.top, past=past) for t in range(size)]
+        return [in_time[AGGREGATES.get(name, name)](alg, *below, t, time.a, time.b) for t in range(size)]
 
-    def evaluate(node: Formula, below: tuple[tuple[Values, Values], ...]) -> tuple[Values, Values]:
+    def over(node: Apply, below: Sequence[tuple[Values, Values]]) -> Values:
+        """Return the values of a number over time; its conditions are read by their truth."""
+        conditions = over_time.CONDITIONS.get(node.op.name, ())
+        operands = [truth(arg) if k in conditions else below[k][0] for k, arg in enumerate(node.args)]
+        return over_time.NUMBERS[node.op.name](window_of(node), *operands)
+
+    known: dict[int, tuple[Values, Values]] = {}
+
+    def evaluate(node: Formula) -> tuple[Values, Values]:
         """Return the values of a node read as a number, and read as a formula."""
-        operands = [number for number, _ in below]
+        if id(node) not in known:
+            known[id(node)] = computed(node)
+        return known[id(node)]
+
+    def computed(node: Formula) -> tuple[Values, Values]:
         if isinstance(node, Const):
             number = [node.value] * size
-        elif isinstance(node, Var):
-            number = signals[node.name]
+            return number, _judged(node, [], number, semantics, inputs)
+        if isinstance(node, Var):
+            return signals[node.name], _judged(node, [], signals[node.name], semantics, inputs)
+        assert isinstance(node, Apply)
+        name = node.op.name
+        # A condition may have a truth where its robustness has no value, inf - inf.
+        conditions = over_time.CONDITIONS.get(name, ())
+        below = [([], []) if k in conditions else evaluate(arg) for k, arg in enumerate(node.args)]
+        operands = [number for number, _ in below]
+        pointwise = COMPARISONS[name][0] if name in COMPARISONS else NUMBERS.get(name)
+        if name in over_time.NUMBERS:
+            number = _defined(node, over(node, below))
+        elif name in AGGREGATES:
+            number = apply(ROBUSTNESS, node, operands)
+        elif pointwise is None:
+            formulas = [as_formula for _, as_formula in below]
+            return apply(ROBUSTNESS, node, operands), apply(alg, node, formulas)
         else:
-            assert isinstance(node, Apply)
-            name = node.op.name
-            pointwise = COMPARISONS[name][0] if name in COMPARISONS else NUMBERS.get(name)
-            if name in AGGREGATES:
-                number = apply(ROBUSTNESS, node, operands)
-            elif pointwise is None:
-                formulas = [as_formula for _, as_formula in below]
-                return apply(ROBUSTNESS, node, operands), apply(alg, node, formulas)
-            else:
-                number = [pointwise(*values) for values in zip(*operands, strict=True)]
-            if name in NUMBERS:
-                _defined(node, number)
+            number = [pointwise(*values) for values in zip(*operands, strict=True)]
+        if name in NUMBERS:
+            _defined(node, number)
         return number, _judged(node, operands, number, semantics, inputs)
 
-    return fold(formula, evaluate)[1]
+    return evaluate(formula)[1]
 
 
 def _defined(node: Formula, values: Values) -> Values:
