@@ -150,14 +150,14 @@ def run(args: argparse.Namespace) -> int:
     pairs = len(requirements) * len(traces)
     if args.jobs is not None and args.jobs < 1:
         raise CommandError(f"--jobs is {args.jobs}; give a number of processes, 1 or more")
-    page = None if args.html is None else HtmlReport("rtamt check", given, requirements)
-    whole = args.output is not None or page is not None
+    whole = args.output is not None or args.html is not None
     if whole and args.early:
-        option = "--output" if page is None else "--html"
+        option = "--output" if args.html is None else "--html"
         raise CommandError(
             f"--early reads no more than the verdicts need, and {option} shows all: leave one out"
         )
     reading = reading_of(args, variables_of(requirements), whole=whole, early=args.early)
+    page = None if args.html is None else HtmlReport("rtamt check", given, requirements, traces, reading)
     found: list[Outcome] = []
     told = {""}  # several requirements may have one reason
     with Progress() as progress:

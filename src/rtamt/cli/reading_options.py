@@ -10,7 +10,7 @@ import numpy as np
 from rtamt.cli.command import READING, CommandError, add_stamp_options, options
 from rtamt.errors import TraceError, UsageError
 from rtamt.language.units import duration
-from rtamt.readers.assemble import trace_of
+from rtamt.readers.assemble import select, trace_of
 from rtamt.readers.dates import EXAMPLE, date_in
 from rtamt.readers.formats import is_bag
 from rtamt.readers.read import choice, opened
@@ -160,6 +160,15 @@ def read_for(specs: Sequence[Specification], trace: str, reading: Reading) -> Tr
     """Read what some requirements read of a recording."""
     with opened(trace, reading.sheet, reading.query, reading.recover) as source:
         return trace_of(source, choice_for(specs, trace, reading))
+
+
+def whole_recording(specs: Sequence[Specification], trace: str, reading: Reading) -> Trace | None:
+    """Read all signals of a recording without NaN, under the requirements' names; None if these read all of them."""
+    read = {name for spec in specs for name in spec.input_names}
+    every = replace(choice_for(specs, trace, reading), columns=None, gaps=True, hold_for=None, skip_nan=())
+    with opened(trace, reading.sheet, reading.query, reading.recover) as source:
+        names = tuple(name for table in select(source, every) for name, _ in table.signals)
+        return None if read.issuperset(names) else trace_of(source, replace(every, skip_nan=names))
 
 
 def choice_for(specs: Sequence[Specification], trace: str, reading: Reading) -> Choice:

@@ -33,7 +33,8 @@ SPEC and TRACE are as for 'rtamt check'. In the page: filter, sort and search th
 Drag over a chart to zoom time or values, double-click to see all; Ctrl and the wheel, or + - 0, zoom; arrow
 keys go from sample to sample. Click sets mark A, Shift and click mark B. Every zoom shows true samples: the
 page holds all of them, compressed, up to 96 MB; beyond that, of a long line only the range of the
-values in each 1/1500 of the time, drawn as boxes.
+values in each 1/1500 of the time, drawn as boxes. Signals that no requirement reads can be added to any
+chart; they have 16 MB in addition, and 'About this report' states what did not fit.
 
 examples:
   rtamt report examples/request_grant/spec.stl examples/request_grant/*.csv -o build/report.html
@@ -57,7 +58,7 @@ def run(args: argparse.Namespace) -> int:
     given, traces = requirements_and_traces(args, "report")
     requirements = each_requirement(given)
     reading = reading_of(args, variables_of(requirements), whole=True)
-    page = HtmlReport("rtamt report", given, requirements, args.at)
+    page = HtmlReport("rtamt report", given, requirements, traces, reading, args.at)
     verdicts: list[str] = []
     pairs = len(requirements) * len(traces)
     with Progress() as progress:

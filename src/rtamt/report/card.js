@@ -180,7 +180,7 @@ class Card {
 
   fold(open) { this.section.querySelectorAll("details.part").forEach((fold, i) => { fold.open = open || i === 0; }); }
 
-  // Every signal of the trace that any card holds, and the robustness of the parts of this formula.
+  // The signals of the trace that any card shows, the robustness of the parts of this formula, and all other signals.
   choices() {
     const found = new Map();
     for (const holder of document.querySelectorAll("script[id^=data-]")) {
@@ -189,6 +189,10 @@ class Card {
       for (const panel of data.panels) for (const line of panel.lines) if (!found.has(line.name)) found.set(line.name, line);
     }
     this.data.nodes.forEach(({ text, line }) => found.set(`robustness of ${text}`, { ...line, name: `robustness of ${text}` }));
+    for (const holder of document.querySelectorAll("script[id^=signals-]")) {
+      const { trace, lines } = JSON.parse(holder.textContent);
+      if (trace === this.data.trace) lines.forEach((line) => { if (!found.has(line.name)) found.set(line.name, line); });
+    }
     return found;
   }
 

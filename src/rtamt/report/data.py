@@ -74,7 +74,7 @@ def _bounds(band: Band, scene: Scene, store: Store) -> dict[str, Any]:
 
 def _panel(panel: Panel, store: Store, share: float) -> dict[str, Any]:
     return {
-        "lines": [_line(line, store, share) for line in panel.lines],
+        "lines": [line_data(line, store, share) for line in panel.lines],
         "thresholds": [limit for limit in panel.thresholds if isfinite(limit)],
         "because": _ranges(panel.because, store),
     }
@@ -85,7 +85,7 @@ def _node(number: int, scene: Scene, store: Store, share: float) -> dict[str, An
     return {
         "text": node.text,
         "name": node.name,
-        "line": _line(node.line, store, share, scene.panels if not node.children else ()),
+        "line": line_data(node.line, store, share, scene.panels if not node.children else ()),
         "fails": _ranges(node.fails, store),
         "because": _ranges(node.because, store),
         "children": node.children,
@@ -95,7 +95,8 @@ def _node(number: int, scene: Scene, store: Store, share: float) -> dict[str, An
     }
 
 
-def _line(line: Line, store: Store, share: float, panels: Iterable[Panel] = ()) -> dict[str, Any]:
+def line_data(line: Line, store: Store, share: float, panels: Iterable[Panel] = ()) -> dict[str, Any]:
+    """Return a line: its points, of a long one an overview, and its points if the share of room allows."""
     finite = line.values[np.isfinite(line.values)]
     data: dict[str, Any] = {
         "name": line.label,

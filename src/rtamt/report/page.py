@@ -16,12 +16,16 @@ import numpy as np
 from rtamt.errors import readable
 from rtamt.extras import library
 from rtamt.report.data import data_of
+from rtamt.report.signals import BUDGET, signals_of
 from rtamt.report.store import Store
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Collection, Iterable, Mapping, Sequence
 
+    from rtamt.plot.clock import Clock
     from rtamt.plot.scene import Scene
+    from rtamt.report.signals import Signals
+    from rtamt.signals.trace import Trace
 
 _VERDICTS = ("violated", "error", "satisfied")
 _SIGNS = {"satisfied": "✓", "violated": "✗", "error": "!"}
@@ -103,6 +107,8 @@ class Page:
         self._command = command
         self._formulas = formulas
         self._store = Store()
+        self._others = self._store.within(BUDGET)
+        self._signals: list[Signals] = []
         self._cards: list[Card] = []
 
     def add(self, row: Row, scene: Scene | None = None) -> None:
@@ -125,8 +131,19 @@ class Page:
             card.more = [causes[i] for i in sorted(rest[:_CAUSES])]
             card.hidden = len(rest)
             data = data_of(scene, self._store) | {"trace": row.trace}
-            card.data = json.dumps(data, allow_nan=False, separators=(",", ":")).replace("<", "\\u003c")
+            card.data = _json(data)
         self._cards.append(card)
+
+    def add_signals(
+        self, trace: str, recording: Trace, known: Collection[str], clock: Clock, place: tuple[int, int]
+    ) -> str:
+        """Add the signals of a recording that no card shows, for its charts; return a summary.
+
+        ``known``: the signals in cards; ``place``: the number of the recording and how many there are.
+        """
+        signals = signals_of(trace, recording, known, clock, self._others, place)
+        self._signals.append(signals)
+        return signals.summary
 
     def text(self, sources: Iterable[File] = ()) -> str:
         """Return the text of the page; ``sources``: what it is about."""
@@ -161,6 +178,7 @@ class Page:
                 columns=columns,
                 lines=lines,
                 cards=ordered,
+                signals=[safe(_json({"trace": s.trace, "lines": s.lines})) for s in self._signals],
                 files=list(sources),
                 blobs=[{"kind": b.kind, "length": b.length, "text": safe(b.text)} for b in self._store.blobs],
                 styles=safe(_file("vendor/uPlot.min.css") + _file("report.css")),
@@ -222,6 +240,10 @@ def _told(scene: Scene) -> tuple[list[Line], list[Line]]:
             place = (number, start, end)
         causes.append(Line(text, place))
     return summary, causes
+
+
+def _json(data: Mapping[str, Any]) -> str:
+    return json.dumps(data, allow_nan=False, separators=(",", ":")).replace("<", "\\u003c")
 
 
 def _scripts() -> str:

@@ -34,12 +34,24 @@ class Store:
         self._numbers: dict[bytes, int] = {}
         self._budget = self._left = budget
 
+    def within(self, budget: int) -> Store:
+        """Return a store that puts arrays into the same page within a budget of its own."""
+        other = Store(budget)
+        other.blobs, other._numbers = self.blobs, self._numbers
+        return other
+
+    def has_room(self, share: float) -> bool:
+        """Return whether more than a share of the budget is left."""
+        return self._left > share * self._budget
+
     def put(self, values: NDArray[Any], share: float | None = None) -> int | None:
         """Return the number of an array, equal ones being one.
 
         ``share``: the part of what room was left at the start that must remain; where there is no room, nothing is
         stored, and the answer is None. Without ``share`` the array is stored in any case.
         """
+        if share is not None and not self.has_room(share):
+            return None
         array = np.ascontiguousarray(values)
         if array.dtype == np.float64:
             with np.errstate(over="ignore"):

@@ -11,7 +11,7 @@ from tests.unit.report.browser import CHROMIUM, chromium
 
 pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="no Chromium here: apt-get install chromium")
 
-SMALL = "time,req,gnt\n0,0,0\n1,6,0\n2,0,0\n3,0,1\n4,0,7\n"
+SMALL = "time,req,gnt,speed [m/s]\n0,0,0,1\n1,6,0,2.5\n2,0,0,3\n3,0,1,4\n4,0,7,5\n"
 SPEC = "asked = req >= 3; always(asked -> eventually[0:2](gnt >= 3))"
 N = 40_000
 
@@ -148,6 +148,25 @@ def test_a_legend_hides_its_line_and_any_signal_can_be_added(page, small):
     page.run(SETTLED)
     legend = "[...document.querySelector('details[open] .legend').querySelectorAll('.line')].map(l => l.textContent)"
     assert page.run(legend) == ["req", "gnt"]
+    assert page.errors == []
+
+
+def test_a_signal_that_no_requirement_reads_can_be_added(page, small):
+    opened(page, small)
+    page.run("""(() => {
+        const select = document.querySelector('details[open] .legend select');
+        select.dispatchEvent(new Event('focus'));
+        select.value = 'speed [m/s]';
+        select.dispatchEvent(new Event('change'));
+    })()""")
+    page.run(SETTLED)
+    for _ in range(2):
+        key(page, "ArrowRight")
+    values = "[...document.querySelector('details[open] .legend').querySelectorAll('.value')].map(v => v.textContent)"
+    assert page.run(values) == ["0", "3"]
+    assert page.run("document.querySelector('details[open] [role=img]').ariaLabel").startswith(
+        "req from 0 to 6; speed"
+    )
     assert page.errors == []
 
 

@@ -16,6 +16,7 @@ from rtamt.cli import main
 from rtamt.plot.scene import scene
 from rtamt.report import Formula, Page, Row
 from rtamt.report.data import data_of
+from rtamt.report.signals import signals_of
 from rtamt.report.store import Store
 
 ROWS = "time,req,gnt\n0,0,0\n1,6,0\n2,0,0\n3,0,1\n4,0,7\n"
@@ -232,3 +233,59 @@ def test_a_report_shows_bounds_in_discrete_time(tmp_path, monkeypatch, more, the
     Path("a.csv").write_text(ROWS)
     assert main(["report", SPEC, "a.csv", "-o", "r.html", *more]) == 1
     assert ('"bounds":{"decided":' in Path("r.html").read_text()) == there
+
+
+def signals(path):
+    page = Text(Path(path).read_text(encoding="utf-8"))
+    found = [json.loads(text) for tag, text in page.data if tag.get("id", "").startswith("signals-")]
+    return page, {each["trace"]: each["lines"] for each in found}
+
+
+def test_signals_that_no_requirement_reads_are_in_the_page_without_their_nan(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    Path("log.csv").write_text("t [ms],a,speed [m/s],note\n0,5,1,x\n1000,6,nan,y\n2000,7,3,z\n")
+    Path("all.csv").write_text("t,a\n0,5\n1,6\n")
+    assert main(["report", "v >= 0", "--name", "v=a", "log.csv", "all.csv", "-o", "r.html"]) == 0
+    page, lines = signals("r.html")
+    assert list(lines) == ["log.csv"]
+    (speed,) = lines["log.csv"]
+    assert (speed["name"], speed["points"], speed["x"]) == ("speed [m/s]", 2, {"start": 0, "step": 2})
+    assert "; 1 other signal can be added to charts" in page.text
+
+
+@pytest.mark.parametrize("time", ["discrete", "dense"])
+def test_other_signals_are_on_the_time_axis_of_the_cards(tmp_path, monkeypatch, time):
+    monkeypatch.chdir(tmp_path)
+    Path("log.csv").write_text(
+        "time,x,y\n" + "".join(f"2026-03-01T12:00:0{i},{i},{i * i}\n" for i in range(5))
+    )
+    assert main(["check", "--quiet", "x >= 0", "log.csv", "--time", time, "--html", "r.html"]) == 0
+    page, lines = signals("r.html")
+    (card,) = [json.loads(text) for tag, text in page.data if tag.get("id") == "data-0"]
+    assert lines["log.csv"][0]["x"] == card["panels"][0]["lines"][0]["x"] == {"start": 0, "step": 1}
+
+
+def test_other_signals_that_cannot_be_read_do_not_stop_a_report(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    Path("log.csv").write_text("time,x,y,y\n0,1,2,3\n1,1,2,3\n")
+    assert main(["report", "x >= 0", "log.csv", "-o", "r.html"]) == 0
+    page, lines = signals("r.html")
+    assert lines == {}
+    assert "other signals are not in this page: log.csv has 2 columns called 'y'" in page.text
+
+
+def test_the_room_for_other_signals_is_shared_and_what_has_none_is_named():
+    rng = np.random.default_rng(3)
+    recording = rtamt.read({f"s{i}": rng.normal(0, 1, 20_000) for i in range(12)} | {"x": np.zeros(20_000)})
+    clock = scene(rtamt.parse("x >= 0").evaluate(recording)).clock
+    store = Store()
+    others = store.within(2**20)
+    found = [signals_of(f"{i}", recording, {"x"}, clock, others, (i + 1, 2)) for i in range(2)]
+    whole = [[("x" in line) for line in each.lines] for each in found]
+    # About 150 KB a signal: two or three of each recording with all samples, then ranges; nothing is stored twice.
+    assert whole[0] == sorted(whole[0], reverse=True)
+    assert 2 <= sum(whole[0]) <= 3
+    assert found[0].ranges > 0
+    assert sum(len(blob.text) for blob in store.blobs) < 1.05 * 2**20 * 4 / 3
+    assert len(found[0].lines) + len(found[0].left_out) == 12
+    assert found[0].left_out == ("s7", "s8", "s9", "s10", "s11") or len(found[0].lines) == 12

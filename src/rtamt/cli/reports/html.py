@@ -8,7 +8,8 @@ from datetime import datetime, timezone
 from typing import TYPE_CHECKING, Any
 
 from rtamt.cli.command import CommandError, short, write_output
-from rtamt.cli.reading_options import instant
+from rtamt.cli.reading_options import instant, whole_recording
+from rtamt.cli.runner import LARGE
 from rtamt.cli.terminal import printed
 from rtamt.errors import StlError, UsageError
 from rtamt.plot.band import Band, band
@@ -19,8 +20,11 @@ from rtamt.report import File, Formula, Page, Row
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
+    from rtamt.cli.reading_options import Reading
     from rtamt.cli.runner import Outcome, Requirement
+    from rtamt.plot.clock import Clock
     from rtamt.results import Result
+    from rtamt.specification import Specification
 
 #: Characters of a specification that a page shows.
 _TEXT = 20_000
@@ -29,18 +33,31 @@ _SAMPLES = 8192
 
 
 class HtmlReport:
-    """A page that is made outcome by outcome.
+    """A page that is made outcome by outcome, recording by recording.
 
-    ``given``: the specifications, ``requirements`` what has a row of its own; ``at``: the time that is explained, by
-    default the first of each trace. Raises :class:`UsageError` where jinja2 is not installed.
+    ``given``: the specifications, ``requirements`` what has a row of its own; ``traces`` and ``reading``: the
+    recordings and how they are read; ``at``: the time that is explained, by default the first of each trace. Raises
+    :class:`UsageError` where jinja2 is not installed.
     """
 
     def __init__(
-        self, command: str, given: Sequence[Requirement], requirements: Sequence[Requirement], at: Any = None
+        self,
+        command: str,
+        given: Sequence[Requirement],
+        requirements: Sequence[Requirement],
+        traces: Sequence[str],
+        reading: Reading,
+        at: Any = None,
     ) -> None:
         self._given = given
+        self._recordings = {shown(trace): trace for trace in traces}
+        self._reading = reading
         self._at = at
-        self._traces: dict[str, None] = {}
+        self._traces: dict[str, str] = {}
+        #: The recording of the last outcome, its clock, and the requirements that were evaluated on it.
+        self._trace = ""
+        self._clock: Clock | None = None
+        self._specs: list[Specification] = []
         texts = {
             requirement.label: Formula(printed(requirement.spec.formula), requirement.written.description)
             for requirement in requirements
@@ -49,11 +66,16 @@ class HtmlReport:
 
     def add(self, outcome: Outcome) -> None:
         """Add what came of one requirement over one trace, with charts where there is a result."""
-        self._traces[outcome.trace] = None
+        if outcome.trace != self._trace:
+            self._end_trace()
+            self._trace = outcome.trace
+            self._traces[outcome.trace] = ""
         row, seen = _row(outcome), None
         if outcome.result is not None:
+            self._specs.append(outcome.result.specification)
             try:
                 seen = scene(outcome.result, instant(self._at, outcome.result))
+                self._clock = seen.clock
                 seen = replace(seen, band=_band(outcome.result))
             except StlError as error:
                 if self._at is not None:
@@ -61,8 +83,31 @@ class HtmlReport:
                 row = replace(row, notes=(*row.notes, str(error)))
         self._page.add(row, seen)
 
+    def _end_trace(self) -> None:
+        """Add the signals of the last recording that no requirement reads."""
+        clock, specs, self._clock, self._specs = self._clock, self._specs, None, []
+        if clock is None:
+            return
+        source = self._recordings[self._trace]
+        try:
+            if os.path.isfile(source) and os.path.getsize(source) >= LARGE:
+                summary = f"other signals are not in this page: the file has {LARGE >> 20} MB or more"
+            else:
+                recording = whole_recording(specs, source, self._reading)
+                place = len(self._traces), len(self._recordings)
+                known = {name for spec in specs for name in spec.input_names}
+                summary = (
+                    ""
+                    if recording is None
+                    else self._page.add_signals(self._trace, recording, known, clock, place)
+                )
+        except StlError as error:  # of signals that no verdict depends on
+            summary = f"other signals are not in this page: {error}"
+        self._traces[self._trace] = summary
+
     def write(self, path: str) -> None:
         """Write the page."""
+        self._end_trace()
         write_output(path, self._page.text(self._files()))
 
     def _files(self) -> Iterator[File]:
@@ -72,8 +117,8 @@ class HtmlReport:
                 yield File("Formula", "", text=_cut(requirement.given))
             else:
                 yield File("Specification", requirement.given, text=_cut(text))
-        for trace in self._traces:
-            yield File("Trace", shown(trace), facts=_facts(trace))
+        for trace, signals in self._traces.items():
+            yield File("Trace", trace, facts="; ".join(filter(None, (_facts(trace), signals))))
 
 
 def _cut(text: str) -> str:
