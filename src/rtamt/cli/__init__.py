@@ -1,13 +1,14 @@
 """The command line ``rtamt``: every error is one sentence on stderr, never a traceback.
 
 Each command is a module with the name of the command: ``check``, ``explain``, ``plot``, ``report``,
-``monitor``, ``ros2``, ``falsify``, ``info``, ``lint``, ``compile``, ``fmu``, ``operators``, ``completion``.
-The other modules are shared:
+``monitor``, ``ros2``, ``falsify``, ``info``, ``lint``, ``compile``, ``fmu``, ``operators``, ``completion``. It has
+the functions ``configure`` and ``run``, and is imported when the command is used. The other modules are shared:
 
 ===============  =============================================================
 module           purpose
 ===============  =============================================================
-command          ``Command``, the argument parser, options of several commands
+parser           ``Command``, the argument parser, exit codes
+command          options of several commands, and how values are printed
 arguments        specifications and recordings on the command line
 reading_options  options for reading recordings
 language         the option ``--language``
@@ -30,22 +31,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 import rtamt
-from rtamt.cli import (
-    check,
-    compile,  # noqa: A004 - named as the command is
-    completion,
-    explain,
-    falsify,
-    fmu,
-    info,
-    lint,
-    monitor,
-    operators,
-    plot,
-    report,
-    ros2,
-)
-from rtamt.cli.command import ERROR, INTERRUPTED, OK, Command, Help, Parser, complain
+from rtamt.cli.parser import ERROR, INTERRUPTED, OK, Command, Help, Parser, complain
 from rtamt.cli.terminal import say
 from rtamt.errors import StlError, UsageError, choices
 
@@ -54,21 +40,21 @@ if TYPE_CHECKING:
 
 COMMANDS: Mapping[str, Command] = MappingProxyType(
     {
-        c.name: c
-        for c in (
-            check.COMMAND,
-            explain.COMMAND,
-            plot.COMMAND,
-            report.COMMAND,
-            monitor.COMMAND,
-            ros2.COMMAND,
-            falsify.COMMAND,
-            info.COMMAND,
-            lint.COMMAND,
-            compile.COMMAND,
-            fmu.COMMAND,
-            operators.COMMAND,
-            completion.COMMAND,
+        name: Command(name, summary)
+        for name, summary in (
+            ("check", "evaluate recordings: robustness and verdict"),
+            ("explain", "report which instants of which signals decide the verdict"),
+            ("plot", "draw signals, robustness and what decides the verdict"),
+            ("report", "write an interactive page: signals, robustness, explanations"),
+            ("monitor", "watch a stream: samples on stdin, robustness on stdout"),
+            ("ros2", "watch topics of ROS 2, publish robustness and verdicts"),
+            ("falsify", "search for inputs that make a plant violate its requirement"),
+            ("info", "horizon, pastified form, program and memory of a requirement"),
+            ("lint", "report what is wrong with specification files"),
+            ("compile", "requirement to a program that runs without Python"),
+            ("fmu", "requirement to a unit that simulators import"),
+            ("operators", "list the operators of the language"),
+            ("completion", "print the completion for bash, zsh or fish"),
         )
     }
 )

@@ -10,22 +10,18 @@ import numpy as np
 
 from rtamt.cli.arguments import each_requirement, requirements_and_traces, variables_of
 from rtamt.cli.command import (
-    ERROR,
-    OK,
     OUTPUT,
-    VIOLATED,
-    Command,
     CommandError,
     add_ignore_option,
     add_specification_options,
     add_time_option,
-    complain,
     json_text,
     options,
     stamp_text,
     warn,
     write_output,
 )
+from rtamt.cli.parser import ERROR, OK, VIOLATED, complain
 from rtamt.cli.reading_options import add_reading_options, reading_of
 from rtamt.cli.reports import REPORTS, HtmlReport, write_report
 from rtamt.cli.reports.messages import robustness_members
@@ -268,6 +264,3 @@ def _write(requirements: Sequence[Requirement], results: Sequence[Result], path:
 def _cells(signal: Signal, times: np.ndarray[Any, Any]) -> Iterator[str]:
     values = iter(signal.values.tolist())
     return (repr(next(values)) if here else "" for here in np.isin(times, signal.times).tolist())
-
-
-COMMAND = Command("check", "evaluate recordings: robustness and verdict", configure, run)

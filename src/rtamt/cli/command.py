@@ -1,27 +1,23 @@
-"""What every command of the command line is made of, and the options that several of them take."""
+"""What several commands share: options, the specification, and how values are printed."""
 
 from __future__ import annotations
 
-import argparse
 import json
 import os
 import re
-import sys
-import textwrap
-from dataclasses import dataclass
 from decimal import Decimal
 from fractions import Fraction
 from math import isfinite
-from typing import TYPE_CHECKING, Any, NoReturn
+from typing import TYPE_CHECKING, Any
 from uuid import uuid4
 
 import numpy as np
 
 from rtamt.cli.language import add_language_option, read_language
-from rtamt.cli.terminal import say
+from rtamt.cli.parser import complain
 from rtamt.engine.domains import engine_of
-from rtamt.errors import SpecificationError, StlError, UsageError, did_you_mean, readable
-from rtamt.files import nearest_file, same_file, write_bytes, write_text
+from rtamt.errors import SpecificationError, StlError, UsageError, readable
+from rtamt.files import nearest_file, write_bytes, write_text
 from rtamt.language.lexer import NAME
 from rtamt.language.lint import CODES
 from rtamt.language.units import UNITS, decimal
@@ -33,101 +29,19 @@ from rtamt.signals.domains import DEFAULT, DOMAINS, time_domain
 from rtamt.texts import load, parse
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    import argparse
+    from collections.abc import Sequence
 
     from rtamt.settings import Settings
     from rtamt.specification import Specification
 
-OK, VIOLATED, ERROR = 0, 1, 2
 
 NO_STAMPS = "dense time needs a column of timestamps: call it 'time', or name it with --time-column"
-INTERRUPTED = 130  # what a shell reports for a program that Ctrl-C ended
 
 _SPECIFICATION_SUFFIXES = (".stl",)
-#: Before an argument that is no option whatever it looks like; no argument of a process can have it.
-_MARK = "\0"
 #: Titles under which the help lists options.
 SPECIFICATION, READING, OUTPUT = "the specification", "reading recordings", "output"
 _LIKE_A_PATH = re.compile(r"[\w.~:\\/-]*[\\/][\w.~:\\/-]*")
-
-
-@dataclass(frozen=True, slots=True)
-class Command:
-    """One command: ``run`` returns the exit code."""
-
-    name: str
-    summary: str
-    configure: Callable[[argparse.ArgumentParser], None]
-    run: Callable[[argparse.Namespace], int]
-
-
-class Help(argparse.HelpFormatter):
-    """Wraps prose to the width of the terminal; a paragraph with indented lines stays as it is."""
-
-    def _fill_text(self, text: str, width: int, indent: str) -> str:  # noqa: ARG002 - the base class has it
-        paragraphs = text.split("\n\n")
-        return "\n\n".join(p if "\n " in p else textwrap.fill(p, width) for p in paragraphs)
-
-
-#: How options call a file that they write.
-WRITTEN = "FILE"
-
-
-class Parser(argparse.ArgumentParser):
-    """An argument parser whose errors are one sentence, like all others."""
-
-    def error(self, message: str) -> NoReturn:
-        """Raise :class:`UsageError`, with the way to the help."""
-        raise UsageError(f"{message.replace(_MARK, '')}; see '{self.prog} --help'")
-
-    def _print_message(self, message: str, file: Any = None) -> None:
-        """Print help or version; argparse itself passes over what goes wrong then."""
-        say(message.rstrip("\n"), file=file)
-
-    def read(self, argv: Sequence[str]) -> argparse.Namespace:
-        """Parse arguments: options may stand anywhere before "--", and nothing after it is an option."""
-        # Intermixed parsing of Python 3.10 and 3.11 does not know "--", so that what follows it is marked.
-        end = argv.index("--") if "--" in argv else len(argv)
-        self._refuse_unknown(argv[:end])
-        marked = [*argv[:end], *(f"{_MARK}{text}" for text in argv[end + 1 :])]
-        found, rest = self.parse_known_intermixed_args(marked)
-        if rest:
-            self.error(f"unexpected argument '{rest[0]}'")
-        args = argparse.Namespace(**{name: _unmarked(value) for name, value in vars(found).items()})
-        self._refuse_overwriting(args)
-        return args
-
-    def _refuse_overwriting(self, args: argparse.Namespace) -> None:
-        """Raise :class:`UsageError` if an output file is also read, or written twice."""
-        inputs: list[str] = []
-        outputs: list[tuple[str, str]] = []
-        for action in self._actions:
-            value = getattr(args, action.dest, None)
-            if not action.option_strings:
-                texts = value if isinstance(value, list) else [value]
-                inputs += [text for text in texts if text and os.path.exists(text)]
-            elif action.metavar == WRITTEN and value:
-                outputs.append((action.option_strings[0], value))
-        for number, (option, path) in enumerate(outputs):
-            if any(same_file(text, path) for text in inputs):
-                self.error(f"{option} would overwrite '{path}', which is read: name another file")
-            for other, second in outputs[:number]:
-                if same_file(path, second):
-                    self.error(f"{other} and {option} would both write '{path}': name another file")
-
-    def _refuse_unknown(self, argv: Sequence[str]) -> None:
-        """Raise :class:`UsageError` at an option that does not exist; argparse names all that it does not know."""
-        known = [option for action in self._actions for option in action.option_strings]
-        for text in argv:
-            option = text.partition("=")[0]
-            if option.startswith("--") and option not in known and " " not in text:
-                self.error(f"unknown option '{option}'{did_you_mean(option, known)}")
-
-
-def _unmarked(value: Any) -> Any:
-    if isinstance(value, list):
-        return [_unmarked(item) for item in value]
-    return value.removeprefix(_MARK) if isinstance(value, str) else value
 
 
 class CommandError(StlError):
@@ -275,12 +189,6 @@ def read_specification(args: argparse.Namespace, time: str) -> Specification:
     if not spec.strip():
         raise CommandError("the specification is empty; give a file or a formula, such as 'always(x >= 3)'")
     return parse(spec, **options)
-
-
-def complain(sentence: object) -> None:
-    """Print one sentence on stderr, after what has gone to stdout."""
-    sys.stdout.flush()
-    say(f"rtamt: {sentence}", file=sys.stderr, flush=True)
 
 
 def write_output(path: str, content: str | bytes) -> None:

@@ -5,14 +5,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rtamt.cli.command import (
-    OK,
-    Command,
     add_specification_options,
     add_time_option,
     add_verdict_option,
     read_specification,
     write_output,
 )
+from rtamt.cli.parser import OK
 from rtamt.cli.terminal import say
 from rtamt.errors import UsageError
 
@@ -59,6 +58,3 @@ def run(args: argparse.Namespace) -> int:
     if args.dump:
         say(program.disassemble())
     return OK
-
-
-COMMAND = Command("compile", "requirement to a program that runs without Python", configure, run)

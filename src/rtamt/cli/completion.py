@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from rtamt.cli.command import OK, Command, Parser
+from rtamt.cli.parser import OK, Parser
 from rtamt.cli.terminal import say
 from rtamt.errors import UsageError, choices
 from rtamt.extras import library
@@ -63,6 +63,3 @@ def _whole(file: Any) -> Parser:
             if action.metavar in _FILES:
                 action.complete = file  # type: ignore[attr-defined] # where shtab looks
     return whole
-
-
-COMMAND = Command("completion", "print the completion for bash, zsh or fish", configure, run)

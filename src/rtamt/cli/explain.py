@@ -5,15 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rtamt.cli.arguments import results_of_one
-from rtamt.cli.command import (
-    OK,
-    VIOLATED,
-    Command,
-    CommandError,
-    add_specification_options,
-    add_time_option,
-    json_text,
-)
+from rtamt.cli.command import CommandError, add_specification_options, add_time_option, json_text
+from rtamt.cli.parser import OK, VIOLATED
 from rtamt.cli.reading_options import add_instant_option, add_reading_options, instant
 from rtamt.cli.terminal import Progress, say
 from rtamt.errors import StlError
@@ -82,6 +75,3 @@ def run(args: argparse.Namespace) -> int:
 
 def _as_json(of: dict[str, str], trace: str, explanation: Explanation) -> str:
     return json_text({**of, "trace": trace, **explanation.to_dict()}, default=str)  # dates are texts
-
-
-COMMAND = Command("explain", "tell which instants of which signals decide the verdict", configure, run)

@@ -6,7 +6,8 @@ import json
 import sys
 from typing import TYPE_CHECKING
 
-from rtamt.cli.command import OK, VIOLATED, Command, json_number
+from rtamt.cli.command import json_number
+from rtamt.cli.parser import OK, VIOLATED
 from rtamt.cli.terminal import Progress, paint, say, use_color
 from rtamt.errors import UsageError
 from rtamt.files import replacing
@@ -109,6 +110,3 @@ def _line(evaluation: Evaluation) -> str:
         "stopped": evaluation.stopped,
         "point": dict(evaluation.point),
     })  # fmt: skip
-
-
-COMMAND = Command("falsify", "search for inputs that make a plant violate its requirement", configure, run)

@@ -7,13 +7,12 @@ from typing import TYPE_CHECKING
 
 from rtamt import fmi
 from rtamt.cli.command import (
-    OK,
-    Command,
     add_specification_options,
     add_time_option,
     add_verdict_option,
     read_specification,
 )
+from rtamt.cli.parser import OK
 from rtamt.cli.terminal import say
 
 if TYPE_CHECKING:
@@ -50,6 +49,3 @@ def run(args: argparse.Namespace) -> int:
     fmi.export(read_specification(args, args.time), args.output, version=args.fmi, verdict=args.verdict)
     say(f"{args.output}: FMI {args.fmi}.0, co-simulation, {Path(args.output).stat().st_size / 1024:.0f} KiB")
     return OK
-
-
-COMMAND = Command("fmu", "requirement to a unit that simulators import", configure, run)

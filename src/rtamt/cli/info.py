@@ -6,8 +6,6 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from rtamt.cli.command import (
-    OK,
-    Command,
     CommandError,
     add_specification_options,
     add_time_option,
@@ -16,6 +14,7 @@ from rtamt.cli.command import (
     read_specification,
 )
 from rtamt.cli.compiled import compiled, listing
+from rtamt.cli.parser import OK
 from rtamt.cli.reading_options import add_reading_options, recording
 from rtamt.cli.terminal import printed, say
 from rtamt.compiler.plan import compile_program
@@ -308,6 +307,3 @@ def _as_json(facts: Facts) -> str:
             "early_verdicts_hold": spec.domain.continuous or _ending(facts) is None,
         }
     )
-
-
-COMMAND = Command("info", "horizon, pastified form, program and memory of a requirement", configure, run)

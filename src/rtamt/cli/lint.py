@@ -7,18 +7,14 @@ from argparse import Namespace
 from typing import TYPE_CHECKING
 
 from rtamt.cli.command import (
-    ERROR,
-    OK,
-    VIOLATED,
-    Command,
     CommandError,
     add_ignore_option,
     add_specification_options,
     add_time_option,
-    complain,
     read_specification,
     warn,
 )
+from rtamt.cli.parser import ERROR, OK, VIOLATED, complain
 from rtamt.cli.terminal import say
 from rtamt.errors import StlError
 from rtamt.language.lint import RULES
@@ -98,6 +94,3 @@ def _check_formula(spec: Specification, *, online: bool) -> None:
         check_bounds(spec.formula, spec.period, spec.text)
     if online:
         check_online(spec.formula, spec.text)
-
-
-COMMAND = Command("lint", "say what is wrong with specification files", configure, run)

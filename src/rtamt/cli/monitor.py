@@ -13,20 +13,17 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import numpy as np
 
 from rtamt.cli.command import (
-    ERROR,
-    OK,
-    Command,
     CommandError,
     add_specification_options,
     add_stamp_options,
     add_time_option,
-    complain,
     json_number,
     read_specification,
     stamp_text,
 )
 from rtamt.cli.early_feeds import CausationFeed, EagerFeed, IntervalFeed, StartFeed
 from rtamt.cli.live_view import Live
+from rtamt.cli.parser import ERROR, OK, complain
 from rtamt.cli.stdin_reader import STDIN, Samples, lines_of
 from rtamt.cli.terminal import printed, say
 from rtamt.errors import StlError, TraceError
@@ -338,5 +335,3 @@ class EventFeed:
 #: What takes the samples, and prints what becomes known.
 EarlyFeed: TypeAlias = EagerFeed | IntervalFeed | StartFeed | CausationFeed
 Feed: TypeAlias = SampleFeed | EventFeed | EarlyFeed
-
-COMMAND = Command("monitor", "watch a stream: samples on stdin, robustness on stdout", configure, run)

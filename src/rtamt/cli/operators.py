@@ -7,8 +7,8 @@ import sys
 import textwrap
 from typing import TYPE_CHECKING
 
-from rtamt.cli.command import OK, Command
 from rtamt.cli.language import add_language_option, read_language
+from rtamt.cli.parser import OK
 from rtamt.cli.terminal import say, table, use_color, width_of
 from rtamt.errors import UsageError, did_you_mean
 from rtamt.language.operators import Bounds, Fixity
@@ -82,6 +82,3 @@ def _called(name: str, language: Language) -> list[Operator]:
 def _written(op: Operator) -> str:
     interval = {Bounds.NONE: "", Bounds.OPTIONAL: " [a:b]?", Bounds.REQUIRED: " [a:b]"}[op.bounds]
     return " ".join(op.spellings) + interval
-
-
-COMMAND = Command("operators", "list the operators of the language", configure, run)

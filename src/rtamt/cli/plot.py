@@ -6,13 +6,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rtamt.cli.arguments import result_of_one
-from rtamt.cli.command import (
-    OK,
-    Command,
-    CommandError,
-    add_specification_options,
-    add_time_option,
-)
+from rtamt.cli.command import CommandError, add_specification_options, add_time_option
+from rtamt.cli.parser import OK
 from rtamt.cli.reading_options import add_instant_option, add_reading_options, instant
 from rtamt.cli.terminal import Progress, say
 from rtamt.errors import StlError
@@ -117,6 +112,3 @@ def _sheet(path: str) -> Any:
             f"'{path}' is no kind of picture that can be written: choose from .{', .'.join(kinds)}"
         )
     return figure
-
-
-COMMAND = Command("plot", "draw signals, robustness and what decides the verdict", configure, run)

@@ -6,12 +6,8 @@ from typing import TYPE_CHECKING
 
 from rtamt.cli.arguments import each_requirement, requirements_and_traces, variables_of
 from rtamt.cli.check import CODES
-from rtamt.cli.command import (
-    Command,
-    add_specification_options,
-    add_time_option,
-    complain,
-)
+from rtamt.cli.command import add_specification_options, add_time_option
+from rtamt.cli.parser import complain
 from rtamt.cli.reading_options import add_instant_option, add_reading_options, reading_of
 from rtamt.cli.reports import HtmlReport
 from rtamt.cli.runner import outcomes
@@ -72,6 +68,3 @@ def run(args: argparse.Namespace) -> int:
     page.write(args.output)
     say(f"{args.output}: " + ", ".join(f"{verdicts.count(v)} {v}" for v in CODES if v in verdicts))
     return max(CODES[verdict] for verdict in verdicts)
-
-
-COMMAND = Command("report", "write an interactive page: signals, robustness, explanations", configure, run)

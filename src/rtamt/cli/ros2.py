@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 from typing import TYPE_CHECKING
 
-from rtamt.cli.command import OK, Command
+from rtamt.cli.parser import OK
 from rtamt.cli.terminal import say
 
 if TYPE_CHECKING:
@@ -76,6 +76,3 @@ def run(args: argparse.Namespace) -> int:
         say(f"{output.name} on {output.topic}: {output.specification.formula}", file=sys.stderr, flush=True)
     node.run()
     return OK
-
-
-COMMAND = Command("ros2", "watch topics of ROS 2, publish robustness and verdicts", configure, run)

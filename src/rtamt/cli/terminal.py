@@ -12,7 +12,6 @@ from io import StringIO
 from typing import TYPE_CHECKING, Any, TextIO
 
 from rtamt.errors import UsageError, choices, escaped
-from rtamt.language.printer import PAGE, to_text
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -66,6 +65,8 @@ def printed(formula: Formula) -> str:
 
     Named sub-formulas that use each other may be small in a file and astronomical when written out.
     """
+    from rtamt.language.printer import PAGE, to_text
+
     return to_text(formula, limit=PAGE)
 
 
