@@ -23,7 +23,18 @@ if TYPE_CHECKING:
 __all__ = ["DECLARING", "StlLexer", "functions", "logical", "symbols", "temporal"]
 
 #: The keywords of specification files that are not operators.
-DECLARING = ("specification", "from", "import", "input", "output", "const", "topic", "require", "severity")
+DECLARING = (
+    "specification",
+    "from",
+    "import",
+    "input",
+    "output",
+    "const",
+    "topic",
+    "require",
+    "severity",
+    "def",
+)
 
 
 def temporal() -> list[str]:

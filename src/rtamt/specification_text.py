@@ -200,6 +200,7 @@ class SpecificationText:
             definitions=self.document.definitions,
             variables=self.document.variables or None,
             unit=self.unit,
+            templates=self.document.templates,
         )
 
     def _watched(self, given: str | Formula, semantics: Semantics | None) -> Watched:

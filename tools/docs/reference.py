@@ -14,7 +14,7 @@ import picture
 
 import rtamt
 from rtamt.cli import COMMANDS, overview, parser_of
-from rtamt.language import parser, specfile
+from rtamt.language import parser, specfile, templates
 from rtamt.language.lint import RULES
 from rtamt.language.operators import STL, Bounds, Fixity, Tense
 
@@ -122,7 +122,8 @@ def grammar() -> str:
         "# The grammar\n\nThe grammar in EBNF: `[ ]` is optional, `{ }` is repeated. An infix operator of lower "
         "[precedence](language.md) than its context ends an operand.\n\n"
         f"## A formula\n\n{_productions(parser)}\n\n```ebnf\n{listing}\n```\n\n"
-        f"## A specification file\n\n{_productions(specfile)}\n"
+        f"## A specification file\n\n{_productions(specfile)}\n\n"
+        f"## Templates\n\n{_productions(templates)}\n"
     )
 
 

@@ -21,6 +21,7 @@ intervals            bounds of temporal operators: units, exact values, errors
 units                durations with units
 names                a position in a text, and what a name there stands for
 scope                names in a formula: constants, named formulas, declared variables
+templates            ``def name(parameters) = formula``, and its uses
 declarations         what stands before the formulas of a file: imports, declarations, annotations
 specfile             specification files (``.stl``) to a document, and their grammar
 document             the content of a specification file

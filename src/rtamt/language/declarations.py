@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from rtamt.language.scope import Scope
+    from rtamt.language.templates import Template
 
 #: The types that need no import.
 TYPES = ("float", "int", "long", "complex", "bool")
@@ -34,6 +35,7 @@ class DeclarationParser(RequirementParser):
         self._given = tuple(scope.variables or ())
         self._declarations: dict[str, Declaration] = {}
         self._topics: dict[str, str] = {}
+        self._templates: dict[str, Template] = {}
 
     def _header(self) -> str | None:
         """``header = "specification" , word``."""

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from rtamt.language.formula import Formula, Span
+    from rtamt.language.templates import Template
 
 #: The severity of a violation, in the terms of SARIF.
 Severity: TypeAlias = Literal["error", "warning", "note"]
@@ -84,6 +85,8 @@ class Document:
     constants: Mapping[str, float] = field(default_factory=lambda: MappingProxyType({}))
     #: Every named formula: defined here, or given to :func:`parse_document`.
     definitions: Mapping[str, Formula] = field(default_factory=lambda: MappingProxyType({}))
+    #: Every template defined here, by name.
+    templates: Mapping[str, Template] = field(default_factory=lambda: MappingProxyType({}))
     #: Every declared variable, here or given to :func:`parse_document`; if there are none, any name is a variable.
     variables: tuple[str, ...] = ()
     #: The names of the assertions that other assertions use.

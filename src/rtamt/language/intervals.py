@@ -10,6 +10,7 @@ from rtamt.errors import BoundError, NameInFormulaError, choices, did_you_mean
 from rtamt.language.formula import Interval, Span
 from rtamt.language.grammar import INFINITY
 from rtamt.language.operators import Bounds
+from rtamt.language.templates import bound, constants_of
 from rtamt.language.units import UNITS, exact
 
 if TYPE_CHECKING:
@@ -65,7 +66,7 @@ def parse_interval(parser: FormulaParser, op: Operator, token: Token) -> Interva
             )
     read = parser.tokens[first : parser.index]
     names = tuple(token.name for token in read if token.kind in ("name", "quoted"))
-    constants = tuple(name for name in names if name in parser.scope.constants)
+    constants = constants_of(parser, names)
     return Interval(begin, end, begin_unit, "" if end is None else end_unit, span, constants)
 
 
@@ -82,6 +83,7 @@ def _bound(parser: FormulaParser) -> Bound:
     if negative:
         token = parser.next()
     value: Fraction | None
+    unit = ""
     if token.kind == "number":
         value = _literal(parser, token)
         if parser.accept("/"):
@@ -95,14 +97,16 @@ def _bound(parser: FormulaParser) -> Bound:
                 )
             value /= divisor
     elif token.kind in ("name", "quoted"):
-        value = _constant(parser, token)
+        stands_for = bound(parser, token.name, token.span)
+        value, unit = (_constant(parser, token), "") if stands_for is None else stands_for
     else:
         raise parser.error(f"expected a bound (a number or a constant), got {token}", token.span)
     span = Span(first.start, parser.tokens[parser.index - 1].end)
     if negative or (value is not None and value < 0):
         raise parser.error("a bound may not be negative; for the past use a past operator", span, BoundError)
-    unit = ""
     name, after = parser.token, parser.tokens[min(parser.index + 1, len(parser.tokens) - 1)]
+    if name.text in UNITS and unit:
+        raise parser.error(f"'{token.name}' has a unit already, {unit}", name.span, BoundError)
     if name.text in UNITS and value is not None:
         unit = parser.next().text
     elif name.kind == "name" and after.text in (":", ",", "]"):

@@ -11,6 +11,7 @@ from rtamt.language.formula import Const, Formula, Span, Var
 from rtamt.language.grammar import INFINITY, sign
 from rtamt.language.lexer import Token, quoted, tokenize, unquoted
 from rtamt.language.operators import Fixity, Language
+from rtamt.language.templates import Use, Uses, meaning
 from rtamt.language.units import check_unit
 
 if TYPE_CHECKING:
@@ -32,6 +33,12 @@ class NameParser:
         self._depth = 0
         self._sign = sign(language)
         self._slashes = scope.slashes  # as many as any declared name has
+        #: The uses of templates so far.
+        self.uses = Uses()
+        #: Where the template is used whose formula is being read; None outside templates.
+        self.use: Use | None = None
+        #: The IDs of the formulas that names have stood for.
+        self.borrowed: set[int] = set()
 
     @property
     def token(self) -> Token:
@@ -55,7 +62,9 @@ class NameParser:
     def error(
         self, message: str, span: Span, kind: type[SpecificationError] = ParseError
     ) -> SpecificationError:
-        """Return an error that points at the text."""
+        """Return an error that points at the text; in the formula of a template, at its use."""
+        if self.use is not None:
+            return self.use.error(message, kind)
         return kind(message, self.text, span)
 
     # ---- names ---------------------------------------------------------------------------------
@@ -109,12 +118,19 @@ class NameParser:
     def _meaning(self, name: str, span: Span, *, plain: bool = True) -> Formula:
         """Return the formula that a name stands for."""
         scope = self.scope
+        argument = meaning(self, name, span) if scope.arguments else None
+        if argument is not None:
+            return argument
         if name in scope.pending:
             raise self.error(scope.pending[name], span, NameInFormulaError)
         definition = scope.definitions.get(name)
         if definition is not None:
             self.used.add(name)
+            self.borrowed.add(id(definition))
             return definition
+        if name in scope.templates:
+            signature = scope.templates[name].signature
+            raise self.error(f"'{name}' is a template; give it arguments: {signature}", span)
         value = scope.constants.get(name)
         if value is not None:
             return Const(float(value), span, name)

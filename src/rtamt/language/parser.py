@@ -3,7 +3,7 @@
 ::
 
     expression = operand , { infix operator , [ interval ] , expression }
-    operand    = number | name | atom | group | call | prefix
+    operand    = number | name | atom | group | call | prefix | use of a template
     group      = "(" , expression , ")"
     call       = function , [ interval ] , "(" , expression , { "," , expression } , ")"
     prefix     = prefix operator , [ interval ] , expression
@@ -22,6 +22,7 @@ from __future__ import annotations
 from math import inf, isinf
 from typing import TYPE_CHECKING
 
+from rtamt.errors import NameInFormulaError, did_you_mean
 from rtamt.language import diagnostics
 from rtamt.language.formula import Apply, Const, Formula, Span
 from rtamt.language.grammar import INFINITY, MAX_DEPTH, chains, is_number, is_predicate, passes_on
@@ -29,6 +30,7 @@ from rtamt.language.intervals import parse_interval
 from rtamt.language.names import NameParser
 from rtamt.language.operators import STL, Bounds, Fixity, Language, Operator
 from rtamt.language.scope import Scope
+from rtamt.language.templates import Template, parse_use
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping
@@ -101,6 +103,14 @@ class FormulaParser(NameParser):
             if op.fixity is Fixity.ATOM:
                 self.index += 1
                 return Apply(op, (), None, token.span)
+        if token.kind == "name" and self.tokens[self.index + 1].text == "(":
+            template = self.scope.templates.get(token.text)
+            if template is not None:
+                return parse_use(self, template)
+            hint = did_you_mean(token.text, self.scope.templates)
+            if hint or token.text in self.scope.pending:
+                message = self.scope.pending.get(token.text) or f"'{token.text}' is not a function{hint}"
+                raise self.error(message, token.span, NameInFormulaError)
         if token.kind in ("name", "quoted"):
             return self.name()
         if token.text == "(":
@@ -261,13 +271,15 @@ def parse_formula(
     definitions: Mapping[str, Formula] | None = None,
     variables: Collection[str] | None = None,
     unit: str = "s",
+    templates: Mapping[str, Template] | None = None,
 ) -> Formula:
     """Parse the text of a formula.
 
     ``language``: the operators. ``constants``: numbers by name, for operands and bounds.
     ``definitions``: formulas by name; their nodes are shared, not copied. ``variables``: the declared
     names; with None, every other name is a variable. ``unit``: the unit of bounds without
-    one; a lower bound without a unit has that of the upper bound, as in RTAMT.
+    one; a lower bound without a unit has that of the upper bound, as in RTAMT. ``templates``: those of a
+    document (:attr:`Document.templates`), by name.
 
     Raises :class:`ParseError`, :class:`NameInFormulaError` or :class:`BoundError`, each with a caret
     under the position, and :class:`UsageError` for an unknown unit. Source: the paper's
@@ -278,7 +290,7 @@ def parse_formula(
     >>> parse_formula("G >= 3 and s >= 1") == parse_formula("((G) >= 3) & (s >= 1.0)")
     True
     """
-    scope = Scope(constants or {}, definitions or {}, variables)
+    scope = Scope(constants or {}, definitions or {}, variables, templates=templates or {})
     parser = FormulaParser(text, language, unit, scope)
     formula = parser.formula()
     if parser.token.kind != "end":

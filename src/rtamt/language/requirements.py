@@ -41,7 +41,7 @@ class RequirementParser(FormulaParser):
             raise self.error(
                 "the name of a requirement is one line of visible characters, such as REQ-12", span
             )
-        if name in self._definitions or name in self._names:
+        if name in self._definitions or name in self._names or name in self.scope.templates:
             raise self.error(f"'{name}' is the name of another requirement or definition", span)
         if name in self.scope.constants:
             raise self.error(f"'{name}' is the name of a constant; give the requirement another one", span)

@@ -2,31 +2,40 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from types import MappingProxyType
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping
 
     from rtamt.language.formula import Formula
+    from rtamt.language.templates import Argument, Template
 
 
 @dataclass(frozen=True)
 class Scope:
     """The meaning of names; with ``variables=None``, every other name is a variable.
 
-    ``pending`` holds names that cannot be used here, each with an explanation.
+    ``pending`` holds names that cannot be used here, each with an explanation; ``arguments`` what the parameters
+    of a template stand for, in its formula.
     """
 
     constants: Mapping[str, float] = field(default_factory=lambda: MappingProxyType({}))
     definitions: Mapping[str, Formula] = field(default_factory=lambda: MappingProxyType({}))
     variables: Collection[str] | None = None
     pending: Mapping[str, str] = field(default_factory=lambda: MappingProxyType({}))
+    templates: Mapping[str, Template] = field(default_factory=lambda: MappingProxyType({}))
+    arguments: Mapping[str, Argument] = field(default_factory=lambda: MappingProxyType({}))
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        # A read-only view can be neither pickled nor copied; the mapping behind it can.
+        values = (getattr(self, each.name) for each in fields(self))
+        return Scope, tuple(dict(v) if isinstance(v, MappingProxyType) else v for v in values)
 
     def __contains__(self, name: str) -> bool:
         """Return whether a name is declared; a field (``req.value``) is declared if its signal is."""
-        if name in self.definitions or name in self.constants:
+        if name in self.definitions or name in self.constants or name in self.arguments:
             return True
         declared = self.variables or ()
         return name in declared or name.split(".", 1)[0] in declared
@@ -34,7 +43,7 @@ class Scope:
     @property
     def names(self) -> tuple[str, ...]:
         """Every declared name."""
-        return (*(self.variables or ()), *self.constants, *self.definitions)
+        return (*(self.variables or ()), *self.constants, *self.definitions, *self.arguments)
 
     @property
     def slashes(self) -> int:

@@ -4,8 +4,8 @@
 
     document    = [ "specification" , word ] , { import } , { declaration | annotation } ,
                   statement , { separator , statement } , [ ";" ]
-    separator   = ";" | after a named assertion or a requirement, as in RTAMT's files: the end of the line
-    statement   = assertion | requirement
+    separator   = ";" | after a named assertion, a requirement or a template, as in RTAMT's files: the end of the line
+    statement   = assertion | requirement | template, see templates.py
     import      = "from" , module , "import" , word , [ ";" ]
     declaration = ( [ "input" | "output" ] , type , name | "const" , type , name , "=" , value ) ,
                   [ "[" , unit , "]" ] , [ ";" ]
@@ -27,7 +27,7 @@ that no other assertion uses; if there are none of these either, the last assert
 
 from __future__ import annotations
 
-from itertools import pairwise
+from itertools import accumulate, pairwise
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
@@ -37,6 +37,7 @@ from rtamt.language.document import Assertion, Document
 from rtamt.language.formula import Formula, Span
 from rtamt.language.operators import STL, Language
 from rtamt.language.scope import Scope
+from rtamt.language.templates import begins_template, parse_template, templates_to_come
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping
@@ -94,6 +95,7 @@ class _DocumentParser(DeclarationParser):
             MappingProxyType(self._topics),
             MappingProxyType(self._constants),
             MappingProxyType(self._definitions),
+            MappingProxyType(self._templates),
             variables,
             frozenset(self.used),
         )
@@ -102,19 +104,21 @@ class _DocumentParser(DeclarationParser):
 
     def _assertions(self, variables: tuple[str, ...]) -> tuple[Assertion, ...]:
         """``assertion , { separator , assertion } , [ ";" ]``."""
-        pending = self._names_to_come()
+        pending = self._names_to_come() | templates_to_come(self)
         names = dict.fromkeys(variables) or None  # a dict for fast lookup
         self._slashes = Scope(self._constants, self._definitions, names).slashes
         found: list[Assertion] = []
         while self.token.kind != "end":
             required = self._requires()
-            if found and not required and (self.token.text == "@" or self._declares()):
+            if (found or self._templates) and not required and (self.token.text == "@" or self._declares()):
                 raise self.error(
                     "declarations and annotations stand before the first formula", self.token.span
                 )
-            self.scope = Scope(self._constants, self._definitions, names, pending)
+            self.scope = Scope(self._constants, self._definitions, names, pending, self._templates)
             name: str | None
-            if required:
+            if begins_template(self):
+                name = self._template(pending)
+            elif required:
                 self._requirement()
                 known = self._explicit[-1]
                 name = known.name
@@ -131,7 +135,7 @@ class _DocumentParser(DeclarationParser):
                     self._definitions[name] = formula
                     self._slashes = max(self._slashes, name.count("/"))
             # A formula without a name may continue on the next line, so it needs a semicolon.
-            ended = self._begins_a_line(self.index) and (name or self._requires())
+            ended = self._begins_a_line(self.index) and (name or self._requires() or begins_template(self))
             if self.token.kind != "end" and not (self.accept(";") or ended):
                 raise self._not_finished()
             while self.accept(";"):
@@ -140,6 +144,17 @@ class _DocumentParser(DeclarationParser):
             empty = "the text is empty" if self.index == 0 else "the text has declarations but no formula"
             raise self.error(empty, self.token.span)
         return tuple(found)
+
+    def _template(self, pending: dict[str, str]) -> str:
+        """``template``: define it and return its name."""
+        token = self._at(1)
+        name = token.text
+        self._check_new(name, token)
+        pending[name] = f"'{name}' uses itself; templates cannot be recursive"
+        template = parse_template(self)
+        del pending[name]
+        self._templates[name] = template
+        return name
 
     def _begins_a_line(self, at: int) -> bool:
         between = self.text[self.tokens[at - 1].end : self.tokens[at].start]
@@ -160,11 +175,13 @@ class _DocumentParser(DeclarationParser):
 
     def _names_to_come(self) -> dict[str, str]:
         """Return the names that later assertions define, each with the error message for an earlier use."""
-        # Except where an assertion may begin, '=' is a mistaken comparison: always(x = 3).
+        # Except where an assertion may begin, '=' is a mistaken comparison: always(x = 3), or names an argument.
+        depth = accumulate((token.text == "(") - (token.text == ")") for token in self.tokens)
         names = [
             token.name
-            for at, (token, after) in enumerate(pairwise(self.tokens))
+            for at, (inside, (token, after)) in enumerate(zip(depth, pairwise(self.tokens), strict=False))
             if at >= self.index
+            and inside <= 0
             and token.kind in ("name", "quoted")
             and after.text == "="
             and (at == self.index or self.tokens[at - 1].text == ";" or self._begins_a_line(at))
@@ -172,7 +189,7 @@ class _DocumentParser(DeclarationParser):
         return {n: f"'{n}' is only defined further down; move its definition up" for n in names}
 
     def _check_new(self, name: str, token: Token) -> None:
-        if name in self._definitions or name in self._names:
+        if name in self._definitions or name in self._names or name in self._templates:
             raise self.error(f"'{name}' is defined twice", token.span)
         if name in self._constants:
             raise self.error(f"'{name}' is a constant already", token.span)
