@@ -14,7 +14,7 @@ from rtamt.language.formula import Apply, variables
 from rtamt.language.grammar import is_number
 from rtamt.language.operators import STL
 from rtamt.language.printer import excerpt
-from rtamt.signals.episodes import Episode, EpisodeTracker
+from rtamt.signals.episodes import WindowTracker
 from rtamt.signals.listing import show_time
 from rtamt.signals.outcomes import BoundedSignal, Interval
 from rtamt.verdicts import offline as verdicts
@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from rtamt.language.formula import Formula
     from rtamt.rewrite.semantics import PredicateSemantics
     from rtamt.signals.domain_interface import DomainTrace
+    from rtamt.signals.episodes import Episode
     from rtamt.signals.signal import Signal
     from rtamt.specification import Specification
 
@@ -196,11 +197,11 @@ class Result:
             formula = formula.args[0]
         applied = spec._apply_semantics(formula, self.semantics)
         (signal,) = spec._signals_of((applied,), self.trace.in_steps())
-        positions, values = self.trace.positions(signal).tolist(), signal.values.tolist()
-        tracker = EpisodeTracker(continuous=self.trace.domain.continuous)
-        tracker.take(tracker.cut(zip(positions, values, strict=True), begin, end))
-        time = self.trace.time
-        return [Episode(time(e.begin), time(e.end), e.worst, time(e.at)) for e in tracker.episodes()]
+        positions = self.trace.positions(signal)
+        tracker = WindowTracker(begin, end, continuous=self.trace.domain.continuous)
+        tracker.take(positions, signal.values)
+        tracker.finish(int(positions[-1]))
+        return [episode.retold(self.trace.time) for episode in tracker.episodes()]
 
     def explain(self, at: Any = None) -> Explanation:
         """Explain why the formula is satisfied or violated: which signals are responsible, and when.

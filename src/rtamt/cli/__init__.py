@@ -12,6 +12,7 @@ command          options of several commands, and how values are printed
 arguments        specifications and recordings on the command line
 reading_options  options for reading recordings
 language         the option ``--language``
+outcome          what came of a requirement over a recording, as reports show it
 runner           every requirement on every recording, on all cores
 bag              check a bag, and write a copy with the results
 stdin_reader     JSON or CSV lines to samples

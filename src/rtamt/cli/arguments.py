@@ -8,8 +8,9 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rtamt.cli.command import CommandError, read_specification
+from rtamt.cli.outcome import Requirement
 from rtamt.cli.reading_options import reading_of
-from rtamt.cli.runner import Requirement, evaluate
+from rtamt.cli.runner import evaluate
 from rtamt.readers.sql import shown
 
 if TYPE_CHECKING:

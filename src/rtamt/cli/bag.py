@@ -16,8 +16,8 @@ from rtamt.ros.binding import bind, topic_of
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
+    from rtamt.cli.outcome import Requirement
     from rtamt.cli.reading_options import Reading
-    from rtamt.cli.runner import Requirement
     from rtamt.results import Result
 
 #: The topic of a requirement that names none.

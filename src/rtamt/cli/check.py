@@ -24,8 +24,8 @@ from rtamt.cli.command import (
 from rtamt.cli.parser import ERROR, OK, VIOLATED, complain
 from rtamt.cli.reading_options import add_reading_options, reading_of
 from rtamt.cli.reports import REPORTS, HtmlReport, write_report
-from rtamt.cli.reports.messages import robustness_members
-from rtamt.cli.runner import Outcome, Requirement, outcomes
+from rtamt.cli.reports.messages import episodes_members, robustness_members
+from rtamt.cli.runner import outcomes
 from rtamt.cli.terminal import Progress, printed, say, table, use_color, width_of
 from rtamt.errors import escaped
 from rtamt.language.units import format_duration
@@ -35,6 +35,7 @@ if TYPE_CHECKING:
     import argparse
     from collections.abc import Iterator, Sequence
 
+    from rtamt.cli.outcome import Outcome, Requirement
     from rtamt.results import Result
     from rtamt.signals.signal import Signal
 
@@ -79,10 +80,12 @@ discrete time and formats that are read in chunks (CSV, Parquet, Arrow, SQL); 'r
 the end of a recording may change an early verdict, and these are checked over the whole recording.
 
 --json prints one object a line: {"requirement", "trace", "satisfied", "robustness", "first_violation",
-"samples", "period"}, of what was written with 'require' also "description" and "severity", or
-{"requirement", "trace", "error"}. The first violation of 'always f' is the first instant at which f does
-not hold, of a conjunction the first of its parts, of anything else the first instant of the trace: seconds,
-or a date where the trace has dates; null where there is none. The period of dense time is null. JSON has
+"samples", "period", "episodes"}, of what was written with 'require' also "description" and "severity", or
+{"requirement", "trace", "error"}. "episodes" is an object {"count", "worst", "first"}: how many maximal runs of
+violation there are, the worst, and the first 100 as [{"begin", "end", "worst", "at"}]; of 'always f' those of f.
+It is left out where chunks, or --early, do not give them. The first violation of 'always f' is the first instant
+at which f does not hold, of a conjunction the first of its parts, of anything else the first instant of the trace:
+seconds, or a date where the trace has dates; null where there is none. The period of dense time is null. JSON has
 no infinities: they are the strings "inf" and "-inf". What --early decides also has "lower", "upper" and
 "decided_at"; "robustness" is null unless both are equal. The reports for --junit and --sarif say the same.
 
@@ -217,6 +220,7 @@ def _as_json(outcome: Outcome, requirement: Requirement) -> str:
         "first_violation": outcome.first_violation,
         "samples": outcome.samples,
         "period": None if outcome.period is None else float(outcome.period),
+        **episodes_members(outcome),
         **more,
         **({} if outcome.bounds is None else {"decided_at": outcome.decided_at}),
         **({"notes": outcome.notes} if outcome.notes else {}),
@@ -240,6 +244,13 @@ def _as_table(requirements: Sequence[Requirement], found: Sequence[Outcome], col
         title = f"{spec.name}: {printed(spec.formula)}" if spec.name else printed(spec.formula)
         alone = table([row[1:] for row in rows], (1, 2, 3, 4), kinds, color, width_of(sys.stdout))
         text = f"{escaped(title)}\n\n{alone}"
+    episodes = [
+        f"{f'{outcome.requirement}, ' if len(requirements) > 1 else ''}{outcome.trace}: {outcome.episodes_text}"
+        for outcome in found
+        if outcome.verdict == "violated" and _says_more(outcome)
+    ]
+    if episodes:
+        text += "\n\n" + "\n".join(episodes)
     notes = dict.fromkeys(f"note: {outcome.trace}: {note}" for outcome in found for note in outcome.notes)
     if notes:
         text += "\n\n" + "\n".join(notes)
@@ -248,6 +259,16 @@ def _as_table(requirements: Sequence[Requirement], found: Sequence[Outcome], col
         counts = [f"{verdicts.count(verdict)} {verdict}" for verdict in CODES if verdict in verdicts]
         text += f"\n\n{', '.join(counts)}"
     return text
+
+
+def _says_more(outcome: Outcome) -> bool:
+    """Return whether episodes say more than the row of the table, which has the first violation."""
+    found = outcome.episodes
+    return (
+        found is not None
+        and found.worst is not None
+        and (found.count > 1 or found.worst.begin != found.worst.end)
+    )
 
 
 def _write(requirements: Sequence[Requirement], results: Sequence[Result], path: str) -> None:

@@ -6,38 +6,31 @@ import os
 import time
 from collections import Counter
 from concurrent.futures import ProcessPoolExecutor
-from dataclasses import dataclass, replace
-from decimal import Decimal
-from fractions import Fraction
+from dataclasses import replace
 from itertools import islice
-from math import inf
 from multiprocessing import get_context
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from rtamt.batch import evaluate_requirements
-from rtamt.cli.command import NO_STAMPS, short, stamp_text
+from rtamt.cli.command import NO_STAMPS
+from rtamt.cli.outcome import Outcome, episodes_of, failed, moment_of, told
 from rtamt.cli.reading_options import choice_for, how_to_mend, is_resampled, on_clock, read_for
 from rtamt.errors import BoundError, StlError, TraceError
 from rtamt.readers.assemble import chunks_of
 from rtamt.readers.read import opened
 from rtamt.readers.sql import is_url, shown
 from rtamt.results import first_violation
-from rtamt.signals.datetimes import nanoseconds_of
-from rtamt.signals.epoch import is_epoch, moment_text
+from rtamt.signals.episodes import Episodes
 from rtamt.verdicts.early_check import EarlyCheck, holds_at_end
 from rtamt.verdicts.streaming import check_stream, check_streamable
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
+    from rtamt.cli.outcome import Requirement
     from rtamt.cli.reading_options import Reading
-    from rtamt.language.document import Requirement as Written
     from rtamt.results import Result
-    from rtamt.signals.outcomes import Interval
     from rtamt.signals.trace import Trace
-    from rtamt.specification import Specification
     from rtamt.verdicts.chunks import StreamResult
 
 #: Bytes of a file from which on it is read in chunks, where format and formula allow it.
@@ -45,65 +38,6 @@ LARGE = 256 * 2**20
 #: Bytes of all files together from which on starting a process for each core pays.
 _WORTH_PROCESSES = 16 * 2**20
 _UNREAD = "later samples are not checked"
-
-
-@dataclass(frozen=True, slots=True)
-class Requirement:
-    """A specification, the file or text that it was given as, and what reports call it.
-
-    ``rows``: where there are several requirements in it, each alone.
-    """
-
-    spec: Specification
-    given: str
-    label: str
-    rows: tuple[Requirement, ...] = ()
-
-    @property
-    def written(self) -> Written:
-        """A single requirement as it stands in the specification: its name, its description, its severity."""
-        return self.spec.document.requirements[0]
-
-
-@dataclass(frozen=True, slots=True)
-class Outcome:
-    """What came of one requirement over one recording, or the sentence that says why nothing did.
-
-    ``first_violation``: seconds (a decimal where a double cannot hold them), or a date; None where there is
-    none. ``moment``: the same as text: seconds, or a date with the seconds since the start of the recording.
-    ``period``: None in dense time.
-    ``notes``: what the verdict has to do without (:attr:`Trace.losses`).
-    ``decided_at``: when its verdict was decided, where nothing later was read; the robustness is then known to lie
-    within ``bounds``, and NaN where these differ.
-    ``explanation``: why it is violated, where that was asked for and the whole recording was read.
-    ``seconds``: how long it took. ``result`` stays in the process that made it.
-    """
-
-    requirement: str
-    trace: str
-    verdict: str  # satisfied, violated or error
-    robustness: float = float("nan")
-    first_violation: float | str | Decimal | None = None
-    moment: str = ""
-    samples: int = 0
-    period: Fraction | None = None
-    error: str = ""
-    notes: tuple[str, ...] = ()
-    decided_at: float | str | Decimal | None = None
-    bounds: Interval | None = None
-    explanation: str = ""
-    seconds: float = 0.0
-    result: Result | None = None
-
-    @property
-    def robustness_text(self) -> str:
-        """The robustness, or what is known of it."""
-        low, high = (self.robustness,) * 2 if self.bounds is None else (self.bounds.lower, self.bounds.upper)
-        if low == high or self.bounds is None:
-            return short(self.robustness)
-        if low == -inf:
-            return "unknown" if high == inf else f"<= {short(high)}"
-        return f">= {short(low)}" if high == inf else f"{short(low)} to {short(high)}"
 
 
 def outcomes(
@@ -215,15 +149,15 @@ def _early(requirement: Requirement, trace: str, reading: Reading) -> list[Outco
             shown(trace),
             "satisfied" if part.satisfied else "violated",
             part.bounds.lower if part.bounds.lower == part.bounds.upper else float("nan"),
-            _told(part.first_violation),
-            _moment(part.first_violation, chunks.start),
+            told(part.first_violation),
+            moment_of(part.first_violation, chunks.start),
             part.samples,
             part.period,
             notes=(
                 *chunks.losses,
-                f"{_stop(row, rows)} at {_moment(part.decided_at, chunks.start)}, {_UNREAD}",
+                f"{_stop(row, rows)} at {moment_of(part.decided_at, chunks.start)}, {_UNREAD}",
             ),
-            decided_at=_told(part.decided_at),
+            decided_at=told(part.decided_at),
             bounds=part.bounds,
             seconds=seconds,
         )
@@ -260,7 +194,7 @@ def _in_chunks(requirement: Requirement, trace: str, reading: Reading) -> list[O
         # Whatever reads says where; whatever computes does not know.
         place = "" if shown(trace) in str(error) else f"{shown(trace)}: "
         mend = "" if chunks is None else how_to_mend(error, chunks.last, chunks.before(error))
-        return [_failed(requirement, trace, f"{place}{error}{mend}", begin)]
+        return [failed(requirement, trace, f"{place}{error}{mend}", begin)]
     if chunks is None or found is None:
         return _check(requirement, trace, None, reading)
     rows = requirement.rows or (requirement,)
@@ -271,11 +205,12 @@ def _in_chunks(requirement: Requirement, trace: str, reading: Reading) -> list[O
             shown(trace),
             "satisfied" if part.satisfied else "violated",
             part.robustness,
-            _told(part.first_violation),
-            _moment(part.first_violation, chunks.start),
+            told(part.first_violation),
+            moment_of(part.first_violation, chunks.start),
             part.samples,
             part.period,
             notes=chunks.losses,
+            **episodes_of(part.episodes, chunks.start),
             seconds=seconds,
         )
         for row, part in zip(rows, found.requirements.values(), strict=True)
@@ -308,7 +243,7 @@ def _check(requirement: Requirement, trace: str, data: Trace | None, reading: Re
     except StlError as error:
         if requirement.rows:
             return [o for row in requirement.rows for o in _check(row, trace, data, reading)]
-        return [_failed(requirement, trace, f"{place}{error}{how_to_mend(error, whole)}", begin)]
+        return [failed(requirement, trace, f"{place}{error}{how_to_mend(error, whole)}", begin)]
     found = []
     for row, part in zip(requirement.rows or (requirement,), parts, strict=True):
         found.append(_outcome(row, trace, part, whole, begin))
@@ -320,53 +255,24 @@ def _outcome(requirement: Requirement, trace: str, result: Result, data: Trace, 
     """Return what an evaluation of ``data`` says of one requirement."""
     try:
         satisfied, violated = result.satisfied, first_violation(result)
+        episodes = Episodes.of(result.episodes())
     except StlError as error:
-        return _failed(requirement, trace, f"{shown(trace)}: {error}", begin)
+        return failed(requirement, trace, f"{shown(trace)}: {error}", begin)
     recording = result.trace
     return Outcome(
         requirement.label,
         shown(trace),
         "satisfied" if satisfied else "violated",
         result.robustness,
-        _told(violated),
-        _moment(violated, recording.origin),
+        told(violated),
+        moment_of(violated, recording.origin),
         recording.samples,
         recording.domain.period,
         notes=data.losses,
+        **episodes_of(episodes, recording.origin),
         seconds=time.perf_counter() - begin,
         result=result,
     )
-
-
-def _failed(requirement: Requirement, trace: str, error: str, begin: float) -> Outcome:
-    return Outcome(requirement.label, shown(trace), "error", error=error, seconds=time.perf_counter() - begin)
-
-
-def _moment(time: Any, start: Any) -> str:
-    """Return a time as text: of a recording that counts from 1970 the date and the seconds since its start."""
-    if time is None:
-        return ""
-    dated = isinstance(time, np.datetime64)
-    begin = _seconds(start)
-    if (dated and isinstance(start, np.datetime64)) or (not dated and is_epoch(begin)):
-        return moment_text(_seconds(time), begin)
-    return f"{str(_told(time)).removesuffix('.0')} s"
-
-
-def _seconds(time: Any) -> Fraction:
-    """Return a time in seconds, exactly; dates count from 1970."""
-    if isinstance(time, np.datetime64 | np.timedelta64):
-        return Fraction(nanoseconds_of(time) or 0, 10**9)
-    return Fraction(str(time))
-
-
-def _told(moment: Any) -> float | str | Decimal | None:
-    """Return a time for reports: a date where the recording has dates, else seconds, with all their digits."""
-    if moment is None:
-        return None
-    if isinstance(moment, np.datetime64):
-        return str(moment)
-    return Decimal(stamp_text(moment)) if isinstance(moment, np.timedelta64) else float(moment)
 
 
 class _Chunks:

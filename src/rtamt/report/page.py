@@ -46,6 +46,7 @@ class Row:
     first_violation: str = ""
     samples: str = ""
     error: str = ""
+    episodes: str = ""
     notes: tuple[str, ...] = ()
 
 

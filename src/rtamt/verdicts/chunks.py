@@ -7,8 +7,10 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from rtamt.engine.offline import Evaluators
-from rtamt.language.formula import Const
+from rtamt.language.formula import Apply, Const
+from rtamt.language.operators import STL
 from rtamt.rewrite.horizon import horizon
+from rtamt.signals.episodes import WindowTracker
 from rtamt.verdicts.decompose import Leaf, anchor, check_in_chunks
 from rtamt.verdicts.robustness_and_truth import align_inputs, outputs_under
 from rtamt.verdicts.trackers import Tracker, Trackers
@@ -20,6 +22,7 @@ if TYPE_CHECKING:
     from rtamt.language.formula import Formula
     from rtamt.rewrite.semantics import PredicateSemantics
     from rtamt.signals.arrays import FloatArray
+    from rtamt.signals.episodes import Episodes
     from rtamt.specification import Specification
     from rtamt.verdicts.trackers import Positions
 
@@ -32,7 +35,9 @@ class StreamResult:
     semantics). ``first_violation``: when it is first violated, see :func:`rtamt.first_violation`; None
     where it holds. ``minimum``: the smallest ρ at any instant; None where the future is unbounded and
     chunks do not tell. ``samples``: rows in all chunks. ``period``: seconds from one sample to the
-    next; None in dense time. ``requirements``: the same for each requirement, by name.
+    next; None in dense time. ``episodes``: how many episodes of violation there are, the worst and the first ones,
+    see ``Result.episodes``; None of several requirements, and where the future is unbounded and chunks do not tell.
+    ``requirements``: the same for each requirement, by name.
     """
 
     robustness: float
@@ -41,6 +46,7 @@ class StreamResult:
     minimum: float | None
     samples: int
     period: Fraction | None
+    episodes: Episodes | None = None
     requirements: Mapping[str, StreamResult] = field(default_factory=lambda: MappingProxyType({}))
 
 
@@ -59,6 +65,12 @@ class Requirement:
         self._robustness: Trackers
         self._verdict: Trackers
         self._minimum: Tracker | None = None
+        # Episodes are those of φ in its window if the formula is always φ, else of the whole formula.
+        (first, *_) = (*self._robust.leaves, None)
+        top = spec.formula
+        always = isinstance(top, Apply) and top.op is STL["always"]
+        self._violated = first if always else self._whole
+        self._episodes: WindowTracker | None = None
 
     @property
     def leaves(self) -> Iterator[Leaf]:
@@ -75,6 +87,7 @@ class Requirement:
 
     def begin(self, unit: Fraction, dense: bool, outputs: Mapping[Formula, Output]) -> None:
         """Make the trackers, once the length of a period or tick (``unit``, seconds) is known."""
+        self._dense = dense
         self._robustness, self._verdict = (
             Trackers(each, unit, dense) for each in (self._robust, self._truth)
         )
@@ -83,9 +96,20 @@ class Requirement:
         if self._whole is not None:
             self._minimum = Tracker(self._whole, unit, dense)
             outputs[self._whole.formula].minima.append(self._minimum)
+        if self._violated is not None:
+            begin, end = self._violated.begin / unit, self._violated.end
+            self._episodes = WindowTracker(
+                int(begin), None if end is None else int(end / unit), continuous=dense, few=True
+            )
+            outputs[self._violated.formula].episodes.append(self._episodes)
 
-    def result(self, time: Callable[[int], Any], samples: int, period: Fraction | None) -> StreamResult:
-        """Return what came of all chunks; ``time``: from a position to a time in the caller's form."""
+    def result(
+        self, time: Callable[[int], Any], last: int, samples: int, period: Fraction | None
+    ) -> StreamResult:
+        """Return what came of all chunks.
+
+        ``time``: from a position to a time in the caller's form; ``last``: the position of the end of the trace.
+        """
         evaluate = Evaluators(self.spec.backend)
         self._robustness.finish()
         self._verdict.finish()
@@ -99,7 +123,13 @@ class Requirement:
             None if self._minimum is None else self._minimum.value,
             samples,
             period,
+            None if self._episodes is None else self._summary(self._episodes, time, last),
         )
+
+    def _summary(self, tracker: WindowTracker, time: Callable[[int], Any], last: int) -> Episodes:
+        tracker.finish(last)
+        found = tracker.summary()
+        return found.retold(time) if self._dense else found  # in discrete time it has the stamps of samples
 
 
 class Output:
@@ -107,13 +137,20 @@ class Output:
 
     def __init__(self) -> None:
         self.trackers: list[Tracker] = []
-        #: Of minima, which end with the last sample.
+        #: Of minima and episodes, which end with the last sample.
         self.minima: list[Tracker] = []
+        self.episodes: list[WindowTracker] = []
         self.known = 0
         self.last: Any = None  # the last stamp at which it was known
 
-    def take(self, positions: Positions, values: FloatArray, last: int | None = None) -> None:
-        """Take what became known; ``last``: the last position that minima are about."""
+    def take(
+        self, positions: Positions, values: FloatArray, last: int | None = None, times: Any = None
+    ) -> None:
+        """Take what became known.
+
+        ``last``: the last position that minima and episodes are about; ``times``: the stamps of samples, if a position
+        alone does not give them.
+        """
         for tracker in self.trackers:
             tracker.take(positions, values)
         if last is not None:
@@ -121,6 +158,8 @@ class Output:
             positions, values = positions[inside], values[inside]
         for tracker in self.minima:
             tracker.take(positions, values)
+        for each in self.episodes:
+            each.take(positions, values, times)
 
 
 class Group:

@@ -116,6 +116,7 @@ class _Stream(ABC):
             None if None in minima else min(minimum for minimum in minima if minimum is not None),
             self.samples,
             period,
+            results[0].episodes if len(results) == 1 else None,
             MappingProxyType({name: found[name] for name in self.requirements}),
         )
 
@@ -172,7 +173,7 @@ class _DiscreteStream(_Stream):
             assert isinstance(signal, Signal)
             begin = output.known
             output.known += len(signal)
-            output.take(np.arange(begin, output.known), signal.values)
+            output.take(np.arange(begin, output.known), signal.values, times=signal.times)
             # A tracker judges a position when the next one comes: the stamp before is wanted, too.
             violated = (t.violated for t in output.trackers if t.violated is not None)
             for position in {0, *violated}:
@@ -194,7 +195,7 @@ class _DiscreteStream(_Stream):
         assert self._monitor is not None
         self._known(self._monitor, self._monitor.finish())
         found = {
-            name: each.result(self._time, self.samples, self._period)
+            name: each.result(self._time, self.samples - 1, self.samples, self._period)
             for name, each in self.requirements.items()
         }
         return self.result(found, self._period)
@@ -282,7 +283,8 @@ class _DenseStream(_Stream):
             self._known(group, monitor, finish_ticks(monitor), end)
             time = partial(self._time, start)
             found |= {
-                name: each.result(time, self.samples, None) for name, each in group.requirements.items()
+                name: each.result(time, end - start, self.samples, None)
+                for name, each in group.requirements.items()
             }
         return self.result(found, None)
 

@@ -1,6 +1,7 @@
 """``rtamt check``: output, JSON, exit codes."""
 
 import json
+from dataclasses import asdict
 from pathlib import Path
 
 import pytest
@@ -89,6 +90,11 @@ def test_json_is_one_object_a_line_and_infinities_are_text(run, write):
             "first_violation": 0,
             "samples": 2,
             "period": 0.5,
+            "episodes": {
+                "count": 1,
+                "worst": {"begin": 0, "end": 0.5, "worst": "-inf", "at": 0},
+                "first": [{"begin": 0, "end": 0.5, "worst": "-inf", "at": 0}],
+            },
         },
         {
             "requirement": "once[1:1](x > 0)",
@@ -97,6 +103,25 @@ def test_json_is_one_object_a_line_and_infinities_are_text(run, write):
         },
     ]
     assert (answer.code, answer.err) == (2, "rtamt: there is no file 'nowhere.csv'\n")
+
+
+@pytest.mark.parametrize("large", [False, True])
+@pytest.mark.parametrize("time", ["discrete", "dense"])
+def test_episodes_are_those_of_the_result_whatever_way_the_recording_is_read(
+    run, write, monkeypatch, large, time
+):
+    if large:
+        monkeypatch.setattr("rtamt.cli.runner.LARGE", 0)
+    write("a.csv", "time,x\n0,5\n1,2\n2,1\n3,4\n4,0\n5,6\n")
+    answer = run("check", "always(x >= 3)", "a.csv", "--time", time)
+    until = "5" if time == "dense" else "4"
+    where = "from 4 s to 5 s: robustness -3 at 4 s" if time == "dense" else "at 4 s: robustness -3"
+    assert answer.out.splitlines()[-1] == f"a.csv: 2 episodes of violation, the worst {where}"
+    row = json.loads(run("check", "always(x >= 3)", "a.csv", "--time", time, "--json").out)
+    result = rtamt.parse("always(x >= 3)").evaluate(rtamt.read("a.csv"), time=time)
+    episodes = [asdict(episode) for episode in result.episodes()]
+    assert row["episodes"] == {"count": 2, "worst": episodes[1], "first": episodes}
+    assert row["episodes"]["worst"]["end"] == float(until)
 
 
 def test_the_verdict_is_boolean_where_the_robustness_is_zero(run, write):
@@ -128,13 +153,17 @@ def test_a_formula_may_begin_with_a_minus(run, write):
     assert run("check", "--quiet", "--", "-x<=-5", "a.csv").code == 0
 
 
+#: A recording without violations.
+NONE = {"count": 0, "worst": None, "first": []}
+
+
 def test_period_unit_and_time_column(run, write):
     write("a.csv", "clock [ms],time,x\n0,7,0\n100,7,0\n200,7,9\n")
     args = ("check", "eventually[0:200](x >= 3)", "a.csv", "--unit", "ms", "--json")
     answer = run(*args, "--time-column", "clock", "--period", "100ms")
     assert json.loads(answer.out) == {
         "requirement": "eventually[0:200](x >= 3)", "trace": "a.csv", "satisfied": True, "robustness": 6.0,
-        "first_violation": None, "samples": 3, "period": 0.1,
+        "first_violation": None, "samples": 3, "period": 0.1, "episodes": NONE,
     }  # fmt: skip
     assert json.loads(run(*args, "--time-column", "", "--period", "0.2").out)["period"] == 0.2
 

@@ -41,11 +41,17 @@ def test_each_requirement_has_a_row_whatever_way_the_recording_is_read(
     rows = [json.loads(line) for line in answer.out.splitlines()]
     period = None if domain == "dense" else 1
     common = {"trace": "drive.csv", "satisfied": False, "samples": 4, "period": period}
+
+    def episode(begin, end, worst):
+        one = {"begin": begin, "end": end if domain == "dense" else begin, "worst": worst, "at": begin}
+        return {"count": 1, "worst": one, "first": [one]}
+
     assert rows == [
         {
             "requirement": "REQ-7",
             "robustness": -0.5,
             "first_violation": 1,
+            "episodes": episode(1, 2, -0.5),
             "description": "brakes in time",
             "severity": "warning",
             **common,
@@ -54,6 +60,7 @@ def test_each_requirement_has_a_row_whatever_way_the_recording_is_read(
             "requirement": "REQ-8",
             "robustness": -1,
             "first_violation": 3,
+            "episodes": episode(3, 3, -1),
             "description": "",
             "severity": "error",
             **common,

@@ -30,6 +30,7 @@ def test_dense_time_has_no_period(run, write):
         "first_violation": None,
         "samples": 4,
         "period": None,
+        "episodes": {"count": 0, "worst": None, "first": []},
     }
 
 

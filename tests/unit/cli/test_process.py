@@ -24,7 +24,7 @@ def test_check_as_a_program():
     with start("check", SPEC, *TRACES) as process:
         out, err = process.communicate(timeout=60)
     assert (process.returncode, err) == (1, "")
-    assert [line.split(maxsplit=4)[4].split() for line in out.splitlines() if ".csv" in line] == [
+    assert [line.split(maxsplit=4)[4].split() for line in out.splitlines() if ".csv  " in line] == [
         ["3", "-", "satisfied"],
         ["1", "-", "satisfied"],
         ["-2", "2", "s", "violated"],

@@ -52,6 +52,14 @@ def array(store, number):
     return np.ascontiguousarray(weights.reshape(kind.itemsize, -1).T).view(kind).ravel()
 
 
+def test_page_shows_the_episodes_of_violation(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    Path("a.csv").write_text("time,x\n0,5\n1,2\n2,1\n3,4\n4,0\n5,6\n")
+    main(["check", "always(x >= 3)", "a.csv", "--html", "a.html", "--quiet"])
+    text = Text(Path("a.html").read_text()).text
+    assert "2 episodes of violation, the worst at 4 s: robustness -3" in text
+
+
 @pytest.fixture
 def files(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)

@@ -20,10 +20,10 @@ import rtamt
 from rtamt.batch import evaluate_requirements
 from rtamt.cli import main
 from rtamt.engine.native import core
-from rtamt.language.operators import STL
 from rtamt.readers import arrow, csv, rows
 from rtamt.results import first_violation
 from rtamt.signals import arrays, dense_arrays
+from rtamt.signals.episodes import Episodes
 from tests import strategies
 
 
@@ -31,6 +31,21 @@ def same(streamed, result):
     assert streamed.robustness == result.robustness
     assert streamed.satisfied == result.satisfied
     assert streamed.first_violation == first_violation(result)
+    if streamed.episodes is not None:
+        assert streamed.episodes == Episodes.of(result.episodes())
+
+
+#: Texts that read x, to be checked in chunks.
+TOPS = st.sampled_from(
+    (
+        "always(x == x) and always({})",
+        "always(x == x) and eventually({})",
+        "always(x == x) and ({})",
+        "always(x == x and ({}))",
+        "always[1:5](x == x and ({}))",
+        "x == x and ({})",
+    )
+)
 
 
 @pytest.mark.parametrize(
@@ -97,10 +112,9 @@ def test_the_minimum_over_time():
 @given(st.data())
 def test_law_chunks_give_what_the_whole_gives(data):
     formula = data.draw(strategies.formulas(max_depth=3))
-    always = data.draw(st.sampled_from((STL["always"], STL["eventually"], lambda f: f)))
     trace = data.draw(strategies.traces(max_size=12))
     n = len(trace["x"])
-    text = f"always(x == x) and ({always(formula)})"
+    text = data.draw(TOPS).format(formula)
     spec = rtamt.parse(text, period=1)
     columns = {
         "time": np.arange(n, dtype=float),
@@ -121,9 +135,8 @@ def test_law_chunks_give_what_the_whole_gives(data):
 @given(st.data())
 def test_law_dense_chunks_give_what_the_whole_gives(data):
     formula = data.draw(strategies.formulas(max_depth=3, discrete=False, arithmetic=False))
-    always = data.draw(st.sampled_from((STL["always"], STL["eventually"], lambda f: f)))
     trace = data.draw(strategies.dense_traces())
-    spec = rtamt.parse(f"always(x == x) and ({always(formula)})", time="dense", resolution=1)
+    spec = rtamt.parse(data.draw(TOPS).format(formula), time="dense", resolution=1)
     used = {name: trace[name] for name in spec.input_names}
     in_seconds = {name: (times.astype(float), values) for name, (times, values) in used.items()}
     try:

@@ -16,7 +16,7 @@ from rtamt.cli.reports.sarif import as_sarif
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
-    from rtamt.cli.runner import Outcome, Requirement
+    from rtamt.cli.outcome import Outcome, Requirement
 
     Report = Callable[[Sequence[Requirement], Sequence[Outcome]], str]
 

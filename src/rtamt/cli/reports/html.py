@@ -20,8 +20,8 @@ from rtamt.report import File, Formula, Page, Row
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
+    from rtamt.cli.outcome import Outcome, Requirement
     from rtamt.cli.reading_options import Reading
-    from rtamt.cli.runner import Outcome, Requirement
     from rtamt.plot.clock import Clock
     from rtamt.results import Result
     from rtamt.specification import Specification
@@ -155,5 +155,6 @@ def _row(outcome: Outcome) -> Row:
         short(outcome.robustness),
         outcome.moment,
         str(outcome.samples),
+        episodes=outcome.episodes_text,
         notes=outcome.notes,
     )

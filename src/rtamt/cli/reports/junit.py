@@ -12,7 +12,7 @@ from rtamt.cli.terminal import printed
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from rtamt.cli.runner import Outcome, Requirement
+    from rtamt.cli.outcome import Outcome, Requirement
 
 #: Characters that XML cannot hold, not even escaped.
 _FORBIDDEN = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\ufffe\uffff]")

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any
 from rtamt.cli.command import json_number
 
 if TYPE_CHECKING:
-    from rtamt.cli.runner import Outcome, Requirement
+    from rtamt.cli.outcome import Outcome, Requirement
+    from rtamt.signals.episodes import Episode
 
 
 def sentence(outcome: Outcome, requirement: Requirement) -> str:
@@ -30,4 +31,22 @@ def robustness_members(outcome: Outcome) -> dict[str, Any]:
         "robustness": json_number(lower) if lower == upper else None,
         "lower": json_number(lower),
         "upper": json_number(upper),
+    }
+
+
+def episodes_members(outcome: Outcome) -> dict[str, Any]:
+    """Return the episodes of violation as members of a JSON object, if they are known."""
+    if outcome.episodes is None:
+        return {}
+    count, worst, first = outcome.episodes.count, outcome.episodes.worst, outcome.episodes.first
+    shown = None if worst is None else _episode(worst)
+    return {"episodes": {"count": count, "worst": shown, "first": [_episode(each) for each in first]}}
+
+
+def _episode(episode: Episode) -> dict[str, Any]:
+    return {
+        "begin": episode.begin,
+        "end": episode.end,
+        "worst": json_number(episode.worst),
+        "at": episode.at,
     }

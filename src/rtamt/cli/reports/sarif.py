@@ -15,7 +15,7 @@ from rtamt.cli.terminal import printed
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from rtamt.cli.runner import Outcome, Requirement
+    from rtamt.cli.outcome import Outcome, Requirement
 
 _SCHEMA = "https://json.schemastore.org/sarif-2.1.0.json"
 

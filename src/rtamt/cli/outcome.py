@@ -1,0 +1,138 @@
+"""What came of a requirement over a recording, as reports show it."""
+
+from __future__ import annotations
+
+import time as clock
+from dataclasses import dataclass
+from decimal import Decimal
+from fractions import Fraction
+from math import inf
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rtamt.cli.command import short, stamp_text
+from rtamt.readers.sql import shown
+from rtamt.signals.datetimes import nanoseconds_of
+from rtamt.signals.epoch import is_epoch, moment_text
+
+if TYPE_CHECKING:
+    from rtamt.language.document import Requirement as Written
+    from rtamt.results import Result
+    from rtamt.signals.episodes import Episodes
+    from rtamt.signals.outcomes import Interval
+    from rtamt.specification import Specification
+
+
+@dataclass(frozen=True, slots=True)
+class Requirement:
+    """A specification, the file or text that it was given as, and what reports call it.
+
+    ``rows``: where there are several requirements in it, each alone.
+    """
+
+    spec: Specification
+    given: str
+    label: str
+    rows: tuple[Requirement, ...] = ()
+
+    @property
+    def written(self) -> Written:
+        """A single requirement as it stands in the specification: its name, its description, its severity."""
+        return self.spec.document.requirements[0]
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """What came of one requirement over one recording, or the sentence that says why nothing did.
+
+    ``first_violation``: seconds (a decimal where a double cannot hold them), or a date; None where there is
+    none. ``moment``: the same as text: seconds, or a date with the seconds since the start of the recording.
+    ``period``: None in dense time.
+    ``notes``: what the verdict has to do without (:attr:`Trace.losses`).
+    ``decided_at``: when its verdict was decided, where nothing later was read; the robustness is then known to lie
+    within ``bounds``, and NaN where these differ.
+    ``episodes``: of violation; None where they are not known. ``episodes_text``: the same as part of a sentence.
+    ``explanation``: why it is violated, where that was asked for and the whole recording was read.
+    ``seconds``: how long it took. ``result`` stays in the process that made it.
+    """
+
+    requirement: str
+    trace: str
+    verdict: str  # satisfied, violated or error
+    robustness: float = float("nan")
+    first_violation: float | str | Decimal | None = None
+    moment: str = ""
+    samples: int = 0
+    period: Fraction | None = None
+    error: str = ""
+    notes: tuple[str, ...] = ()
+    decided_at: float | str | Decimal | None = None
+    bounds: Interval | None = None
+    episodes: Episodes | None = None
+    episodes_text: str = ""
+    explanation: str = ""
+    seconds: float = 0.0
+    result: Result | None = None
+
+    @property
+    def robustness_text(self) -> str:
+        """The robustness, or what is known of it."""
+        low, high = (self.robustness,) * 2 if self.bounds is None else (self.bounds.lower, self.bounds.upper)
+        if low == high or self.bounds is None:
+            return short(self.robustness)
+        if low == -inf:
+            return "unknown" if high == inf else f"<= {short(high)}"
+        return f">= {short(low)}" if high == inf else f"{short(low)} to {short(high)}"
+
+
+def failed(requirement: Requirement, trace: str, error: str, begin: float) -> Outcome:
+    """Return the outcome of what could not be evaluated."""
+    return Outcome(
+        requirement.label, shown(trace), "error", error=error, seconds=clock.perf_counter() - begin
+    )
+
+
+def moment_of(time: Any, start: Any) -> str:
+    """Return a time as text: of a recording that counts from 1970 the date and the seconds since its start."""
+    if time is None:
+        return ""
+    dated = isinstance(time, np.datetime64)
+    begin = _seconds(start)
+    if (dated and isinstance(start, np.datetime64)) or (not dated and is_epoch(begin)):
+        return moment_text(_seconds(time), begin)
+    return f"{str(told(time)).removesuffix('.0')} s"
+
+
+def episodes_of(found: Episodes | None, start: Any) -> dict[str, Any]:
+    """Return episodes of violation as members of an outcome."""
+    if found is None:
+        return {}
+    text, worst = "", found.worst
+    if worst is not None:
+        many = (
+            f"{found.count} episodes of violation, the worst"
+            if found.count > 1
+            else "one episode of violation,"
+        )
+        begin, end, at = (moment_of(time, start) for time in (worst.begin, worst.end, worst.at))
+        where = f"at {begin}" if begin == end else f"from {begin} to {end}"
+        then = "" if begin == end else f" at {at}"
+        text = f"{many} {where}: robustness {short(worst.worst)}{then}"
+    return {"episodes": found.retold(told), "episodes_text": text}
+
+
+def _seconds(time: Any) -> Fraction:
+    """Return a time in seconds, exactly; dates count from 1970."""
+    if isinstance(time, np.datetime64 | np.timedelta64):
+        return Fraction(nanoseconds_of(time) or 0, 10**9)
+    return Fraction(str(time))
+
+
+def told(time: Any) -> float | str | Decimal | None:
+    """Return a time for reports: a date where the recording has dates, else seconds, with all their digits."""
+    if time is None:
+        return None
+    if isinstance(time, np.datetime64):
+        return str(time)
+    return Decimal(stamp_text(time)) if isinstance(time, np.timedelta64) else float(time)
