@@ -30,6 +30,7 @@ DECLARING = (
     "input",
     "output",
     "const",
+    "parameter",
     "topic",
     "require",
     "severity",

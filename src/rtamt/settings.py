@@ -16,6 +16,8 @@ from rtamt.rewrite.semantics import ROLES, PredicateSemantics
 from rtamt.signals.arrays import is_number
 
 if TYPE_CHECKING:
+    from collections.abc import Collection
+
     from rtamt.language.document import Document
     from rtamt.language.units import Duration
     from rtamt.signals.domain_interface import TimeDomain
@@ -99,6 +101,18 @@ def check_constants(constants: Mapping[str, float]) -> None:
     for name, value in constants.items():
         if not is_number(value) or isnan(value):
             raise UsageError(f"the constant '{name}' is {shown(value)}; give a number")
+
+
+def check_parameters(values: Mapping[str, float], known: Collection[str]) -> None:
+    """Raise :class:`UsageError` unless every name is a known parameter and every value a number."""
+    for name, value in values.items():
+        if name not in known:
+            declared = (
+                choices(name, known, "parameters") if known else f"; declare it: parameter float {name} = ..."
+            )
+            raise UsageError(f"there is no parameter '{name}'{declared}")
+        if not is_number(value) or isnan(value):
+            raise UsageError(f"the parameter '{name}' is {shown(value)}; give a number")
 
 
 def _check_mapping(what: str, given: object, example: str) -> None:

@@ -284,7 +284,8 @@ class Specification(SpecificationText):
         given_watch = watched_of(watch)
         watched = [self._watched(each, semantics) for each in given_watch]
         factory = partial(
-            self.monitor,
+            _monitor,
+            self,
             time=time,
             period=period,
             tolerance=tolerance,
@@ -387,13 +388,18 @@ class Specification(SpecificationText):
 
     def __reduce__(self) -> tuple[Any, ...]:
         # The text is sufficient, and is parsed without recursion at any length.
-        declared = {declaration.name for declaration in self.document.declarations}
-        given = {name: v for name, v in self.document.constants.items() if name not in declared}
         names = ("domain", "period", "resolution", "unit", "backend", "language", "semantics")
         settings = {name: getattr(self, name) for name in names}
-        formula = to_text(self.formula, self.language) if self.document.replaced else None
-        roles = dict(self.roles)
-        return _factory, (self.text, given, {**settings, "roles": roles}, self.document.selected, formula)
+        replaced = self.document.replaced
+        formula = to_text(self.formula, self.language, parameters=True) if replaced else None
+        values = self._given, dict(self.parameters)
+        return _factory, (
+            self.text,
+            values,
+            {**settings, "roles": dict(self.roles)},
+            self.document.selected,
+            formula,
+        )
 
 
 def result_of(spec: Specification, recording: DomainTrace) -> Result:
@@ -401,13 +407,24 @@ def result_of(spec: Specification, recording: DomainTrace) -> Result:
     return spec._result(spec._query(), recording)
 
 
+def _monitor(
+    spec: Specification, parameters: Mapping[str, float] | None = None, **settings: Any
+) -> OnlineMonitor:
+    """Return a monitor of a specification with values of parameters; ``settings``: those of ``monitor()``."""
+    monitor: OnlineMonitor = spec.with_parameters(**(parameters or {})).monitor(**settings)
+    return monitor
+
+
 def _factory(
     text: str,
-    constants: Mapping[str, float],
+    values: tuple[Mapping[str, float], Mapping[str, float]],
     settings: dict[str, Any],
     selected: str | None,
     formula: str | None,
 ) -> Specification:
-    document = parse_document(text, language=settings["language"], unit=settings["unit"], constants=constants)
+    constants, parameters = values
+    document = parse_document(
+        text, language=settings["language"], unit=settings["unit"], constants=constants, parameters=parameters
+    )
     spec = Specification(document if selected is None else document.select(selected), **settings)
     return spec if formula is None else spec.with_formula(spec._named(formula))

@@ -10,17 +10,21 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from rtamt.engine.online import Watched
-from rtamt.language.formula import Formula, variables
+from rtamt.errors import UsageError
+from rtamt.language.formula import Formula, outermost, variables
 from rtamt.language.grammar import is_number
 from rtamt.language.lint import LintWarning, warnings_of
 from rtamt.language.operators import STL, Language
+from rtamt.language.parameters import assigned, bounding, with_values
 from rtamt.language.parser import parse_formula
 from rtamt.language.printer import excerpt, to_text
+from rtamt.language.specfile import parse_document
 from rtamt.language.units import positive_period
 from rtamt.rewrite.horizon import horizon
 from rtamt.rewrite.pastify import pastify
 from rtamt.rewrite.semantics import apply_semantics, semantics_of
-from rtamt.signals.discrete import DISCRETE
+from rtamt.settings import check_parameters
+from rtamt.signals.discrete import DISCRETE, Discrete
 from rtamt.signals.domains import Defaults, time_domain
 from rtamt.signals.ticks import NANOSECOND
 from rtamt.verdicts.robustness_and_truth import Outputs, outputs_of
@@ -119,6 +123,68 @@ class SpecificationText:
         """
         return replace(self, document=self.document.select(name))
 
+    def with_parameters(self, /, **values: float) -> Self:
+        """Return the specification with these values of its parameters; the others keep theirs.
+
+        Neither the text is parsed nor the formula compiled again, unless a value bounds an interval. Names that are no
+        words go in a mapping: ``with_parameters(**{"battery.low": 3.5})``. Raises :class:`UsageError` for names
+        that are no parameters and values that are no numbers, :class:`BoundError` for a bound that cannot be.
+
+        >>> import rtamt
+        >>> spec = rtamt.parse("input float x  parameter float limit = 4  always(x <= limit)")
+        >>> spec.evaluate({"x": [1, 2]}).robustness, spec.with_parameters(limit=3).evaluate({"x": [1, 2]}).robustness
+        (2.0, 1.0)
+        >>> dict(spec.with_parameters(limit=3).parameters)
+        {'limit': 3.0}
+        """
+        current = self.parameters
+        check_parameters(values, current)
+        new = {name: float(value) for name, value in values.items() if value != current[name]}
+        if not new:
+            return self
+        if new.keys() & bounding(self.document):
+            return self._parsed_with({**current, **new})
+        return replace(self, document=assigned(self.document, new))
+
+    def _parsed_with(self, values: Mapping[str, float]) -> Self:
+        """Return the specification with values of parameters of which some bound an interval."""
+        if self.document.replaced:
+            names = ", ".join(f"'{name}'" for name in sorted(bounding(self.document) & values.keys()))
+            raise UsageError(
+                f"the formula was replaced, and {names} bounds an interval: set it before with_formula()"
+            )
+        document = parse_document(
+            self.text, language=self.language, unit=self.unit, constants=self._given, parameters=values
+        )
+        if self.document.selected is not None:
+            document = document.select(self.document.selected)
+        spec = replace(self, document=document)
+        spec._check_bounds()
+        return spec
+
+    def _check_bounds(self) -> None:
+        """Raise :class:`BoundError` for a bound that is no multiple of the period or tick."""
+        checked = dict.fromkeys((self.domain, Discrete(self.period)))
+        for formula in outermost([assertion.formula for assertion in self.document.assertions]):
+            for each in checked:
+                each.check(formula, self.text)
+
+    @property
+    def parameters(self) -> Mapping[str, float]:
+        """The values in use of the declared parameters; see :meth:`with_parameters`.
+
+        >>> import rtamt
+        >>> dict(rtamt.parse("parameter float limit = 4 [m]  always(x <= limit)").parameters)
+        {'limit': 4.0}
+        """
+        return self.document.parameters
+
+    @property
+    def _given(self) -> dict[str, float]:
+        """The constants that were given beside the text."""
+        declared = {declaration.name for declaration in self.document.declarations}
+        return {name: v for name, v in self.document.constants.items() if name not in declared}
+
     def with_formula(self, formula: Formula) -> Self:
         """Return the specification of another formula over the same names, such as a pastified one.
 
@@ -193,18 +259,20 @@ class SpecificationText:
         known = self._known(name)
         if known is not None:
             return known
-        return parse_formula(
+        formula = parse_formula(
             name,
             language=self.language,
             constants=self.document.constants,
             definitions=self.document.definitions,
             variables=self.document.variables or None,
             unit=self.unit,
+            parameters=self.parameters,
             templates=self.document.templates,
         )
+        return with_values([formula], self.parameters)[0]
 
     def _watched(self, given: str | Formula, semantics: Semantics | None) -> Watched:
-        formula = self._named(given) if isinstance(given, str) else given
+        formula = self._named(given) if isinstance(given, str) else with_values([given], self.parameters)[0]
         if not is_number(formula):
             formula = self._apply_semantics(formula, self._semantics(semantics))
         if not isinstance(given, str):  # its positions may be those of another text

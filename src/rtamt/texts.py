@@ -6,7 +6,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import UsageError, shown
-from rtamt.language.formula import outermost
 from rtamt.language.operators import STL, Language
 from rtamt.language.specfile import parse_document
 from rtamt.language.units import positive_period
@@ -17,7 +16,6 @@ from rtamt.settings import (
     check_language,
     roles_of,
 )
-from rtamt.signals.discrete import Discrete
 from rtamt.signals.domains import DEFAULT, time_domain
 from rtamt.specification import Specification
 
@@ -86,10 +84,7 @@ def parse(
         semantics_of(semantics),
         roles_of(document, {} if roles is None else roles),
     )
-    checked = dict.fromkeys((domain, Discrete(spec.period)))
-    for formula in outermost([assertion.formula for assertion in document.assertions]):
-        for each in checked:
-            each.check(formula, text)
+    spec._check_bounds()
     return spec
 
 

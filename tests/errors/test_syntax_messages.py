@@ -230,6 +230,18 @@ DOCUMENTS = [
     ),
     ("const float c = y", "                ^", ParseError, "expected a number, got 'y'"),
     (
+        "parameter float c x > 1",
+        "                ^",
+        ParseError,
+        "the parameter 'c' has no value; write parameter float c = ...",
+    ),
+    (
+        "parameter bool c = 1 x > 1",
+        "          ^^^^",
+        ParseError,
+        "a parameter is a number, not 'bool'; choose from float, int, long",
+    ),
+    (
         "float x = 3; x > 1",
         "        ^",
         ParseError,

@@ -67,7 +67,7 @@ class OnlineMonitor:
         formula: Formula,
         watch: Sequence[Watched],
         declared: Collection[str],
-        factory: Callable[[], OnlineMonitor] | None,
+        factory: Callable[..., OnlineMonitor] | None,
     ) -> None:
         self._base.__init__(self)  # type: ignore[misc]
         self.input_names: tuple[str, ...] = variables(formula)
@@ -144,6 +144,18 @@ class OnlineMonitor:
             if path and name not in values and head in values:
                 flat[name] = arrays.field_of(values[head], head, path, self.samples)
         return flat
+
+    def _assign(self, parameters: Mapping[str, float]) -> None:
+        """Become a new monitor with these values of parameters."""
+        if not parameters:
+            return
+        if self._factory is None:
+            raise UsageError("only a monitor that Specification.monitor() has made has parameters")
+        fresh = self._factory(parameters)
+        usage = self._usage
+        self.__dict__.update(fresh.__dict__)
+        self._usage = usage
+        self._connect(self._session.open())
 
     # ---- copies ----------------------------------------------------------------------------------
 

@@ -25,6 +25,7 @@ templates            ``def name(parameters) = formula``, and its uses
 declarations         what stands before the formulas of a file: imports, declarations, annotations
 specfile             specification files (``.stl``) to a document, and their grammar
 document             the content of a specification file
+parameters           values of parameters, set without parsing again
 requirements         ``require ID "text" severity WORD: formula``
 lint                 the table of warnings
 diagnostics          syntax error messages

@@ -23,14 +23,29 @@ if TYPE_CHECKING:
 #: The types that need no import.
 TYPES = ("float", "int", "long", "complex", "bool")
 
+#: The types of parameters.
+_NUMBERS = ("float", "int", "long")
+
+_Kind = Literal["var", "const", "parameter"]
+
+#: The words of declarations that give a value, and what errors call the kinds of declarations.
+_KINDS: Mapping[str, _Kind] = MappingProxyType({"const": "const", "parameter": "parameter"})
+_CALLED = MappingProxyType({"var": "variable", "const": "constant", "parameter": "parameter"})
+
 _ROLES: Mapping[str, Literal["input", "output"]] = MappingProxyType({"input": "input", "output": "output"})
 
 
 class DeclarationParser(RequirementParser):
     """The grammar productions of declarations, in addition to those of a requirement."""
 
-    def __init__(self, text: str, language: Language, unit: str, scope: Scope) -> None:
+    def __init__(
+        self, text: str, language: Language, unit: str, scope: Scope, values: Mapping[str, float]
+    ) -> None:
         super().__init__(text, language, unit, scope)
+        #: The values of parameters that are given.
+        self._values = values
+        #: The names of the declared parameters.
+        self._parameters: set[str] = set()
         self._constants = dict(scope.constants)
         self._given = tuple(scope.variables or ())
         self._declarations: dict[str, Declaration] = {}
@@ -62,12 +77,15 @@ class DeclarationParser(RequirementParser):
         return True
 
     def _declaration(self) -> bool:
-        """``declaration = ( [ role ] , type , name | "const" , type , name , "=" , value ) , [ unit ] , [ ";" ]``."""
+        """``declaration = ( [ role ] , type , name | kind , type , name , "=" , value ) , [ unit ] , [ ";" ]``."""
         if not self._declares():
             return False
-        constant = self._word("const")
-        role = None if constant else _ROLES.get(self.token.text) if self._plain_type(1) else None
-        if constant or role:
+        kind: _Kind = "var"
+        role = None
+        if self._plain_type(1) and self.token.text not in self._imports:
+            kind = _KINDS.get(self.token.text, "var")
+            role = _ROLES.get(self.token.text)
+        if kind != "var" or role:
             self.next()
         type_name = self.next()
         if not self._is_type(type_name):
@@ -78,16 +96,21 @@ class DeclarationParser(RequirementParser):
                 f"{'' if hint else ', and classes that are imported'}",
                 type_name.span,
             )
-        name = self._taken("the name of a constant" if constant else "the name of a variable", quotes=True)
+        if kind == "parameter" and type_name.text not in _NUMBERS:
+            raise self.error(
+                f"a parameter is a number, not '{type_name.text}'; choose from {', '.join(_NUMBERS)}",
+                type_name.span,
+            )
+        name = self._taken(f"the name of a {_CALLED[kind]}", quotes=True)
         name = self._with_slashes(name)
-        self._declare(name, type_name.text, role, constant=constant)
+        self._declare(name, type_name.text, role, kind)
         self.accept(";")
         return True
 
     def _declare(
-        self, token: Token, type_name: str, role: Literal["input", "output"] | None, *, constant: bool
+        self, token: Token, type_name: str, role: Literal["input", "output"] | None, kind: _Kind
     ) -> None:
-        name = token.name
+        name, constant = token.name, kind != "var"
         self._check_nameable(token)
         head = name.split(".", 1)[0]
         if head != name and head in self._declarations:
@@ -103,12 +126,16 @@ class DeclarationParser(RequirementParser):
                 )
             value = self._value()
             self._constants[name] = value
+            if kind == "parameter":
+                self._constants[name] = self._values.get(name, value)
+                self._parameters.add(name)
         elif constant:
             raise self.error(
-                f"the constant '{name}' has no value; write const {type_name} {name} = ...", token.span
+                f"the {_CALLED[kind]} '{name}' has no value; write {kind} {type_name} {name} = ...",
+                token.span,
             )
         self._declarations[name] = Declaration(
-            name, type_name, "const" if constant else "var", role, value, self._unit(token), token.span
+            name, type_name, kind, role, value, self._unit(token), token.span
         )
 
     def _unit(self, name: Token) -> str:
@@ -192,7 +219,7 @@ class DeclarationParser(RequirementParser):
         first = self.token
         if first.kind != "name" or self._requires():
             return False
-        if (first.text in _ROLES or first.text == "const") and self._plain_type(1):
+        if (first.text in _ROLES or first.text in _KINDS) and self._plain_type(1):
             return True
         if self._is_type(first):
             return self._at(1).kind in ("name", "quoted")

@@ -31,11 +31,14 @@ class Import:
 
 @dataclass(frozen=True, slots=True)
 class Declaration:
-    """A declared variable (with its role, if any) or constant (with its value); ``unit``: as written, such as m/s."""
+    """A declared variable (with its role, if any), constant or parameter (with its value as written).
+
+    ``unit``: as written, such as m/s.
+    """
 
     name: str
     type: str
-    kind: Literal["var", "const"] = "var"
+    kind: Literal["var", "const", "parameter"] = "var"
     role: Literal["input", "output"] | None = None
     value: float | None = None
     unit: str = ""
@@ -81,7 +84,8 @@ class Document:
     declarations: tuple[Declaration, ...] = ()
     #: From variable to topic.
     topics: Mapping[str, str] = field(default_factory=lambda: MappingProxyType({}))
-    #: Every constant a formula may use, by name: declared here, or given to :func:`parse_document`.
+    #: Every constant and parameter a formula may use, by name, with its value in use: declared here, or
+    #: given to :func:`parse_document`.
     constants: Mapping[str, float] = field(default_factory=lambda: MappingProxyType({}))
     #: Every named formula: defined here, or given to :func:`parse_document`.
     definitions: Mapping[str, Formula] = field(default_factory=lambda: MappingProxyType({}))
@@ -108,6 +112,12 @@ class Document:
     def __setstate__(self, state: dict[str, Any]) -> None:
         for name, value in state.items():
             object.__setattr__(self, name, MappingProxyType(value) if isinstance(value, dict) else value)
+
+    @cached_property
+    def parameters(self) -> Mapping[str, float]:
+        """The value in use of every declared parameter."""
+        declared = (d.name for d in self.declarations if d.kind == "parameter")
+        return MappingProxyType({name: self.constants[name] for name in declared})
 
     @cached_property
     def formula(self) -> Formula:

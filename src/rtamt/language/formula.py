@@ -4,6 +4,8 @@
 
     Formula = Const(value) | Var(name) | Apply(op, args, interval)
 
+A :class:`Parameter` is a Const whose value can be changed where the formula is evaluated.
+
 A node's ``span`` is its position in the text, so that later errors can point there; equality ignores it.
 Walk a formula with :func:`fold`, which does not recurse: a conjunction of ten thousand terms is a
 valid formula.
@@ -102,6 +104,13 @@ class Const(Formula):
     value: float
     span: Span | None = field(default=None, compare=False, repr=False)
     name: str | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True, repr=False)
+class Parameter(Const):
+    """A declared parameter and its value in use; two parameters of equal value are different formulas."""
+
+    name: str = field(default="", repr=False)
 
 
 @dataclass(frozen=True, slots=True, repr=False)

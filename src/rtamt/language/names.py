@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from rtamt.errors import NameInFormulaError, ParseError, SpecificationError, did_you_mean
 from rtamt.language import diagnostics
-from rtamt.language.formula import Const, Formula, Span, Var
+from rtamt.language.formula import Const, Formula, Parameter, Span, Var
 from rtamt.language.grammar import INFINITY, sign
 from rtamt.language.lexer import Token, quoted, tokenize, unquoted
 from rtamt.language.operators import Fixity, Language
@@ -133,7 +133,8 @@ class NameParser:
             raise self.error(f"'{name}' is a template; give it arguments: {signature}", span)
         value = scope.constants.get(name)
         if value is not None:
-            return Const(float(value), span, name)
+            leaf = Parameter if name in scope.parameters else Const
+            return leaf(float(value), span, name)
         if scope.variables is not None and name in scope:
             return Var(name, span)
         if name == INFINITY and plain:

@@ -271,6 +271,7 @@ def parse_formula(
     definitions: Mapping[str, Formula] | None = None,
     variables: Collection[str] | None = None,
     unit: str = "s",
+    parameters: Collection[str] = (),
     templates: Mapping[str, Template] | None = None,
 ) -> Formula:
     """Parse the text of a formula.
@@ -278,8 +279,8 @@ def parse_formula(
     ``language``: the operators. ``constants``: numbers by name, for operands and bounds.
     ``definitions``: formulas by name; their nodes are shared, not copied. ``variables``: the declared
     names; with None, every other name is a variable. ``unit``: the unit of bounds without
-    one; a lower bound without a unit has that of the upper bound, as in RTAMT. ``templates``: those of a
-    document (:attr:`Document.templates`), by name.
+    one; a lower bound without a unit has that of the upper bound, as in RTAMT. ``parameters``: which of the
+    constants are parameters. ``templates``: those of a document (:attr:`Document.templates`), by name.
 
     Raises :class:`ParseError`, :class:`NameInFormulaError` or :class:`BoundError`, each with a caret
     under the position, and :class:`UsageError` for an unknown unit. Source: the paper's
@@ -290,7 +291,9 @@ def parse_formula(
     >>> parse_formula("G >= 3 and s >= 1") == parse_formula("((G) >= 3) & (s >= 1.0)")
     True
     """
-    scope = Scope(constants or {}, definitions or {}, variables, templates=templates or {})
+    scope = Scope(
+        constants or {}, definitions or {}, variables, parameters=parameters, templates=templates or {}
+    )
     parser = FormulaParser(text, language, unit, scope)
     formula = parser.formula()
     if parser.token.kind != "end":

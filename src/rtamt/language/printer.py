@@ -13,7 +13,7 @@ from math import copysign, isinf
 from string import Formatter
 from typing import TYPE_CHECKING
 
-from rtamt.language.formula import COUNTLESS, Apply, Const, Formula, Interval, Var, size
+from rtamt.language.formula import COUNTLESS, Apply, Const, Formula, Interval, Parameter, Var, size
 from rtamt.language.grammar import INFINITY, is_infix, is_predicate, passes_on, sign
 from rtamt.language.lexer import NAME, TOPIC, is_word, quoted
 from rtamt.language.operators import STL, Fixity, Language, Operator
@@ -37,12 +37,14 @@ EXCERPT = 200
 _RTAMT_PATH = re.compile(r"[^\W\d][\w$.]*(?:/[\w$.]+)+")
 
 
-def to_text(formula: Formula, language: Language = STL, *, limit: int = LONGEST) -> str:
+def to_text(
+    formula: Formula, language: Language = STL, *, limit: int = LONGEST, parameters: bool = False
+) -> str:
     """Return text that parses back to an equal formula, with the first spelling of each operator.
 
-    ``language``: that of the formula. Variables whose names would be read as something else are put
-    in parentheses or double quotes. A text of more than ``limit`` characters is abbreviated and marked:
-    see :func:`excerpt`.
+    A parameter is written as its value, with ``parameters`` by its name. ``language``: that of the formula.
+    Variables whose names would be read as something else are put in parentheses or double quotes. A text of
+    more than ``limit`` characters is abbreviated and marked: see :func:`excerpt`.
 
     >>> from rtamt.language.parser import parse_formula
     >>> to_text(parse_formula("G((req>=3)->(F[0,5](gnt>=3)))"))
@@ -56,10 +58,10 @@ def to_text(formula: Formula, language: Language = STL, *, limit: int = LONGEST)
         return ("(", child, ")") if needed else (child,)
 
     def pieces(node: Formula) -> Iterable[Piece]:
+        if isinstance(node, Var) or (parameters and isinstance(node, Parameter)):
+            return (_name(node.name, language),)
         if isinstance(node, Const):
             return (number(node.value),)
-        if isinstance(node, Var):
-            return (_name(node.name, language),)
         if not isinstance(node, Apply):
             raise TypeError(f"{type(node).__name__} is not a formula")
         op, word = node.op, node.op.spellings[0] + _interval(node.interval)

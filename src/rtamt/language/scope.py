@@ -27,6 +27,8 @@ class Scope:
     pending: Mapping[str, str] = field(default_factory=lambda: MappingProxyType({}))
     templates: Mapping[str, Template] = field(default_factory=lambda: MappingProxyType({}))
     arguments: Mapping[str, Argument] = field(default_factory=lambda: MappingProxyType({}))
+    #: The constants that are parameters.
+    parameters: Collection[str] = ()
 
     def __reduce__(self) -> tuple[Any, ...]:
         # A read-only view can be neither pickled nor copied; the mapping behind it can.

@@ -7,8 +7,8 @@
     separator   = ";" | after a named assertion, a requirement or a template, as in RTAMT's files: the end of the line
     statement   = assertion | requirement | template, see templates.py
     import      = "from" , module , "import" , word , [ ";" ]
-    declaration = ( [ "input" | "output" ] , type , name | "const" , type , name , "=" , value ) ,
-                  [ "[" , unit , "]" ] , [ ";" ]
+    declaration = ( [ "input" | "output" ] , type , name |
+                  ( "const" | "parameter" ) , type , name , "=" , value ) , [ "[" , unit , "]" ] , [ ";" ]
     annotation  = "@" , "topic" , "(" , name , "," , topic , ")" , [ ";" ]
     assertion   = [ name , "=" ] , expression
     requirement = "require" , id , [ '"' , characters , '"' ] ,
@@ -54,12 +54,14 @@ def parse_document(
     constants: Mapping[str, float] | None = None,
     variables: Collection[str] | None = None,
     definitions: Mapping[str, Formula] | None = None,
+    parameters: Mapping[str, float] | None = None,
 ) -> Document:
     """Parse a specification text; a single formula is a specification text, too.
 
     ``language``, ``unit``, ``constants`` and ``definitions`` as in
     :func:`~rtamt.language.parser.parse_formula`; ``variables`` are names declared elsewhere. If any
-    variable is declared, there or in the text, undeclared names are errors.
+    variable is declared, there or in the text, undeclared names are errors. ``parameters``: values of declared
+    parameters, instead of those in the text.
 
     Raises :class:`ParseError`, :class:`NameInFormulaError` or :class:`BoundError`. Source: listing 8
     of the paper, and RTAMT's grammar.
@@ -69,7 +71,7 @@ def parse_document(
     always(x <= 2) input
     """
     scope = Scope(constants or {}, definitions or {}, variables or None)
-    return _DocumentParser(text, language, unit, scope).document()
+    return _DocumentParser(text, language, unit, scope, parameters or {}).document()
 
 
 class _DocumentParser(DeclarationParser):
@@ -114,7 +116,14 @@ class _DocumentParser(DeclarationParser):
                 raise self.error(
                     "declarations and annotations stand before the first formula", self.token.span
                 )
-            self.scope = Scope(self._constants, self._definitions, names, pending, self._templates)
+            self.scope = Scope(
+                self._constants,
+                self._definitions,
+                names,
+                pending,
+                self._templates,
+                parameters=self._parameters,
+            )
             name: str | None
             if begins_template(self):
                 name = self._template(pending)

@@ -57,6 +57,5 @@ def _threshold(predicate: Formula) -> float | None:
     """Return the number with which a predicate compares a signal as it is."""
     if not (isinstance(predicate, Apply) and is_comparison(predicate.op)):
         return None
-    kinds = {type(argument): argument for argument in predicate.args}
-    constant = kinds.get(Const)
-    return constant.value if isinstance(constant, Const) and Var in kinds else None
+    constants = [argument for argument in predicate.args if isinstance(argument, Const)]
+    return constants[0].value if constants and any(isinstance(arg, Var) for arg in predicate.args) else None

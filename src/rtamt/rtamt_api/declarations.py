@@ -292,6 +292,7 @@ class Declarations(ABC):
             definitions=document.definitions,
             variables=document.variables or None,
             unit=self._unit,
+            parameters=document.parameters,
         )
 
     def _adopt(self, document: Document) -> None:

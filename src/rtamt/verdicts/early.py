@@ -81,7 +81,7 @@ class EarlyMonitor(OnlineMonitor):
         backend: str = "cpp",
         declared: Collection[str] = (),
         watch: Sequence[Watched] = (),
-        factory: Callable[[], OnlineMonitor] | None = None,
+        factory: Callable[..., OnlineMonitor] | None = None,
         ranges: Mapping[str, Any] | None = None,
         start: bool = False,
         every: bool = True,
@@ -142,8 +142,12 @@ class EarlyMonitor(OnlineMonitor):
         self._finished = False
 
     @exclusive
-    def reset(self) -> None:
-        """Forget the trace; the next sample is the first."""
+    def reset(self, /, **parameters: float) -> None:
+        """Forget the trace; the next sample is the first.
+
+        ``parameters``: their values from now on, as ``Specification.with_parameters`` takes them.
+        """
+        self._assign(parameters)
         self._forget()
         self._connect(self._session.open())
 

@@ -12,7 +12,8 @@ from rtamt.compiler.metadata import Metadata
 from rtamt.compiler.plan import compile_program
 from rtamt.compiler.program import Instruction, Program
 from rtamt.errors import UsageError
-from rtamt.language.formula import Apply, Const, Formula, Var, fold, postorder, variables
+from rtamt.language.formula import Apply, Const, Formula, Var, fold, variables
+from rtamt.language.parameters import bounds_of
 from rtamt.language.printer import PAGE, excerpt, to_text
 from rtamt.rewrite.check import check_online
 from rtamt.rewrite.desugar import as_written, desugar, written
@@ -56,7 +57,7 @@ def carried_program(
     check_online(formula, text)
     inputs = variables(formula)
     domain.check_inputs(inputs)
-    structural = _bounds(formula)
+    structural = bounds_of(formula)
     values: dict[str, float] = {}
     pairs = {"": outputs_of(formula, applied)} | {f".{name}": pair for name, pair in (parts or {}).items()}
     judged = [output for pair in pairs.values() for output in pair]
@@ -139,12 +140,6 @@ def bounds_program(
     )
     told = (len(instructions) - 1,) * len(BOUNDS)
     return Program(tuple(instructions), inputs, told, period, metadata=metadata)
-
-
-def _bounds(formula: Formula) -> frozenset[str]:
-    """Return the names of the constants that bound an interval."""
-    intervals = [node.interval for node in postorder(formula) if isinstance(node, Apply) and node.interval]
-    return frozenset(name for interval in intervals for name in interval.constants)
 
 
 def _with_parameters(formula: Formula, structural: frozenset[str], values: dict[str, float]) -> Formula:

@@ -61,7 +61,7 @@ class DenseMonitor(DenseMonitorBase, OnlineMonitor):
         backend: str = "cpp",
         declared: Collection[str] = (),
         watch: Sequence[Watched] = (),
-        factory: Callable[[], OnlineMonitor] | None = None,
+        factory: Callable[..., OnlineMonitor] | None = None,
         scale: TimeScale | None = None,
         unit: str | None = None,
         parts: bool = False,
@@ -172,8 +172,12 @@ class DenseMonitor(DenseMonitorBase, OnlineMonitor):
         return known
 
     @exclusive
-    def reset(self) -> None:
-        """Forget the trace; the next sample is the first."""
+    def reset(self, /, **parameters: float) -> None:
+        """Forget the trace; the next sample is the first.
+
+        ``parameters``: their values from now on, as ``Specification.with_parameters`` takes them.
+        """
+        self._assign(parameters)
         self._backend.reset()
         self._finished = False
         self._scale = None

@@ -70,7 +70,7 @@ class Monitor(MonitorBase, OnlineMonitor):
         backend: str = "cpp",
         declared: Collection[str] = (),
         watch: Sequence[Watched] = (),
-        factory: Callable[[], OnlineMonitor] | None = None,
+        factory: Callable[..., OnlineMonitor] | None = None,
         unit: str | None = None,
         requirements: Sequence[Formula] = (),  # noqa: ARG002 - in discrete time they start together
         episodes: bool = False,
@@ -311,8 +311,10 @@ class Monitor(MonitorBase, OnlineMonitor):
         return value
 
     @exclusive
-    def reset(self) -> None:
+    def reset(self, /, **parameters: float) -> None:
         """Forget the trace; the next sample is the first.
+
+        ``parameters``: their values from now on, as ``Specification.with_parameters`` takes them.
 
         >>> import rtamt
         >>> monitor = rtamt.parse("once(x >= 3)").monitor()
@@ -322,6 +324,7 @@ class Monitor(MonitorBase, OnlineMonitor):
         >>> monitor.update(0.0, x=1)
         -2.0
         """
+        self._assign(parameters)
         self._backend.reset()
         self._finished = False
         self._news = (0, [])

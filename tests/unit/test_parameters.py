@@ -1,0 +1,174 @@
+"""Parameters: declared in a text, set without parsing it again."""
+
+import copy
+import pickle
+
+import pytest
+
+import rtamt
+from rtamt.errors import BoundError, UsageError
+
+TEXT = """
+input float x
+parameter float limit = 4 [m]
+parameter float "reaction time" = 2
+parameter float gap = 4
+
+low = x <= limit
+require LOW: always[0:"reaction time"](low)
+require GAP: x >= -gap
+"""
+DATA = {"x": [1, 2, 3, 1]}
+
+
+def pickled(one):
+    return pickle.loads(pickle.dumps(one))  # noqa: S301 - written here
+
+
+@pytest.fixture(scope="module")
+def spec():
+    return rtamt.parse(TEXT, period=1)
+
+
+def test_parameters_have_the_values_of_the_text_until_they_are_set(spec):
+    assert dict(spec.parameters) == {"limit": 4.0, "reaction time": 2.0, "gap": 4.0}
+    assert dict(spec.with_parameters(limit=3).parameters) == {"limit": 3.0, "reaction time": 2.0, "gap": 4.0}
+    assert spec.evaluate(DATA).robustness == 1.0
+    assert spec.with_parameters(limit=3).evaluate(DATA).robustness == 0.0
+
+
+def test_parameters_of_equal_values_are_set_apart(spec):
+    assert str(spec.with_parameters(gap=1).requirements["GAP"]) == "x >= -(1)"
+    assert str(spec.with_parameters(gap=1).requirements["LOW"]) == "always[0:2](x <= 4)"
+
+
+def test_a_parameter_bounds_an_interval(spec):
+    assert str(spec.with_parameters(**{"reaction time": 3}).requirements["LOW"]) == "always[0:3](x <= 4)"
+    assert spec.with_parameters(**{"reaction time": 3}).monitor().horizon == 3.0
+
+
+def test_a_value_given_as_bound_is_checked_anew_and_pointed_at(spec):
+    with pytest.raises(BoundError) as error:
+        spec.with_parameters(**{"reaction time": 1.5})
+    assert "1.5 s is not a whole number of periods of 1 s" in str(error.value)
+    assert str(error.value).splitlines()[-1].strip() == "^" * len('[0:"reaction time"]')
+    assert spec.parameters["reaction time"] == 2.0
+
+
+def test_values_set_one_after_the_other_are_kept(spec):
+    both = spec.with_parameters(limit=3).with_parameters(gap=1)
+    assert (both.parameters["limit"], both.parameters["gap"]) == (3.0, 1.0)
+    assert spec.with_parameters(limit=4) is spec
+
+
+@pytest.mark.parametrize(
+    ("values", "message"),
+    [
+        (
+            {"limt": 3},
+            "there is no parameter 'limt'; did you mean 'limit'? (parameters: limit, reaction time, gap)",
+        ),
+        ({"limit": float("nan")}, "the parameter 'limit' is nan; give a number"),
+        ({"limit": "3"}, "the parameter 'limit' is '3'; give a number"),
+    ],
+)
+def test_wrong_values_are_one_sentence(spec, values, message):
+    monitor = spec.monitor()
+    for call in (spec.with_parameters, monitor.reset):
+        with pytest.raises(UsageError) as error:
+            call(**values)
+        assert str(error.value) == message
+
+
+def test_a_specification_without_parameters_says_so():
+    with pytest.raises(
+        UsageError, match=r"^there is no parameter 'limit'; declare it: parameter float limit = \.\.\.$"
+    ):
+        rtamt.parse("x <= 3").with_parameters(limit=3)
+
+
+def test_copies_and_pickles_keep_the_values(spec):
+    assigned = spec.with_parameters(limit=3, **{"reaction time": 1})
+    again = pickled(assigned)
+    assert again.parameters == assigned.parameters
+    assert str(again.select("LOW")) == "always[0:1](x <= 3)"
+    assert str(again.with_parameters(limit=2).requirements["LOW"]) == "always[0:1](x <= 2)"
+
+
+def test_a_pickled_replaced_formula_still_has_its_parameters(spec):
+    past = pickled(spec.with_formula(spec.pastified()))
+    assert str(past.with_parameters(limit=1)).startswith("historically[0:2](x <= 1)")
+    with pytest.raises(UsageError, match="set it before with_formula"):
+        past.with_parameters(**{"reaction time": 1})
+
+
+@pytest.mark.parametrize("verdict", ["delayed", "eager", "interval", "causation"])
+def test_a_monitor_is_reset_to_other_values(spec, verdict):
+    def told(monitor):
+        return [str(monitor.update(t, x=x)) for t, x in enumerate(DATA["x"])]
+
+    monitor = spec.monitor(verdict=verdict)
+    before = told(monitor)
+    monitor.reset(limit=1, **{"reaction time": 1})
+    expected = spec.with_parameters(limit=1, **{"reaction time": 1}).monitor(verdict=verdict)
+    assert told(monitor) == told(expected)
+    twins = copy.copy(monitor), pickled(monitor)
+    for twin in (*twins, monitor):
+        twin.reset()  # the values stay
+        expected.reset()
+        assert told(twin) == told(expected)
+    monitor.reset(limit=4, **{"reaction time": 2})
+    assert told(monitor) == before
+
+
+def test_a_watched_formula_has_the_values_of_its_monitor(spec):
+    monitor = spec.with_parameters(limit=2).monitor(watch=["low", spec.document.definitions["low"]])
+    monitor.update(0, x=5)
+    assert monitor["low"] == monitor[spec.document.definitions["low"]] == -3.0
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "parameter >= 3",
+        "float parameter; always(parameter >= 3)",
+        "parameter = x > 3; always(parameter)",
+        "float parameter float y; parameter S y > 3",
+        "from messages import parameter parameter x float y; y > 3",
+    ],
+)
+def test_the_word_parameter_is_not_reserved(text):
+    assert rtamt.parse(text).formula is not None
+    assert not rtamt.parse(text).parameters
+
+
+def test_several_specifications_with_the_same_parameter_do_not_share_its_value(spec):
+    pair = [spec.with_parameters(limit=1), spec.with_parameters(limit=2)]
+    found = [result.robustness for result in rtamt.evaluate_all(pair, DATA)]
+    assert found == [one.evaluate(DATA).robustness for one in pair] == [-2.0, -1.0]
+
+
+def test_the_classes_of_rtamt_take_a_parameter_for_a_constant():
+    spec = rtamt.StlDiscreteTimeSpecification()
+    spec.spec = "float x parameter float limit = 4 low = x <= limit"
+    spec.parse()
+    assert spec.update(0, [("x", 1.0)]) == 3.0
+    assert spec.get_value("low") == 3.0
+
+
+def test_parameters_in_templates_have_the_values_in_use():
+    spec = rtamt.parse(
+        """
+        input float x
+        parameter float limit = 4
+        parameter float within = 2
+        def low(y, bound = limit) = y <= bound
+        def soon(y) = eventually[0:within](low(y))
+        require LOW: always[0:1](low(x))
+        """
+    ).with_parameters(limit=3, within=1)
+    assert str(spec) == "always[0:1](x <= 3)"
+    monitor = spec.monitor(watch=["soon(x)", "low(x, limit)"])
+    monitor.update(0, x=1)
+    monitor.update(1, x=2)
+    assert (monitor["soon(x)"], monitor["low(x, limit)"]) == (2.0, 1.0)
