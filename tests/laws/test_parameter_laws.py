@@ -11,7 +11,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 import rtamt
-from rtamt.errors import EvaluationError, SpecificationError, UsageError
+from rtamt.errors import SpecificationError, StlError
 from rtamt.language.formula import Apply, Const, Formula, Var, fold, variables
 from rtamt.language.printer import number, to_text
 from tests.strategies import dense_traces, formulas, traces
@@ -52,11 +52,11 @@ def outcome(call: Callable[[], Any]) -> str:
     """Return what a call returns, or the sentence with which it fails, without the position in the text."""
     try:
         return repr(call())
-    except (EvaluationError, UsageError) as error:
+    except StlError as error:
         return str(error).partition("\n")[0]
 
 
-@settings(max_examples=60)
+@settings(max_examples=40)
 @given(st.data(), traces(), BACKENDS)
 def test_parameters_set_later_give_the_bits_of_constants_in_the_text(
     data: st.DataObject, columns: dict[str, Any], backend: str
