@@ -214,7 +214,7 @@ class SpecificationText:
     @property
     def horizon(self) -> float:
         """Seconds after t at which ρ at t is known online; inf if never. The paper's Definition 3."""
-        depth = horizon(self._apply_semantics(self.formula), self.period or Fraction(1))
+        depth = horizon(self._grounded(self.domain), self.period or Fraction(1))
         return float("inf") if depth is None else float(depth)
 
     def pastified(self, period: Duration | None = None) -> Formula:
@@ -227,7 +227,13 @@ class SpecificationText:
         once[5:5](x >= 3) -> once[0:5](y >= 3)
         """
         step = self.period if period is None else positive_period(period)
-        return pastify(self.formula, step or Fraction(1), self.text, self.unit)
+        formula = self._grounded(self._domain_for(period=period))
+        return pastify(formula, step or Fraction(1), self.text, self.unit)
+
+    def _grounded(self, domain: TimeDomain) -> Formula:
+        """Return the formula with closed bounds, as it is monitored; where there are none, bounds need not fit."""
+        (formula,) = domain.online.ground(self.formula)
+        return formula if formula is self.formula else domain.online.check(self.formula, self.text)
 
     def _apply_semantics(
         self, formula: Formula, semantics: str | PredicateSemantics | None = None

@@ -13,7 +13,7 @@ from rtamt.compiler.early import compile_graph
 from rtamt.engine.backend import Session
 from rtamt.engine.domains import engine_of
 from rtamt.engine.native import core
-from rtamt.engine.online import OnlineMonitor, Watched
+from rtamt.engine.online import OnlineMonitor, Watched, grounded
 from rtamt.engine.usage_guard import exclusive
 from rtamt.errors import TraceError, UsageError, did_you_mean, shown
 from rtamt.rewrite.desugar import desugar
@@ -86,8 +86,7 @@ class EarlyMonitor(OnlineMonitor):
         start: bool = False,
         every: bool = True,
     ) -> None:
-        for watched in (Watched("", formula, text), *watch):
-            domain.check(watched.formula, watched.text)
+        formula, watch = grounded(domain, formula, text, watch)
         step = domain.step
         assert step is not None
         OnlineMonitor.__init__(self, formula, watch, declared, factory)
