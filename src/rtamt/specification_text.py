@@ -13,6 +13,7 @@ from rtamt.engine.online import Watched
 from rtamt.errors import UsageError
 from rtamt.language.formula import Formula, outermost, variables
 from rtamt.language.grammar import is_number
+from rtamt.language.imports import again
 from rtamt.language.lint import LintWarning, warnings_of
 from rtamt.language.operators import STL, Language
 from rtamt.language.parameters import assigned, bounding, with_values
@@ -154,7 +155,12 @@ class SpecificationText:
                 f"the formula was replaced, and {names} bounds an interval: set it before with_formula()"
             )
         document = parse_document(
-            self.text, language=self.language, unit=self.unit, constants=self._given, parameters=values
+            self.text,
+            language=self.language,
+            unit=self.unit,
+            constants=self._given,
+            parameters=values,
+            library=again(self.document),
         )
         if self.document.selected is not None:
             document = document.select(self.document.selected)

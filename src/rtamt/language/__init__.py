@@ -22,6 +22,7 @@ units                durations with units
 names                a position in a text, and what a name there stands for
 scope                names in a formula: constants, named formulas, declared variables
 templates            ``def name(parameters) = formula``, and its uses
+imports              files that others import: where they may be, and what is taken from them
 declarations         what stands before the formulas of a file: imports, declarations, annotations
 specfile             specification files (``.stl``) to a document, and their grammar
 document             the content of a specification file

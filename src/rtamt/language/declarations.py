@@ -2,22 +2,25 @@
 
 from __future__ import annotations
 
+from abc import abstractmethod
 from math import inf
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Literal
 
-from rtamt.errors import NameInFormulaError, did_you_mean
+from rtamt.errors import NameInFormulaError, SpecificationError, did_you_mean, placed
 from rtamt.language.document import Declaration, Import
 from rtamt.language.formula import Span
 from rtamt.language.grammar import INFINITY
+from rtamt.language.imports import ImportedFileError, Library, called, moved
 from rtamt.language.lexer import Token, quoted
 from rtamt.language.operators import Fixity, Language
 from rtamt.language.requirements import RequirementParser
+from rtamt.language.scope import Scope
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from rtamt.language.scope import Scope
+    from rtamt.language.document import Document
     from rtamt.language.templates import Template
 
 #: The types that need no import.
@@ -39,9 +42,18 @@ class DeclarationParser(RequirementParser):
     """The grammar productions of declarations, in addition to those of a requirement."""
 
     def __init__(
-        self, text: str, language: Language, unit: str, scope: Scope, values: Mapping[str, float]
+        self,
+        text: str,
+        language: Language,
+        unit: str,
+        scope: Scope,
+        values: Mapping[str, float],
+        library: Library,
     ) -> None:
         super().__init__(text, language, unit, scope)
+        self.library = library
+        #: From each name that is imported to the file that defines it.
+        self.origins: dict[str, str] = {}
         #: The values of parameters that are given.
         self._values = values
         #: The names of the declared parameters.
@@ -61,8 +73,18 @@ class DeclarationParser(RequirementParser):
         self.accept(";")
         return name
 
+    @abstractmethod
+    def document(self, *, imported: bool = False) -> Document:
+        """Parse the whole text; one that is imported needs no formula."""
+
     def _import(self) -> bool:
-        """``import = "from" , module , "import" , word , [ ";" ]``."""
+        """``import = ( "from" , module , "import" , word | "import" , '"' , path , '"' ) , [ ";" ]``."""
+        if self._imports_file():
+            start = self.next().start
+            token = self.next()
+            self._import_file(token, Span(start, token.end))
+            self.accept(";")
+            return True
         if not (self._word("from") and self._plain_name(1)):
             return False
         self.next()
@@ -75,6 +97,46 @@ class DeclarationParser(RequirementParser):
         self._imports[name.text] = Import(module.text, name.text)
         self.accept(";")
         return True
+
+    def _imports_file(self) -> bool:
+        return self._word("import") and self._at(1).kind == "quoted" and "import" not in self._imports
+
+    def _import_file(self, token: Token, span: Span) -> None:
+        """Take over what a file declares and defines, but for its requirements."""
+        library = self.library
+        try:
+            file, text = library.read(token.name)
+        except ImportedFileError as error:
+            raise self.error(str(error), token.span) from None
+        if file not in library.documents:
+            library.open.append(file)
+            other = type(self)(text, self.language, self.unit, Scope(), self._values, library)
+            try:
+                document = other.document(imported=True)
+            except SpecificationError as error:
+                raise error if error.text is not text else placed(error, called(file)) from None
+            library.open.pop()
+            names = (*document.constants, *document.definitions, *document.templates, *document.variables)
+            library.documents[file] = document, {**dict.fromkeys(names, file), **other.origins}
+        document, origins = library.documents[file]
+        for name, origin in origins.items():
+            known = self.origins.setdefault(name, origin)
+            if known != origin:
+                raise self.error(
+                    f"'{name}' is in '{called(known)}' and in '{called(origin)}'; rename one of them", span
+                )
+        definitions, templates = moved(document, span)
+        self._constants.update(document.constants)
+        self._parameters.update(document.parameters)
+        self._declarations.update({each.name: each for each in document.declarations})
+        self._definitions.update(definitions)
+        self._templates.update(templates)
+        self._topics.update(document.topics)
+        self._imports.update({each.name: each for each in document.imports})
+
+    def _from(self, name: str) -> str:
+        """Return where a name comes from, for messages: "" if it is of this text."""
+        return f" (it is imported from '{called(self.origins[name])}')" if name in self.origins else ""
 
     def _declaration(self) -> bool:
         """``declaration = ( [ role ] , type , name | kind , type , name , "=" , value ) , [ unit ] , [ ";" ]``."""
@@ -116,7 +178,7 @@ class DeclarationParser(RequirementParser):
         if head != name and head in self._declarations:
             raise self.error(f"'{name}' is a field of '{head}', which is declared", token.span)
         if name in self._declarations or name in self._constants or (constant and name in self._given):
-            raise self.error(f"'{name}' is declared twice", token.span)
+            raise self.error(f"'{name}' is declared twice{self._from(name)}", token.span)
         value = None
         if self.accept("="):
             if not constant:
@@ -217,7 +279,7 @@ class DeclarationParser(RequirementParser):
     def _declares(self) -> bool:
         """Return whether a declaration begins here, of a known or unknown type."""
         first = self.token
-        if first.kind != "name" or self._requires():
+        if first.kind != "name" or self._requires() or self._imports_file():
             return False
         if (first.text in _ROLES or first.text in _KINDS) and self._plain_type(1):
             return True
