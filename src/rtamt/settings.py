@@ -103,6 +103,24 @@ def check_constants(constants: Mapping[str, float]) -> None:
             raise UsageError(f"the constant '{name}' is {shown(value)}; give a number")
 
 
+def assignments(texts: Iterable[str]) -> dict[str, float]:
+    """Return the values of parameters that are given as texts.
+
+    >>> assignments(["limit=3", "battery.low = 3.5"])
+    {'limit': 3.0, 'battery.low': 3.5}
+    """
+    values = {}
+    for text in texts:
+        name, equals, value = text.rpartition("=")
+        try:
+            values[name.strip()] = float(value)
+        except ValueError:
+            equals = ""
+        if not equals or not name.strip():
+            raise UsageError(f"'{text}' sets no parameter; write NAME=VALUE with a number, such as limit=3")
+    return values
+
+
 def check_parameters(values: Mapping[str, float], known: Collection[str]) -> None:
     """Raise :class:`UsageError` unless every name is a known parameter and every value a number."""
     for name, value in values.items():

@@ -339,8 +339,8 @@ class Specification(SpecificationText):
 
         Its outputs are ``robustness`` (ρ, or what ``semantics`` says) and ``verdict`` (+inf where the
         formula holds, -inf where it does not); of several requirements these are of all together, and each has
-        its own, ``robustness.R1`` and ``verdict.R1``. The named constants of the specification are parameters
-        of the program, except those that bound an interval. Settings and errors as for :meth:`monitor`.
+        its own, ``robustness.R1`` and ``verdict.R1``. The parameters and named constants of the specification are
+        parameters of the program, except those that bound an interval. Settings and errors as for :meth:`monitor`.
 
         With ``verdict="interval"`` its outputs are bounds at the start of the trace, whatever is still to come:
         ``lower``, ``upper``, ``verdict``, and ``decided_since``, the seconds from the first sample to the one that

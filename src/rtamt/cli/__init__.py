@@ -11,6 +11,7 @@ parser           ``Command``, the argument parser, exit codes
 command          options of several commands, and how values are printed
 arguments        specifications and recordings on the command line
 reading_options  options for reading recordings
+parameters       the option ``--set``
 language         the option ``--language``
 outcome          what came of a requirement over a recording, as reports show it
 runner           every requirement on every recording, on all cores

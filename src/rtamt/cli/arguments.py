@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-from argparse import Namespace
 from collections import Counter
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from rtamt.cli.command import CommandError, read_specification
+from rtamt.cli.command import CommandError, read_specifications
 from rtamt.cli.outcome import Requirement
 from rtamt.cli.reading_options import reading_of
 from rtamt.cli.runner import evaluate
 from rtamt.readers.sql import shown
 
 if TYPE_CHECKING:
+    from argparse import Namespace
+
     from rtamt.cli.reading_options import Reading
     from rtamt.language.document import Requirement as Written
     from rtamt.results import Result
@@ -31,7 +32,7 @@ def requirements_and_traces(args: Namespace, command: str) -> tuple[list[Require
     A requirement is called by its ID (what stands after ``require``) where no other one has it.
     """
     given, traces = _split(args)
-    specs = [read_specification(Namespace(**{**vars(args), "spec": text}), args.time) for text in given]
+    specs = read_specifications(args, args.time, given)
     if not traces:
         raise CommandError(
             f"there is no trace to {command}: name a file, or --sql URL; see 'rtamt {command} --help'"

@@ -14,9 +14,10 @@ from uuid import uuid4
 import numpy as np
 
 from rtamt.cli.language import add_language_option, read_language
+from rtamt.cli.parameters import add_set_option, assigned
 from rtamt.cli.parser import complain
 from rtamt.engine.domains import engine_of
-from rtamt.errors import SpecificationError, StlError, UsageError, readable
+from rtamt.errors import BoundError, SpecificationError, StlError, UsageError, readable
 from rtamt.files import nearest_file, write_bytes, write_text
 from rtamt.language.lexer import NAME
 from rtamt.language.lint import CODES
@@ -78,6 +79,7 @@ def add_specification_options(parser: argparse.ArgumentParser, nargs: str | None
         help=f"what a predicate is worth: {', '.join(SEMANTICS)} (default: standard, its robustness); "
         f"which variables are inputs is declared in the specification",
     )
+    add_set_option(group)
     add_language_option(group)
 
 
@@ -151,7 +153,19 @@ def _is_called_like_a_trace(path: str) -> bool:
 
 def read_specification(args: argparse.Namespace, time: str) -> Specification:
     """Read SPEC: the file of that name, else the text itself; ``time``: the name of a time domain."""
-    spec: str = args.spec
+    return read_specifications(args, time, [args.spec])[0]
+
+
+def read_specifications(args: argparse.Namespace, time: str, given: Sequence[str]) -> list[Specification]:
+    """Read several files or texts; what is set must be a parameter of one of them."""
+    specs = [_read(args, time, spec) for spec in given]
+    try:
+        return assigned(specs, args.set)
+    except BoundError as error:
+        raise CommandError(f"{' '.join(f'--set {each}' for each in args.set)}: {error}") from error
+
+
+def _read(args: argparse.Namespace, time: str, spec: str) -> Specification:
     domain = time_domain(time, args.period)
     check_backend(args.backend)
     try:

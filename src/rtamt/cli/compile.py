@@ -20,8 +20,8 @@ if TYPE_CHECKING:
 
 _DESCRIPTION = """\
 Compile a requirement to a program: a file that the C library of this package runs, and whoever links
-with it, without Python. Its outputs are the robustness and the verdict; the named constants of the
-requirement are its parameters."""
+with it, without Python. Its outputs are the robustness and the verdict; the parameters and
+named constants of the requirement are its parameters."""
 
 _EPILOG = """\
 docs/reference/program.md describes the format, and rtamt/runtime/rtamt.h the C functions that run it.

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import json
 import sys
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rtamt.cli.command import json_number
+from rtamt.cli.parameters import add_set_option, assigned
 from rtamt.cli.parser import OK, VIOLATED
 from rtamt.cli.terminal import Progress, paint, say, use_color
 from rtamt.errors import UsageError
@@ -50,6 +52,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.description = _DESCRIPTION
     parser.epilog = _EPILOG
     parser.add_argument("problem", metavar="PROBLEM", help="a TOML file")
+    add_set_option(parser)
     parser.add_argument("--optimizer", metavar="NAME", help="instead of the file's")
     parser.add_argument("--budget", metavar="N", type=int, help="simulations at most, instead of the file's")
     parser.add_argument("--seed", metavar="N", type=int, help="instead of the file's")
@@ -74,6 +77,7 @@ def run(args: argparse.Namespace) -> int:
 
     color = use_color(args.color, sys.stdout)
     search = load_search(args.problem)
+    (spec,) = assigned([search.problem.spec], args.set)
     settings = dict(search.settings)
     for name in ("optimizer", "budget", "seed", "workers", "record"):
         if getattr(args, name) is not None:
@@ -89,7 +93,7 @@ def run(args: argparse.Namespace) -> int:
                 progress.clear()
                 say(_line(evaluation))
 
-        found = falsify(search.problem, progress=show, **settings)
+        found = falsify(replace(search.problem, spec=spec), progress=show, **settings)
     if not args.json:
         say(paint(str(found), "bad" if found.falsified else "good", color), color=color)
     if args.plot:

@@ -10,6 +10,7 @@ from rtamt.cli.command import (
     add_specification_options,
     add_time_option,
     is_trace,
+    json_number,
     json_text,
     read_specification,
 )
@@ -102,6 +103,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     """Print the properties."""
     if args.sql is not None or is_trace(args.spec):
+        if args.set:
+            raise CommandError("--set is for requirements, and this is a recording")
         if args.sql is not None and args.spec is not None:
             args.signals.insert(0, args.spec)
         say(str(_chosen(recording(args, args.sql or args.spec), args.signals)))
@@ -113,6 +116,8 @@ def run(args: argparse.Namespace) -> int:
     _refuse_reading_options(args)
     program = compiled(args.spec)
     if program is not None:
+        if args.set:
+            raise CommandError(f"'{args.spec}' is a program: --set is for requirements")
         if args.latex or args.json:
             raise UsageError(f"'{args.spec}' is a program: --latex and --json are for requirements")
         say("\n".join(listing(program)))
@@ -205,6 +210,20 @@ def _variables(spec: Specification) -> list[dict[str, Any]]:
     return rows
 
 
+def _parameters(spec: Specification) -> list[dict[str, Any]]:
+    """Return the properties of each parameter."""
+    return [
+        {
+            "name": declaration.name,
+            "value": spec.parameters[declaration.name],
+            "default": declaration.value,
+            "unit": declaration.unit or None,
+        }
+        for declaration in spec.document.declarations
+        if declaration.kind == "parameter"
+    ]
+
+
 def _requirements(facts: Facts) -> list[dict[str, Any]]:
     """Return the properties of each requirement; ``ahead``: its horizon in words."""
     rows = []
@@ -265,6 +284,12 @@ def _lines(facts: Facts) -> Iterator[str]:
         yield f"{'' if i else 'variables':<11}{' '.join(word for word in words if word)}"
     if not spec.input_names:
         yield "variables  none"
+    for i, parameter in enumerate(_parameters(spec)):
+        unit = f" [{parameter['unit']}]" if parameter["unit"] else ""
+        default = (
+            f"  (by default {parameter['default']:g})" if parameter["value"] != parameter["default"] else ""
+        )
+        yield f"{'' if i else 'parameters':<11}{parameter['name']} = {parameter['value']:g}{unit}{default}"
     detail = ", the tick in which time is counted" if spec.domain.continuous else ""
     if spec.domain.step is None:
         detail = " (the default; --period sets it)"
@@ -307,6 +332,10 @@ def _as_json(facts: Facts) -> str:
             "latex": spec.formula.latex(),
             "semantics": spec.semantics,
             "variables": _variables(spec),
+            "parameters": [
+                {key: json_number(each) if isinstance(each, float) else each for key, each in row.items()}
+                for row in _parameters(spec)
+            ],
             **{domain.setting: None for domain in DOMAINS.values()},
             spec.domain.setting: float(facts.step),
             "horizon": None if facts.horizon is None else float(facts.horizon),

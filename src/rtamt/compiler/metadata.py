@@ -24,7 +24,7 @@ _STEP = struct.Struct("<qq")
 class Metadata:
     """Names and texts of a program.
 
-    ``formula`` is its text. ``outputs`` are their names. ``parameters`` maps a named constant to the
+    ``formula`` is its text. ``outputs`` are their names. ``parameters`` maps a parameter or named constant to the
     instructions that hold its value. ``meanings`` maps an instruction to the formula it computes. ``early``: of a
     program of bounds its graph, as the core reads it (core/c_api/early_runner.hpp).
     """

@@ -69,7 +69,14 @@ def variables_of(program: Program, units: Mapping[str, str]) -> tuple[Variable, 
             add(f"{name}{requirement}", kind, "output", 0.0, description, unit)
     for name, places in metadata.parameters.items():
         value = program.instructions[places[0]].x
-        add(name, "real", "parameter", value, "a constant of the requirement", units.get(name, ""))
+        add(
+            name,
+            "real",
+            "parameter",
+            value,
+            "a parameter or constant of the requirement",
+            units.get(name, ""),
+        )
     return tuple(found)
 
 

@@ -10,6 +10,7 @@ from rtamt.errors import UsageError
 from rtamt.language.units import UNITS
 from rtamt.ros.binding import VERDICTS, bind
 from rtamt.ros.monitor import RosMonitor
+from rtamt.settings import assignments
 from rtamt.signals.domains import DEFAULT, DOMAINS, time_domain
 from rtamt.texts import load
 
@@ -24,6 +25,7 @@ DEFAULTS: Mapping[str, str] = {
     "time": DEFAULT,
     "stale": "",
     "verdict": "",
+    "set": "",
 }
 
 
@@ -37,6 +39,7 @@ class Options:
     time: str
     stale: str
     verdict: str
+    set: str
 
     def monitor(self) -> RosMonitor:
         """Load the specification and create its monitor; raise :class:`StlError` on failure."""
@@ -51,7 +54,8 @@ class Options:
                 "period), or use --time dense, which reads every message at its own time"
             )
         period = self._duration(self.period) if self.period else None
-        spec = load(self.spec, time=self.time, period=period)
+        values = assignments(self.set.split(",")) if self.set else {}
+        spec = load(self.spec, time=self.time, period=period).with_parameters(**values)
         stale = self._duration(self.stale) if self.stale else None
         return RosMonitor(bind(spec, self.verdict or None), period=period, time=self.time, stale=stale)
 
@@ -111,6 +115,11 @@ def add_options(made: argparse.ArgumentParser) -> None:
         metavar=f"{{{','.join(VERDICTS)}}}",
         help="delayed: robustness and verdict of every sample, one horizon later; interval: bounds and verdict at "
         "the start of the trace, whatever is still to come (default: interval for unbounded future, else delayed)",
+    )
+    made.add_argument(
+        "--set",
+        metavar="NAME=VALUE,...",
+        help="values of parameters that the specification declares, such as limit=3,gap=2",
     )
 
 

@@ -12,6 +12,9 @@
     throttle = { kind = "piecewise_constant", points = 7, low = 0, high = 100 }
     pitch = { kind = "pulse", amplitude = { low = 1, high = 1.75 }, frequency = 0.2 }
 
+    [parameters]                           # of the specification
+    limit = 100
+
     [search]
     optimizer = "cma"
     budget = 300
@@ -50,7 +53,7 @@ KINDS: Mapping[str, Any] = MappingProxyType({
     "sine": Sine,
 })  # fmt: skip
 
-_TOP = ("specification", "formula", "plant", "duration", "inputs", "search", "outputs", "step")
+_TOP = ("specification", "formula", "plant", "duration", "inputs", "parameters", "search", "outputs", "step")
 _SPECIFICATION = ("period", "unit", "time", "resolution", "semantics", "backend", "constants")
 _SEARCH = ("optimizer", "budget", "seed", "workers", "record", "stop")
 
@@ -85,6 +88,7 @@ def _search(data: dict[str, Any], folder: Path) -> Search:
         raise UsageError("give either 'specification', a file, or 'formula', its text")
     text = data.get("formula")
     spec = load(folder / data["specification"], **settings) if text is None else parse(text, **settings)
+    spec = spec.with_parameters(**data.get("parameters", {}))
     inputs = {name: _input(name, given) for name, given in data.get("inputs", {}).items()}
     chosen = dict(data.get("search", {}))
     _known(chosen, _SEARCH, "search.")

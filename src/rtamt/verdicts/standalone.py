@@ -38,7 +38,7 @@ def carried_program(
     text: str | None = None,
     name: str | None = None,
 ) -> Program:
-    """Compile a requirement for carriers: outputs :data:`OUTPUTS`, its named constants as parameters.
+    """Compile a requirement for carriers: outputs :data:`OUTPUTS`, its parameters and named constants as parameters.
 
     ``domain``: with a known step. ``applied``: the formula whose robustness is
     told, where a semantics says so; the verdict is that of ``formula`` all the same. ``parts``: by name the
@@ -143,7 +143,7 @@ def bounds_program(
 
 
 def _with_parameters(formula: Formula, structural: frozenset[str], values: dict[str, float]) -> Formula:
-    """Return the formula with a variable for every named constant, whose values are put into ``values``."""
+    """Return the formula with a variable for every parameter and named constant; their values go to ``values``."""
 
     def step(node: Formula, args: tuple[Formula, ...]) -> Formula:
         if isinstance(node, Apply):

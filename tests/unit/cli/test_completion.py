@@ -35,7 +35,7 @@ TYPED = pytest.mark.parametrize(
     ("typed", "expected"),
     [
         ("rtamt che", {"check"}),
-        ("rtamt monitor --se", {"--semantics"}),
+        ("rtamt monitor --sem", {"--semantics"}),
         ("rtamt info --l", {"--language", "--latex"}),
         ("rtamt check spe", {"spec.stl"}),
     ],

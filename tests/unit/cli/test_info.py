@@ -100,6 +100,7 @@ def test_json(run):
         "latex": run("info", "next(req.value >= 3)", "--latex").out.strip(),
         "semantics": "standard",
         "variables": [{"name": "req.value", "type": None, "role": None, "unit": None, "topic": None}],
+        "parameters": [],
         "period": 1.0,
         "resolution": None,
         "horizon": 1.0,

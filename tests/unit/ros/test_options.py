@@ -54,3 +54,14 @@ def test_a_wrong_argument_is_a_sentence(arguments, sentence):
     with pytest.raises(UsageError) as caught:
         monitor(*arguments)
     assert str(caught.value) == sentence
+
+
+def test_parameters_of_the_specification_are_set(tmp_path):
+    spec = tmp_path / "spec.stl"
+    text = LISTING_8.read_text().replace("@", "parameter float limit = 3\n@", 1)
+    spec.write_text(text.replace("req.value>=3", "req.value>=limit"))
+    for arguments, given in (([], {"set": "limit=4"}), (["--set", "limit=4"], {})):
+        (output,) = monitor(spec, "--period", "1", *arguments, **given).binding.outputs
+        assert "req.value >= 4" in str(output.specification)
+    with pytest.raises(UsageError, match="there is no parameter 'limt'"):
+        monitor(spec, "--period", "1", "--set", "limt=4")

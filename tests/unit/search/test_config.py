@@ -137,3 +137,13 @@ def test_the_command_says_what_is_wrong(problem, capsys):
     assert capsys.readouterr().err.startswith("rtamt: there is no optimizer 'magic'; optimizers: cma, ")
     assert main(["falsify", str(problem), "--plot", str(Path("no") / "where.png")]) == 2
     assert "cannot write the picture 'no/where.png'" in capsys.readouterr().err
+
+
+def test_parameters_of_the_requirement_are_set(problem, capsys):
+    declared = PROBLEM.replace("always", "parameter float limit = 6 always").replace("<= 6", "<= limit")
+    problem.write_text(declared + "[parameters]\nlimit = 7\n")
+    assert str(load_search(problem).problem.spec) == "always[0:2](height <= 7)"
+    assert main(["falsify", str(problem), "--set", "limit=9"]) == 0
+    assert main(["falsify", str(problem), "--set", "limit=6"]) == 1
+    assert main(["falsify", str(problem), "--set", "lim=6"]) == 2
+    assert "there is no parameter 'lim'; did you mean 'limit'?" in capsys.readouterr().err

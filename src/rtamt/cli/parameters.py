@@ -1,0 +1,35 @@
+"""``--set NAME=VALUE``: values of the parameters of specifications."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rtamt.settings import assignments, check_parameters
+
+if TYPE_CHECKING:
+    from argparse import _ActionsContainer
+    from collections.abc import Sequence
+
+    from rtamt.specification import Specification
+
+
+def add_set_option(group: _ActionsContainer) -> None:
+    """Add what sets parameters."""
+    group.add_argument(
+        "--set",
+        metavar="NAME=VALUE",
+        action="append",
+        default=[],
+        help="a value of a parameter that the specification declares; may be given again",
+    )
+
+
+def assigned(specs: Sequence[Specification], given: Sequence[str]) -> list[Specification]:
+    """Return specifications with the values that are given; each must be of a parameter of one of them."""
+    values = assignments(given)
+    known = dict.fromkeys(name for spec in specs for name in spec.parameters)
+    check_parameters(values, known)
+    return [
+        spec.with_parameters(**{name: value for name, value in values.items() if name in spec.parameters})
+        for spec in specs
+    ]
