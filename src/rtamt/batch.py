@@ -166,7 +166,7 @@ def evaluate_requirements(spec: Specification, data: Any) -> Mapping[str, Result
     ``data`` and errors as for :meth:`Specification.evaluate`, which computes verdicts when they are asked for.
     """
     query = spec._query()
-    recording = spec._with_units(query.record(data, spec.input_names))
+    recording = spec._with_units(query.record(data, spec.input_names, spec.types))
     spec._check(query, recording)
     outputs = [one._outputs() for one in spec.requirements.values()]
     return requirements_of(spec, judge(outputs, recording, spec._signals_of), query.semantics)
@@ -179,7 +179,8 @@ def _evaluate_alike(asked: _Asked, data: Any) -> Iterator[tuple[int, Result]]:
     """Yield indices and results of queries in the same time domain."""
     names = tuple(dict.fromkeys(name for spec, _ in asked.values() for name in spec.input_names))
     spec, query = next(iter(asked.values()))
-    whole = query.record(data, names)
+    types = {name: type_ for spec, _ in asked.values() for name, type_ in spec.types.items()}
+    whole = query.record(data, names, types)
     for number, (_, query) in asked.items():
         if query.domain.step is None:  # otherwise checked without the recording
             with _place(number):

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any, Literal, overload
 from rtamt.engine.domains import engine_of
 from rtamt.engine.offline import Evaluators, Query
 from rtamt.errors import TraceError, UsageError
-from rtamt.language.imports import again
 from rtamt.language.printer import to_text
 from rtamt.language.specfile import parse_document
 from rtamt.language.units import check_unit
@@ -31,7 +30,6 @@ if TYPE_CHECKING:
     from rtamt.engine.discrete.monitor import Monitor
     from rtamt.engine.online import OnlineMonitor
     from rtamt.language.formula import Formula
-    from rtamt.language.imports import Library
     from rtamt.language.units import Duration
     from rtamt.settings import DenseSettings, DiscreteSettings, IntervalSettings, Semantics, Watch
     from rtamt.signals.dense import Dense
@@ -127,7 +125,7 @@ class Specification(SpecificationText):
         declared = Uncertainty.of(uncertainty, ranges, self.input_names)
         missing: dict[str, Any] = {}
         try:
-            recording = query.record(data, self.input_names)
+            recording = query.record(data, self.input_names, self.types)
         except TraceError as error:
             if error.variable not in self.input_names:
                 raise
@@ -135,7 +133,7 @@ class Specification(SpecificationText):
             filled, missing = fill_gaps(data, self.input_names, own_clocks=own_clocks)
             if not missing:
                 raise
-            recording = query.record(filled, self.input_names)
+            recording = query.record(filled, self.input_names, self.types)
         return declared.applied(recording, missing)
 
     def _with_units(self, recording: DomainTrace) -> DomainTrace:
@@ -394,7 +392,7 @@ class Specification(SpecificationText):
         settings = {name: getattr(self, name) for name in names}
         replaced = self.document.replaced
         formula = to_text(self.formula, self.language, parameters=True) if replaced else None
-        values = self._given, dict(self.parameters), again(self.document)
+        values = self._given, dict(self.parameters)
         return _factory, (
             self.text,
             values,
@@ -419,19 +417,14 @@ def _monitor(
 
 def _factory(
     text: str,
-    values: tuple[Mapping[str, float], Mapping[str, float], Library],
+    values: tuple[Mapping[str, float], Mapping[str, float]],
     settings: dict[str, Any],
     selected: str | None,
     formula: str | None,
 ) -> Specification:
-    constants, parameters, library = values
+    constants, parameters = values
     document = parse_document(
-        text,
-        language=settings["language"],
-        unit=settings["unit"],
-        constants=constants,
-        parameters=parameters,
-        library=library,
+        text, language=settings["language"], unit=settings["unit"], constants=constants, parameters=parameters
     )
     spec = Specification(document if selected is None else document.select(selected), **settings)
     return spec if formula is None else spec.with_formula(spec._named(formula))

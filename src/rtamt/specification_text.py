@@ -11,15 +11,15 @@ from typing import TYPE_CHECKING
 
 from rtamt.engine.online import Watched
 from rtamt.errors import UsageError
-from rtamt.language.formula import Formula, outermost, variables
+from rtamt.language.formula import Formula, outermost, types_of, variables
 from rtamt.language.grammar import is_number
-from rtamt.language.imports import again
 from rtamt.language.lint import LintWarning, warnings_of
 from rtamt.language.operators import STL, Language
 from rtamt.language.parameters import assigned, bounding, with_values
 from rtamt.language.parser import parse_formula
 from rtamt.language.printer import excerpt, to_text
 from rtamt.language.specfile import parse_document
+from rtamt.language.type_rules import as_formula
 from rtamt.language.units import positive_period
 from rtamt.rewrite.horizon import horizon
 from rtamt.rewrite.pastify import pastify
@@ -37,6 +37,7 @@ if TYPE_CHECKING:
 
     from rtamt.language.document import Document
     from rtamt.language.units import Duration
+    from rtamt.language.value_types import ValueType
     from rtamt.rewrite.semantics import PredicateSemantics
     from rtamt.settings import Semantics
     from rtamt.signals.domain_interface import TimeDomain
@@ -155,12 +156,7 @@ class SpecificationText:
                 f"the formula was replaced, and {names} bounds an interval: set it before with_formula()"
             )
         document = parse_document(
-            self.text,
-            language=self.language,
-            unit=self.unit,
-            constants=self._given,
-            parameters=values,
-            library=again(self.document),
+            self.text, language=self.language, unit=self.unit, constants=self._given, parameters=values
         )
         if self.document.selected is not None:
             document = document.select(self.document.selected)
@@ -217,10 +213,15 @@ class SpecificationText:
         """The variables that the formula reads, of several requirements those of all, in order of appearance."""
         return variables(self.formula)
 
+    @cached_property
+    def types(self) -> Mapping[str, ValueType]:
+        """The types of the variables that the formula reads, as far as they are Booleans or of an enumeration."""
+        return MappingProxyType(types_of(self.formula))
+
     @property
     def horizon(self) -> float:
         """Seconds after t at which ρ at t is known online; inf if never. The paper's Definition 3."""
-        depth = horizon(self._grounded(self.domain), self.period or Fraction(1))
+        depth = horizon(self._apply_semantics(self.formula), self.period or Fraction(1))
         return float("inf") if depth is None else float(depth)
 
     def pastified(self, period: Duration | None = None) -> Formula:
@@ -233,13 +234,7 @@ class SpecificationText:
         once[5:5](x >= 3) -> once[0:5](y >= 3)
         """
         step = self.period if period is None else positive_period(period)
-        formula = self._grounded(self._domain_for(period=period))
-        return pastify(formula, step or Fraction(1), self.text, self.unit)
-
-    def _grounded(self, domain: TimeDomain) -> Formula:
-        """Return the formula with closed bounds, as it is monitored; where there are none, bounds need not fit."""
-        (formula,) = domain.online.ground(self.formula)
-        return formula if formula is self.formula else domain.online.check(self.formula, self.text)
+        return pastify(self.formula, step or Fraction(1), self.text, self.unit)
 
     def _apply_semantics(
         self, formula: Formula, semantics: str | PredicateSemantics | None = None
@@ -277,6 +272,8 @@ class SpecificationText:
             constants=self.document.constants,
             definitions=self.document.definitions,
             variables=self.document.variables or None,
+            types=self.document.types,
+            enumerations=self.document.enumerations,
             unit=self.unit,
             parameters=self.parameters,
             templates=self.document.templates,
@@ -295,7 +292,7 @@ class SpecificationText:
         """Return a named sub-specification or requirement, if there is one."""
         definition = self.document.definitions.get(name)
         if definition is not None:
-            return definition
+            return as_formula(definition)
         return next((known.formula for known in self.document.requirements if known.name == name), None)
 
     @cached_property

@@ -12,6 +12,7 @@ if TYPE_CHECKING:
 
     from rtamt.language.formula import Formula
     from rtamt.rewrite.semantics import PredicateSemantics
+    from rtamt.signals.coding import Types
     from rtamt.signals.domain_interface import DomainTrace, TimeDomain
     from rtamt.signals.signal import Signal
 
@@ -29,9 +30,12 @@ class Query:
     semantics: str | PredicateSemantics
     unit: str | None = None
 
-    def record(self, data: Any, names: Sequence[str]) -> DomainTrace:
-        """Normalise a finished recording of the variables ``names``. Raises :class:`TraceError`."""
-        return self.domain.record(data, names, self.unit)
+    def record(self, data: Any, names: Sequence[str], types: Types) -> DomainTrace:
+        """Normalise a finished recording of the variables ``names``. Raises :class:`TraceError`.
+
+        ``types``: of the variables that are no plain numbers.
+        """
+        return self.domain.record(data, names, self.unit, types)
 
 
 class Evaluators:
@@ -49,11 +53,10 @@ class Evaluators:
         step, inputs = recording.step, tuple(recording.columns)
         if recording.bounds:
             backend = engine_of(recording.domain).backends[self._backend]
-            return list(backend.bounds(recording.domain.ground(*formulas), step, inputs)(recording))
+            return list(backend.bounds(formulas, step, inputs)(recording))
         key = (type(recording), formulas, step.as_integer_ratio(), inputs)  # fractions are slow to hash
         evaluator = self._evaluators.get(key)
         if evaluator is None:
             backend = engine_of(recording.domain).backends[self._backend]
-            grounded = recording.domain.ground(*formulas)
-            evaluator = self._evaluators[key] = backend.evaluator(grounded, step, inputs)
+            evaluator = self._evaluators[key] = backend.evaluator(formulas, step, inputs)
         return recording.signals(evaluator(recording))

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
 from rtamt.engine.usage_guard import UsageGuard, exclusive
 from rtamt.errors import UsageError, did_you_mean
-from rtamt.language.formula import Formula, variables
+from rtamt.language.formula import Formula, types_of, variables
 from rtamt.language.printer import excerpt
 from rtamt.rewrite.horizon import horizon
 from rtamt.signals import arrays
@@ -19,7 +19,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Mapping, Sequence
 
     from rtamt.engine.backend import Session
-    from rtamt.signals.domain_interface import TimeDomain
     from rtamt.signals.episodes import Episode
 
     Self = TypeVar("Self", bound="OnlineMonitor")
@@ -35,16 +34,6 @@ class Watched:
     name: str | Formula
     formula: Formula
     text: str | None
-
-
-def grounded(
-    domain: TimeDomain, formula: Formula, text: str | None, watch: Sequence[Watched]
-) -> tuple[Formula, list[Watched]]:
-    """Return a formula and what is watched beside it as they are evaluated; raise what does not fit the domain."""
-    for watched in (Watched("", formula, text), *watch):
-        domain.check(watched.formula, watched.text)
-    formula, *others = domain.ground(formula, *(watched.formula for watched in watch))
-    return formula, [replace(each, formula=other) for each, other in zip(watch, others, strict=True)]
 
 
 def _label(name: str | Formula) -> str:
@@ -91,6 +80,7 @@ class OnlineMonitor:
                         f"{', '.join(self.input_names) or 'no variable'} only"
                     )
         self._formulas = (formula, *(watched.formula for watched in watch))
+        self._types = types_of(formula)
         self._output_of = {watched.name: output for output, watched in enumerate(watch, 1)}
         self._declared = frozenset(declared)
         self._factory = factory
@@ -123,6 +113,11 @@ class OnlineMonitor:
     @abstractmethod
     def samples(self) -> int:
         """The number of samples since the start or the last reset."""
+
+    @property
+    def _checked(self) -> bool:
+        """Whether the values of some variables are checked here, because not every number is one of theirs."""
+        return bool(self._types)
 
     @property
     def memory(self) -> int:

@@ -66,7 +66,6 @@ class _Explainer:
         text: str | None,
         semantics: Callable[[Formula], Formula],
     ) -> None:
-        (formula,) = recording.domain.ground(formula)
         self._formula = formula
         self._text = text
         self._recording = recording

@@ -20,9 +20,11 @@ grammar              rules shared by parser and printer: chaining, signs, nestin
 intervals            bounds of temporal operators: units, exact values, errors
 units                durations with units
 names                a position in a text, and what a name there stands for
+value_types          the types of variables that are no plain numbers: Booleans, enumerations
+type_rules           what Booleans and enumerations may stand in
+typed_parser         members of enumerations and ``x in {...}`` in formulas
 scope                names in a formula: constants, named formulas, declared variables
 templates            ``def name(parameters) = formula``, and its uses
-imports              files that others import: where they may be, and what is taken from them
 declarations         what stands before the formulas of a file: imports, declarations, annotations
 specfile             specification files (``.stl``) to a document, and their grammar
 document             the content of a specification file

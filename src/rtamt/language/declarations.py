@@ -2,26 +2,25 @@
 
 from __future__ import annotations
 
-from abc import abstractmethod
 from math import inf
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Literal
 
-from rtamt.errors import NameInFormulaError, SpecificationError, did_you_mean, placed
+from rtamt.errors import NameInFormulaError, did_you_mean
 from rtamt.language.document import Declaration, Import
 from rtamt.language.formula import Span
 from rtamt.language.grammar import INFINITY
-from rtamt.language.imports import ImportedFileError, Library, called, moved
 from rtamt.language.lexer import Token, quoted
 from rtamt.language.operators import Fixity, Language
 from rtamt.language.requirements import RequirementParser
 from rtamt.language.scope import Scope
+from rtamt.language.value_types import BOOLEAN, Enumeration
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Collection, Mapping
 
-    from rtamt.language.document import Document
     from rtamt.language.templates import Template
+    from rtamt.language.value_types import ValueType
 
 #: The types that need no import.
 TYPES = ("float", "int", "long", "complex", "bool")
@@ -34,6 +33,9 @@ _Kind = Literal["var", "const", "parameter"]
 #: The words of declarations that give a value, and what errors call the kinds of declarations.
 _KINDS: Mapping[str, _Kind] = MappingProxyType({"const": "const", "parameter": "parameter"})
 _CALLED = MappingProxyType({"var": "variable", "const": "constant", "parameter": "parameter"})
+
+#: Codes that a double holds exactly.
+_LARGEST_CODE = 2**53
 
 _ROLES: Mapping[str, Literal["input", "output"]] = MappingProxyType({"input": "input", "output": "output"})
 
@@ -48,12 +50,12 @@ class DeclarationParser(RequirementParser):
         unit: str,
         scope: Scope,
         values: Mapping[str, float],
-        library: Library,
+        truths: bool,
     ) -> None:
         super().__init__(text, language, unit, scope)
-        self.library = library
-        #: From each name that is imported to the file that defines it.
-        self.origins: dict[str, str] = {}
+        self._truths = truths
+        self._enumerations: dict[str, Enumeration] = dict(scope.enumerations)
+        self._types: dict[str, ValueType] = dict(scope.types)
         #: The values of parameters that are given.
         self._values = values
         #: The names of the declared parameters.
@@ -73,18 +75,8 @@ class DeclarationParser(RequirementParser):
         self.accept(";")
         return name
 
-    @abstractmethod
-    def document(self, *, imported: bool = False) -> Document:
-        """Parse the whole text; one that is imported needs no formula."""
-
     def _import(self) -> bool:
-        """``import = ( "from" , module , "import" , word | "import" , '"' , path , '"' ) , [ ";" ]``."""
-        if self._imports_file():
-            start = self.next().start
-            token = self.next()
-            self._import_file(token, Span(start, token.end))
-            self.accept(";")
-            return True
+        """``import = "from" , module , "import" , word , [ ";" ]``."""
         if not (self._word("from") and self._plain_name(1)):
             return False
         self.next()
@@ -98,45 +90,69 @@ class DeclarationParser(RequirementParser):
         self.accept(";")
         return True
 
-    def _imports_file(self) -> bool:
-        return self._word("import") and self._at(1).kind == "quoted" and "import" not in self._imports
+    def _enumerates(self) -> bool:
+        """Return whether an enumeration is declared here."""
+        return self._word("enum") and self._at(1).kind == "name" and self._at(2).text == "{"
 
-    def _import_file(self, token: Token, span: Span) -> None:
-        """Take over what a file declares and defines, but for its requirements."""
-        library = self.library
-        try:
-            file, text = library.read(token.name)
-        except ImportedFileError as error:
-            raise self.error(str(error), token.span) from None
-        if file not in library.documents:
-            library.open.append(file)
-            other = type(self)(text, self.language, self.unit, Scope(), self._values, library)
-            try:
-                document = other.document(imported=True)
-            except SpecificationError as error:
-                raise error if error.text is not text else placed(error, called(file)) from None
-            library.open.pop()
-            names = (*document.constants, *document.definitions, *document.templates, *document.variables)
-            library.documents[file] = document, {**dict.fromkeys(names, file), **other.origins}
-        document, origins = library.documents[file]
-        for name, origin in origins.items():
-            known = self.origins.setdefault(name, origin)
-            if known != origin:
+    def _enumeration(self) -> bool:
+        """``enumeration = "enum" , word , "{" , member , { "," , member } , [ "," ] , "}" , [ ";" ]``."""
+        if not self._enumerates():
+            return False
+        self.next()
+        name, opening = self.next(), self.next()
+        if "." in name.text:
+            raise self.error(
+                f"the name of an enumeration is one word, and '{name.text}' has a dot", name.span
+            )
+        if name.text in (*TYPES, *self._imports, *self._enumerations):
+            raise self.error(f"there is a type '{name.text}' already", name.span)
+        members: dict[str, int] = {}
+        while self.token.text != "}":
+            token = self._taken("the name of a member", quotes=True)
+            if token.name in members:
+                raise self.error(f"'{token.name}' is twice in {name.text}", token.span)
+            code = self._code() if self.accept("=") else next(reversed(members.values()), -1) + 1
+            taken = next((other for other, own in members.items() if own == code), None)
+            if taken is not None:
                 raise self.error(
-                    f"'{name}' is in '{called(known)}' and in '{called(origin)}'; rename one of them", span
+                    f"'{token.name}' and '{taken}' of {name.text} have the same code, {code}", token.span
                 )
-        definitions, templates = moved(document, span)
-        self._constants.update(document.constants)
-        self._parameters.update(document.parameters)
-        self._declarations.update({each.name: each for each in document.declarations})
-        self._definitions.update(definitions)
-        self._templates.update(templates)
-        self._topics.update(document.topics)
-        self._imports.update({each.name: each for each in document.imports})
+            members[token.name] = code
+            if self.token.kind == "end":
+                raise self.error("this '{' is never closed", opening.span)
+            if not self.accept(",") and self.token.text != "}":
+                raise self._expected(f"',' or '}}' after the member '{token.name}'")
+        if not members:
+            raise self.error(
+                f"the enumeration '{name.text}' has no members", Span(opening.start, self.token.end)
+            )
+        self.next()
+        self.accept(";")
+        self._enumerations[name.text] = Enumeration(name.text, tuple(members.items()))
+        return True
 
-    def _from(self, name: str) -> str:
-        """Return where a name comes from, for messages: "" if it is of this text."""
-        return f" (it is imported from '{called(self.origins[name])}')" if name in self.origins else ""
+    def _code(self) -> int:
+        """``[ "-" ] , integer``."""
+        minus = self.accept("-")
+        token = self.next()
+        if token.kind != "number" or not token.text.isdigit() or int(token.text) > _LARGEST_CODE:
+            raise self.error(
+                f"the code of a member is a whole number, such as AUTO = 4; got {token}", token.span
+            )
+        return -int(token.text) if minus else int(token.text)
+
+    def _scope(self, variables: Collection[str] | None, pending: Mapping[str, str] | None = None) -> Scope:
+        """Return what names mean by now."""
+        return Scope(
+            self._constants,
+            self._definitions,
+            variables,
+            pending or {},
+            self._templates,
+            parameters=self._parameters,
+            types=self._types,
+            enumerations=self._enumerations,
+        )
 
     def _declaration(self) -> bool:
         """``declaration = ( [ role ] , type , name | kind , type , name , "=" , value ) , [ unit ] , [ ";" ]``."""
@@ -151,7 +167,7 @@ class DeclarationParser(RequirementParser):
             self.next()
         type_name = self.next()
         if not self._is_type(type_name):
-            types = (*TYPES, *self._imports)
+            types = (*TYPES, *self._enumerations, *self._imports)
             hint = did_you_mean(type_name.text, types)
             raise self.error(
                 f"'{type_name.text}' is not a type{hint or '; types are ' + ', '.join(types[:20])}"
@@ -175,10 +191,12 @@ class DeclarationParser(RequirementParser):
         name, constant = token.name, kind != "var"
         self._check_nameable(token)
         head = name.split(".", 1)[0]
-        if head != name and head in self._declarations:
+        type_ = self._type(type_name)
+        message = head in self._declarations and self._declarations[head].type in self._imports
+        if head != name and head in self._declarations and not (message and type_ is not None):
             raise self.error(f"'{name}' is a field of '{head}', which is declared", token.span)
         if name in self._declarations or name in self._constants or (constant and name in self._given):
-            raise self.error(f"'{name}' is declared twice{self._from(name)}", token.span)
+            raise self.error(f"'{name}' is declared twice", token.span)
         value = None
         if self.accept("="):
             if not constant:
@@ -186,7 +204,7 @@ class DeclarationParser(RequirementParser):
                     f"a variable has no value of its own; define it after the declarations: {name} = ...",
                     self.tokens[self.index - 1].span,
                 )
-            value = self._value()
+            value = self._value(type_)
             self._constants[name] = value
             if kind == "parameter":
                 self._constants[name] = self._values.get(name, value)
@@ -196,6 +214,8 @@ class DeclarationParser(RequirementParser):
                 f"the {_CALLED[kind]} '{name}' has no value; write {kind} {type_name} {name} = ...",
                 token.span,
             )
+        if type_ is not None:
+            self._types[name] = type_
         self._declarations[name] = Declaration(
             name, type_name, kind, role, value, self._unit(token), token.span
         )
@@ -219,8 +239,29 @@ class DeclarationParser(RequirementParser):
             raise self.error(f"expected a unit and ']' after '{name.name} [', such as [m/s]", opening.span)
         return unit
 
-    def _value(self) -> float:
-        """``value = [ "-" ] , number | "-inf" | "inf"``."""
+    def _type(self, name: str) -> ValueType | None:
+        """Return the type that is called so; None for numbers."""
+        if name == BOOLEAN.name and self._truths:
+            return BOOLEAN
+        return self._enumerations.get(name)
+
+    def _value(self, type_: ValueType | None) -> float:
+        """``value = [ "-" ] , number | "-inf" | "inf" | member | "true" | "false"``."""
+        token = self.token
+        if isinstance(type_, Enumeration):
+            code = type_.code(token.name.removeprefix(f"{type_.name}."))
+            if code is None:
+                raise self.error(type_.lacks(token.name), token.span, NameInFormulaError)
+            self.next()
+            return float(code)
+        if type_ is not None and token.text in ("true", "false"):
+            return float(self.next().text == "true")
+        number = self._number()
+        if type_ is not None and number not in (0.0, 1.0):
+            raise self.error(f"a bool is true or false (1 or 0), got {token}", token.span)
+        return number
+
+    def _number(self) -> float:
         minus = self.accept("-")
         if self.token.kind == "number":
             value = self.number().value
@@ -269,7 +310,7 @@ class DeclarationParser(RequirementParser):
     # ---- looking ahead ---------------------------------------------------------------------------
 
     def _is_type(self, token: Token) -> bool:
-        return token.text in TYPES or token.text in self._imports
+        return token.text in TYPES or token.text in self._imports or token.text in self._enumerations
 
     def _plain_type(self, ahead: int) -> bool:
         """Return whether a type and a name follow at this offset; the name may be ``S``, the type may not."""
@@ -279,7 +320,7 @@ class DeclarationParser(RequirementParser):
     def _declares(self) -> bool:
         """Return whether a declaration begins here, of a known or unknown type."""
         first = self.token
-        if first.kind != "name" or self._requires() or self._imports_file():
+        if first.kind != "name" or self._requires():
             return False
         if (first.text in _ROLES or first.text in _KINDS) and self._plain_type(1):
             return True

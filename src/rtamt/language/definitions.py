@@ -166,6 +166,11 @@ def ne(x: Array, y: Array) -> Array:
     return np.abs(sub(x, y))
 
 
+def true_where(x: Array) -> Array:
+    """+inf where a Boolean is 1, -inf where it is 0."""
+    return np.where(x > 0, inf, -inf)
+
+
 def holds_gt(x: Array, y: Array) -> Array:
     """+inf where x > y, else -inf."""
     return np.where(x > y, inf, -inf)

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 
     from rtamt.language.formula import Formula, Span
     from rtamt.language.templates import Template
+    from rtamt.language.value_types import Enumeration, ValueType
 
 #: The severity of a violation, in the terms of SARIF.
 Severity: TypeAlias = Literal["error", "warning", "note"]
@@ -93,12 +94,12 @@ class Document:
     templates: Mapping[str, Template] = field(default_factory=lambda: MappingProxyType({}))
     #: Every declared variable, here or given to :func:`parse_document`; if there are none, any name is a variable.
     variables: tuple[str, ...] = ()
+    #: The enumerations that are declared here, by name.
+    enumerations: Mapping[str, Enumeration] = field(default_factory=lambda: MappingProxyType({}))
+    #: The types of the declared variables and constants that are Booleans or of an enumeration.
+    types: Mapping[str, ValueType] = field(default_factory=lambda: MappingProxyType({}))
     #: The names of the assertions that other assertions use.
     used: frozenset[str] = frozenset()
-    #: The files that it imports, see :attr:`Library.found`.
-    imported: Mapping[tuple[str, str], tuple[str, str]] = field(
-        default_factory=lambda: MappingProxyType({}), compare=False, repr=False
-    )
     #: The name of the assertion or requirement selected by :meth:`select`.
     selected: str | None = None
     #: The document it was selected from, with every requirement; None if nothing was selected.

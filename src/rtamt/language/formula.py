@@ -19,11 +19,14 @@ from __future__ import annotations
 from dataclasses import dataclass, field, fields
 from typing import TYPE_CHECKING, Any, TypeVar
 
+from rtamt.language.value_types import Boolean, Enumeration
+
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
     from fractions import Fraction
 
     from rtamt.language.operators import Operator
+    from rtamt.language.value_types import PartType, ValueType
 
 T = TypeVar("T")
 
@@ -44,12 +47,10 @@ class Span:
 
 @dataclass(frozen=True, slots=True)
 class Interval:
-    """An interval ``[begin, end]`` of seconds, exact; ``end=None`` means unbounded.
+    """A closed interval ``[begin, end]`` of seconds, exact; ``end=None`` means unbounded.
 
-    ``begin_open``, ``end_open``: whether a bound is not part of it; ``rewrite.ground`` turns such bounds into
-    closed ones. ``begin_unit``, ``end_unit`` and ``constants`` (the named ones) only record how the bounds were
-    written; ``written`` is the interval of the text, if it is another one, and ``implied`` one that the text does
-    not contain at all.
+    ``begin_unit``, ``end_unit`` and ``constants`` (the named ones) only record how the bounds were
+    written.
     """
 
     begin: Fraction
@@ -58,15 +59,6 @@ class Interval:
     end_unit: str = field(default="", compare=False)
     span: Span | None = field(default=None, compare=False, repr=False)
     constants: tuple[str, ...] = field(default=(), compare=False, repr=False)
-    begin_open: bool = False
-    end_open: bool = False
-    written: Interval | None = field(default=None, compare=False, repr=False)
-    implied: bool = field(default=False, compare=False, repr=False)
-
-    @property
-    def is_open(self) -> bool:
-        """Whether a bound is not part of the interval."""
-        return self.begin_open or self.end_open
 
 
 class Formula:
@@ -109,12 +101,14 @@ class Formula:
 class Const(Formula):
     """A number (IEEE double; never NaN).
 
-    ``name`` only records that a named constant was written.
+    ``name`` only records that a named constant was written. ``type``: that of a constant that is no plain number;
+    the ``name`` of a member of an enumeration is printed.
     """
 
     value: float
     span: Span | None = field(default=None, compare=False, repr=False)
     name: str | None = field(default=None, compare=False, repr=False)
+    type: PartType = field(default=None, compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True, repr=False)
@@ -126,10 +120,14 @@ class Parameter(Const):
 
 @dataclass(frozen=True, slots=True, repr=False)
 class Var(Formula):
-    """A signal, by name; a field of a structured signal is part of the name (``req.value``)."""
+    """A signal, by name; a field of a structured signal is part of the name (``req.value``).
+
+    ``type``: as declared; None for numbers. A text declares each name once, so equality ignores it.
+    """
 
     name: str
     span: Span | None = field(default=None, compare=False, repr=False)
+    type: PartType = field(default=None, compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -326,6 +324,15 @@ def size(formula: Formula) -> int:
     3
     """
     return formula._size if isinstance(formula, Apply) else 1
+
+
+def types_of(*formulas: Formula) -> dict[str, ValueType]:
+    """Return the types of the variables of formulas that are no plain numbers."""
+    found: dict[str, ValueType] = {}
+    for node in postorder(*formulas):
+        if isinstance(node, Var) and isinstance(node.type, Boolean | Enumeration):
+            found[node.name] = node.type
+    return found
 
 
 def variables(*formulas: Formula) -> tuple[str, ...]:

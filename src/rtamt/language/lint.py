@@ -81,9 +81,8 @@ def _operands(document: Document, sort: Sort) -> Iterator[tuple[Formula, str]]:
 
 
 def _number_as_formula(document: Document) -> Found:
-    truths = {declaration.name for declaration in document.declarations if declaration.type == "bool"}
     for operand, written in _operands(document, Sort.FORMULA):
-        if is_number(operand) and not (isinstance(operand, Var) and operand.name in truths):
+        if is_number(operand):
             such = f", such as {operand.name} > 0" if isinstance(operand, Var) else ""
             yield operand.span, f"{written} is a number where a formula is expected; compare it{such}"
 

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from abc import abstractmethod
 from math import inf
 from typing import TYPE_CHECKING
 
-from rtamt.errors import NameInFormulaError, ParseError, SpecificationError, did_you_mean
+from rtamt.errors import NameInFormulaError, ParseError, SpecificationError
 from rtamt.language import diagnostics
 from rtamt.language.formula import Const, Formula, Parameter, Span, Var
 from rtamt.language.grammar import INFINITY, sign
@@ -13,6 +14,7 @@ from rtamt.language.lexer import Token, quoted, tokenize, unquoted
 from rtamt.language.operators import Fixity, Language
 from rtamt.language.templates import Use, Uses, meaning
 from rtamt.language.units import check_unit
+from rtamt.language.value_types import Enumeration
 
 if TYPE_CHECKING:
     from rtamt.language.scope import Scope
@@ -133,19 +135,41 @@ class NameParser:
             raise self.error(f"'{name}' is a template; give it arguments: {signature}", span)
         value = scope.constants.get(name)
         if value is not None:
-            leaf = Parameter if name in scope.parameters else Const
-            return leaf(float(value), span, name)
+            if name in scope.parameters:
+                return Parameter(float(value), span, name)
+            return self._constant(name, float(value), span)
         if scope.variables is not None and name in scope:
-            return Var(name, span)
+            return self.signal(name, span)
+        member = self._member(name, span) if scope.enumerations else None
+        if member is not None:
+            return member
         if name == INFINITY and plain:
             return Const(inf, span)
         if plain:
             self._not_an_operator(name, span)
         if scope.variables is None:
             return Var(name, span)
-        known = ", ".join(sorted(scope.names)[:8]) or "none"
-        hint = did_you_mean(name, scope.names) or f"; declared names: {known}"
-        raise self.error(f"'{name}' is not declared{hint}", span, NameInFormulaError)
+        raise self._undeclared(name, span)
+
+    def signal(self, name: str, span: Span) -> Var:
+        """Return the variable of this name, of its declared type."""
+        return Var(name, span, self.scope.types.get(name))
+
+    def _constant(self, name: str, value: float, span: Span) -> Const:
+        """Return a named constant; of an enumeration, under the name of the member."""
+        of = self.scope.types.get(name)
+        member = of.member(value) if isinstance(of, Enumeration) else None
+        if of is None or member is None:
+            return Const(value, span, name, of)
+        return Const(value, span, f"{of.name}.{member}" if member in self.scope else member, of)
+
+    @abstractmethod
+    def _member(self, name: str, span: Span) -> Const | None:
+        """Return the member of an enumeration that a name stands for, if there is one."""
+
+    @abstractmethod
+    def _undeclared(self, name: str, span: Span) -> SpecificationError:
+        """Return the error for a name that means nothing."""
 
     def _not_an_operator(self, name: str, span: Span) -> None:
         """Raise an error for a word operator in the wrong place, unless it may be a variable.

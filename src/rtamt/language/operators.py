@@ -43,6 +43,7 @@ from rtamt.language.records import (
 
 __all__ = [
     "STL",
+    "TRUTH",
     "Blocks",
     "Bounds",
     "Compiled",
@@ -59,12 +60,13 @@ __all__ = [
     "Window",
     "builtin",
     "holds",
+    "is_truth",
 ]
 
 
-def builtin(name: str) -> Operator:
-    """Return the operator of the table with this name; built-in operators unpickle to it."""
-    return STL[name]
+def builtin(name: str) -> Operator | None:
+    """Return the built-in operator with this name, in the table or not; built-in operators unpickle to it."""
+    return STL.get(name) or _UNWRITTEN.get(name)
 
 
 # ---- expansions: (operands..., interval) -> simpler formula -------------------------------------
@@ -85,7 +87,7 @@ def _xor(a: Formula, b: Formula, _i: Interval | None) -> Formula:
 
 
 def _unless(a: Formula, b: Formula, i: Interval | None) -> Formula:
-    whole = None if i is None else Interval(Fraction(0), i.end, "", i.end_unit, i.span, end_open=i.end_open)
+    whole = None if i is None else Interval(Fraction(0), i.end, "", i.end_unit, i.span)
     return STL["or"](STL["always"](a, interval=whole), STL["until"](a, b, interval=i))
 
 
@@ -124,7 +126,7 @@ def _prefix(name: str, spellings: str, power: int, doc: str, example: str, **mor
     return Operator(name, tuple(spellings.split()), Fixity.PREFIX, power, doc=doc, example=example, **more)
 
 
-def _truth(code: str, spelling: str, definition: Any, **more: Any) -> Operator:
+def _truth(code: str, spelling: str, symbol: str, definition: Any, **more: Any) -> Operator:
     if not more:
         slopes = e.slopes(0, 0) if code == "eq" else e.slopes(1, -1)
         more = {
@@ -133,15 +135,40 @@ def _truth(code: str, spelling: str, definition: Any, **more: Any) -> Operator:
             "slopes": slopes,
         }
     doc, example = f"+inf where a {spelling} b, else -inf.", f"x {spelling} 3"
-    return _infix(f"holds_{code}", spelling, 90, doc, example, operands=(N, N), definition=definition, **more)
+    latex = f"{{0}} {symbol} {{1}}"
+    return _infix(
+        f"holds_{code}",
+        spelling,
+        90,
+        doc,
+        example,
+        operands=(N, N),
+        definition=definition,
+        latex=latex,
+        **more,
+    )
 
 
 # Predicates by truth: +inf or -inf. They are not part of the language, though they are printed like the
 # predicates; semantics that need a verdict instead of a distance (rewrite/semantics.py) insert them.
-_GT, _GE, _EQ = _truth("gt", ">", d.holds_gt), _truth("ge", ">=", d.holds_ge), _truth("eq", "==", d.holds_eq)
-_LE = _truth("le", "<=", d.holds_le, expansion=lambda a, b, _i: STL["not"](_GT(a, b)))
-_LT = _truth("lt", "<", d.holds_lt, expansion=lambda a, b, _i: STL["not"](_GE(a, b)))
-_NE = _truth("ne", "!=", d.holds_ne, expansion=lambda a, b, _i: STL["not"](_EQ(a, b)))
+_GT, _GE = _truth("gt", ">", ">", d.holds_gt), _truth("ge", ">=", r"\geq", d.holds_ge)
+_EQ = _truth("eq", "==", "=", d.holds_eq)
+_LE = _truth("le", "<=", r"\leq", d.holds_le, expansion=lambda a, b, _i: STL["not"](_GT(a, b)))
+_LT = _truth("lt", "<", "<", d.holds_lt, expansion=lambda a, b, _i: STL["not"](_GE(a, b)))
+_NE = _truth("ne", "!=", r"\neq", d.holds_ne, expansion=lambda a, b, _i: STL["not"](_EQ(a, b)))
+
+#: A Boolean (1 or 0) read as a formula: +inf where it is true, else -inf. Not written: it prints as its operand.
+TRUTH = Operator(
+    "truth", ("true",), Fixity.FUNCTION, 200, (N,), F, "+inf where a Boolean is true, else -inf.", "p", latex="{0}",
+    definition=d.true_where, expansion=lambda a, _i: holds(a),
+)  # fmt: skip
+#: Operators that are +inf or -inf, outside the table.
+_TRUTHS = (_GT, _GE, _EQ, _LE, _LT, _NE, TRUTH)
+
+
+def is_truth(op: Operator) -> bool:
+    """Return whether an operator by itself is +inf or -inf."""
+    return any(op is each for each in _TRUTHS)
 
 
 def holds(number: Formula) -> Formula:
@@ -155,6 +182,8 @@ _AT_LEAST = _function(
     definition=f.at_least, kernel=Pointwise("at_least", partial=True), extension=fe.at_least,
     slopes=e.slopes(1, 0),
 )  # fmt: skip
+
+_UNWRITTEN = {op.name: op for op in (*_TRUTHS, _AT_LEAST)}
 
 
 def choice(truth: Formula, a: Formula, b: Formula) -> Formula:
@@ -261,10 +290,10 @@ STL: Language = Language.of((
     _infix("lt", "<", 90, "Less than: b - a.", "x < 3", operands=(N, N), latex="{0} < {1}", dual="ge",
            definition=d.le, expansion=lambda a, b, _i: STL["sub"](b, a), truth=lambda a, b, _i: _LT(a, b)),
     _infix("eq", "==", 90, "Equal: -|a - b|, at best 0.", "x == 3", operands=(N, N), latex="{0} = {1}", dual="ne",
-           definition=d.eq, expansion=lambda a, b, _i: STL["neg"](STL["abs"](STL["sub"](a, b))),
+           equates=True, definition=d.eq, expansion=lambda a, b, _i: STL["neg"](STL["abs"](STL["sub"](a, b))),
            truth=lambda a, b, _i: _EQ(a, b)),
     _infix("ne", "!= !==", 90, "Different: |a - b|.", "x != 3", operands=(N, N), latex=r"{0} \neq {1}", dual="eq",
-           definition=d.ne, expansion=lambda a, b, _i: STL["abs"](STL["sub"](a, b)),
+           equates=True, definition=d.ne, expansion=lambda a, b, _i: STL["abs"](STL["sub"](a, b)),
            truth=lambda a, b, _i: _NE(a, b)),
     # ---- Boolean -----------------------------------------------------------------------------
     _prefix("not", "not !", 80, "Negation: minus.", "not (x >= 3)", latex=r"\neg {0}",

@@ -2,7 +2,8 @@
 
 ::
 
-    expression = operand , { infix operator , [ interval ] , expression }
+    expression = operand , { infix operator , [ interval ] , expression | "in" , set }
+    set        = "{" , expression , { "," , expression } , "}"
     operand    = number | name | atom | group | call | prefix | use of a template
     group      = "(" , expression , ")"
     call       = function , [ interval ] , "(" , expression , { "," , expression } , ")"
@@ -14,7 +15,7 @@
 Words such as ``always``, ``G`` or ``min`` are operators only where an operator can stand: a prefix
 operator needs something after it that begins an operand or an interval, a function needs ``(``,
 and an infix operator stands after an operand. Comparisons in one direction chain: ``1 <= x < 3`` is
-``1 <= x and x < 3``.
+``1 <= x and x < 3``; so ``x in {1, 2}`` is ``x == 1 or x == 2``, and ``in`` is a name where no ``{`` follows.
 """
 
 from __future__ import annotations
@@ -27,19 +28,20 @@ from rtamt.language import diagnostics
 from rtamt.language.formula import Apply, Const, Formula, Span
 from rtamt.language.grammar import INFINITY, MAX_DEPTH, chains, is_number, is_predicate, passes_on
 from rtamt.language.intervals import parse_interval
-from rtamt.language.names import NameParser
 from rtamt.language.operators import STL, Bounds, Fixity, Language, Operator
 from rtamt.language.scope import Scope
 from rtamt.language.templates import Template, parse_use
+from rtamt.language.typed_parser import TypedParser
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping
 
     from rtamt.errors import SpecificationError
     from rtamt.language.lexer import Token
+    from rtamt.language.value_types import Enumeration, ValueType
 
 
-class FormulaParser(NameParser):
+class FormulaParser(TypedParser):
     """One method for each production of the grammar, in addition to those of names."""
 
     # ---- productions ---------------------------------------------------------------------------
@@ -67,13 +69,18 @@ class FormulaParser(NameParser):
         while True:
             token = self.tokens[self.index]
             op = self.language.infix(token.text)
+            if op is None and self._begins_set(power):
+                left = self.membership(left, Span(start, self.tokens[self.index - 1].end))
+                last = None
+                continue
             if op is None or op.power < power:
                 break
+            left_end = self.tokens[self.index - 1].end
             self.index += 1
             timed = op.bounds is not Bounds.NONE or self.tokens[self.index].text == "["
             interval = parse_interval(self, op, token) if timed else None
             right_start = self.token.start
-            right = self.expression(op.power + 1 if op.fixity is Fixity.LEFT else op.power, op)
+            right = self.compared(op, left)
             end = self.tokens[self.index - 1].end
             if last is not None and is_predicate(op) and is_predicate(last[0]):
                 _, middle, span = last
@@ -81,13 +88,18 @@ class FormulaParser(NameParser):
                 if both is None or not chains(last[0], op):
                     whole, link = Span(start, end), Span(token.start, token.end)
                     raise self.error(diagnostics.no_chain(self.text, whole, span, link), whole)
-                comparison = Apply(op, (middle, right), None, Span(span.start, end))
+                comparison = self.apply(op, (middle, right), (span, Span(right_start, end)))
                 left = Apply(both, (left, comparison), None, Span(start, end))
             else:
-                left = Apply(op, (left, right), interval, Span(start, end))
+                places = Span(start, left_end), Span(right_start, end)
+                left = self.apply(op, (left, right), places, interval)
             last = (op, right, Span(right_start, end))
         self._depth -= 1
         return left
+
+    def _right(self, op: Operator) -> Formula:
+        """Parse the right operand of an infix operator."""
+        return self.expression(op.power + 1 if op.fixity is Fixity.LEFT else op.power, op)
 
     def operand(self, power: int, under: Operator | None) -> Formula:
         """``operand = number | name | atom | group | call | prefix``."""
@@ -144,9 +156,12 @@ class FormulaParser(NameParser):
         opening = self.token
         if not self.accept("("):
             raise self.error(f"expected '(' after '{name.text}', got {opening}", opening.span)
-        operands = [self.argument(op)]
+        starts, operands = [self.token.start], [self.argument(op)]
+        ends = [self.tokens[self.index - 1].end]
         while self.accept(","):
+            starts.append(self.token.start)
             operands.append(self.argument(op))
+            ends.append(self.tokens[self.index - 1].end)
         if not self.accept(")"):
             raise self.error(
                 *diagnostics.no_close(self.language, self.tokens, self.index, opening, "',' or ')'")
@@ -157,9 +172,10 @@ class FormulaParser(NameParser):
             more = " or more" if op.folds else ""
             noun = "operand" if count == 1 and not op.folds else "operands"
             raise self.error(f"'{name.text}' takes {count}{more} {noun}, got {len(operands)}", span)
-        result = Apply(op, tuple(operands[:count]), interval, span)
-        for operand in operands[count:]:
-            result = Apply(op, (result, operand), interval, span)
+        places = list(map(Span, starts, ends))
+        result = self.apply(op, tuple(operands[:count]), places[:count], interval, span)
+        for operand, place in zip(operands[count:], places[count:], strict=True):
+            result = self.apply(op, (result, operand), (span, place), interval, span)
         return result
 
     def argument(self, op: Operator) -> Formula:
@@ -184,10 +200,12 @@ class FormulaParser(NameParser):
                 return Const(-value, Span(token.start, self.tokens[self.index - 1].end))
         interval = parse_interval(self, op, token)
         # Under `not`, which binds tighter, `always` extends no further than `not` itself would.
+        start = self.token.start
         operand = self.expression(max(power, op.power), op)
+        end = self.tokens[self.index - 1].end
         if op.power < power and not (under is not None and passes_on(under)):
             self._one_reading(op, token, under)
-        return Apply(op, (operand,), interval, Span(token.start, self.tokens[self.index - 1].end))
+        return self.apply(op, (operand,), (Span(start, end),), interval, Span(token.start, end))
 
     def _one_reading(self, op: Operator, token: Token, under: Operator | None) -> None:
         """Reject an operand whose extent is ambiguous: a weaker prefix operator after a stronger operator.
@@ -213,10 +231,10 @@ class FormulaParser(NameParser):
             return True
         if after.kind == "symbol" and self.tokens[at].text in self.scope:
             # `G - 3` with a variable G is a difference; without one, always(-3).
-            return self.language.infix(after.text) is None and self.opens(at + 1)
-        return self.opens(at + 1)
+            return self.language.infix(after.text) is None and self._opens(at + 1)
+        return self._opens(at + 1)
 
-    def opens(self, at: int) -> bool:
+    def _opens(self, at: int) -> bool:
         """Return whether an operand can begin at this token.
 
         In a run of words spelled like infix operators, a word is an operator if the next token begins an operand,
@@ -270,6 +288,8 @@ def parse_formula(
     constants: Mapping[str, float] | None = None,
     definitions: Mapping[str, Formula] | None = None,
     variables: Collection[str] | None = None,
+    types: Mapping[str, ValueType] | None = None,
+    enumerations: Mapping[str, Enumeration] | None = None,
     unit: str = "s",
     parameters: Collection[str] = (),
     templates: Mapping[str, Template] | None = None,
@@ -278,9 +298,10 @@ def parse_formula(
 
     ``language``: the operators. ``constants``: numbers by name, for operands and bounds.
     ``definitions``: formulas by name; their nodes are shared, not copied. ``variables``: the declared
-    names; with None, every other name is a variable. ``unit``: the unit of bounds without
-    one; a lower bound without a unit has that of the upper bound, as in RTAMT. ``parameters``: which of the
-    constants are parameters. ``templates``: those of a document (:attr:`Document.templates`), by name.
+    names; with None, every other name is a variable. ``types``: of those that are Booleans or of one of the
+    ``enumerations``. ``unit``: the unit of bounds without one; a lower bound without a unit has that of the
+    upper bound, as in RTAMT. ``parameters``: which of the constants are parameters. ``templates``: those of a
+    document (:attr:`Document.templates`), by name.
 
     Raises :class:`ParseError`, :class:`NameInFormulaError` or :class:`BoundError`, each with a caret
     under the position, and :class:`UsageError` for an unknown unit. Source: the paper's
@@ -292,10 +313,17 @@ def parse_formula(
     True
     """
     scope = Scope(
-        constants or {}, definitions or {}, variables, parameters=parameters, templates=templates or {}
+        constants or {},
+        definitions or {},
+        variables,
+        templates=templates or {},
+        parameters=parameters,
+        types=types or {},
+        enumerations=enumerations or {},
     )
     parser = FormulaParser(text, language, unit, scope)
     formula = parser.formula()
+    formula = parser.standing_alone(formula, Span(0, parser.tokens[parser.index - 1].end), named=True)
     if parser.token.kind != "end":
         raise parser.error(*diagnostics.no_operator(language, parser.tokens, parser.index))
     return formula

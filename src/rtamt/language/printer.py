@@ -11,13 +11,14 @@ import re
 from functools import lru_cache
 from math import copysign, isinf
 from string import Formatter
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeGuard
 
 from rtamt.language.formula import COUNTLESS, Apply, Const, Formula, Interval, Parameter, Var, size
 from rtamt.language.grammar import INFINITY, is_infix, is_predicate, passes_on, sign
 from rtamt.language.lexer import NAME, TOPIC, is_word, quoted
-from rtamt.language.operators import STL, Fixity, Language, Operator
+from rtamt.language.operators import STL, TRUTH, Fixity, Language, Operator
 from rtamt.language.units import UNITS, decimal
+from rtamt.language.value_types import Enumeration
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator
@@ -61,10 +62,12 @@ def to_text(
         if isinstance(node, Var) or (parameters and isinstance(node, Parameter)):
             return (_name(node.name, language),)
         if isinstance(node, Const):
-            return (number(node.value),)
+            return (_constant(node, language),)
         if not isinstance(node, Apply):
             raise TypeError(f"{type(node).__name__} is not a formula")
-        op, word = node.op, node.op.spellings[0] + interval_text(node.interval)
+        if node.op is TRUTH:
+            return node.args
+        op, word = node.op, node.op.spellings[0] + _interval(node.interval)
         if op.fixity is Fixity.ATOM:
             return (word,)
         if op.fixity is Fixity.FUNCTION:
@@ -120,7 +123,9 @@ def canonical(formula: Formula, language: Language = STL, *, limit: int = LONGES
         if not isinstance(node, Apply):
             raise TypeError(f"{type(node).__name__} is not a formula")
         op = node.op
-        word = _longest(op.spellings) + interval_text(node.interval, ",", str)
+        if op is TRUTH:
+            return node.args
+        word = _longest(op.spellings) + _interval(node.interval, ",", str)
         if op.fixity is Fixity.ATOM:
             return (word,)
         if is_infix(op):
@@ -152,7 +157,7 @@ def to_latex(formula: Formula) -> str:
 
     def pieces(node: Formula) -> Iterable[Piece]:
         if isinstance(node, Const):
-            yield _latex_number(node.value)
+            yield _latex_name(str(node.name)) if _is_member(node) else _latex_number(node.value)
         elif isinstance(node, Var):
             yield _latex_name(node.name)
         elif isinstance(node, Apply):
@@ -168,6 +173,11 @@ def to_latex(formula: Formula) -> str:
 
     text = _write(formula, pieces, LONGEST)
     return rf"\text{{a formula of {_extent(formula)}}}" if text is None else text
+
+
+def _constant(node: Const, language: Language) -> str:
+    """Return a number, or the name of a member of an enumeration."""
+    return _name(str(node.name), language) if _is_member(node) else number(node.value)
 
 
 def number(value: float) -> str:
@@ -248,12 +258,23 @@ def _operands(node: Apply) -> tuple[Formula, ...]:
 # ---- parentheses ---------------------------------------------------------------------------------
 
 
+def _written_operand(formula: Formula) -> Formula:
+    """Return what stands in the text: a Boolean itself, not its truth."""
+    return formula.args[0] if isinstance(formula, Apply) and formula.op is TRUTH else formula
+
+
+def _is_member(formula: Formula) -> TypeGuard[Const]:
+    """Return whether a formula is a member of an enumeration, which is written as its name."""
+    return isinstance(formula, Const) and isinstance(formula.type, Enumeration) and formula.name is not None
+
+
 def _is_negative(formula: Formula) -> bool:
-    return isinstance(formula, Const) and copysign(1.0, formula.value) < 0
+    return isinstance(formula, Const) and not _is_member(formula) and copysign(1.0, formula.value) < 0
 
 
 def _needs_group(operand: Formula, op: Operator) -> bool:
     """Return whether the operand of a prefix operator needs parentheses (also a number after a minus)."""
+    operand = _written_operand(operand)
     if isinstance(operand, Apply):
         return operand.op.fixity not in (Fixity.FUNCTION, Fixity.ATOM)
     return isinstance(operand, Const) and (_is_negative(operand) or not passes_on(op))
@@ -261,6 +282,7 @@ def _needs_group(operand: Formula, op: Operator) -> bool:
 
 def _falls_apart(child: Formula, op: Operator, side: Fixity, minus: Operator | None) -> bool:
     """Return whether an infix operator's operand needs parentheses, on the side to which ``side`` chains."""
+    child = _written_operand(child)
     if _is_negative(child):
         return minus is None or minus.power <= op.power
     if not isinstance(child, Apply) or child.op.fixity in (Fixity.FUNCTION, Fixity.ATOM):
@@ -276,12 +298,14 @@ def _reads_on(child: Formula, op: Operator, language: Language, *, left: bool = 
 
     This happens where a symbol may follow that can also begin an operand: ``G - 3`` is always(-3).
     """
-    if not isinstance(child, Var) or _name(child.name, language) != child.name:
+    child = _written_operand(child)
+    name = child.name if isinstance(child, Var) or _is_member(child) else None
+    if name is None or _name(name, language) != name:
         return False
-    prefix, infix = language.opening(child.name), language.infix(child.name)
+    prefix, infix = language.opening(name), language.infix(name)
     if infix is None and (prefix is None or prefix.fixity is not Fixity.PREFIX):
         # A topic after a word could also be a division.
-        return TOPIC.fullmatch(child.name) is not None and is_word(op.spellings[0])
+        return TOPIC.fullmatch(name) is not None and is_word(op.spellings[0])
     if op.fixity is Fixity.PREFIX and infix is not None:
         return True
     if left:
@@ -322,21 +346,19 @@ def _rational(value: Fraction) -> str:
     return decimal(value) or str(value)
 
 
-def interval_text(
+def _interval(
     interval: Interval | None, separator: str = ":", form: Callable[[Fraction], str] = _rational
 ) -> str:
     """Return an interval as it was written, or nothing if there is none."""
-    if interval is None or interval.implied:
+    if interval is None:
         return ""
-    interval = interval.written or interval
     begin_unit, end_unit = interval.begin_unit, interval.end_unit
     if interval.end is not None and end_unit:
         # A lower bound without a unit would be read in the unit of the upper bound; zero needs no unit.
         begin_unit = "" if interval.begin == 0 else begin_unit or "s"
     begin = form(interval.begin / UNITS[begin_unit or "s"]) + begin_unit
     end = INFINITY if interval.end is None else form(interval.end / UNITS[end_unit or "s"]) + end_unit
-    opening, closing = "(" if interval.begin_open else "[", ")" if interval.end_open else "]"
-    return f"{opening}{begin}{separator}{end}{closing}"
+    return f"[{begin}{separator}{end}]"
 
 
 # ---- LaTeX ---------------------------------------------------------------------------------------
@@ -370,17 +392,15 @@ def _template(template: str, timed: bool) -> tuple[tuple[str, str | None, bool],
 
 
 def _latex_interval(interval: Interval | None) -> str:
-    if interval is None or interval.implied:
+    if interval is None:
         return ""
-    interval = interval.written or interval
 
     def bound(value: Fraction, unit: str) -> str:
         return _rational(value / UNITS[unit or "s"]) + (rf"\,\mathrm{{{unit}}}" if unit else "")
 
     begin = bound(interval.begin, interval.begin_unit if interval.begin else "")
-    opening, closing = "(" if interval.begin_open else "[", ")" if interval.end_open else "]"
-    end = r"\infty)" if interval.end is None else bound(interval.end, interval.end_unit) + closing
-    return f"{{{opening}{begin}, {end}}}"
+    end = r"\infty)" if interval.end is None else bound(interval.end, interval.end_unit) + "]"
+    return f"{{[{begin}, {end}}}"
 
 
 def _latex_number(value: float) -> str:

@@ -146,15 +146,14 @@ class Operator:
     expansion: Expansion | None = None
     dense: Callable[..., float] | None = None
     discrete_only: bool = False
-    one_tick: bool = (
-        False  # in dense time its interval is the tick behind, in discrete time the sample behind
-    )
     reach: int | None = _UNSAID
     dual: str | None = None
     twin: str | None = None
     guards: tuple[str | None, ...] = ()
     strict: bool = False  # a formula is no operand, though others read its robustness as a number
     folds: bool = False  # a function that accepts more operands: f(a, b, c) is f(f(a, b), c)
+    keeps: tuple[int, ...] = ()  # the operands, Boolean or of an enumeration too, whose type the result has
+    equates: bool = False  # a comparison that members of an enumeration have, too
     truth: Expansion | None = None  # of a predicate: the formula that is +inf where it holds, else -inf
     # Interval extension of a pointwise operator (enclosures.py): the bounds of the result from those of
     # the operands, and the monotonicity of the result in each operand.
@@ -223,9 +222,9 @@ class Operator:
 
     def __reduce__(self) -> str | tuple[Any, ...]:
         # Records are compared by identity, so a built-in operator unpickles to the record in the table.
-        from rtamt.language.operators import STL, builtin
+        from rtamt.language.operators import builtin
 
-        if STL.get(self.name) is self:
+        if builtin(self.name) is self:
             return (builtin, (self.name,))
         return object.__reduce__(self)
 

@@ -56,7 +56,9 @@ class RequirementParser(FormulaParser):
             self.next()
         if not self.accept(":"):
             raise self._expected(f"':' after 'require {name}'")
+        begin = self.token.start
         formula = self.formula()
+        formula = self.standing_alone(formula, Span(begin, self.tokens[self.index - 1].end))
         whole = Span(start, self.tokens[self.index - 1].end)
         self._explicit.append(Requirement(name, formula, description, severity, True, whole))
         self._names[name] = span

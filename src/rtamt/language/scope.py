@@ -11,6 +11,7 @@ if TYPE_CHECKING:
 
     from rtamt.language.formula import Formula
     from rtamt.language.templates import Argument, Template
+    from rtamt.language.value_types import Enumeration, ValueType
 
 
 @dataclass(frozen=True)
@@ -18,7 +19,8 @@ class Scope:
     """The meaning of names; with ``variables=None``, every other name is a variable.
 
     ``pending`` holds names that cannot be used here, each with an explanation; ``arguments`` what the parameters
-    of a template stand for, in its formula.
+    of a template stand for, in its formula. ``types``: of variables and constants that are Booleans or of an
+    enumeration. ``enumerations``: by name.
     """
 
     constants: Mapping[str, float] = field(default_factory=lambda: MappingProxyType({}))
@@ -29,6 +31,8 @@ class Scope:
     arguments: Mapping[str, Argument] = field(default_factory=lambda: MappingProxyType({}))
     #: The constants that are parameters.
     parameters: Collection[str] = ()
+    types: Mapping[str, ValueType] = field(default_factory=lambda: MappingProxyType({}))
+    enumerations: Mapping[str, Enumeration] = field(default_factory=lambda: MappingProxyType({}))
 
     def __reduce__(self) -> tuple[Any, ...]:
         # A read-only view can be neither pickled nor copied; the mapping behind it can.

@@ -24,6 +24,7 @@ from rtamt.errors import BoundError, NameInFormulaError, did_you_mean
 from rtamt.language.formula import Apply, Const, Formula, Span, Var, postorder
 from rtamt.language.lexer import Token
 from rtamt.language.units import UNITS, exact
+from rtamt.language.value_types import UNKNOWN
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -144,7 +145,9 @@ def parse_template(parser: FormulaParser) -> Template:
             f"expected '=' and the formula of '{name.text}', got {parser.token}", parser.token.span
         )
     outer, begin = parser.scope, parser.index
-    unknown = {parameter.name: Argument(Var(parameter.name), unknown=True) for parameter in parameters}
+    unknown = {
+        parameter.name: Argument(Var(parameter.name, type=UNKNOWN), unknown=True) for parameter in parameters
+    }
     parser.scope = replace(outer, arguments=unknown)
     parser.formula()
     parser.scope = outer
@@ -364,34 +367,24 @@ def _instance(
 
 def placed(formula: Formula, span: Span, borrowed: set[int] | frozenset[int] = frozenset()) -> Formula:
     """Return a formula whose nodes all have one position, but for ``borrowed`` nodes (by ID) and what is below them."""
-    return all_placed((formula,), span, borrowed)[0]
-
-
-def all_placed(
-    formulas: Iterable[Formula], span: Span, borrowed: set[int] | frozenset[int] = frozenset()
-) -> list[Formula]:
-    """Do what :func:`placed` does for formulas that share nodes, and go on sharing them."""
     made: dict[int, Formula] = {}
-    found = []
-    for formula in formulas:
-        stack: list[tuple[Formula, bool]] = [(formula, False)]
-        while stack:
-            node, ready = stack.pop()
-            if id(node) in made:
-                continue
-            if id(node) in borrowed:
-                made[id(node)] = node
-            elif not isinstance(node, Apply):
-                made[id(node)] = replace(node, span=span)  # type: ignore[type-var]
-            elif ready:
-                args = tuple([made[id(operand)] for operand in node.args])
-                interval = None if node.interval is None else replace(node.interval, span=span)
-                made[id(node)] = replace(node, args=args, interval=interval, span=span)
-            else:
-                stack.append((node, True))
-                stack.extend([(operand, False) for operand in node.args])
-        found.append(made[id(formula)])
-    return found
+    stack: list[tuple[Formula, bool]] = [(formula, False)]
+    while stack:
+        node, ready = stack.pop()
+        if id(node) in made:
+            continue
+        if id(node) in borrowed:
+            made[id(node)] = node
+        elif not isinstance(node, Apply):
+            made[id(node)] = replace(node, span=span)  # type: ignore[type-var]
+        elif ready:
+            args = tuple([made[id(operand)] for operand in node.args])
+            interval = None if node.interval is None else replace(node.interval, span=span)
+            made[id(node)] = replace(node, args=args, interval=interval, span=span)
+        else:
+            stack.append((node, True))
+            stack.extend([(operand, False) for operand in node.args])
+    return made[id(formula)]
 
 
 # ---- names in the formula of a template ----------------------------------------------------------
@@ -408,7 +401,7 @@ def meaning(parser: NameParser, name: str, span: Span) -> Formula | None:
             raise parser.error(
                 f"'{head}' is no signal here, and only signals have fields, such as {name}", span
             )
-        return signal if arguments[head].unknown else Var(f"{signal.name}.{rest}", span)
+        return signal if arguments[head].unknown else parser.signal(f"{signal.name}.{rest}", span)
     if argument is None:
         return None
     if argument.formula is None:

@@ -22,7 +22,7 @@ from typing import TypeAlias
 from rtamt.errors import EvaluationError, StlError, UsageError, did_you_mean, shown
 from rtamt.language.formula import Apply, Const, Formula, fold, variables
 from rtamt.language.grammar import is_number
-from rtamt.language.operators import STL, Sort, holds
+from rtamt.language.operators import STL, Sort, holds, is_truth
 from rtamt.language.printer import excerpt
 from rtamt.rewrite.desugar import rebuilt, spelled_out
 
@@ -46,6 +46,8 @@ def truth(predicate: Formula) -> Formula:
     """
     if isinstance(predicate, Apply) and predicate.op.truth is not None:
         return predicate.op.truth(*predicate.args, predicate.interval)
+    if isinstance(predicate, Apply) and is_truth(predicate.op):
+        return predicate
     return holds(predicate)
 
 

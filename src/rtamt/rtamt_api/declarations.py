@@ -281,6 +281,7 @@ class Declarations(ABC):
             unit=self._unit,
             constants=self._constants,
             variables=tuple(self._types) or None,
+            truths=False,
         )
 
     def _read_formula(self, text: str) -> Formula:
@@ -291,6 +292,8 @@ class Declarations(ABC):
             constants=document.constants,
             definitions=document.definitions,
             variables=document.variables or None,
+            types=document.types,
+            enumerations=document.enumerations,
             unit=self._unit,
             parameters=document.parameters,
         )

@@ -16,6 +16,7 @@ trace             ``Trace``: named signals, each with its own time base; resampl
 resampling        signals at other instants: a regular grid, or those of other signals
 listing           a trace as text: its signals topic by topic
 arrays            data (lists, arrays, frames, objects) to float64 arrays
+coding            names of members to their codes; Booleans are 1 or 0
 dense_arrays      dense-time data to int64 ticks and float64 values
 regular           infer the sampling period; check order and distance of timestamps
 ticks             times to int64 ticks and back

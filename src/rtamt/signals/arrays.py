@@ -16,6 +16,7 @@ import numpy as np
 from rtamt.errors import TraceError, UsageError, choices, shown, with_article
 from rtamt.language.units import UNITS, check_unit, in_seconds
 from rtamt.signals import counting
+from rtamt.signals.coding import NO_TYPES, encoded, require_truths
 from rtamt.signals.counting import all_integers, integers, quotients, refuse_implausible
 from rtamt.signals.datetimes import has_length, in_nanoseconds, nanoseconds_of, no_length, out_of_reach
 from rtamt.signals.time_columns import check_frame
@@ -24,6 +25,9 @@ if TYPE_CHECKING:
     from collections.abc import Collection, Sequence
 
     from numpy.typing import NDArray
+
+    from rtamt.language.value_types import ValueType
+    from rtamt.signals.coding import Types
 
     FloatArray = NDArray[np.float64]
 
@@ -81,16 +85,19 @@ def units_of(data: Any) -> Mapping[str, str]:
 
 
 def columns_of(
-    data: Any, names: Sequence[str], unit: str | None = None
+    data: Any, names: Sequence[str], unit: str | None = None, types: Types = NO_TYPES
 ) -> tuple[Stamps | None, dict[str, FloatArray], int]:
-    """Return the timestamps (None if there are none), a column for each name, and their common length."""
+    """Return the timestamps (None if there are none), a column for each name, and their common length.
+
+    ``types``: of the variables that may be given by the names of members.
+    """
     require_no_unit(data, unit)
     if data.__class__ is not dict and isinstance(data, Clocked):
         data = data.on_one_clock(names)
     keys = _keys(data)
     if not is_mapping(data):
         check_frame(data, TIME, names)
-    columns = {name: _column(data, keys, name) for name in names}
+    columns = {name: _column(data, keys, name, types.get(name)) for name in names}
     times = stamps(data[TIME], unit) if TIME in keys else None
     return times, columns, _common_length(columns, times, data, keys)
 
@@ -252,11 +259,18 @@ def _moments(raw: NDArray[Any]) -> NDArray[Any]:
     return found.view(f"{next(iter(kinds))}8[ns]")
 
 
-def check_numbers(name: str, column: FloatArray, times: FloatArray, first: int = 0) -> None:
-    """Raise :class:`TraceError` at the first NaN; ``first`` is the index of ``column[0]`` in the recording."""
+def check_numbers(
+    name: str, column: FloatArray, times: FloatArray, first: int = 0, type_: ValueType | None = None
+) -> None:
+    """Raise :class:`TraceError` at the first NaN, of a Boolean also at a number that is neither 1 nor 0.
+
+    ``first`` is the index of ``column[0]`` in the recording.
+    """
     if len(column) and isnan(np.minimum.reduce(column)):  # NaN propagates
         i = int(np.isnan(column).argmax())
         raise nan_error(name, first + i, float(times[i]))
+    if type_ is not None:
+        require_truths(name, type_, column, lambda i: f"sample {first + i}, time {times[i]:.15g} s", first)
 
 
 def nan_error(name: str, index: int, time: float) -> TraceError:
@@ -343,12 +357,13 @@ def refuse_unknown(keys: Sequence[str], names: Sequence[str], declared: Collecti
             raise unknown_variable(str(key), names)
 
 
-def _column(data: Any, keys: Sequence[str], name: str) -> FloatArray:
+def _column(data: Any, keys: Sequence[str], name: str, type_: ValueType | None) -> FloatArray:
     if name in keys:
-        return array(data[name], name)
+        return array(encoded(data[name], name, type_), name)
     head, *path = name.split(".")
     if path and head in keys:
-        return array([field_of(value, head, path, i) for i, value in enumerate(data[head])], name)
+        values = [field_of(value, head, path, i) for i, value in enumerate(data[head])]
+        return array(encoded(values, name, type_), name)
     raise missing_variable(name, [key for key in keys if key != TIME])
 
 

@@ -11,6 +11,7 @@ from rtamt.errors import StlError, TraceError, UsageError, shown
 from rtamt.language.units import positive_period
 from rtamt.rewrite.check import TICKS, check_bounds, check_dense
 from rtamt.signals import arrays, dense_arrays
+from rtamt.signals.coding import NO_TYPES
 from rtamt.signals.domain_interface import DomainTrace, TimeDomain
 from rtamt.signals.regular import merged
 from rtamt.signals.signal import Signal
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
 
     from rtamt.language.formula import Formula
     from rtamt.language.units import Duration
+    from rtamt.signals.coding import Types
     from rtamt.signals.dense_arrays import Samples
     from rtamt.signals.domain_interface import Bounds
     from rtamt.signals.ticks import TickArray
@@ -68,19 +70,20 @@ class Dense(TimeDomain):
         """See :class:`TimeDomain`."""
         return self
 
-    def check(self, formula: Formula, text: str | None = None) -> Formula:
+    def check(self, formula: Formula, text: str | None = None) -> None:
         """See :class:`TimeDomain`."""
         check_dense(formula, text)
         check_bounds(formula, self.resolution, text, self.unit)
-        return self.ground(formula)[0]
 
     def check_inputs(self, names: Collection[str]) -> None:
         """See :class:`TimeDomain`: the instants are those of the variables."""
         _require_variables(names)
 
-    def record(self, data: Any, names: Sequence[str], unit: str | None = None) -> DenseTrace:
+    def record(
+        self, data: Any, names: Sequence[str], unit: str | None = None, types: Types = NO_TYPES
+    ) -> DenseTrace:
         """See :class:`TimeDomain`."""
-        return record_dense(data, names, self.resolution, unit=unit)
+        return record_dense(data, names, self.resolution, unit=unit, types=types)
 
 
 #: Dense time with its default settings.
@@ -128,9 +131,9 @@ class DenseTrace(DomainTrace):
         """See :class:`DomainTrace`."""
         return sum(len(ticks) for ticks, _ in self.columns.values())
 
-    def check(self, formula: Formula, text: str | None = None) -> Formula:
+    def check(self, formula: Formula, text: str | None = None) -> None:
         """See :class:`DomainTrace`."""
-        return self.domain.check(formula, text)
+        self.domain.check(formula, text)
 
     def select(self, names: Iterable[str]) -> DenseTrace:
         """See :class:`DomainTrace`."""
@@ -240,13 +243,14 @@ def record_dense(
     tick: Fraction,
     scale: TimeScale | None = None,
     unit: str | None = None,
+    types: Types = NO_TYPES,
 ) -> DenseTrace:
     """Normalise a finished recording; the caller's data is never changed.
 
     ``data``: a mapping from variable to (times, values) or to a list of [time, value] pairs; with a
     key ``"time"`` all variables share its timestamps. ``tick``: seconds. ``scale``: the caller's time
     scale, by default inferred from the first variable. ``unit``: the unit of numeric times, by default
-    seconds. Raises :class:`TraceError`.
+    seconds. ``types``: of the variables that are no plain numbers. Raises :class:`TraceError`.
     """
     _require_variables(names)
     arrays.require_no_unit(data, unit)
@@ -257,7 +261,9 @@ def record_dense(
         if not len(columns[name][0]):
             raise TraceError(f"'{name}' has no samples: give at least one", variable=name)
     scale = scale or TimeScale.of(tick, [columns[name][0] for name in names], unit)
-    samples = {name: dense_arrays.samples_of(columns[name], name, scale) for name in names}
+    samples = {
+        name: dense_arrays.samples_of(columns[name], name, scale, type_=types.get(name)) for name in names
+    }
     result = DenseTrace(samples, scale, arrays.units_of(data))
     if result.start > result.end:
         raise TraceError("the signals have no instant in common")

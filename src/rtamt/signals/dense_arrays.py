@@ -11,6 +11,7 @@ import numpy as np
 from rtamt.errors import TraceError
 from rtamt.language.units import format_duration
 from rtamt.signals import arrays
+from rtamt.signals.coding import encoded, require_truths
 from rtamt.signals.counting import times_of
 from rtamt.signals.regular import merged, never_set
 from rtamt.signals.signal import Signal
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from rtamt.language.value_types import ValueType
     from rtamt.signals.arrays import FloatArray
     from rtamt.signals.ticks import TickArray, TimeScale
 
@@ -127,15 +129,21 @@ def columns_of(
 
 
 def samples_of(
-    column: tuple[Any, Any], name: str, scale: TimeScale, first: int = 0, last: int | None = None
+    column: tuple[Any, Any],
+    name: str,
+    scale: TimeScale,
+    first: int = 0,
+    last: int | None = None,
+    type_: ValueType | None = None,
 ) -> Samples:
     """Return one variable's samples as ticks and values, checked.
 
     ``last`` is the variable's last tick so far and ``first`` how many samples it has had. Raises
-    :class:`TraceError` for lengths that differ, times that do not increase, NaN.
+    :class:`TraceError` for lengths that differ, times that do not increase, NaN, and values that are none of
+    the type.
     """
     times, raw = column
-    values = arrays.array(raw, name, first)
+    values = arrays.array(encoded(raw, name, type_, first), name, first)
     ticks = scale.ticks(times, name, first)
     if len(ticks) != len(values):
         raise TraceError(
@@ -157,6 +165,10 @@ def samples_of(
             f"fill the gap or leave the sample out",
             variable=name,
             index=first + i,
+        )
+    if type_ is not None:
+        require_truths(
+            name, type_, values, lambda i: f"sample {first + i}, time {scale.show(int(ticks[i]))}", first
         )
     return ticks, values
 

@@ -14,6 +14,7 @@ from rtamt.errors import BoundError, StlError, TraceError, UsageError, shown
 from rtamt.language.units import UNITS, decimal, positive_period
 from rtamt.rewrite.check import PERIODS, check_bounds
 from rtamt.signals.arrays import Stamps, check_numbers, columns_of, is_number, plain, stamps, units_of
+from rtamt.signals.coding import NO_TYPES
 from rtamt.signals.counting import quotients
 from rtamt.signals.datetimes import nanoseconds_of
 from rtamt.signals.domain_interface import DomainTrace, TimeDomain
@@ -28,6 +29,7 @@ if TYPE_CHECKING:
     from rtamt.language.formula import Formula
     from rtamt.language.units import Duration
     from rtamt.signals.arrays import FloatArray
+    from rtamt.signals.coding import Types
     from rtamt.signals.domain_interface import Bounds
 
 
@@ -73,18 +75,19 @@ class Discrete(TimeDomain):
         """See :class:`TimeDomain`."""
         return self if self.period is not None else Discrete(Fraction(1), self.tolerance)
 
-    def check(self, formula: Formula, text: str | None = None) -> Formula:
+    def check(self, formula: Formula, text: str | None = None) -> None:
         """See :class:`TimeDomain`."""
         if self.period is not None:
             check_bounds(formula, self.period, text, self.unit)
-        return self.ground(formula)[0]
 
     def check_inputs(self, names: Collection[str]) -> None:
         """See :class:`TimeDomain`: samples are instants also where a formula reads no variable."""
 
-    def record(self, data: Any, names: Sequence[str], unit: str | None = None) -> DiscreteTrace:
+    def record(
+        self, data: Any, names: Sequence[str], unit: str | None = None, types: Types = NO_TYPES
+    ) -> DiscreteTrace:
         """See :class:`TimeDomain`."""
-        return record_discrete(data, names, self.period, self.tolerance, unit)
+        return record_discrete(data, names, self.period, self.tolerance, unit, types)
 
 
 #: Discrete time with its default settings.
@@ -143,10 +146,10 @@ class DiscreteTrace(DomainTrace):
         """See :class:`DomainTrace`."""
         return len(self)
 
-    def check(self, formula: Formula, text: str | None = None) -> Formula:
+    def check(self, formula: Formula, text: str | None = None) -> None:
         """See :class:`DomainTrace`."""
         try:
-            return self.domain.check(formula, text)
+            check_bounds(formula, self.period, text)
         except BoundError as error:
             if not self.inferred:
                 raise
@@ -266,15 +269,17 @@ def record_discrete(
     period: Fraction | None,
     tolerance: float = TOLERANCE,
     unit: str | None = None,
+    types: Types = NO_TYPES,
 ) -> DiscreteTrace:
     """Normalise a finished recording; the caller's data is never changed.
 
     ``data``: a mapping, or anything with columns (a pandas or polars frame), from variable to n
     numbers; ``"time"`` (n stamps, seconds or datetimes) is optional. ``names`` are the variables the
     formula reads; others do no harm. Without a ``period`` (seconds) it is taken
-    from the stamps. ``unit``: of stamps that are numbers, by default seconds. Raises :class:`TraceError`.
+    from the stamps. ``unit``: of stamps that are numbers, by default seconds. ``types``: of the variables
+    that are no plain numbers. Raises :class:`TraceError`.
     """
-    stamped, columns, n = columns_of(data, names, unit)
+    stamped, columns, n = columns_of(data, names, unit, types)
     if n == 0:
         raise TraceError("the trace is empty: give at least one sample")
     inferred, original = False, None
@@ -291,7 +296,7 @@ def record_discrete(
         period = period or infer_period(times)
         check_regular(times, period, tolerance)
     for name, column in columns.items():
-        check_numbers(name, column, times)
+        check_numbers(name, column, times, type_=types.get(name))
     return DiscreteTrace(times, columns, period, inferred, original, unit, units_of(data))
 
 

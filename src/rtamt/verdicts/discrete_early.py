@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import isfinite
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from rtamt.engine.discrete.apart import Apart
+from rtamt.engine.discrete.apart import Apart, inner_of
 from rtamt.engine.discrete.early_python_backend import PythonEarlyMonitor
 from rtamt.engine.discrete.samples import read_time
 from rtamt.engine.native import EarlyMonitorBase
@@ -91,7 +91,7 @@ class DiscreteEarlyMonitor(EarlyMonitor):
         )
 
     def _connect(self, backend: Any) -> None:
-        super()._connect(backend if self._clock.plain else Apart(backend))
+        super()._connect(backend if self._clock.plain else Apart(inner_of(backend)))
 
     def _resume(self, state: tuple[Any, ...]) -> None:
         super()._resume(state)

@@ -11,13 +11,16 @@ from typing import TYPE_CHECKING, Any
 
 from rtamt.compiler.early import compile_graph
 from rtamt.engine.backend import Session
+from rtamt.engine.discrete.apart import Apart, inner_of
 from rtamt.engine.domains import engine_of
 from rtamt.engine.native import core
-from rtamt.engine.online import OnlineMonitor, Watched, grounded
+from rtamt.engine.online import OnlineMonitor, Watched
 from rtamt.engine.usage_guard import exclusive
 from rtamt.errors import TraceError, UsageError, did_you_mean, shown
+from rtamt.language.value_types import BOOLEAN
 from rtamt.rewrite.desugar import desugar
 from rtamt.signals import arrays
+from rtamt.signals.coding import encoded_value, no_truth
 from rtamt.signals.outcomes import Interval
 
 if TYPE_CHECKING:
@@ -86,7 +89,8 @@ class EarlyMonitor(OnlineMonitor):
         start: bool = False,
         every: bool = True,
     ) -> None:
-        formula, watch = grounded(domain, formula, text, watch)
+        for watched in (Watched("", formula, text), *watch):
+            domain.check(watched.formula, watched.text)
         step = domain.step
         assert step is not None
         OnlineMonitor.__init__(self, formula, watch, declared, factory)
@@ -132,7 +136,7 @@ class EarlyMonitor(OnlineMonitor):
         """Open the first monitor of the back end."""
 
     def _connect(self, backend: Any) -> None:
-        self._backend = backend
+        self._backend = Apart(inner_of(backend)) if self._checked else backend
         self._refused = self._session.refused
         self._undefined: Any = self._session.undefined
 
@@ -157,6 +161,8 @@ class EarlyMonitor(OnlineMonitor):
         if given is None:
             return None
         where = f"sample {index}, {moment}"
+        type_ = self._types.get(name)
+        given = encoded_value(given, name, type_, where, index)
         bounds = bounds_of(given)
         if bounds is None:
             raise TraceError(
@@ -177,6 +183,10 @@ class EarlyMonitor(OnlineMonitor):
                 variable=name,
                 index=index,
             )
+        if type_ is BOOLEAN:
+            for end in bounds:
+                if end not in (0.0, 1.0):
+                    raise no_truth(name, end, where, index)
         low, high = self._ranges.get(name, (-inf, inf))
         if not (low <= bounds[0] and bounds[1] <= high):
             raise TraceError(

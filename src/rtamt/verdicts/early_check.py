@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 from rtamt.engine.online import Watched
 from rtamt.language.formula import Apply
 from rtamt.language.operators import Tense, Window
+from rtamt.rewrite.check import check_bounds
 from rtamt.rewrite.early import ends_differently
 from rtamt.rewrite.semantics import boolean
 from rtamt.signals import arrays
@@ -55,8 +56,7 @@ def holds_at_end(spec: Specification) -> bool:
     >>> [holds_at_end(rtamt.parse(text)) for text in ("always(x > 0)", "eventually[1:2] once[0:5](x > 0)")]
     [True, False]
     """
-    (truth,) = spec.domain.online.ground(boolean(spec.formula))
-    return spec.domain.continuous or ends_differently(truth, {}) is None
+    return spec.domain.continuous or ends_differently(boolean(spec.formula), {}) is None
 
 
 class EarlyCheck:
@@ -68,6 +68,7 @@ class EarlyCheck:
     def __init__(self, specs: Sequence[Specification], tolerance: float = TOLERANCE) -> None:
         self._specs = specs
         self._names = tuple(dict.fromkeys(name for spec in specs for name in spec.input_names))
+        self._types = {name: type_ for spec in specs for name, type_ in spec.types.items()}
         self._tolerance = tolerance
         self._period = specs[0].period
         self._open: dict[int, _Requirement] = {}
@@ -86,7 +87,7 @@ class EarlyCheck:
 
     def take(self, chunk: Any) -> bool:
         """Take the next chunk; return whether everything is decided, so that no further one is needed."""
-        stamps, columns, n = arrays.columns_of(chunk, self._names)
+        stamps, columns, n = arrays.columns_of(chunk, self._names, types=self._types)
         if not n:
             return False
         if self._period is None:
@@ -118,8 +119,8 @@ class EarlyCheck:
 
     def _begin(self, period: Fraction) -> None:
         for number, spec in enumerate(self._specs):
-            formula = Discrete(period).check(spec.formula, spec.text)
-            self._open[number] = _Requirement(spec.with_formula(formula), period)
+            check_bounds(spec.formula, period, spec.text)
+            self._open[number] = _Requirement(spec, period)
 
     def _step(self, sample: int, row: Mapping[str, float], period: Fraction) -> None:
         for number, each in list(self._open.items()):

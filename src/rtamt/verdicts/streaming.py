@@ -15,6 +15,7 @@ from rtamt.engine.dense.monitor import finish_ticks, known_ticks, push_ticks
 from rtamt.engine.discrete.monitor import push_samples
 from rtamt.errors import TraceError, UsageError
 from rtamt.language.units import check_unit, positive_period
+from rtamt.rewrite.check import check_bounds
 from rtamt.rewrite.semantics import semantics_of
 from rtamt.signals import arrays, dense_arrays
 from rtamt.signals.dense import Dense
@@ -143,7 +144,7 @@ class _DiscreteStream(_Stream):
         self._kept: dict[int, Any] = {}
 
     def take(self, chunk: Any) -> None:
-        stamps, columns, n = arrays.columns_of(chunk, self.spec.input_names, self.unit)
+        stamps, columns, n = arrays.columns_of(chunk, self.spec.input_names, self.unit, self.spec.types)
         if not n:
             return
         if self._monitor is None:
@@ -156,11 +157,10 @@ class _DiscreteStream(_Stream):
             check_increasing(stamps.seconds)
         if self._period is None:
             self._period = Fraction(1) if stamps is None else infer_period(stamps.seconds)
-        domain = Discrete(self._period, self._tolerance)
-        domain.check(self.spec.formula, self.spec.text)
-        spec = self._group.begin(domain, self.spec)
+        check_bounds(self.spec.formula, self._period, self.spec.text)
+        spec = self._group.begin(self._period, False, self.spec)
         return spec.monitor(
-            time=domain,
+            time=Discrete(self._period, self._tolerance),
             semantics="standard",
             watch=self._group.formulas[1:],
             time_unit=self.unit,
@@ -221,9 +221,8 @@ class _DenseStream(_Stream):
             yield Group(some, [name for name in self.spec.input_names if name in names])
 
     def _monitor(self, group: Group) -> DenseMonitor:
-        domain = Dense(self.spec.resolution)
-        spec = group.begin(domain, self.spec)
-        return spec.monitor(time=domain, semantics="standard", watch=group.formulas[1:])
+        spec = group.begin(self.spec.resolution, True, self.spec)
+        return spec.monitor(time=Dense(self.spec.resolution), semantics="standard", watch=group.formulas[1:])
 
     def take(self, chunk: Any) -> None:
         arrays.require_no_unit(chunk, self.unit)
@@ -239,7 +238,7 @@ class _DenseStream(_Stream):
         for name, column in columns.items():
             last = self._last[name][0] if name in self._last else None
             samples[name] = dense_arrays.samples_of(
-                column, name, self._scale, self._counts.get(name, 0), last
+                column, name, self._scale, self._counts.get(name, 0), last, self.spec.types.get(name)
             )
         for name, (ticks, values) in samples.items():
             if len(ticks):

@@ -10,7 +10,7 @@ from rtamt.engine.dense.backends import BACKENDS
 from rtamt.engine.dense.groups import GroupSession, own_variables
 from rtamt.engine.discrete.apart import Apart
 from rtamt.engine.native import DenseMonitorBase
-from rtamt.engine.online import OnlineMonitor, Watched, depth_of, grounded, time_of
+from rtamt.engine.online import OnlineMonitor, Watched, depth_of, time_of
 from rtamt.engine.usage_guard import exclusive, in_use
 from rtamt.errors import TraceError, UsageError
 from rtamt.language.undefined_value import undefined
@@ -69,9 +69,8 @@ class DenseMonitor(DenseMonitorBase, OnlineMonitor):
         episodes: bool = False,
     ) -> None:
         # ``requirements``: the conjuncts of the formula, each with its own trace.
-        formula, watch = grounded(domain, formula, text, watch)
-        requirements = domain.ground(*requirements)
         for watched in (Watched("", formula, text), *watch):
+            domain.check(watched.formula, watched.text)
             check_online(watched.formula, watched.text)
         OnlineMonitor.__init__(self, formula, watch, declared, factory)
         domain.check_inputs(self.input_names)
@@ -92,7 +91,7 @@ class DenseMonitor(DenseMonitorBase, OnlineMonitor):
         self._connect(self._session.open())
 
     def _connect(self, backend: Any) -> None:
-        self._backend = backend if self._episodes is None else Apart(backend)
+        self._backend = backend if self._episodes is None and not self._checked else Apart(backend)
         self._refused = self._session.refused
         self._undefined: Any = self._session.undefined
         if self._scale is not None:
@@ -237,7 +236,7 @@ class DenseMonitor(DenseMonitorBase, OnlineMonitor):
     def _chunk(self, columns: dict[str, tuple[Any, Any]], scale: TimeScale) -> dict[str, Samples]:
         so_far = zip(self.input_names, self._backend.counts, self._backend.last_times, strict=True)
         return {
-            name: dense_arrays.samples_of(columns[name], name, scale, count, last)
+            name: dense_arrays.samples_of(columns[name], name, scale, count, last, self._types.get(name))
             for name, count, last in so_far
             if name in columns
         }

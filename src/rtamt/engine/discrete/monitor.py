@@ -12,7 +12,7 @@ from rtamt.engine.discrete.backends import BACKENDS
 from rtamt.engine.discrete.caller_times import CallerTimes
 from rtamt.engine.discrete.samples import read_time, read_values
 from rtamt.engine.native import MonitorBase
-from rtamt.engine.online import OnlineMonitor, Watched, depth_of, grounded, time_of
+from rtamt.engine.online import OnlineMonitor, Watched, depth_of, time_of
 from rtamt.engine.usage_guard import exclusive, in_use
 from rtamt.errors import TraceError, UsageError
 from rtamt.language.undefined_value import at_sample, undefined
@@ -78,8 +78,8 @@ class Monitor(MonitorBase, OnlineMonitor):
         domain = domain.online
         period = domain.period
         assert period is not None
-        formula, watch = grounded(domain, formula, text, watch)
         for watched in (Watched("", formula, text), *watch):
+            domain.check(watched.formula, watched.text)
             check_online(watched.formula, watched.text)
         OnlineMonitor.__init__(self, formula, watch, declared, factory)
         if episodes:
@@ -97,7 +97,8 @@ class Monitor(MonitorBase, OnlineMonitor):
         self._connect(self._session.open())
 
     def _connect(self, backend: Any) -> None:
-        self._backend = backend if self._times.plain and self._episodes is None else Apart(backend)
+        plain = self._times.plain and self._episodes is None and not self._checked
+        self._backend = backend if plain else Apart(backend)
         self._update = backend.update
         self._step = backend.step
         self._refused = self._session.refused
@@ -173,7 +174,7 @@ class Monitor(MonitorBase, OnlineMonitor):
         if self._finished:
             raise self._is_finished()
         stamp = read_time(time, self.samples, self._last_time)
-        numbers = read_values(flat, self.input_names, self.samples, stamp)
+        numbers = read_values(flat, self.input_names, self.samples, stamp, self._types)
         try:
             robustness: float | None = self._update(stamp, numbers)
         except self._refused:
@@ -210,7 +211,7 @@ class Monitor(MonitorBase, OnlineMonitor):
         if self._finished:
             raise self._is_finished()
         named = dict(zip(self.input_names, values, strict=True))
-        numbers = read_values(named, self.input_names, self.samples, self._next_time())
+        numbers = read_values(named, self.input_names, self.samples, self._next_time(), self._types)
         try:
             robustness: float | None = self._step(*numbers.values())
         except self._refused:
@@ -233,7 +234,7 @@ class Monitor(MonitorBase, OnlineMonitor):
         """
         if self._finished:
             raise self._is_finished()
-        return self._push(*arrays.columns_of(data, self.input_names, self._times.unit))
+        return self._push(*arrays.columns_of(data, self.input_names, self._times.unit, self._types))
 
     def _push(self, stamps: Stamps | None, given: Mapping[str, arrays.FloatArray], n: int) -> Signal:
         """See :func:`push_samples`."""
@@ -379,7 +380,7 @@ class Monitor(MonitorBase, OnlineMonitor):
         check_increasing(times, last, self.samples)
         check_regular(times, self._period, self._tolerance, last, self.samples)
         for name, column in columns.items():
-            arrays.check_numbers(name, column, times, self.samples)
+            arrays.check_numbers(name, column, times, self.samples, self._types.get(name))
         return stamps, [columns[name] for name in self.input_names]
 
     def _is_finished(self) -> UsageError:

@@ -6,12 +6,16 @@ from math import isfinite, isnan
 from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import TraceError, shown
+from rtamt.language.value_types import BOOLEAN
 from rtamt.signals import arrays
+from rtamt.signals.coding import NO_TYPES, encoded_value, no_truth
 from rtamt.signals.counting import implausible, is_implausible
 from rtamt.signals.regular import not_increasing
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
+
+    from rtamt.signals.coding import Types
 
 
 def read_time(time: Any, index: int, last: float | None, *, again: bool = False) -> float:
@@ -34,7 +38,11 @@ def read_time(time: Any, index: int, last: float | None, *, again: bool = False)
 
 
 def read_values(
-    values: Mapping[str, Any], names: tuple[str, ...], index: int, time: float
+    values: Mapping[str, Any],
+    names: tuple[str, ...],
+    index: int,
+    time: float,
+    types: Types = NO_TYPES,
 ) -> dict[str, float]:
     """Return a sample's values in the order of the names, each read once; raise :class:`TraceError`."""
     for name in values:
@@ -44,7 +52,9 @@ def read_values(
     for name in names:
         if name not in values:
             raise arrays.missing_variable(name, tuple(values))
-        number = arrays.number_of(values[name])
+        type_ = types.get(name)
+        where = "" if type_ is None else f"sample {index}, time {time:.15g} s"
+        number = arrays.number_of(encoded_value(values[name], name, type_, where, index))
         if number is None:
             raise TraceError(
                 f"'{name}' is {shown(values[name])} at sample {index}, expected a number",
@@ -53,5 +63,7 @@ def read_values(
             )
         if isnan(number):
             raise arrays.nan_error(name, index, time)
+        if type_ is BOOLEAN and number not in (0.0, 1.0):
+            raise no_truth(name, number, where, index)
         numbers[name] = number
     return numbers

@@ -1,0 +1,103 @@
+"""Members of enumerations by name to their codes; Booleans are 1 or 0, and nothing else."""
+
+from __future__ import annotations
+
+from enum import Enum
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rtamt.errors import TraceError, shown
+from rtamt.language.value_types import BOOLEAN, Enumeration
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    from numpy.typing import NDArray
+
+    from rtamt.language.value_types import ValueType
+
+    #: The types of the variables that are no plain numbers.
+    Types = Mapping[str, ValueType]
+
+NO_TYPES: Types = MappingProxyType({})
+
+
+def encoded(values: Any, name: str, type_: ValueType | None, first: int = 0) -> Any:
+    """Return the values of a variable with codes in place of the names of members; others as they are.
+
+    ``first``: the index of ``values[0]`` in the recording. Raises :class:`TraceError` at an unknown name.
+
+    >>> mode = Enumeration("Mode", (("MANUAL", 0), ("AUTO", 4)))
+    >>> encoded(["AUTO", 0, None], "mode", mode)
+    [4.0, 0, None]
+    """
+    if not isinstance(type_, Enumeration) or _is_numeric(values):
+        return values
+    codes: dict[Any, float] = {member: float(code) for member, code in type_.members}
+    return [
+        codes[value]
+        if value.__class__ is str and value in codes
+        else encoded_value(value, name, type_, f"sample {first + i}", first + i)
+        for i, value in enumerate(_items(values))
+    ]
+
+
+def encoded_value(value: Any, name: str, type_: ValueType | None, where: str, index: int) -> Any:
+    """Return the code of a member's name, or of a member of a Python ``enum`` with that name; others as they are."""
+    if not isinstance(type_, Enumeration):
+        return value
+    if isinstance(value, Enum):
+        return code_of(value.name, name, type_, where, index)
+    return code_of(value, name, type_, where, index) if isinstance(value, str) else value
+
+
+def code_of(member: str, name: str, type_: Enumeration, where: str, index: int) -> float:
+    """Return the code of a member; raise :class:`TraceError` where there is none, with those that there are."""
+    code = type_.code(member)
+    if code is None:
+        raise TraceError(
+            f"'{name}' is {shown(member)} at {where}, which is {type_.stranger(member)}",
+            variable=name,
+            index=index,
+        )
+    return float(code)
+
+
+def require_truths(
+    name: str,
+    type_: ValueType | None,
+    values: NDArray[np.float64],
+    where: Callable[[int], str],
+    first: int = 0,
+) -> None:
+    """Raise :class:`TraceError` at the first value of a Boolean that is neither 1 nor 0; ``where``: its place."""
+    if type_ is not BOOLEAN:
+        return
+    wrong = (values != 0.0) & (values != 1.0)
+    if wrong.any():
+        i = int(wrong.argmax())
+        raise no_truth(name, float(values[i]), where(i), first + i)
+
+
+def no_truth(name: str, value: float, where: str, index: int) -> TraceError:
+    """Return the error for a number in place of a Boolean."""
+    return TraceError(
+        f"'{name}' is {value:.15g} at {where}, and declared as bool, which is 1 or 0 (true or false): "
+        f"declare it as float, and compare it",
+        variable=name,
+        index=index,
+    )
+
+
+def _is_numeric(values: Any) -> bool:
+    dtype = getattr(values, "dtype", None)
+    return isinstance(dtype, np.dtype) and dtype.kind in "fiub"
+
+
+def _items(values: Any) -> Any:
+    """Return the values of any container one by one, missing ones as None."""
+    if hasattr(values, "to_pylist"):  # Arrow
+        return values.to_pylist()
+    return values.tolist() if isinstance(values, np.ndarray) else values

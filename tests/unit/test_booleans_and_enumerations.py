@@ -1,0 +1,96 @@
+"""Declared Booleans and enumerations in data: numbers, names of members, members of Python's ``enum``."""
+
+from __future__ import annotations
+
+import enum
+import pickle
+from math import inf
+
+import numpy as np
+import pytest
+
+import rtamt
+
+MODES = "enum Mode { MANUAL, AUTO = 4, RTL } input Mode mode output bool p float x "
+
+
+class Mode(enum.IntEnum):
+    """Members are found by name: these values are others than the codes of the text."""
+
+    MANUAL = 17
+    AUTO = 18
+
+
+@pytest.mark.parametrize("backend", ["cpp", "python"])
+@pytest.mark.parametrize("time", ["discrete", "dense"])
+def test_booleans_and_equal_members_are_plus_or_minus_infinity(backend, time):
+    spec = rtamt.parse(MODES + "(p -> mode == AUTO) and x > 3", backend=backend)
+    data = {"p": [1, 1, 0], "mode": ["AUTO", "RTL", "RTL"], "x": [5, 5, 7]}
+    if time == "dense":
+        data = {name: ([0, 1, 2], values) for name, values in data.items()}
+    assert spec.evaluate(data, time=time).signal.values.tolist() == [2, -inf, 4]
+
+
+@pytest.mark.parametrize(
+    "column",
+    [
+        ["MANUAL", "AUTO", 4, 0],
+        [Mode.MANUAL, Mode.AUTO, Mode.AUTO, Mode.MANUAL],
+        np.array(["MANUAL", "AUTO", "AUTO", "MANUAL"]),
+        np.array(["MANUAL", "AUTO", 4, 0.0], object),
+        np.array([0, 4, 4, 0], np.uint8),
+    ],
+)
+def test_members_are_given_by_name_or_by_code(column):
+    spec = rtamt.parse(MODES + "mode == AUTO")
+    assert spec.evaluate({"mode": column}).signal.values.tolist() == [-inf, inf, inf, -inf]
+    monitor = spec.monitor()
+    assert [monitor.update(t, mode=value) for t, value in enumerate(column)] == [-inf, inf, inf, -inf]
+    again = pickle.loads(pickle.dumps(spec.monitor()))  # noqa: S301 - made here
+    assert [again.step(value) for value in column] == [-inf, inf, inf, -inf]
+    assert spec.monitor().update_many({"mode": column}).values.tolist() == [-inf, inf, inf, -inf]
+
+
+def test_an_unknown_code_equals_no_member():
+    spec = rtamt.parse(MODES + "mode in {MANUAL, AUTO, RTL}")
+    assert spec.evaluate({"mode": [7, 5]}).signal.values.tolist() == [-inf, inf]
+    assert rtamt.parse(MODES + "mode != AUTO").evaluate({"mode": [7, 4]}).signal.values.tolist() == [
+        inf,
+        -inf,
+    ]
+
+
+def test_a_bool_is_1_or_0_as_a_number():
+    spec = rtamt.parse(MODES + "p == 1; 2 * p >= 1")
+    assert spec.evaluate({"p": [True, False]}).signal.values.tolist() == [0, -1]
+
+
+def test_a_missing_member_leaves_bounds():
+    result = rtamt.parse(MODES + "mode == AUTO").evaluate({"mode": ["AUTO", None]})
+    assert [result.intervals.lower.tolist(), result.intervals.upper.tolist()] == [[inf, -inf], [inf, inf]]
+
+
+@pytest.mark.parametrize("semantics", ["standard", "boolean", "output_robustness", "input_robustness"])
+def test_members_and_booleans_are_their_own_truth_in_every_semantics(semantics):
+    data = {"p": [1, 1, 0], "mode": ["AUTO", "RTL", "RTL"]}
+    spec = rtamt.parse(MODES + "p -> mode == AUTO")
+    assert spec.evaluate(data, semantics=semantics).signal.values.tolist() == [inf, -inf, inf]
+
+
+def test_a_group_without_the_role_of_the_variable_is_zero_under_vacuity():
+    spec = rtamt.parse(MODES + "p")
+    assert spec.evaluate({"p": [1]}, semantics="input_vacuity").robustness == 0
+
+
+def test_streams_take_members_by_name():
+    spec = rtamt.parse(MODES + "always(mode == AUTO)")
+    chunks = [{"mode": ["AUTO", "AUTO"]}, {"mode": ["RTL"]}]
+    result = rtamt.check_stream(spec, chunks)
+    assert (result.robustness, result.first_violation) == (-inf, 2.0)
+
+
+def test_watched_booleans_are_formulas():
+    spec = rtamt.parse(MODES + "flag = p; x > 3 and flag")
+    monitor = spec.monitor(watch=["p", "flag", "x"])
+    monitor.update(0, p=True, x=5)
+    assert [monitor[name] for name in ("p", "flag", "x")] == [inf, inf, 5]
