@@ -145,6 +145,35 @@ std::optional<Bounds> DenseMonitor::at(std::size_t output, Tick time) const {
     return engine_.at(outputs_[output], std::min(time - start(), forever));
 }
 
+std::variant<Bounds, DenseMonitor::Failure> DenseMonitor::suppose(std::optional<std::size_t> output,
+                                                                  Tick time,
+                                                                  std::span<const Supposed> later) {
+    std::vector<Engine::Lesson> lessons;
+    for (std::size_t k = 0; k < later.size(); ++k) {
+        const Supposed& each = later[k];
+        const bool last = k + 1 == later.size() || later[k + 1].input != each.input;
+        const Tick newest = samples_.newest(each.input).value_or(start()) - start();
+        const Tick behind = std::max(newest, samples_.settled()[each.input]);
+        const Tick l = std::max(plus(each.from, -start()), plus(behind, 1));
+        const Tick r = last ? forever : plus(later[k + 1].from, -start() - 1);
+        if (l <= r && l < forever) lessons.push_back({each.input, l, r, each.bounds});
+    }
+    if (auto failure = engine_.suppose(lessons)) {
+        failure->tick += start();
+        return *failure;
+    }
+    Bounds value{};
+    if (output) {
+        value = engine_.at(outputs_[*output], std::min(time - start(), forever));
+    } else {
+        Origin origin = origin_.value();
+        origin.look(engine_);
+        value = origin.value();
+    }
+    engine_.revert();
+    return value;
+}
+
 // The first tick of the trace that may still change, or might before its end.
 Tick DenseMonitor::first_open(std::size_t output) const noexcept {
     const Tick horizon = std::max<Tick>(0, engine_.horizon(outputs_[output]));

@@ -16,6 +16,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <variant>
 #include <vector>
 
 namespace rtamt::early {
@@ -58,6 +59,16 @@ class DenseMonitor {
 
     // The bounds at the start, where there is an origin.
     [[nodiscard]] std::optional<Bounds> at_start() const;
+
+    // An output, or none for the start, at a tick that is held, if an input had these bounds from a
+    // time on: behind its newest sample, and up to the next one of them.
+    struct Supposed {
+        std::uint32_t input;
+        Tick from;
+        Bounds bounds;
+    };
+    [[nodiscard]] std::variant<Bounds, Failure> suppose(std::optional<std::size_t> output,
+                                                        Tick time, std::span<const Supposed> later);
 
     // The bounds of an output at a tick; none before the first that is held, or before the trace
     // has started. All of them, up to the newest sample. What is final is held for some more calls.

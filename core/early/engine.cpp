@@ -105,9 +105,7 @@ std::optional<Engine::Failure> Engine::row(Tick t, std::span<const Bounds> value
     return take(t, values);
 }
 
-std::optional<Engine::Failure> Engine::learn(std::span<const Lesson> lessons) {
-    clear();
-    journaling_ = partial_;
+void Engine::know(std::span<const Lesson> lessons) {
     for (const Lesson& lesson : lessons) {
         for (int reg = 0; reg < 2; ++reg) {
             Runs& own = inputs_[lesson.input][static_cast<std::size_t>(reg)];
@@ -118,6 +116,12 @@ std::optional<Engine::Failure> Engine::learn(std::span<const Lesson> lessons) {
             }
         }
     }
+}
+
+std::optional<Engine::Failure> Engine::learn(std::span<const Lesson> lessons) {
+    clear();
+    journaling_ = partial_;
+    know(lessons);
     for (const Lesson& lesson : lessons) {
         for (const std::uint32_t i : readers_[lesson.input]) {
             const auto failure = relearn(i, lesson.l, lesson.r);
@@ -142,6 +146,17 @@ std::optional<Engine::Failure> Engine::suppose(std::span<const Supposition> supp
     return attempt(propagate(false));
 }
 
+std::optional<Engine::Failure> Engine::suppose(std::span<const Lesson> lessons) {
+    clear();
+    journaling_ = true;
+    know(lessons);
+    for (const Lesson& lesson : lessons) {
+        for (const std::uint32_t i : readers_[lesson.input])
+            (void)relearn(i, lesson.l, lesson.r, true);
+    }
+    return attempt(propagate(false));
+}
+
 std::optional<Engine::Failure> Engine::wrong_constant() {
     for (std::uint32_t i = 0; i < nodes_.size(); ++i) {
         const auto reads = [](const Step& step) { return step.opcode == Opcode::input; };
@@ -153,9 +168,9 @@ std::optional<Engine::Failure> Engine::wrong_constant() {
 }
 
 // Computes an atom again wherever its inputs may have changed. It fails where its operands are
-// known exactly, or will not be known better; what has no value for other operands may still get
-// one.
-std::optional<Engine::Failure> Engine::relearn(std::uint32_t index, Tick l, Tick r) {
+// known exactly, or will not be known better; what has no value for other operands, or for those
+// that are only supposed, may still get one.
+std::optional<Engine::Failure> Engine::relearn(std::uint32_t index, Tick l, Tick r, bool supposed) {
     State& state = nodes_[index];
     const auto& steps = node(index).steps;
     for (Tick t = std::max(l, state.from); t <= r;) {
@@ -179,7 +194,7 @@ std::optional<Engine::Failure> Engine::relearn(std::uint32_t index, Tick l, Tick
             }
         }
         const std::uint32_t wrong = enclose(steps, row_, bounds_);
-        if (wrong != none && exact) return Failure{index, wrong, t};
+        if (wrong != none && exact && !supposed) return Failure{index, wrong, t};
         const Bounds result = bounds_[steps.size() - 1];
         lift(state, 0, t, end, result.lower);
         lift(state, 1, t, end, -result.upper);

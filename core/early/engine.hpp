@@ -70,6 +70,8 @@ class Engine {
         std::vector<Bounds> row;
     };
     [[nodiscard]] std::optional<Failure> suppose(std::span<const Supposition> suppositions);
+    // The same of single inputs, where samples may be late.
+    [[nodiscard]] std::optional<Failure> suppose(std::span<const Lesson> lessons);
     void revert();
 
     // What is known of an input; the run of equal knowledge ends at `end`.
@@ -137,13 +139,15 @@ class Engine {
     std::vector<Bounds> row_;     // knowledge of the inputs at a tick
 
     [[nodiscard]] const Node& node(std::size_t i) const noexcept { return graph_.nodes[i]; }
+    void know(std::span<const Lesson> lessons);
     [[nodiscard]] std::optional<Failure> attempt(std::optional<Failure> failure);
     void clear() noexcept;
 
     // engine.cpp: atoms and maps
     template <class Value>
     [[nodiscard]] std::optional<Failure> take(Tick t, std::span<const Value> values);
-    [[nodiscard]] std::optional<Failure> relearn(std::uint32_t index, Tick l, Tick r);
+    [[nodiscard]] std::optional<Failure> relearn(std::uint32_t index, Tick l, Tick r,
+                                                 bool supposed = false);
     [[nodiscard]] std::optional<Failure> remap(std::uint32_t index, Tick l, Tick r);
     [[nodiscard]] std::optional<Failure> propagate(bool first);
 

@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <new>
 #include <stdexcept>
+#include <variant>
 
 namespace rtamt::python {
 
@@ -206,6 +207,23 @@ std::optional<std::pair<double, double>> DenseEarlyMonitor::bounds(std::size_t o
     return pair_of(*bounds);
 }
 
+std::optional<std::pair<double, double>> DenseEarlyMonitor::supposed(
+    std::optional<std::size_t> output, Tick tick,
+    const std::vector<std::tuple<std::uint32_t, Tick, double, double>>& later) {
+    guard_.require_idle();
+    if (output) require_output(*output);
+    const auto first = output ? monitor_.held(*output) : monitor_.samples().start();
+    if (!first || (output && tick < *first)) return std::nullopt;
+    std::vector<early::DenseMonitor::Supposed> supposed;
+    for (const auto& [input, from, lower, upper] : later) {
+        if (input >= ranges_.size()) throw std::out_of_range("There is no such input.");
+        supposed.push_back({input, from, {lower, upper}});
+    }
+    const auto found = monitor_.suppose(output, tick, supposed);
+    if (const auto* failure = std::get_if<Failure>(&found)) check(*failure);
+    return pair_of(std::get<Bounds>(found));
+}
+
 std::pair<double, double> DenseEarlyMonitor::known(std::uint32_t input, Tick tick) const {
     if (input >= ranges_.size()) throw std::out_of_range("There is no such input.");
     return pair_of(monitor_.samples().known(input, tick));
@@ -301,6 +319,9 @@ void add_dense_early_monitor(const nb::module_& module, const Exceptions& except
         .def("origin", &DenseEarlyMonitor::origin, "The bounds at the start of the trace.")
         .def("bounds", &DenseEarlyMonitor::bounds, nb::arg("output"), nb::arg("tick"),
              "The bounds of an output at a tick, None where they are not held.")
+        .def("supposed", &DenseEarlyMonitor::supposed, nb::arg("output").none(), nb::arg("tick"),
+             nb::arg("later"),
+             "The bounds of an output, or at the start, if inputs had such bounds from ticks on.")
         .def("known", &DenseEarlyMonitor::known, nb::arg("number"), nb::arg("tick"),
              "What is known of an input at a tick.")
         .def(

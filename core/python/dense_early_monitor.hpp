@@ -52,6 +52,10 @@ class DenseEarlyMonitor : public EarlyBackend {
     [[nodiscard]] std::optional<std::pair<double, double>> origin() const;
     [[nodiscard]] std::optional<std::pair<double, double>> bounds(std::size_t output,
                                                                   Tick tick) const;
+    // Of an output, or none for the start; suppositions (input, from, lower, upper) in order.
+    [[nodiscard]] std::optional<std::pair<double, double>>
+    supposed(std::optional<std::size_t> output, Tick tick,
+             const std::vector<std::tuple<std::uint32_t, Tick, double, double>>& later);
     [[nodiscard]] std::pair<double, double> known(std::uint32_t input, Tick tick) const;
     [[nodiscard]] std::optional<Tick> held(std::size_t output) const;
 

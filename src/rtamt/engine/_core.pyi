@@ -306,6 +306,14 @@ class DenseEarlyMonitor:
     def bounds(self, output: int, tick: int) -> tuple[float, float] | None:
         """The bounds of an output at a tick, None where they are not held."""
 
+    def supposed(
+        self, output: int | None, tick: int, later: Sequence[tuple[int, int, float, float]]
+    ) -> tuple[float, float] | None:
+        """The bounds of an output at a tick, or at the start, if inputs had such bounds behind their newest samples.
+
+        ``later``: (input, from, lower, upper) in order; None as for bounds().
+        """
+
     def known(self, number: int, tick: int) -> tuple[float, float]:
         """What is known of an input at a tick."""
 

@@ -50,13 +50,15 @@ class DenseKnowledge:
 
     ``ranges`` are the declared ones, which hold where nothing else is known; without one a variable may be
     anything. ``finished``: no more samples will come. ``closed``: of variables the tick up to which, inclusive,
-    no more samples will come; without one that of the newest sample.
+    no more samples will come; without one that of the newest sample. ``later``: what is supposed of variables where
+    nothing but the range is known after their newest samples: bounds from each time on, the last for ever.
     """
 
     samples: Mapping[str, Samples]
     ranges: Mapping[str, Range] = field(default_factory=dict)
     finished: bool = False
     closed: Mapping[str, int] = field(default_factory=dict)
+    later: Mapping[str, Samples] = field(default_factory=dict)
 
     @property
     def start(self) -> int | None:
@@ -80,7 +82,7 @@ class DenseKnowledge:
     def of(self, names: Collection[str]) -> DenseKnowledge:
         """Return what is known of some of the variables."""
         samples = {name: self.samples[name] for name in names}
-        return DenseKnowledge(samples, self.ranges, self.finished, self.closed)
+        return DenseKnowledge(samples, self.ranges, self.finished, self.closed, self.later)
 
 
 def bounds(formula: Formula, known: DenseKnowledge, tick: Fraction) -> StepBounds:
@@ -153,6 +155,12 @@ def _signal(name: str, known: DenseKnowledge, origin: int, *, started: bool) -> 
     ]
     if not known.finished:
         samples = _held(samples, known.until(name), (low, high))
+        behind = samples[-1][0]
+        for t, lower, upper in zip(*known.later.get(name, ((), (), ())), strict=True):
+            samples = [
+                *(each for each in samples if each[0] < max(t, behind)),
+                (max(t, behind), lower, upper),
+            ]
     steps = []
     for column in (1, 2):
         whole = Steps(tuple(each[0] * QUARTERS for each in samples), tuple(each[column] for each in samples))

@@ -4,22 +4,24 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from rtamt.compiler.early import FOREVER
+from rtamt.compiler.early import FOREVER, NEVER
 from rtamt.engine.dense.runs import compared, merged
 from rtamt.engine.native import EarlyMonitorBase
 from rtamt.engine.usage_guard import exclusive, in_use
 from rtamt.errors import TraceError, UsageError
 from rtamt.language.units import format_duration
-from rtamt.signals import arrays
+from rtamt.signals import arrays, dense_arrays
 from rtamt.signals.outcomes import Interval
 from rtamt.verdicts.dense_early import DenseEarlyMonitor
 from rtamt.verdicts.interval import Change, IntervalMonitor
+from rtamt.verdicts.prediction import later_steps
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from rtamt.engine.dense.runs import Run
     from rtamt.signals.ticks import TimeScale
+    from rtamt.verdicts.prediction import Step
 
 
 class DenseIntervalMonitor(DenseEarlyMonitor, IntervalMonitor, EarlyMonitorBase):
@@ -124,15 +126,14 @@ class DenseIntervalMonitor(DenseEarlyMonitor, IntervalMonitor, EarlyMonitorBase)
 
     def interval(self, time: Any = None, *, prediction: Mapping[str, Any] | None = None) -> Interval:
         """See :meth:`IntervalMonitor.interval`."""
-        if prediction is not None:
-            raise UsageError("a prediction needs discrete time; use it, or declare ranges")
+        later = None if prediction is None else self._later(prediction)
         if time is None:
-            return Interval(*self._backend.origin())
+            return Interval(*(self._backend.origin() if later is None else self._supposed(None, 0, later)))
         if self.at == "start":
             raise self._start_only()
         scale = self._scale_of(time)
         tick = int(scale.ticks([time], arrays.TIME)[0])
-        found = self._backend.bounds(0, tick)
+        found = self._backend.bounds(0, tick) if later is None else self._supposed(0, tick, later)
         if found is None:
             begun = self._backend.held(0)
             if begun is None:
@@ -144,6 +145,31 @@ class DenseIntervalMonitor(DenseEarlyMonitor, IntervalMonitor, EarlyMonitorBase)
                 f"read them from changes() when they are"
             )
         return Interval(*found)
+
+    def _later(self, prediction: Mapping[str, Any]) -> list[Step]:
+        """Return predictions in the form of the back end."""
+        if self._finished:
+            raise UsageError("the trace has ended, so that there is nothing to predict")
+        scale = self._scale
+        if scale is None or self._backend.complete == NEVER:
+            raise UsageError(
+                "the trace has not started: it does when every variable has a sample, and no earlier one can come; "
+                "predictions follow the newest"
+            )
+        return later_steps(
+            prediction,
+            self.input_names,
+            self._known_ranges(),
+            lambda times, name: dense_arrays.samples_of((times, [0.0] * len(times)), name, scale, 0, None)[
+                0
+            ].tolist(),
+        )
+
+    def _supposed(self, output: int | None, tick: int, later: list[Step]) -> Any:
+        try:
+            return self._backend.supposed(output, tick, later)
+        except self._undefined as error:
+            raise self._no_value(error) from None
 
     def _changes(self, output: int) -> list[Change]:
         if self._finished:

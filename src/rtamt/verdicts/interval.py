@@ -227,8 +227,10 @@ class IntervalMonitor(EarlyMonitor):
     def interval(self, time: Any = None, *, prediction: Mapping[str, Any] | None = None) -> Interval:
         """Return the bounds at the start of the trace, or at an instant that is not long final (``at="every"``).
 
-        ``prediction``: what samples after the newest one are supposed to be, for this call alone, in discrete time:
-        from a variable to (lower, upper), two numbers for all later samples, or two arrays over the next ones.
+        ``prediction``: what samples after the newest one are supposed to be, for this call alone:
+        from a variable to (lower, upper), two numbers for all later samples, or two arrays over the next ones. In
+        dense time, what the signal is supposed to be after the newest sample of its variable: two numbers, or
+        (times, lower, upper), three arrays of bounds from each time on, the last for ever.
         The robustness lies within the bounds if the samples do; see :func:`rtamt.calibrate`. The
         cost of a call is proportional to the length of the arrays.
         """

@@ -8,17 +8,24 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
-from rtamt.compiler.early import FOREVER
+from rtamt.compiler.early import FOREVER, NEVER
 from rtamt.errors import UsageError, did_you_mean, shown
 from rtamt.signals import arrays
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Callable, Mapping, Sequence
 
     from numpy.typing import ArrayLike
 
 #: Bounds of all variables at samples (first, last), counted from the one after the newest.
 Later: TypeAlias = "tuple[int, int, list[float], list[float]]"
+#: Bounds of a variable from a tick on: its number, the tick, and the bounds.
+Step: TypeAlias = "tuple[int, int, float, float]"
+
+
+#: What may be given instead of two numbers, in discrete and in dense time.
+_ARRAYS = "or two arrays of numbers of the same length"
+_TIMED = "or (times, lower, upper), three arrays of the same length"
 
 
 def calibrate(residuals: ArrayLike, delta: float) -> float:
@@ -60,14 +67,11 @@ def later_samples(
 
     Raises :class:`UsageError` for wrong predictions.
     """
+    _check_names(prediction, names)
     steps: dict[str, list[tuple[float, float]]] = {}
     always = dict(zip(names, ranges, strict=True))
     for name, given in prediction.items():
-        if name not in names:
-            raise UsageError(
-                f"prediction has '{name}', which the formula does not read{did_you_mean(name, names)}"
-            )
-        each, constant = _bounds_of(name, given)
+        each, constant = _bounds_of(name, given, _ARRAYS)
         each = [_cut(name, bounds, always[name]) for bounds in each]
         if constant:
             always[name] = each[0]
@@ -82,12 +86,52 @@ def later_samples(
     return [*later, (length, FOREVER, [low for low, _ in last], [high for _, high in last])]
 
 
-def _bounds_of(name: str, given: Any) -> tuple[list[tuple[float, float]], bool]:
-    """Return the bounds of a variable at later samples; one, and true, if they are the same at all."""
-    wrong = UsageError(
-        f"the prediction of '{name}' is {shown(given)}; give (lower, upper), two numbers or two arrays of numbers "
-        f"of the same length"
+def later_steps(
+    prediction: Mapping[str, Any],
+    names: Sequence[str],
+    ranges: Sequence[tuple[float, float]],
+    ticks: Callable[[Any, str], Sequence[int]],
+) -> list[Step]:
+    """Return the bounds of variables in dense time, within their declared ranges; ``ticks``: from times to ticks.
+
+    Raises :class:`UsageError` for wrong predictions.
+    """
+    _check_names(prediction, names)
+    steps: list[Step] = []
+    for number, name in enumerate(names):
+        if name not in prediction:
+            continue
+        given, starts = prediction[name], [NEVER]
+        if isinstance(given, tuple | list) and len(given) == 3:
+            starts, given = list(ticks(given[0], name)), given[1:]
+        each, _ = _bounds_of(name, given, _TIMED)
+        if len(each) != len(starts):
+            raise _wrong(name, prediction[name], _TIMED)
+        for start, bounds in zip(starts, each, strict=True):
+            steps.append((number, start, *_cut(name, bounds, ranges[number])))
+    return steps
+
+
+def _check_names(prediction: Mapping[str, Any], names: Sequence[str]) -> None:
+    for name in prediction:
+        if name not in names:
+            raise UsageError(
+                f"prediction has '{name}', which the formula does not read{did_you_mean(name, names)}"
+            )
+
+
+def _wrong(name: str, given: Any, arrays_of: str) -> UsageError:
+    return UsageError(
+        f"the prediction of '{name}' is {shown(given)}; give (lower, upper), two numbers {arrays_of}"
     )
+
+
+def _bounds_of(name: str, given: Any, form: str) -> tuple[list[tuple[float, float]], bool]:
+    """Return the bounds of a variable at later samples; one, and true, if they are the same at all.
+
+    ``form``: what may be given instead of two numbers.
+    """
+    wrong = _wrong(name, given, form)
     try:
         low, high = (np.asarray(end, float) for end in given)
         low, high = np.broadcast_arrays(low, high)

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <map>
+#include <variant>
 
 using namespace early_oracle;
 using rtamt::early::Change;
@@ -21,6 +22,7 @@ constexpr std::size_t count = 40; // ticks that are looked at
 // What is known of the inputs from the start on, where the samples of each come in order.
 struct Model {
     std::array<std::map<Tick, Bounds>, 2> inputs;
+    std::array<Bounds, 2> later{rtamt::bounds::anything, rtamt::bounds::anything};
     bool finished = false;
 
     [[nodiscard]] bool started() const { return !inputs[0].empty() && !inputs[1].empty(); }
@@ -34,8 +36,7 @@ struct Model {
             for (std::size_t k = 0; k <= count; ++k) {
                 const Tick t = start() + static_cast<Tick>(k);
                 const bool open = t > newest && !finished;
-                known[i].push_back(open ? rtamt::bounds::anything
-                                        : std::prev(inputs[i].upper_bound(t))->second);
+                known[i].push_back(open ? later[i] : std::prev(inputs[i].upper_bound(t))->second);
             }
         }
         return known;
@@ -115,6 +116,17 @@ TEST_CASE("bounds and their changes are those of the definition") {
                 REQUIRE(reported.contains(t) == (t <= newest));
                 if (t <= newest) REQUIRE(reported[t] == at);
             }
+            // What is supposed of an input holds behind its newest sample, and for one answer.
+            const double x = random.number(0);
+            model.later[0] = {x, x + 1};
+            const auto supposed = bounds(graph, model.knowledge(), count).back();
+            model.later[0] = rtamt::bounds::anything;
+            const DenseMonitor::Supposed later{0, -rtamt::early::forever, {x, x + 1}};
+            const Tick t = model.start() + random.between(0, count - 2);
+            const auto k = static_cast<std::size_t>(t - model.start());
+            const auto answer = monitor.suppose(0, t, std::span(&later, 1));
+            REQUIRE(std::get<Bounds>(answer) == supposed[k]);
+            REQUIRE(monitor.at(0, t) == expected[k]);
         });
     }
 }

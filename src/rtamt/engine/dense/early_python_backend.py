@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
     from rtamt.engine.dense.runs import Decided, Pair, Run
     from rtamt.language.formula import Formula
+    from rtamt.reference.dense_bounds import Samples
 
 #: The minimum of formulas, each over the trace of some variables.
 Output: TypeAlias = "Sequence[tuple[Formula, tuple[str, ...]]]"
@@ -128,9 +129,11 @@ class PythonDenseEarlyMonitor:
             closed[name] = max([came.closed, *ordered])
         return DenseKnowledge(samples, self._ranges, came.finished, closed)
 
-    def _bounds(self, output: Output, came: _Came) -> StepBounds | None:
-        """Return the bounds of an output; None while the trace has not started."""
-        knowledge = self._knowledge(came)
+    def _bounds(
+        self, output: Output, came: _Came, later: Mapping[str, Samples] | None = None
+    ) -> StepBounds | None:
+        """Return the bounds of an output; None while the trace has not started. ``later``: see DenseKnowledge."""
+        knowledge = replace(self._knowledge(came), later=later or {})
         parts = [(formula, knowledge.of(names)) for formula, names in output]
         if any(known.start is None for _, known in parts):
             return None
@@ -208,6 +211,21 @@ class PythonDenseEarlyMonitor:
         """The bounds of an output at a tick, None where the trace has not started or they are forgotten."""
         found = self._now(self._hidden + output)
         return None if found is None or tick < found.times[0] else found.at(tick)
+
+    def supposed(
+        self, output: int | None, tick: int, later: Sequence[tuple[int, int, float, float]]
+    ) -> Pair | None:
+        """The bounds of an output at a tick, or at the start, if inputs had bounds (input, from, lower, upper)."""
+        first = self.held(output) if output is not None else self._knowledge(self._came).start
+        if first is None or (output is not None and tick < first):
+            return None
+        rows = {
+            name: [each[1:] for each in later if each[0] == number] for number, name in enumerate(self._names)
+        }
+        supposed = {name: tuple(zip(*each, strict=True)) for name, each in rows.items() if each}
+        formula = self._formulas[0 if output is None else self._hidden + output]
+        found = self._bounds(formula, self._came, supposed)
+        return None if found is None else found.at(found.times[0] if output is None else tick)
 
     def held(self, output: int) -> int | None:
         """The first tick whose bounds are held; None before the trace has started."""
