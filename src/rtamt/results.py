@@ -188,7 +188,8 @@ class Result:
                 f"the specification has several requirements; ask one of them for its episodes, such as "
                 f"result.requirements['{first}']"
             )
-        spec, formula = self.specification, self.specification.formula
+        spec = self.specification
+        (formula,) = self.trace.domain.ground(spec.formula)
         begin, end = 0, None
         if isinstance(formula, Apply) and formula.op is STL["always"]:
             if formula.interval is not None:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Literal, overload
 from rtamt.engine.domains import engine_of
 from rtamt.engine.offline import Evaluators, Query
 from rtamt.errors import TraceError, UsageError
+from rtamt.language.imports import again
 from rtamt.language.printer import to_text
 from rtamt.language.specfile import parse_document
 from rtamt.language.units import check_unit
@@ -30,6 +31,7 @@ if TYPE_CHECKING:
     from rtamt.engine.discrete.monitor import Monitor
     from rtamt.engine.online import OnlineMonitor
     from rtamt.language.formula import Formula
+    from rtamt.language.imports import Library
     from rtamt.language.units import Duration
     from rtamt.settings import DenseSettings, DiscreteSettings, IntervalSettings, Semantics, Watch
     from rtamt.signals.dense import Dense
@@ -392,7 +394,7 @@ class Specification(SpecificationText):
         settings = {name: getattr(self, name) for name in names}
         replaced = self.document.replaced
         formula = to_text(self.formula, self.language, parameters=True) if replaced else None
-        values = self._given, dict(self.parameters)
+        values = self._given, dict(self.parameters), again(self.document)
         return _factory, (
             self.text,
             values,
@@ -417,14 +419,19 @@ def _monitor(
 
 def _factory(
     text: str,
-    values: tuple[Mapping[str, float], Mapping[str, float]],
+    values: tuple[Mapping[str, float], Mapping[str, float], Library],
     settings: dict[str, Any],
     selected: str | None,
     formula: str | None,
 ) -> Specification:
-    constants, parameters = values
+    constants, parameters, library = values
     document = parse_document(
-        text, language=settings["language"], unit=settings["unit"], constants=constants, parameters=parameters
+        text,
+        language=settings["language"],
+        unit=settings["unit"],
+        constants=constants,
+        parameters=parameters,
+        library=library,
     )
     spec = Specification(document if selected is None else document.select(selected), **settings)
     return spec if formula is None else spec.with_formula(spec._named(formula))

@@ -13,6 +13,7 @@ from rtamt.engine.online import Watched
 from rtamt.errors import UsageError
 from rtamt.language.formula import Formula, outermost, types_of, variables
 from rtamt.language.grammar import is_number
+from rtamt.language.imports import again
 from rtamt.language.lint import LintWarning, warnings_of
 from rtamt.language.operators import STL, Language
 from rtamt.language.parameters import assigned, bounding, with_values
@@ -156,7 +157,12 @@ class SpecificationText:
                 f"the formula was replaced, and {names} bounds an interval: set it before with_formula()"
             )
         document = parse_document(
-            self.text, language=self.language, unit=self.unit, constants=self._given, parameters=values
+            self.text,
+            language=self.language,
+            unit=self.unit,
+            constants=self._given,
+            parameters=values,
+            library=again(self.document),
         )
         if self.document.selected is not None:
             document = document.select(self.document.selected)
@@ -221,7 +227,7 @@ class SpecificationText:
     @property
     def horizon(self) -> float:
         """Seconds after t at which ρ at t is known online; inf if never. The paper's Definition 3."""
-        depth = horizon(self._apply_semantics(self.formula), self.period or Fraction(1))
+        depth = horizon(self._grounded(self.domain), self.period or Fraction(1))
         return float("inf") if depth is None else float(depth)
 
     def pastified(self, period: Duration | None = None) -> Formula:
@@ -234,7 +240,13 @@ class SpecificationText:
         once[5:5](x >= 3) -> once[0:5](y >= 3)
         """
         step = self.period if period is None else positive_period(period)
-        return pastify(self.formula, step or Fraction(1), self.text, self.unit)
+        formula = self._grounded(self._domain_for(period=period))
+        return pastify(formula, step or Fraction(1), self.text, self.unit)
+
+    def _grounded(self, domain: TimeDomain) -> Formula:
+        """Return the formula with closed bounds, as it is monitored; where there are none, bounds need not fit."""
+        (formula,) = domain.online.ground(self.formula)
+        return formula if formula is self.formula else domain.online.check(self.formula, self.text)
 
     def _apply_semantics(
         self, formula: Formula, semantics: str | PredicateSemantics | None = None

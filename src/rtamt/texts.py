@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import UsageError, shown
+from rtamt.language.imports import Library
 from rtamt.language.operators import STL, Language
 from rtamt.language.specfile import parse_document
 from rtamt.language.units import positive_period
@@ -20,7 +22,6 @@ from rtamt.signals.domains import DEFAULT, time_domain
 from rtamt.specification import Specification
 
 if TYPE_CHECKING:
-    import os
     from collections.abc import Mapping
 
     from typing_extensions import Unpack
@@ -42,6 +43,7 @@ def parse(
     resolution: Duration | None = None,
     semantics: Semantics = "standard",
     roles: Mapping[str, str] | None = None,
+    folder: str | os.PathLike[str] | None = None,
 ) -> Specification:
     """Parse a requirement: a formula, or the whole text of a specification file.
 
@@ -60,6 +62,9 @@ def parse(
     variable to ``"input"`` or ``"output"``, overriding the declarations of the text; without a role, a
     variable is an output.
 
+    ``folder``: where files are that the text imports, ``import "patterns.stl"``; without it, only those that
+    are part of the package can be imported.
+
     >>> import rtamt
     >>> spec = rtamt.parse("always((req >= 3) -> eventually[0:5](gnt >= 3))", roles={"req": "input"})
     >>> spec.input_names
@@ -71,7 +76,8 @@ def parse(
     check_language(language)
     check_backend(backend)
     check_constants({} if constants is None else constants)
-    document = parse_document(text, language=language, unit=unit, constants=constants)
+    library = Library(None if folder is None else _folder(folder))
+    document = parse_document(text, language=language, unit=unit, constants=constants, library=library)
     domain = time_domain(time, period, None, resolution)
     spec = Specification(
         document,
@@ -109,7 +115,14 @@ def load(path: str | os.PathLike[str], **settings: Unpack[Settings]) -> Specific
         raise UsageError(
             f"'{path}' is not UTF-8 text (byte {error.start}); is it a specification?"
         ) from error
-    return parse(text, **settings)
+    return parse(text, folder=Path(path).parent, **settings)
+
+
+def _folder(folder: str | os.PathLike[str]) -> str:
+    try:
+        return os.fsdecode(folder)
+    except TypeError:
+        raise UsageError(f"folder is {shown(folder)}, expected text or a Path") from None
 
 
 def robustness(text: str, data: Any, *, time_unit: str | None = None, **settings: Unpack[Settings]) -> float:

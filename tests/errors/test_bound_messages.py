@@ -37,6 +37,33 @@ def test_the_period_may_also_come_with_the_data() -> None:
     )
 
 
+@pytest.mark.parametrize(
+    ("text", "settings", "sentence", "marks"),
+    [
+        (
+            "always(1, 2) x",
+            {"period": 1},
+            "the interval (1:2) is empty: with a sampling period of 1 s no period lies in it; "
+            "close a bound, or choose a shorter period",
+            "      ^^^^^^",
+        ),
+        (
+            "x since(0, 1us) y",
+            {"time": "dense", "resolution": "1us"},
+            "the interval (0:1us) is empty: with a resolution of 1 us no tick lies in it; "
+            "close a bound, or choose a finer resolution",
+            "       ^^^^^^^^",
+        ),
+    ],
+)
+def test_a_half_open_interval_that_contains_no_step(
+    text: str, settings: dict[str, object], sentence: str, marks: str
+) -> None:
+    with pytest.raises(rtamt.BoundError) as info:
+        rtamt.parse(text, **settings)  # type: ignore[arg-type]
+    assert str(info.value) == f"{sentence}\n  line 1, column {marks.index('^') + 1}:\n    {text}\n    {marks}"
+
+
 def test_unbounded_future_online() -> None:
     with pytest.raises(rtamt.BoundError) as info:
         rtamt.parse("x >= 1 and (eventually y >= 1)").monitor()

@@ -42,9 +42,10 @@ def intervals(draw, bounds):
     begin = draw(st.fractions(0, 10, max_denominator=1000))
     length = draw(st.fractions(0, 10, max_denominator=7))
     unit = st.sampled_from(["", *UNITS])
+    begin_open, end_open = (draw(st.booleans()) and length > 0 for _ in range(2))
     if bounds is Bounds.OPTIONAL and draw(st.booleans()):
-        return Interval(begin, None, draw(unit))
-    return Interval(begin, begin + length, draw(unit), draw(unit))
+        return Interval(begin, None, draw(unit), begin_open=begin_open, end_open=end_open)
+    return Interval(begin, begin + length, draw(unit), draw(unit), begin_open=begin_open, end_open=end_open)
 
 
 @st.composite

@@ -27,7 +27,6 @@ from rtamt.rewrite.check import check_online
 from rtamt.rewrite.desugar import desugar
 from rtamt.rewrite.early import ends_differently, loose
 from rtamt.rewrite.horizon import horizon
-from rtamt.rewrite.pastify import pastify
 from rtamt.rewrite.semantics import apply_semantics, boolean
 from rtamt.signals.domains import DOMAINS
 
@@ -160,22 +159,34 @@ def gather(spec: Specification) -> Facts:
     step = domain.step
     assert step is not None
     facts = Facts(spec, step)
-    applied = _applied(spec)
     try:
         check_online(spec.formula, spec.text)
-        facts = replace(facts, horizon=horizon(spec.formula, step), pastified=_pastified(spec, step))
+        facts = replace(facts, horizon=_depth(spec, spec.formula), pastified=_pastified(spec))
         domain.check(spec.formula, spec.text)
     except BoundError as error:
         return replace(facts, offline_only=error.message)
-    program = compile_program((desugar(applied),), step, spec.input_names, domain=type(spec.domain))
+    applied = desugar(_grounded(spec, _applied(spec)))
+    program = compile_program((applied,), step, spec.input_names, domain=type(spec.domain))
     memory = engine_of(domain).backends[spec.backend].memory(program)
     return replace(facts, program=program, memory=memory)
 
 
-def _pastified(spec: Specification, step: Fraction) -> Formula | None:
+def _grounded(spec: Specification, formula: Formula) -> Formula:
+    """Return the formula as it is monitored, with closed bounds."""
+    return spec.domain.online.ground(formula)[0]
+
+
+def _depth(spec: Specification, formula: Formula) -> Fraction | None:
+    """Return the horizon of a formula."""
+    step = spec.domain.online.step
+    assert step is not None
+    return horizon(_grounded(spec, formula), step)
+
+
+def _pastified(spec: Specification) -> Formula | None:
     """Return the pastified formula, None where there is none: of shared sub-formulas it may be too large."""
     try:
-        return pastify(spec.formula, step, spec.text)
+        return spec.pastified()
     except BoundError:
         raise
     except SpecificationError:
@@ -217,7 +228,7 @@ def _requirements(facts: Facts) -> list[dict[str, Any]]:
     """Return the properties of each requirement; ``ahead``: its horizon in words."""
     rows = []
     for known in facts.spec.document.requirements:
-        depth = horizon(known.formula, facts.step)
+        depth = _depth(facts.spec, known.formula)
         rows.append(
             {
                 "name": known.name,
@@ -240,12 +251,12 @@ def _applied(spec: Specification) -> Formula:
 def _loose(facts: Facts) -> str | None:
     """Return a variable that may make intervals wider than necessary."""
     period = None if facts.spec.domain.continuous else facts.step
-    return loose(_applied(facts.spec), period)
+    return loose(_grounded(facts.spec, _applied(facts.spec)), period)
 
 
 def _ending(facts: Facts) -> str | None:
     """Return an operator whose windows may lose at the end of a discrete trace what was decided before."""
-    found = ends_differently(boolean(facts.spec.formula), {})
+    found = ends_differently(_grounded(facts.spec, boolean(facts.spec.formula)), {})
     return None if found is None else found.op.name
 
 

@@ -18,7 +18,8 @@ from rtamt.cli.parser import ERROR, OK, VIOLATED, complain
 from rtamt.cli.terminal import say
 from rtamt.errors import StlError
 from rtamt.language.lint import RULES
-from rtamt.rewrite.check import check_bounds, check_online
+from rtamt.rewrite.check import check_online
+from rtamt.signals.discrete import Discrete
 
 if TYPE_CHECKING:
     import argparse
@@ -91,6 +92,6 @@ def _check(file: str, args: argparse.Namespace) -> Specification:
 
 def _check_formula(spec: Specification, *, online: bool) -> None:
     if spec.period is not None:
-        check_bounds(spec.formula, spec.period, spec.text)
+        Discrete(spec.period).check(spec.formula, spec.text)
     if online:
         check_online(spec.formula, spec.text)

@@ -53,10 +53,11 @@ class Evaluators:
         step, inputs = recording.step, tuple(recording.columns)
         if recording.bounds:
             backend = engine_of(recording.domain).backends[self._backend]
-            return list(backend.bounds(formulas, step, inputs)(recording))
+            return list(backend.bounds(recording.domain.ground(*formulas), step, inputs)(recording))
         key = (type(recording), formulas, step.as_integer_ratio(), inputs)  # fractions are slow to hash
         evaluator = self._evaluators.get(key)
         if evaluator is None:
             backend = engine_of(recording.domain).backends[self._backend]
-            evaluator = self._evaluators[key] = backend.evaluator(formulas, step, inputs)
+            grounded = recording.domain.ground(*formulas)
+            evaluator = self._evaluators[key] = backend.evaluator(grounded, step, inputs)
         return recording.signals(evaluator(recording))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Mapping, Sequence
 
     from rtamt.engine.backend import Session
+    from rtamt.signals.domain_interface import TimeDomain
     from rtamt.signals.episodes import Episode
 
     Self = TypeVar("Self", bound="OnlineMonitor")
@@ -34,6 +35,16 @@ class Watched:
     name: str | Formula
     formula: Formula
     text: str | None
+
+
+def grounded(
+    domain: TimeDomain, formula: Formula, text: str | None, watch: Sequence[Watched]
+) -> tuple[Formula, list[Watched]]:
+    """Return a formula and what is watched beside it as they are evaluated; raise what does not fit the domain."""
+    for watched in (Watched("", formula, text), *watch):
+        domain.check(watched.formula, watched.text)
+    formula, *others = domain.ground(formula, *(watched.formula for watched in watch))
+    return formula, [replace(each, formula=other) for each, other in zip(watch, others, strict=True)]
 
 
 def _label(name: str | Formula) -> str:

@@ -66,6 +66,7 @@ class _Explainer:
         text: str | None,
         semantics: Callable[[Formula], Formula],
     ) -> None:
+        (formula,) = recording.domain.ground(formula)
         self._formula = formula
         self._text = text
         self._recording = recording

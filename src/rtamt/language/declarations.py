@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+from abc import abstractmethod
 from math import inf
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Literal
 
-from rtamt.errors import NameInFormulaError, did_you_mean
+from rtamt.errors import NameInFormulaError, SpecificationError, did_you_mean, placed
 from rtamt.language.document import Declaration, Import
+from rtamt.language.enumerations import begins_enumeration, parse_enumeration
 from rtamt.language.formula import Span
 from rtamt.language.grammar import INFINITY
+from rtamt.language.imports import ImportedFileError, Library, called, moved
 from rtamt.language.lexer import Token, quoted
 from rtamt.language.operators import Fixity, Language
 from rtamt.language.requirements import RequirementParser
@@ -19,6 +22,7 @@ from rtamt.language.value_types import BOOLEAN, Enumeration
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping
 
+    from rtamt.language.document import Document
     from rtamt.language.templates import Template
     from rtamt.language.value_types import ValueType
 
@@ -34,9 +38,6 @@ _Kind = Literal["var", "const", "parameter"]
 _KINDS: Mapping[str, _Kind] = MappingProxyType({"const": "const", "parameter": "parameter"})
 _CALLED = MappingProxyType({"var": "variable", "const": "constant", "parameter": "parameter"})
 
-#: Codes that a double holds exactly.
-_LARGEST_CODE = 2**53
-
 _ROLES: Mapping[str, Literal["input", "output"]] = MappingProxyType({"input": "input", "output": "output"})
 
 
@@ -50,12 +51,16 @@ class DeclarationParser(RequirementParser):
         unit: str,
         scope: Scope,
         values: Mapping[str, float],
+        library: Library,
         truths: bool,
     ) -> None:
         super().__init__(text, language, unit, scope)
         self._truths = truths
         self._enumerations: dict[str, Enumeration] = dict(scope.enumerations)
         self._types: dict[str, ValueType] = dict(scope.types)
+        self.library = library
+        #: From each name that is imported to the file that defines it.
+        self.origins: dict[str, str] = {}
         #: The values of parameters that are given.
         self._values = values
         #: The names of the declared parameters.
@@ -75,8 +80,18 @@ class DeclarationParser(RequirementParser):
         self.accept(";")
         return name
 
+    @abstractmethod
+    def document(self, *, imported: bool = False) -> Document:
+        """Parse the whole text; one that is imported needs no formula."""
+
     def _import(self) -> bool:
-        """``import = "from" , module , "import" , word , [ ";" ]``."""
+        """``import = ( "from" , module , "import" , word | "import" , '"' , path , '"' ) , [ ";" ]``."""
+        if self._imports_file():
+            start = self.next().start
+            token = self.next()
+            self._import_file(token, Span(start, token.end))
+            self.accept(";")
+            return True
         if not (self._word("from") and self._plain_name(1)):
             return False
         self.next()
@@ -90,56 +105,61 @@ class DeclarationParser(RequirementParser):
         self.accept(";")
         return True
 
-    def _enumerates(self) -> bool:
-        """Return whether an enumeration is declared here."""
-        return self._word("enum") and self._at(1).kind == "name" and self._at(2).text == "{"
+    def _imports_file(self) -> bool:
+        return self._word("import") and self._at(1).kind == "quoted" and "import" not in self._imports
+
+    def _import_file(self, token: Token, span: Span) -> None:
+        """Take over what a file declares and defines, but for its requirements."""
+        library = self.library
+        try:
+            file, text = library.read(token.name)
+        except ImportedFileError as error:
+            raise self.error(str(error), token.span) from None
+        if file not in library.documents:
+            library.open.append(file)
+            other = type(self)(text, self.language, self.unit, Scope(), self._values, library, self._truths)
+            try:
+                document = other.document(imported=True)
+            except SpecificationError as error:
+                raise error if error.text is not text else placed(error, called(file)) from None
+            library.open.pop()
+            names = (
+                *document.constants,
+                *document.definitions,
+                *document.templates,
+                *document.variables,
+                *document.enumerations,
+            )
+            library.documents[file] = document, {**dict.fromkeys(names, file), **other.origins}
+        document, origins = library.documents[file]
+        for name, origin in origins.items():
+            known = self.origins.setdefault(name, origin)
+            if known != origin:
+                raise self.error(
+                    f"'{name}' is in '{called(known)}' and in '{called(origin)}'; rename one of them", span
+                )
+        definitions, templates = moved(document, span)
+        self._constants.update(document.constants)
+        self._parameters.update(document.parameters)
+        self._declarations.update({each.name: each for each in document.declarations})
+        self._definitions.update(definitions)
+        self._templates.update(templates)
+        self._enumerations.update(document.enumerations)
+        self._types.update(document.types)
+        self._topics.update(document.topics)
+        self._imports.update({each.name: each for each in document.imports})
+
+    def _from(self, name: str) -> str:
+        """Return where a name comes from, for messages: "" if it is of this text."""
+        return f" (it is imported from '{called(self.origins[name])}')" if name in self.origins else ""
 
     def _enumeration(self) -> bool:
-        """``enumeration = "enum" , word , "{" , member , { "," , member } , [ "," ] , "}" , [ ";" ]``."""
-        if not self._enumerates():
+        """Take the declaration of an enumeration, if there is one here."""
+        if not begins_enumeration(self):
             return False
-        self.next()
-        name, opening = self.next(), self.next()
-        if "." in name.text:
-            raise self.error(
-                f"the name of an enumeration is one word, and '{name.text}' has a dot", name.span
-            )
-        if name.text in (*TYPES, *self._imports, *self._enumerations):
-            raise self.error(f"there is a type '{name.text}' already", name.span)
-        members: dict[str, int] = {}
-        while self.token.text != "}":
-            token = self._taken("the name of a member", quotes=True)
-            if token.name in members:
-                raise self.error(f"'{token.name}' is twice in {name.text}", token.span)
-            code = self._code() if self.accept("=") else next(reversed(members.values()), -1) + 1
-            taken = next((other for other, own in members.items() if own == code), None)
-            if taken is not None:
-                raise self.error(
-                    f"'{token.name}' and '{taken}' of {name.text} have the same code, {code}", token.span
-                )
-            members[token.name] = code
-            if self.token.kind == "end":
-                raise self.error("this '{' is never closed", opening.span)
-            if not self.accept(",") and self.token.text != "}":
-                raise self._expected(f"',' or '}}' after the member '{token.name}'")
-        if not members:
-            raise self.error(
-                f"the enumeration '{name.text}' has no members", Span(opening.start, self.token.end)
-            )
-        self.next()
-        self.accept(";")
-        self._enumerations[name.text] = Enumeration(name.text, tuple(members.items()))
+        known = parse_enumeration(self, (*TYPES, *self._imports, *self._enumerations))
+        self._enumerations[known.name] = known
         return True
-
-    def _code(self) -> int:
-        """``[ "-" ] , integer``."""
-        minus = self.accept("-")
-        token = self.next()
-        if token.kind != "number" or not token.text.isdigit() or int(token.text) > _LARGEST_CODE:
-            raise self.error(
-                f"the code of a member is a whole number, such as AUTO = 4; got {token}", token.span
-            )
-        return -int(token.text) if minus else int(token.text)
 
     def _scope(self, variables: Collection[str] | None, pending: Mapping[str, str] | None = None) -> Scope:
         """Return what names mean by now."""
@@ -196,7 +216,7 @@ class DeclarationParser(RequirementParser):
         if head != name and head in self._declarations and not (message and type_ is not None):
             raise self.error(f"'{name}' is a field of '{head}', which is declared", token.span)
         if name in self._declarations or name in self._constants or (constant and name in self._given):
-            raise self.error(f"'{name}' is declared twice", token.span)
+            raise self.error(f"'{name}' is declared twice{self._from(name)}", token.span)
         value = None
         if self.accept("="):
             if not constant:
@@ -320,7 +340,7 @@ class DeclarationParser(RequirementParser):
     def _declares(self) -> bool:
         """Return whether a declaration begins here, of a known or unknown type."""
         first = self.token
-        if first.kind != "name" or self._requires():
+        if first.kind != "name" or self._requires() or self._imports_file():
             return False
         if (first.text in _ROLES or first.text in _KINDS) and self._plain_type(1):
             return True

@@ -100,6 +100,10 @@ class Document:
     types: Mapping[str, ValueType] = field(default_factory=lambda: MappingProxyType({}))
     #: The names of the assertions that other assertions use.
     used: frozenset[str] = frozenset()
+    #: The files that it imports, see :attr:`Library.found`.
+    imported: Mapping[tuple[str, str], tuple[str, str]] = field(
+        default_factory=lambda: MappingProxyType({}), compare=False, repr=False
+    )
     #: The name of the assertion or requirement selected by :meth:`select`.
     selected: str | None = None
     #: The document it was selected from, with every requirement; None if nothing was selected.

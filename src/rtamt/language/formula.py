@@ -47,10 +47,12 @@ class Span:
 
 @dataclass(frozen=True, slots=True)
 class Interval:
-    """A closed interval ``[begin, end]`` of seconds, exact; ``end=None`` means unbounded.
+    """An interval ``[begin, end]`` of seconds, exact; ``end=None`` means unbounded.
 
-    ``begin_unit``, ``end_unit`` and ``constants`` (the named ones) only record how the bounds were
-    written.
+    ``begin_open``, ``end_open``: whether a bound is not part of it; ``rewrite.ground`` turns such bounds into
+    closed ones. ``begin_unit``, ``end_unit`` and ``constants`` (the named ones) only record how the bounds were
+    written; ``written`` is the interval of the text, if it is another one, and ``implied`` one that the text does
+    not contain at all.
     """
 
     begin: Fraction
@@ -59,6 +61,15 @@ class Interval:
     end_unit: str = field(default="", compare=False)
     span: Span | None = field(default=None, compare=False, repr=False)
     constants: tuple[str, ...] = field(default=(), compare=False, repr=False)
+    begin_open: bool = False
+    end_open: bool = False
+    written: Interval | None = field(default=None, compare=False, repr=False)
+    implied: bool = field(default=False, compare=False, repr=False)
+
+    @property
+    def is_open(self) -> bool:
+        """Whether a bound is not part of the interval."""
+        return self.begin_open or self.end_open
 
 
 class Formula:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from rtamt.errors import BoundError, NameInFormulaError, choices, did_you_mean
 from rtamt.language.formula import Interval, Span
 from rtamt.language.grammar import INFINITY
-from rtamt.language.operators import Bounds
+from rtamt.language.operators import Bounds, Fixity
 from rtamt.language.templates import bound, constants_of
 from rtamt.language.units import UNITS, exact
 
@@ -24,13 +24,14 @@ if TYPE_CHECKING:
 
 
 def parse_interval(parser: FormulaParser, op: Operator, token: Token) -> Interval | None:
-    """``interval = "[" , bound , ( ":" | "," ) , bound , "]"``: read one after ``op``, written ``token``.
+    """``interval = ( "[" | "(" ) , bound , ( ":" | "," ) , bound , ( "]" | ")" )``: read one after ``op``.
 
-    A bound without a unit has the default unit of the parser; a lower bound without a unit has that of the upper
-    bound, as in RTAMT. Returns None if there is no interval and the operator does not require one.
+    ``token``: the operator as it is written. A bound without a unit has the default unit of the parser; a lower
+    bound without a unit has that of the upper bound, as in RTAMT. A parenthesis excludes the bound beside it.
+    Returns None if there is no interval and the operator does not require one.
     """
     opening = parser.token
-    if opening.text != "[":
+    if opening.text != "[" and not (opening.text == "(" and _begins_open(parser, op)):
         if op.bounds is Bounds.REQUIRED:
             raise _unbounded(parser, token, token.span)
         return None
@@ -44,9 +45,9 @@ def parse_interval(parser: FormulaParser, op: Operator, token: Token) -> Interva
         raise parser.error(f"expected ':' or ',' and an upper bound, got {separator}", separator.span)
     end, end_unit, end_span = _bound(parser)
     closing = parser.token
-    if not parser.accept("]"):
-        more = "; intervals are closed" if closing.text == ")" else ""
-        raise parser.error(f"expected ']' after the bounds, got {closing}{more}", closing.span)
+    if not parser.accept("]") and not parser.accept(")"):
+        raise parser.error(f"expected ']' after the bounds, got {closing}", closing.span)
+    begin_open, end_open = opening.text == "(", closing.text == ")"
     span = Span(opening.start, closing.end)
     if begin is None:
         raise parser.error("the lower bound of an interval may not be infinite", begin_span, BoundError)
@@ -59,15 +60,53 @@ def parse_interval(parser: FormulaParser, op: Operator, token: Token) -> Interva
     if end is not None:
         if end_unit:
             end *= UNITS[end_unit]
+        written = parser.text[span.start : span.end]
+        if end == begin and (begin_open or end_open):
+            raise parser.error(
+                f"the interval {written} is empty: it excludes its only instant; close both bounds, or move one",
+                span,
+                BoundError,
+            )
         if end < begin:
-            written = parser.text[span.start : span.end]
             raise parser.error(
                 f"the interval {written} is reversed: it ends before it begins", span, BoundError
             )
     read = parser.tokens[first : parser.index]
     names = tuple(token.name for token in read if token.kind in ("name", "quoted"))
     constants = constants_of(parser, names)
-    return Interval(begin, end, begin_unit, "" if end is None else end_unit, span, constants)
+    return Interval(
+        begin, end, begin_unit, "" if end is None else end_unit, span, constants, begin_open, end_open
+    )
+
+
+def _begins_open(parser: FormulaParser, op: Operator) -> bool:
+    """Return whether a parenthesis begins an interval: two bounds, ``]``, or ``)`` in front of an operand.
+
+    Otherwise it begins an operand: ``always(x)``. What is taken for an interval here has no other reading.
+    """
+    if op.bounds is Bounds.NONE:
+        return False
+    separator = _behind_bound(parser, parser.index + 1)
+    if separator is None or parser.tokens[separator].text not in (",", ":"):
+        return False
+    closing = _behind_bound(parser, separator + 1)
+    if closing is None or parser.tokens[closing].text != ")":
+        return closing is not None and parser.tokens[closing].text == "]"
+    if op.fixity is Fixity.FUNCTION:
+        return parser.tokens[closing + 1].text == "("
+    return parser.opens(closing + 1)
+
+
+def _behind_bound(parser: FormulaParser, at: int) -> int | None:
+    """Return the index of the token after a bound that begins at this token; None if none does."""
+    tokens = parser.tokens
+    at += tokens[at].text == "-"
+    if tokens[at].kind not in ("number", "name", "quoted"):
+        return None
+    at += 1
+    if tokens[at].text == "/" and tokens[at + 1].kind == "number":
+        at += 2
+    return at + 1 if tokens[at].text in UNITS else at
 
 
 def _unbounded(parser: FormulaParser, token: Token, span: Span) -> SpecificationError:
@@ -109,7 +148,7 @@ def _bound(parser: FormulaParser) -> Bound:
         raise parser.error(f"'{token.name}' has a unit already, {unit}", name.span, BoundError)
     if name.text in UNITS and value is not None:
         unit = parser.next().text
-    elif name.kind == "name" and after.text in (":", ",", "]"):
+    elif name.kind == "name" and after.text in (":", ",", "]", ")"):
         raise parser.error(
             f"'{name.text}' is not a unit of time{choices(name.text, UNITS, 'units')}", name.span
         )

@@ -87,7 +87,7 @@ def _xor(a: Formula, b: Formula, _i: Interval | None) -> Formula:
 
 
 def _unless(a: Formula, b: Formula, i: Interval | None) -> Formula:
-    whole = None if i is None else Interval(Fraction(0), i.end, "", i.end_unit, i.span)
+    whole = None if i is None else Interval(Fraction(0), i.end, "", i.end_unit, i.span, end_open=i.end_open)
     return STL["or"](STL["always"](a, interval=whole), STL["until"](a, b, interval=i))
 
 

@@ -231,10 +231,10 @@ class FormulaParser(TypedParser):
             return True
         if after.kind == "symbol" and self.tokens[at].text in self.scope:
             # `G - 3` with a variable G is a difference; without one, always(-3).
-            return self.language.infix(after.text) is None and self._opens(at + 1)
-        return self._opens(at + 1)
+            return self.language.infix(after.text) is None and self.opens(at + 1)
+        return self.opens(at + 1)
 
-    def _opens(self, at: int) -> bool:
+    def opens(self, at: int) -> bool:
         """Return whether an operand can begin at this token.
 
         In a run of words spelled like infix operators, a word is an operator if the next token begins an operand,

@@ -67,7 +67,7 @@ def to_text(
             raise TypeError(f"{type(node).__name__} is not a formula")
         if node.op is TRUTH:
             return node.args
-        op, word = node.op, node.op.spellings[0] + _interval(node.interval)
+        op, word = node.op, node.op.spellings[0] + interval_text(node.interval)
         if op.fixity is Fixity.ATOM:
             return (word,)
         if op.fixity is Fixity.FUNCTION:
@@ -125,7 +125,7 @@ def canonical(formula: Formula, language: Language = STL, *, limit: int = LONGES
         op = node.op
         if op is TRUTH:
             return node.args
-        word = _longest(op.spellings) + _interval(node.interval, ",", str)
+        word = _longest(op.spellings) + interval_text(node.interval, ",", str)
         if op.fixity is Fixity.ATOM:
             return (word,)
         if is_infix(op):
@@ -346,19 +346,21 @@ def _rational(value: Fraction) -> str:
     return decimal(value) or str(value)
 
 
-def _interval(
+def interval_text(
     interval: Interval | None, separator: str = ":", form: Callable[[Fraction], str] = _rational
 ) -> str:
     """Return an interval as it was written, or nothing if there is none."""
-    if interval is None:
+    if interval is None or interval.implied:
         return ""
+    interval = interval.written or interval
     begin_unit, end_unit = interval.begin_unit, interval.end_unit
     if interval.end is not None and end_unit:
         # A lower bound without a unit would be read in the unit of the upper bound; zero needs no unit.
         begin_unit = "" if interval.begin == 0 else begin_unit or "s"
     begin = form(interval.begin / UNITS[begin_unit or "s"]) + begin_unit
     end = INFINITY if interval.end is None else form(interval.end / UNITS[end_unit or "s"]) + end_unit
-    return f"[{begin}{separator}{end}]"
+    opening, closing = "(" if interval.begin_open else "[", ")" if interval.end_open else "]"
+    return f"{opening}{begin}{separator}{end}{closing}"
 
 
 # ---- LaTeX ---------------------------------------------------------------------------------------
@@ -392,15 +394,17 @@ def _template(template: str, timed: bool) -> tuple[tuple[str, str | None, bool],
 
 
 def _latex_interval(interval: Interval | None) -> str:
-    if interval is None:
+    if interval is None or interval.implied:
         return ""
+    interval = interval.written or interval
 
     def bound(value: Fraction, unit: str) -> str:
         return _rational(value / UNITS[unit or "s"]) + (rf"\,\mathrm{{{unit}}}" if unit else "")
 
     begin = bound(interval.begin, interval.begin_unit if interval.begin else "")
-    end = r"\infty)" if interval.end is None else bound(interval.end, interval.end_unit) + "]"
-    return f"{{[{begin}, {end}}}"
+    opening, closing = "(" if interval.begin_open else "[", ")" if interval.end_open else "]"
+    end = r"\infty)" if interval.end is None else bound(interval.end, interval.end_unit) + closing
+    return f"{{{opening}{begin}, {end}}}"
 
 
 def _latex_number(value: float) -> str:

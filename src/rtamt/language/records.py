@@ -146,6 +146,9 @@ class Operator:
     expansion: Expansion | None = None
     dense: Callable[..., float] | None = None
     discrete_only: bool = False
+    one_tick: bool = (
+        False  # in dense time its interval is the tick behind, in discrete time the sample behind
+    )
     reach: int | None = _UNSAID
     dual: str | None = None
     twin: str | None = None

@@ -2,13 +2,12 @@
 
 ::
 
-    document    = [ "specification" , word ] , { import } , { enumeration | declaration | annotation } ,
+    document    = [ "specification" , word ] , { import } ,
+                  { declaration | annotation | enumeration, see enumerations.py } ,
                   statement , { separator , statement } , [ ";" ]
     separator   = ";" | after a named assertion, a requirement or a template, as in RTAMT's files: the end of the line
     statement   = assertion | requirement | template, see templates.py
-    import      = "from" , module , "import" , word , [ ";" ]
-    enumeration = "enum" , word , "{" , member , { "," , member } , [ "," ] , "}" , [ ";" ]
-    member      = ( word | '"' , characters , '"' ) , [ "=" , [ "-" ] , integer ]
+    import      = ( "from" , module , "import" , word | "import" , '"' , path , '"' ) , [ ";" ]
     declaration = ( [ "input" | "output" ] , type , name |
                   ( "const" | "parameter" ) , type , name , "=" , value ) , [ "[" , unit , "]" ] , [ ";" ]
     annotation  = "@" , "topic" , "(" , name , "," , topic , ")" , [ ";" ]
@@ -18,7 +17,7 @@
     id          = letters, digits, "_", "-" and ".", such as REQ-12.a | '"' , characters , '"'
     name        = word , { "." , word } | topic | '"' , characters , '"'
     unit        = characters, such as m/s
-    type        = "float" | "int" | "long" | "complex" | "bool" | enumeration | imported class
+    type        = "float" | "int" | "long" | "complex" | "bool" | declared enumeration | imported class
     value       = [ "-" ] , number | "-inf" | "inf" | member | "true" | "false"
 
 None of these words is reserved: ``input >= 3`` is a formula over a variable called input.
@@ -33,10 +32,13 @@ from itertools import accumulate, pairwise
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
+from rtamt.errors import NameInFormulaError
 from rtamt.language import diagnostics
 from rtamt.language.declarations import DeclarationParser
 from rtamt.language.document import Assertion, Document
-from rtamt.language.formula import Formula, Span
+from rtamt.language.enumerations import begins_enumeration
+from rtamt.language.formula import Formula, Span, Var, postorder
+from rtamt.language.imports import Library
 from rtamt.language.operators import STL, Language
 from rtamt.language.scope import Scope
 from rtamt.language.templates import begins_template, parse_template, templates_to_come
@@ -57,6 +59,7 @@ def parse_document(
     variables: Collection[str] | None = None,
     definitions: Mapping[str, Formula] | None = None,
     parameters: Mapping[str, float] | None = None,
+    library: Library | None = None,
     truths: bool = True,
 ) -> Document:
     """Parse a specification text; a single formula is a specification text, too.
@@ -64,8 +67,8 @@ def parse_document(
     ``language``, ``unit``, ``constants`` and ``definitions`` as in
     :func:`~rtamt.language.parser.parse_formula`; ``variables`` are names declared elsewhere. If any
     variable is declared, there or in the text, undeclared names are errors. ``parameters``: values of declared
-    parameters, instead of those in the text. ``truths``: whether declared Booleans are true or false in formulas,
-    and not numbers as in RTAMT.
+    parameters, instead of those in the text. ``library``: where the files are that it imports. ``truths``: whether
+    declared Booleans are true or false in formulas, and not numbers as in RTAMT.
 
     Raises :class:`ParseError`, :class:`NameInFormulaError` or :class:`BoundError`. Source: listing 8
     of the paper, and RTAMT's grammar.
@@ -75,13 +78,14 @@ def parse_document(
     always(x <= 2) input
     """
     scope = Scope(constants or {}, definitions or {}, variables or None)
-    return _DocumentParser(text, language, unit, scope, parameters or {}, truths).document()
+    library = Library() if library is None else library
+    return _DocumentParser(text, language, unit, scope, parameters or {}, library, truths).document()
 
 
 class _DocumentParser(DeclarationParser):
     """The grammar productions of a document, in addition to those of declarations."""
 
-    def document(self) -> Document:
+    def document(self, *, imported: bool = False) -> Document:
         """``document = [ header ] , { import } , { declaration | annotation } , assertion , ...``."""
         name = self._header()
         while self._import():
@@ -91,6 +95,10 @@ class _DocumentParser(DeclarationParser):
         declared = tuple(d.name for d in self._declarations.values() if d.kind == "var")
         variables = tuple(dict.fromkeys((*self._given, *declared)))
         assertions = self._assertions(variables)
+        if not assertions and not imported:
+            empty = "the text is empty" if self.index == 0 else "the text has declarations but no formula"
+            raise self.error(empty, self.token.span)
+        self._check_imported(assertions, variables)
         return Document(
             self.text,
             assertions,
@@ -106,6 +114,7 @@ class _DocumentParser(DeclarationParser):
             MappingProxyType(self._enumerations),
             MappingProxyType(self._types),
             frozenset(self.used),
+            imported=MappingProxyType(self.library.found),
         )
 
     # ---- the formulas ----------------------------------------------------------------------------
@@ -118,7 +127,9 @@ class _DocumentParser(DeclarationParser):
         found: list[Assertion] = []
         while self.token.kind != "end":
             required = self._requires()
-            declares = self.token.text == "@" or self._declares() or self._enumerates()
+            if self._imports_file():
+                raise self.error("imports stand at the beginning, before declarations", self.token.span)
+            declares = self.token.text == "@" or self._declares() or begins_enumeration(self)
             if (found or self._templates) and not required and declares:
                 raise self.error(
                     "declarations and annotations stand before the first formula", self.token.span
@@ -153,10 +164,20 @@ class _DocumentParser(DeclarationParser):
                 raise self._not_finished()
             while self.accept(";"):
                 pass
-        if not found:
-            empty = "the text is empty" if self.index == 0 else "the text has declarations but no formula"
-            raise self.error(empty, self.token.span)
         return tuple(found)
+
+    def _check_imported(self, assertions: tuple[Assertion, ...], names: tuple[str, ...]) -> None:
+        """Reject what imported formulas read and nobody declares, where names must be declared."""
+        scope = Scope(variables=names)
+        if not names or not self.origins:
+            return
+        for node in postorder(*(assertion.formula for assertion in assertions)):
+            if isinstance(node, Var) and node.name not in scope:
+                raise self.error(
+                    f"'{node.name}', which an imported formula reads, is not declared",
+                    node.span or Span(0, 0),
+                    NameInFormulaError,
+                )
 
     def _template(self, pending: dict[str, str]) -> str:
         """``template``: define it and return its name."""
@@ -203,9 +224,9 @@ class _DocumentParser(DeclarationParser):
 
     def _check_new(self, name: str, token: Token) -> None:
         if name in self._definitions or name in self._names or name in self._templates:
-            raise self.error(f"'{name}' is defined twice", token.span)
+            raise self.error(f"'{name}' is defined twice{self._from(name)}", token.span)
         if name in self._constants:
-            raise self.error(f"'{name}' is a constant already", token.span)
+            raise self.error(f"'{name}' is a constant already{self._from(name)}", token.span)
 
     def _not_finished(self) -> SpecificationError:
         if self.token.kind == "name" and self.tokens[self.index + 1].text == "=":

@@ -367,24 +367,34 @@ def _instance(
 
 def placed(formula: Formula, span: Span, borrowed: set[int] | frozenset[int] = frozenset()) -> Formula:
     """Return a formula whose nodes all have one position, but for ``borrowed`` nodes (by ID) and what is below them."""
+    return all_placed((formula,), span, borrowed)[0]
+
+
+def all_placed(
+    formulas: Iterable[Formula], span: Span, borrowed: set[int] | frozenset[int] = frozenset()
+) -> list[Formula]:
+    """Do what :func:`placed` does for formulas that share nodes, and go on sharing them."""
     made: dict[int, Formula] = {}
-    stack: list[tuple[Formula, bool]] = [(formula, False)]
-    while stack:
-        node, ready = stack.pop()
-        if id(node) in made:
-            continue
-        if id(node) in borrowed:
-            made[id(node)] = node
-        elif not isinstance(node, Apply):
-            made[id(node)] = replace(node, span=span)  # type: ignore[type-var]
-        elif ready:
-            args = tuple([made[id(operand)] for operand in node.args])
-            interval = None if node.interval is None else replace(node.interval, span=span)
-            made[id(node)] = replace(node, args=args, interval=interval, span=span)
-        else:
-            stack.append((node, True))
-            stack.extend([(operand, False) for operand in node.args])
-    return made[id(formula)]
+    found = []
+    for formula in formulas:
+        stack: list[tuple[Formula, bool]] = [(formula, False)]
+        while stack:
+            node, ready = stack.pop()
+            if id(node) in made:
+                continue
+            if id(node) in borrowed:
+                made[id(node)] = node
+            elif not isinstance(node, Apply):
+                made[id(node)] = replace(node, span=span)  # type: ignore[type-var]
+            elif ready:
+                args = tuple([made[id(operand)] for operand in node.args])
+                interval = None if node.interval is None else replace(node.interval, span=span)
+                made[id(node)] = replace(node, args=args, interval=interval, span=span)
+            else:
+                stack.append((node, True))
+                stack.extend([(operand, False) for operand in node.args])
+        found.append(made[id(formula)])
+    return found
 
 
 # ---- names in the formula of a template ----------------------------------------------------------

@@ -6,6 +6,7 @@ module     purpose
 check      reject formulas that cannot be evaluated: bounds, time domain, boundedness
 desugar    expand derived operators
 early      whether bounds are tight, and whether early verdicts hold at the end
+ground     half-open bounds to closed ones, once the length of a period or tick is known
 horizon    how far a formula looks ahead (the paper's Definition 3)
 pastify    bounded future to past (the paper's Definition 4)
 semantics  replace predicates according to a semantics; the table of semantics

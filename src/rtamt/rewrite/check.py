@@ -9,22 +9,25 @@ from fractions import Fraction
 from rtamt.errors import BoundError, SpecificationError
 from rtamt.language.formula import Apply, Const, Formula, children, postorder
 from rtamt.language.operators import STL, Bounds, Pointwise, Tense
+from rtamt.language.printer import interval_text
 from rtamt.language.units import format_duration
 from rtamt.rewrite.desugar import spelled_out
+from rtamt.rewrite.ground import closed
 
 
 @dataclass(frozen=True, slots=True)
 class BoundUnit:
     """The unit in which a time domain counts bounds: its name in messages, and the largest count.
 
-    ``setting``: the setting that gives the length of a step. ``steps``: the plural. ``longer``: the
-    setting that reduces their number. ``most``: the longest bound. ``farthest``: the longest sum of
+    ``setting``: the setting that gives the length of a step. ``steps``: the plural. ``longer`` and ``finer``: the
+    setting that reduces or increases their number. ``most``: the longest bound. ``farthest``: the longest sum of
     bounds of nested operators; None where sums of the longest bounds fit into an int64.
     """
 
     setting: str
     steps: str
     longer: str
+    finer: str
     most: int
     farthest: int | None
 
@@ -35,15 +38,17 @@ class BoundUnit:
 
 
 #: Sampling periods, between the samples of discrete time.
-PERIODS = BoundUnit("sampling period", "periods", "a longer period", 2**44, None)
+PERIODS = BoundUnit("sampling period", "periods", "a longer period", "shorter period", 2**44, None)
 #: Ticks; the sum of bounds is limited because it is added to timestamps.
-TICKS = BoundUnit("resolution", "ticks", "a coarser resolution", 2**56, 2**61)
+TICKS = BoundUnit("resolution", "ticks", "a coarser resolution", "finer resolution", 2**56, 2**61)
 
 
 def check_bounds(
     formula: Formula, step: Fraction, text: str | None = None, unit: BoundUnit = PERIODS
 ) -> None:
     """Raise :class:`BoundError` unless every bound is an integer multiple of ``step`` seconds; ``unit`` names the step.
+
+    A half-open interval must contain at least one of these.
 
     >>> from fractions import Fraction
     >>> from rtamt.language.parser import parse_formula
@@ -73,6 +78,14 @@ def check_bounds(
                     text,
                     node.interval.span or node.span,
                 )
+        whole = closed(node.interval, step)
+        if whole.end is not None and whole.end < whole.begin:
+            raise BoundError(
+                f"the interval {interval_text(node.interval)} is empty: with a {unit.setting} of "
+                f"{format_duration(step)} no {unit.step} lies in it; close a bound, or choose a {unit.finer}",
+                text,
+                node.interval.span or node.span,
+            )
     if unit.farthest is not None:
         _check_sums(spelled_out(formula), step, text, unit, unit.farthest)
 

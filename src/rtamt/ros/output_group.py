@@ -35,7 +35,9 @@ class Standing:
     __slots__ = ("horizon", "lag", "latest", "output", "satisfied", "topic", "truth", "undecided", "verdicts")
 
     def __init__(self, output: Output, period: Fraction | None) -> None:
-        depth = horizon(output.specification.formula, period or Fraction(1))
+        spec = output.specification
+        domain = Dense() if period is None else Discrete(period)
+        depth = horizon(domain.ground(spec.formula)[0], period or Fraction(1))
         assert depth is not None, "unbounded future was refused"
         self.output = output
         self.topic = output.topic

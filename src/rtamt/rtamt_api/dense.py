@@ -31,6 +31,7 @@ from rtamt.signals.ticks import NANOSECOND, TimeScale
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Sequence
+    from fractions import Fraction
 
     from rtamt.language.formula import Formula
     from rtamt.signals.dense import DenseTrace
@@ -51,6 +52,10 @@ class DenseTimeSpecification(Formulas):
         Arguments and errors are those of discrete time.
         """
         sampling(sampling_period, unit, tolerance)
+
+    @property
+    def _tick(self) -> Fraction:
+        return NANOSECOND
 
     def _check(self, formula: Formula, text: str) -> None:
         # Operators that are undefined in dense time are parsed, as in RTAMT; only their values do not exist.

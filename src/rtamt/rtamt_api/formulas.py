@@ -13,6 +13,7 @@ from rtamt.language.formula import Formula, Var, outermost, postorder, variables
 from rtamt.language.grammar import is_number
 from rtamt.language.printer import canonical
 from rtamt.language.units import UNITS
+from rtamt.rewrite.ground import grounds
 from rtamt.rewrite.semantics import apply_semantics, semantics_of
 from rtamt.rtamt_api.declarations import Declarations
 from rtamt.rtamt_api.failures import raises_rtamt
@@ -57,7 +58,7 @@ class Formulas(Declarations):
         formulas = self._assertions(document)
         for formula in outermost([*formulas.values()]):
             self._check(formula, document.text)
-        self._formulas = formulas
+        self._formulas = dict(zip(formulas, grounds(tuple(formulas.values()), self._tick), strict=True))
         self._inputs = variables(*formulas.values())
         self._value_of = None
 
@@ -72,6 +73,11 @@ class Formulas(Declarations):
         semantics_of(semantics)
         self._semantics = semantics
         self._settings_changed()
+
+    @property
+    def _tick(self) -> Fraction:
+        """Seconds of the step in which bounds are counted."""
+        return self._period
 
     @abstractmethod
     def _check(self, formula: Formula, text: str) -> None:
@@ -154,7 +160,7 @@ class Formulas(Declarations):
             return Var(text)
         if text in self._types:
             raise UsageError(f"the specification does not read '{text}', so that its values are not kept")
-        formula = self._read_formula(text)
+        (formula,) = grounds((self._read_formula(text),), self._tick)
         if formula not in set(postorder(*self._formulas.values())):
             raise UsageError(f"'{text}' is no part of the specification {self.spec_print()}")
         return formula

@@ -19,6 +19,7 @@ from rtamt.signals.ticks import NANOSECOND
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
+    from fractions import Fraction
 
     from rtamt.language.formula import Formula
     from rtamt.rtamt_api.declarations import Declarations
@@ -38,6 +39,10 @@ class StlAst(OnlineSpecification):
     >>> [node.name for node in ast.specs]
     ['always[0,2]((x)>=(3.0))']
     """
+
+    @property
+    def _tick(self) -> Fraction:
+        return NANOSECOND
 
     def _check(self, formula: Formula, text: str) -> None:
         check_bounds(formula, NANOSECOND, text, TICKS)

@@ -70,10 +70,11 @@ class Dense(TimeDomain):
         """See :class:`TimeDomain`."""
         return self
 
-    def check(self, formula: Formula, text: str | None = None) -> None:
+    def check(self, formula: Formula, text: str | None = None) -> Formula:
         """See :class:`TimeDomain`."""
         check_dense(formula, text)
         check_bounds(formula, self.resolution, text, self.unit)
+        return self.ground(formula)[0]
 
     def check_inputs(self, names: Collection[str]) -> None:
         """See :class:`TimeDomain`: the instants are those of the variables."""
@@ -131,9 +132,9 @@ class DenseTrace(DomainTrace):
         """See :class:`DomainTrace`."""
         return sum(len(ticks) for ticks, _ in self.columns.values())
 
-    def check(self, formula: Formula, text: str | None = None) -> None:
+    def check(self, formula: Formula, text: str | None = None) -> Formula:
         """See :class:`DomainTrace`."""
-        self.domain.check(formula, text)
+        return self.domain.check(formula, text)
 
     def select(self, names: Iterable[str]) -> DenseTrace:
         """See :class:`DomainTrace`."""

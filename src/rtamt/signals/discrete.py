@@ -75,10 +75,11 @@ class Discrete(TimeDomain):
         """See :class:`TimeDomain`."""
         return self if self.period is not None else Discrete(Fraction(1), self.tolerance)
 
-    def check(self, formula: Formula, text: str | None = None) -> None:
+    def check(self, formula: Formula, text: str | None = None) -> Formula:
         """See :class:`TimeDomain`."""
         if self.period is not None:
             check_bounds(formula, self.period, text, self.unit)
+        return self.ground(formula)[0]
 
     def check_inputs(self, names: Collection[str]) -> None:
         """See :class:`TimeDomain`: samples are instants also where a formula reads no variable."""
@@ -146,10 +147,10 @@ class DiscreteTrace(DomainTrace):
         """See :class:`DomainTrace`."""
         return len(self)
 
-    def check(self, formula: Formula, text: str | None = None) -> None:
+    def check(self, formula: Formula, text: str | None = None) -> Formula:
         """See :class:`DomainTrace`."""
         try:
-            check_bounds(formula, self.period, text)
+            return self.domain.check(formula, text)
         except BoundError as error:
             if not self.inferred:
                 raise

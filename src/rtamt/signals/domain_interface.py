@@ -5,6 +5,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from typing import TYPE_CHECKING, Any, ClassVar
 
+from rtamt.rewrite.ground import grounds
 from rtamt.signals.coding import NO_TYPES
 from rtamt.signals.regular import TOLERANCE
 from rtamt.signals.ticks import NANOSECOND
@@ -71,11 +72,20 @@ class TimeDomain(ABC):
         """The time domain of a monitor, whose step is known before the first timestamp."""
 
     @abstractmethod
-    def check(self, formula: Formula, text: str | None = None) -> None:
-        """Raise where a formula does not fit: :class:`BoundError` for a bound, :class:`SpecificationError`.
+    def check(self, formula: Formula, text: str | None = None) -> Formula:
+        """Return the formula as :meth:`ground` does; raise :class:`BoundError` or :class:`SpecificationError`.
 
         Bounds are not checked while the step is unknown; :meth:`DomainTrace.check` does that.
         """
+
+    def ground(self, *formulas: Formula) -> tuple[Formula, ...]:
+        """Return formulas as they are evaluated, with closed bounds (``rtamt.rewrite.ground``).
+
+        They are returned as they are while the step is unknown.
+        """
+        if self.step is None:
+            return formulas
+        return grounds(formulas, self.step, continuous=self.continuous)
 
     @abstractmethod
     def check_inputs(self, names: Collection[str]) -> None:
@@ -148,8 +158,8 @@ class DomainTrace(ABC):
         """The number of samples that one pass over the recording takes."""
 
     @abstractmethod
-    def check(self, formula: Formula, text: str | None = None) -> None:
-        """Raise :class:`BoundError` or :class:`SpecificationError` where a formula does not fit."""
+    def check(self, formula: Formula, text: str | None = None) -> Formula:
+        """Return the formula with closed bounds; raise :class:`BoundError` or :class:`SpecificationError`."""
 
     @abstractmethod
     def select(self, names: Iterable[str]) -> Self:

@@ -11,7 +11,7 @@ from rtamt.language.formula import Apply, Const
 from rtamt.language.operators import STL
 from rtamt.rewrite.horizon import horizon
 from rtamt.signals.episodes import WindowTracker
-from rtamt.verdicts.decompose import Leaf, anchor, check_in_chunks
+from rtamt.verdicts.decompose import Anchored, Leaf, anchor, check_in_chunks
 from rtamt.verdicts.robustness_and_truth import align_inputs, outputs_under
 from rtamt.verdicts.trackers import Tracker, Trackers
 
@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from rtamt.language.formula import Formula
     from rtamt.rewrite.semantics import PredicateSemantics
     from rtamt.signals.arrays import FloatArray
+    from rtamt.signals.domain_interface import TimeDomain
     from rtamt.signals.episodes import Episodes
     from rtamt.specification import Specification
     from rtamt.verdicts.trackers import Positions
@@ -55,21 +56,15 @@ class Requirement:
 
     def __init__(self, spec: Specification, semantics: str | PredicateSemantics | None) -> None:
         self.spec = spec
-        outputs = outputs_under(spec.formula, semantics or spec.semantics, spec.roles)
-        self._robust = anchor(outputs.robustness)
-        check_in_chunks(self._robust, spec.text)
-        self._truth = anchor(outputs.truth)
-        # The whole formula, for its minimum, where it can be known online.
-        bounded = horizon(outputs.robustness) is not None
-        self._whole = Leaf(outputs.robustness, "min", end=None) if bounded else None
+        self._outputs = outputs_under(spec.formula, semantics or spec.semantics, spec.roles)
+        check_in_chunks(anchor(self._outputs.robustness), spec.text)
+        self._robust: Anchored
+        self._truth: Anchored
+        self._whole: Leaf | None
+        self._violated: Leaf | None
         self._robustness: Trackers
         self._verdict: Trackers
         self._minimum: Tracker | None = None
-        # Episodes are those of φ in its window if the formula is always φ, else of the whole formula.
-        (first, *_) = (*self._robust.leaves, None)
-        top = spec.formula
-        always = isinstance(top, Apply) and top.op is STL["always"]
-        self._violated = first if always else self._whole
         self._episodes: WindowTracker | None = None
 
     @property
@@ -85,8 +80,21 @@ class Requirement:
         if self._whole is not None:
             yield self._whole.formula
 
+    def ground(self, domain: TimeDomain) -> None:
+        """Find the leaves, once the length of a period or tick is known."""
+        robustness, truth = domain.ground(*self._outputs)
+        self._robust, self._truth = anchor(robustness), anchor(truth)
+        # The whole formula, for its minimum, where it can be known online.
+        bounded = horizon(robustness) is not None
+        self._whole = Leaf(robustness, "min", end=None) if bounded else None
+        # Episodes are those of φ in its window if the formula is always φ, else of the whole formula.
+        (first, *_) = (*self._robust.leaves, None)
+        top = self.spec.formula
+        always = isinstance(top, Apply) and top.op is STL["always"]
+        self._violated = first if always else self._whole
+
     def begin(self, unit: Fraction, dense: bool, outputs: Mapping[Formula, Output]) -> None:
-        """Make the trackers, once the length of a period or tick (``unit``, seconds) is known."""
+        """Make the trackers; ``unit``: seconds of a period or tick."""
         self._dense = dense
         self._robustness, self._verdict = (
             Trackers(each, unit, dense) for each in (self._robust, self._truth)
@@ -168,13 +176,19 @@ class Group:
     def __init__(self, requirements: Mapping[str, Requirement], names: Sequence[str]) -> None:
         self.requirements = requirements
         self.names = tuple(names)
-        formulas = dict.fromkeys(f for each in requirements.values() for f in each.formulas)
-        self.formulas = tuple(formulas) or (Const(float("inf")),)  # a constant has no leaves
-        self.outputs = {formula: Output() for formula in self.formulas}
+        self.formulas: tuple[Formula, ...]
+        self.outputs: dict[Formula, Output]
         self.start: int | None = None
 
-    def begin(self, unit: Fraction, dense: bool, spec: Specification) -> Specification:
+    def begin(self, domain: TimeDomain, spec: Specification) -> Specification:
         """Make the trackers; return the specification of the first formula, whose monitor watches the others."""
+        step = domain.step
+        assert step is not None, "known before"
         for each in self.requirements.values():
-            each.begin(unit, dense, self.outputs)
+            each.ground(domain)
+        formulas = dict.fromkeys(f for each in self.requirements.values() for f in each.formulas)
+        self.formulas = tuple(formulas) or (Const(float("inf")),)  # a constant has no leaves
+        self.outputs = {formula: Output() for formula in self.formulas}
+        for each in self.requirements.values():
+            each.begin(step, domain.continuous, self.outputs)
         return spec.with_formula(align_inputs(self.formulas[0], self.names))

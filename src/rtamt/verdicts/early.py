@@ -14,7 +14,7 @@ from rtamt.engine.backend import Session
 from rtamt.engine.discrete.apart import Apart, inner_of
 from rtamt.engine.domains import engine_of
 from rtamt.engine.native import core
-from rtamt.engine.online import OnlineMonitor, Watched
+from rtamt.engine.online import OnlineMonitor, Watched, grounded
 from rtamt.engine.usage_guard import exclusive
 from rtamt.errors import TraceError, UsageError, did_you_mean, shown
 from rtamt.language.value_types import BOOLEAN
@@ -89,8 +89,7 @@ class EarlyMonitor(OnlineMonitor):
         start: bool = False,
         every: bool = True,
     ) -> None:
-        for watched in (Watched("", formula, text), *watch):
-            domain.check(watched.formula, watched.text)
+        formula, watch = grounded(domain, formula, text, watch)
         step = domain.step
         assert step is not None
         OnlineMonitor.__init__(self, formula, watch, declared, factory)

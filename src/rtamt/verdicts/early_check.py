@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any
 from rtamt.engine.online import Watched
 from rtamt.language.formula import Apply
 from rtamt.language.operators import Tense, Window
-from rtamt.rewrite.check import check_bounds
 from rtamt.rewrite.early import ends_differently
 from rtamt.rewrite.semantics import boolean
 from rtamt.signals import arrays
@@ -56,7 +55,8 @@ def holds_at_end(spec: Specification) -> bool:
     >>> [holds_at_end(rtamt.parse(text)) for text in ("always(x > 0)", "eventually[1:2] once[0:5](x > 0)")]
     [True, False]
     """
-    return spec.domain.continuous or ends_differently(boolean(spec.formula), {}) is None
+    (truth,) = spec.domain.online.ground(boolean(spec.formula))
+    return spec.domain.continuous or ends_differently(truth, {}) is None
 
 
 class EarlyCheck:
@@ -119,8 +119,8 @@ class EarlyCheck:
 
     def _begin(self, period: Fraction) -> None:
         for number, spec in enumerate(self._specs):
-            check_bounds(spec.formula, period, spec.text)
-            self._open[number] = _Requirement(spec, period)
+            formula = Discrete(period).check(spec.formula, spec.text)
+            self._open[number] = _Requirement(spec.with_formula(formula), period)
 
     def _step(self, sample: int, row: Mapping[str, float], period: Fraction) -> None:
         for number, each in list(self._open.items()):

@@ -137,7 +137,8 @@ def _outputs(
     evaluate: Evaluate,
 ) -> tuple[list[Signal], list[Any]]:
     """Return the signals of formulas, and when truths are first violated."""
-    found = [Trackers(anchor(truth), trace.step, trace.domain.continuous) for truth in truths]
+    grounded = trace.domain.ground(*truths)
+    found = [Trackers(anchor(truth), trace.step, trace.domain.continuous) for truth in grounded]
     trackers = [tracker for each in found for tracker in each.leaves]
     signals, leaves = _settled_signals(formulas, trackers, trace, evaluate)
     for tracker in trackers:

@@ -60,7 +60,7 @@ def carried_program(
     structural = bounds_of(formula)
     values: dict[str, float] = {}
     pairs = {"": outputs_of(formula, applied)} | {f".{name}": pair for name, pair in (parts or {}).items()}
-    judged = [output for pair in pairs.values() for output in pair]
+    judged = domain.ground(*(output for pair in pairs.values() for output in pair))
     told = [_with_parameters(desugar(each), structural, values) for each in judged]
     program = compile_program(told, domain.step, inputs, domain=type(domain), parameters=values)
     places = {
@@ -112,7 +112,7 @@ def bounds_program(
     domain.check(formula, text)
     inputs = variables(formula)
     domain.check_inputs(inputs)
-    outputs = outputs_of(formula, applied)
+    outputs = domain.ground(*outputs_of(formula, applied))
     graph, (first, _) = compile_starts([desugar(each) for each in outputs], period, inputs)
     parts = [struct.pack("<III", len(graph.nodes), len(graph.items), first)]
     for node in graph.nodes:

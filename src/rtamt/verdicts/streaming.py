@@ -15,7 +15,6 @@ from rtamt.engine.dense.monitor import finish_ticks, known_ticks, push_ticks
 from rtamt.engine.discrete.monitor import push_samples
 from rtamt.errors import TraceError, UsageError
 from rtamt.language.units import check_unit, positive_period
-from rtamt.rewrite.check import check_bounds
 from rtamt.rewrite.semantics import semantics_of
 from rtamt.signals import arrays, dense_arrays
 from rtamt.signals.dense import Dense
@@ -157,10 +156,11 @@ class _DiscreteStream(_Stream):
             check_increasing(stamps.seconds)
         if self._period is None:
             self._period = Fraction(1) if stamps is None else infer_period(stamps.seconds)
-        check_bounds(self.spec.formula, self._period, self.spec.text)
-        spec = self._group.begin(self._period, False, self.spec)
+        domain = Discrete(self._period, self._tolerance)
+        domain.check(self.spec.formula, self.spec.text)
+        spec = self._group.begin(domain, self.spec)
         return spec.monitor(
-            time=Discrete(self._period, self._tolerance),
+            time=domain,
             semantics="standard",
             watch=self._group.formulas[1:],
             time_unit=self.unit,
@@ -221,8 +221,9 @@ class _DenseStream(_Stream):
             yield Group(some, [name for name in self.spec.input_names if name in names])
 
     def _monitor(self, group: Group) -> DenseMonitor:
-        spec = group.begin(self.spec.resolution, True, self.spec)
-        return spec.monitor(time=Dense(self.spec.resolution), semantics="standard", watch=group.formulas[1:])
+        domain = Dense(self.spec.resolution)
+        spec = group.begin(domain, self.spec)
+        return spec.monitor(time=domain, semantics="standard", watch=group.formulas[1:])
 
     def take(self, chunk: Any) -> None:
         arrays.require_no_unit(chunk, self.unit)

@@ -10,7 +10,7 @@ from rtamt.engine.dense.backends import BACKENDS
 from rtamt.engine.dense.groups import GroupSession, own_variables
 from rtamt.engine.discrete.apart import Apart
 from rtamt.engine.native import DenseMonitorBase
-from rtamt.engine.online import OnlineMonitor, Watched, depth_of, time_of
+from rtamt.engine.online import OnlineMonitor, Watched, depth_of, grounded, time_of
 from rtamt.engine.usage_guard import exclusive, in_use
 from rtamt.errors import TraceError, UsageError
 from rtamt.language.undefined_value import undefined
@@ -69,8 +69,9 @@ class DenseMonitor(DenseMonitorBase, OnlineMonitor):
         episodes: bool = False,
     ) -> None:
         # ``requirements``: the conjuncts of the formula, each with its own trace.
+        formula, watch = grounded(domain, formula, text, watch)
+        requirements = domain.ground(*requirements)
         for watched in (Watched("", formula, text), *watch):
-            domain.check(watched.formula, watched.text)
             check_online(watched.formula, watched.text)
         OnlineMonitor.__init__(self, formula, watch, declared, factory)
         domain.check_inputs(self.input_names)

@@ -12,7 +12,7 @@ from rtamt.engine.discrete.backends import BACKENDS
 from rtamt.engine.discrete.caller_times import CallerTimes
 from rtamt.engine.discrete.samples import read_time, read_values
 from rtamt.engine.native import MonitorBase
-from rtamt.engine.online import OnlineMonitor, Watched, depth_of, time_of
+from rtamt.engine.online import OnlineMonitor, Watched, depth_of, grounded, time_of
 from rtamt.engine.usage_guard import exclusive, in_use
 from rtamt.errors import TraceError, UsageError
 from rtamt.language.undefined_value import at_sample, undefined
@@ -78,8 +78,8 @@ class Monitor(MonitorBase, OnlineMonitor):
         domain = domain.online
         period = domain.period
         assert period is not None
+        formula, watch = grounded(domain, formula, text, watch)
         for watched in (Watched("", formula, text), *watch):
-            domain.check(watched.formula, watched.text)
             check_online(watched.formula, watched.text)
         OnlineMonitor.__init__(self, formula, watch, declared, factory)
         if episodes:

@@ -1,0 +1,75 @@
+"""What a formula means once the length of a step is known: closed bounds, counted in whole steps.
+
+A step is the sampling period in discrete time and a tick (``resolution``) in dense time. A formula is grounded
+before its horizon is computed, and before it is expanded and compiled: see ``TimeDomain.check``. The result has the
+nodes of the formula with other intervals; it is printed, and its spans point, as the formula was written.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from rtamt.language.formula import Apply, Formula, Interval, folds, postorder
+from rtamt.rewrite.desugar import rebuilt
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from fractions import Fraction
+
+
+def ground(formula: Formula, step: Fraction, *, continuous: bool = False) -> Formula:
+    """Return the formula in a time domain with steps of ``step`` seconds; ``continuous`` in dense time.
+
+    Half-open bounds become closed ones: (a, b] is [a + step, b]. In dense time an operator that compares an
+    instant with the one before (``rise``) is given the length of a tick. If there is nothing to do, the result is
+    the same object; a grounded formula is left as it is. The bounds must have been checked (``check_bounds``).
+
+    >>> from fractions import Fraction
+    >>> from rtamt.language.parser import parse_formula
+    >>> grounded = ground(parse_formula("eventually(0, 5](x > 3)"), Fraction(1, 10))
+    >>> print(grounded, grounded.interval.begin)
+    eventually(0:5](x > 3) 1/10
+    """
+    return grounds((formula,), step, continuous=continuous)[0]
+
+
+def grounds(formulas: Sequence[Formula], step: Fraction, *, continuous: bool = False) -> tuple[Formula, ...]:
+    """Ground several formulas, which go on sharing what they share."""
+
+    def changed(node: Formula, args: tuple[Formula, ...]) -> Formula:
+        if not isinstance(node, Apply):
+            return node
+        interval = _grounded(node, step, continuous=continuous)
+        if interval is node.interval:
+            return rebuilt(node, args)
+        return Apply(node.op, args, interval, node.span)
+
+    if not any(
+        isinstance(node, Apply) and _grounded(node, step, continuous=continuous) is not node.interval
+        for node in postorder(*formulas)
+    ):
+        return tuple(formulas)
+    return folds(formulas, changed)
+
+
+def closed(interval: Interval, step: Fraction) -> Interval:
+    """Return an interval with closed bounds; it is empty if it then ends before it begins.
+
+    >>> from fractions import Fraction
+    >>> closed(Interval(Fraction(0), Fraction(5), begin_open=True), Fraction(1)).begin
+    Fraction(1, 1)
+    """
+    if not interval.is_open:
+        return interval
+    begin = interval.begin + step if interval.begin_open else interval.begin
+    end = interval.end - step if interval.end_open and interval.end is not None else interval.end
+    return replace(
+        interval, begin=begin, end=end, begin_open=False, end_open=False, written=interval, implied=False
+    )
+
+
+def _grounded(node: Apply, step: Fraction, *, continuous: bool) -> Interval | None:
+    if node.interval is None:
+        return Interval(step, step, implied=True) if continuous and node.op.one_tick else None
+    return closed(node.interval, step)
