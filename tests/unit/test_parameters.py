@@ -127,6 +127,36 @@ def test_a_watched_formula_has_the_values_of_its_monitor(spec):
     assert monitor["low"] == monitor[spec.document.definitions["low"]] == -3.0
 
 
+def test_other_values_are_neither_parsed_nor_compiled_again(spec, monkeypatch):
+    def again(*_args, **_settings):
+        raise AssertionError("parsed or compiled again")
+
+    dense = {"x": ([0, 1, 2, 3], DATA["x"])}
+    spec.evaluate(DATA), spec.evaluate(dense, time="dense"), spec.monitor(), spec.monitor(time="dense")
+    for place in ("rtamt.compiler.shared", "rtamt.specification", "rtamt.specification_text"):
+        for name in ("compile_program", "compile_plan", "parse_document"):
+            monkeypatch.setattr(f"{place}.{name}", again, raising=False)
+    new = spec.with_parameters(limit=1)
+    assert new.evaluate(DATA).robustness == new.evaluate(dense, time="dense").robustness == -2.0
+    monitor = spec.monitor()
+    monitor.reset(limit=1)
+    assert [monitor.update(t, x=x) for t, x in enumerate(DATA["x"])][-1] == -2.0
+    new.monitor(time="dense")
+    with pytest.raises(AssertionError, match="again"):
+        spec.with_parameters(**{"reaction time": 3})
+
+
+def test_an_operation_without_a_value_is_named_with_the_values_in_use():
+    spec = rtamt.parse("parameter float limit = 4 always(sqrt(limit - x) <= 3)")
+    spec.evaluate(DATA)
+    with pytest.raises(rtamt.EvaluationError, match=r"^'sqrt\(2 - x\)' has no value at sample 2"):
+        spec.with_parameters(limit=2).evaluate(DATA)
+    monitor = spec.with_formula(rtamt.parse("x").formula).monitor(watch=["sqrt(limit - x)"])
+    monitor.reset(limit=2)
+    with pytest.raises(rtamt.EvaluationError, match=r"^'sqrt\(2 - x\)' has no value at sample 0"):
+        monitor.update(0, x=5)
+
+
 @pytest.mark.parametrize(
     "text",
     [

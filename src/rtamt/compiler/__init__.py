@@ -5,6 +5,7 @@ module     purpose
 =========  =====================================================================
 lower      formula to instructions: value numbering, lags, alignment of operands
 plan       formulas to one program (online) or a sequence of programs (offline)
+shared     programs and plans that are compiled once for all values of parameters
 early      formulas to the graph that gives verdicts and bounds before the horizon
 causation  the parts of formulas in that graph, of which causation is computed
 program    the program: instructions, serialisation, disassembly

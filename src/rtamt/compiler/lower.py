@@ -13,7 +13,7 @@ from math import inf
 from typing import TYPE_CHECKING
 
 from rtamt.compiler.program import CallSite, Instruction, Program
-from rtamt.language.formula import Apply, Const, Formula, Var, postorder
+from rtamt.language.formula import Apply, Const, Formula, Parameter, Var, postorder
 from rtamt.language.operators import Bounds, Pointwise, Shift, Since, Tense, Until, Window
 
 if TYPE_CHECKING:
@@ -71,10 +71,12 @@ class Lowering(ABC):
         return [self.value_of[formula] for formula in formulas]
 
     def _lower_node(self, node: Formula) -> int:
+        # A parameter is never merged with another constant: its value may be changed.
+        if isinstance(node, Parameter):
+            return self.append(Instruction("const", x=node.value), node)
         if isinstance(node, Const):
             return self.emit(Instruction("const", x=node.value), node)
         if isinstance(node, Var) and node.name in self.parameters:
-            # Never merged with another constant: its value may be changed.
             return self.append(Instruction("const", x=self.parameters[node.name]), node)
         if isinstance(node, Var):
             return self.emit(Instruction("input", n=self.inputs.index(node.name)), node)

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 from rtamt.compiler.lower import lowering_of
 from rtamt.language.formula import Apply, Formula, Interval, Var, fold, folds, postorder, variables
 from rtamt.language.operators import STL, Until, Window
+from rtamt.language.parameters import with_values
 from rtamt.rewrite.check import reads_unbounded_future
 from rtamt.rewrite.horizon import horizon
 from rtamt.signals.discrete import Discrete
@@ -65,7 +66,7 @@ class Plan:
         for stage in self.stages:
             for scan in stage.scans:
                 meanings[scan.name] = fold(scan.meaning, put_back)
-        return fold(formula, put_back)
+        return with_values([fold(formula, put_back)], self.program.parameters)[0]
 
 
 def compile_program(

@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import struct
 import zlib
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from math import isnan
 from types import MappingProxyType
@@ -22,6 +22,8 @@ from typing import TYPE_CHECKING
 
 from rtamt.compiler.metadata import Metadata, damaged
 from rtamt.errors import UsageError, shown
+from rtamt.language.formula import Parameter
+from rtamt.language.parameters import with_values
 from rtamt.signals.discrete import Discrete
 from rtamt.signals.domains import DOMAINS
 
@@ -134,11 +136,31 @@ class Program:
     domain: type[TimeDomain] = Discrete
     calls: tuple[CallSite, ...] = ()
     metadata: Metadata | None = None
+    #: The values that :meth:`with_parameters` has put in; ``value_of`` and ``origins`` have others.
+    parameters: Mapping[str, float] = field(default_factory=lambda: MappingProxyType({}))
 
     @property
     def lags(self) -> tuple[int, ...]:
         """Samples (or ticks) after which each output's value at a sample is known."""
         return tuple(self.instructions[i].lag for i in self.outputs)
+
+    def with_parameters(self, values: Mapping[str, float]) -> Program:
+        """Return the program with values of parameters."""
+        instructions = list(self.instructions)
+        for place, origin in enumerate(self.origins):
+            if isinstance(origin, Parameter) and instructions[place].opcode == "const":
+                instructions[place] = replace(instructions[place], x=values[origin.name])
+        return replace(self, instructions=tuple(instructions), parameters=values)
+
+    def place_of(self, formula: Formula) -> int:
+        """Return the instruction of a core sub-formula."""
+        (shape,) = with_values([formula], dict.fromkeys(self.parameters, 0.0))
+        return self.value_of[shape]
+
+    def origin_of(self, place: int) -> Formula | None:
+        """Return the core sub-formula that an instruction computes."""
+        origin = self.origins[place]
+        return None if origin is None else with_values([origin], self.parameters)[0]
 
     def to_bytes(self) -> bytes:
         """Serialise the program for execution outside Python.

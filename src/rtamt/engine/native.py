@@ -102,7 +102,7 @@ def culprit(
     ``error``: the core's ``Undefined``. ``original``: of a formula of the program, what it stands for.
     Raises what a user's own operator raised or said.
     """
-    formula = program.origins[error.args[0]]
+    formula = program.origin_of(error.args[0])
     assert formula is not None
     if error.__cause__ is not None:
         raise error.__cause__

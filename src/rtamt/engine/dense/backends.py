@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from rtamt.compiler.plan import compile_program
+from rtamt.compiler.shared import Shape
 from rtamt.engine import offline_bounds
 from rtamt.engine.backend import Compiled, CompiledSession, Defined, Session, named
 from rtamt.engine.dense.evaluate import BoundsEvaluator, Evaluator
@@ -113,7 +113,7 @@ class EventProgram(CompiledSession):
         *,
         parts: bool,
     ) -> None:
-        program = compile_program([desugar(f) for f in formulas], domain.resolution, inputs, domain=Dense)
+        program = Shape.of(formulas).program(domain.resolution, inputs, Dense)
         every = range(len(program.instructions)) if parts else ()
         super().__init__(formulas, replace(program, outputs=(*program.outputs, *every)))
         self._outputs = len(program.outputs)
@@ -130,7 +130,7 @@ class EventProgram(CompiledSession):
 
     def part(self, monitor: Any, formula: Formula) -> Samples:
         """See :class:`Session`; for sessions with ``parts``."""
-        known: Samples = monitor.last_output(self._outputs + self.program.value_of[desugar(formula)])
+        known: Samples = monitor.last_output(self._outputs + self.program.place_of(desugar(formula)))
         return known
 
 

@@ -6,12 +6,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rtamt.compiler.plan import DEFINED, compile_plan
+from rtamt.compiler.plan import DEFINED
+from rtamt.compiler.shared import Shape
 from rtamt.engine.native import core, culprit, not_made
 from rtamt.engine.offline_bounds import bounded_signal, signal_bounds
 from rtamt.engine.user_operators import EventDriver, calls_of, defined_signal
 from rtamt.language.undefined_value import undefined
-from rtamt.rewrite.desugar import desugar
 from rtamt.rewrite.horizon import reach
 from rtamt.signals.dense import Dense
 from rtamt.signals.regular import merged
@@ -36,11 +36,11 @@ class Evaluator:
 
     def __init__(self, formulas: Sequence[Formula], tick: Fraction, inputs: tuple[str, ...]) -> None:
         self._asked = tuple(formulas)
-        formulas = tuple(map(desugar, formulas))
         # Variables that the formulas do not read also determine where the recording starts and ends.
-        self._plan = compile_plan(formulas, tick, domain=Dense, inputs=inputs)
+        shape = Shape.of(formulas)
+        self._plan = shape.plan(tick, domain=Dense, inputs=inputs)
         # What unbounded future reads must have settled: past windows slide on after the last sample.
-        self._settled = max(reach(formula, tick) for formula in formulas) if self._plan.stages else 0
+        self._settled = max(reach(formula, tick) for formula in shape.expanded()) if self._plan.stages else 0
 
     def __call__(self, recording: DenseTrace) -> list[Samples]:
         """Return the events of each formula from the recording's start on."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
-from rtamt.compiler.plan import compile_program
+from rtamt.compiler.shared import Shape
 from rtamt.engine import offline_bounds
 from rtamt.engine.backend import Compiled, CompiledSession, Defined, Session, named
 from rtamt.engine.discrete.evaluate import BoundsEvaluator, Evaluator
@@ -119,7 +119,7 @@ class SampleProgram(CompiledSession):
         unit: Fraction,
     ) -> None:
         assert domain.period is not None
-        program = compile_program([desugar(formula) for formula in formulas], domain.period, inputs)
+        program = Shape.of(formulas).program(domain.period, inputs)
         super().__init__(formulas, program)
         self._made_of = float(domain.period / unit), domain.tolerance, strict, ignored
 
@@ -129,7 +129,7 @@ class SampleProgram(CompiledSession):
 
     def part(self, monitor: Any, formula: Formula) -> float:
         """Return the value at the last sample of a part without future operators."""
-        return float(monitor.last(self.program.value_of[desugar(formula)]))
+        return float(monitor.last(self.program.place_of(desugar(formula))))
 
 
 class SampleDefinition(Session):

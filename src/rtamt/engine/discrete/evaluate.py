@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rtamt.compiler.plan import DEFINED, Plan, compile_plan
+from rtamt.compiler.plan import DEFINED, Plan
+from rtamt.compiler.shared import Shape
 from rtamt.engine.native import core, culprit, not_made
 from rtamt.engine.user_operators import SampleDriver, calls_of, defined_column
 from rtamt.language.formula import Apply, postorder
 from rtamt.language.undefined_value import at_sample, undefined
-from rtamt.rewrite.desugar import desugar
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -33,9 +33,9 @@ class Evaluator:
 
     def __init__(self, formulas: Sequence[Formula], period: Fraction) -> None:
         self._asked = tuple(formulas)
-        self._formulas = tuple(map(desugar, formulas))
         self._period = period
-        self._longest = longest_bound(self._formulas, period)
+        self._shape = Shape.of(formulas)
+        self._longest = longest_bound(self._shape.expanded(), period)
         self._plans: dict[int, Plan] = {}
 
     def plan(self, n: int) -> Plan:
@@ -45,7 +45,7 @@ class Evaluator:
         plan = self._plans.get(clip)
         if plan is None:
             self._plans.clear()
-            plan = self._plans[clip] = compile_plan(self._formulas, self._period, clip)
+            plan = self._plans[clip] = self._shape.plan(self._period, clip)
         return plan
 
     def __call__(self, trace: DiscreteTrace) -> list[FloatArray]:

@@ -1,0 +1,108 @@
+"""Programs that are compiled once for all values of parameters.
+
+Formulas that differ in these values alone have the same instructions, apart from the constants.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from typing import TYPE_CHECKING
+
+from rtamt.compiler.plan import Plan, compile_plan, compile_program
+from rtamt.language.formula import Formula, Parameter, postorder
+from rtamt.language.parameters import with_values
+from rtamt.rewrite.desugar import desugar
+from rtamt.signals.discrete import Discrete
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+    from fractions import Fraction
+
+    from rtamt.compiler.program import Program
+    from rtamt.signals.domain_interface import TimeDomain
+
+#: How many programs and plans are kept for other values.
+_KEPT = 64
+
+
+@dataclass(frozen=True, slots=True)
+class Shape:
+    """Formulas apart from the values of their parameters.
+
+    ``formulas``: those with one value for all parameters, ``values``: the values in use. Formulas in which a parameter
+    has several values, as those of several specifications may have, stay as they are: there are no ``values``.
+    """
+
+    formulas: tuple[Formula, ...]
+    values: Mapping[str, float]
+
+    @staticmethod
+    def of(formulas: Sequence[Formula]) -> Shape:
+        """Return the shape of formulas.
+
+        >>> from fractions import Fraction
+        >>> from rtamt.language.parser import parse_formula
+        >>> formula = parse_formula("x <= limit", constants={"limit": 4}, parameters=["limit"])
+        >>> shapes = [Shape.of(with_values([formula], {"limit": value})) for value in (4.0, 3.0)]
+        >>> four, three = (shape.program(Fraction(1), ("x",)) for shape in shapes)
+        >>> four.instructions[0].x, three.instructions[0].x, four.value_of is three.value_of
+        (4.0, 3.0, True)
+        """
+        values: dict[str, float] = {}
+        for node in postorder(*formulas):
+            if isinstance(node, Parameter) and values.setdefault(node.name, node.value) != node.value:
+                values = {}
+                break
+        return Shape(with_values(formulas, dict.fromkeys(values, 0.0)) if values else tuple(formulas), values)
+
+    def expanded(self) -> tuple[Formula, ...]:
+        """Return the core formulas of these formulas."""
+        return _kept(self.formulas) if self.values else _expanded(self.formulas)
+
+    def program(
+        self, period: Fraction, inputs: tuple[str, ...], domain: type[TimeDomain] = Discrete
+    ) -> Program:
+        """Compile the formulas for a monitor; arguments as for :func:`compile_program`."""
+        if not self.values:
+            return compile_program(self.expanded(), period, inputs, domain=domain)
+        return _program(self.formulas, period, inputs, domain).with_parameters(self.values)
+
+    def plan(
+        self,
+        period: Fraction,
+        clip: int | None = None,
+        domain: type[TimeDomain] = Discrete,
+        inputs: tuple[str, ...] = (),
+    ) -> Plan:
+        """Compile the formulas for an offline evaluation; arguments as for :func:`compile_plan`."""
+        if not self.values:
+            return compile_plan(self.expanded(), period, clip, domain, inputs)
+        plan = _plan(self.formulas, period, clip, domain, inputs)
+        stages = [replace(stage, program=stage.program.with_parameters(self.values)) for stage in plan.stages]
+        return Plan(tuple(stages), plan.program.with_parameters(self.values))
+
+
+def _expanded(formulas: tuple[Formula, ...]) -> tuple[Formula, ...]:
+    return tuple([desugar(formula) for formula in formulas])
+
+
+_kept = lru_cache(_KEPT)(_expanded)
+
+
+@lru_cache(_KEPT)
+def _program(
+    formulas: tuple[Formula, ...], period: Fraction, inputs: tuple[str, ...], domain: type[TimeDomain]
+) -> Program:
+    return compile_program(_kept(formulas), period, inputs, domain=domain)
+
+
+@lru_cache(_KEPT)
+def _plan(
+    formulas: tuple[Formula, ...],
+    period: Fraction,
+    clip: int | None,
+    domain: type[TimeDomain],
+    inputs: tuple[str, ...],
+) -> Plan:
+    return compile_plan(_kept(formulas), period, clip, domain, inputs)
