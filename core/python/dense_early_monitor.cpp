@@ -164,7 +164,7 @@ PyObject* DenseEarlyMonitor::news() const noexcept {
             verdict_->make({time(each.l), time(each.r + 1),
                             nb::borrow(each.satisfied ? Py_True : Py_False), time(each.at)});
         if (made == nullptr) return nullptr;
-        PyList_SET_ITEM(list.ptr(), place++, made);
+        fill_list(list.ptr(), place++, made);
     }
     return list.release().ptr();
 }

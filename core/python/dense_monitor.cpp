@@ -25,22 +25,6 @@ template <class Item>
     return {items == nullptr ? &none : items, std::initializer_list<std::size_t>{count}, owner};
 }
 
-// The descriptor of an attribute that objects of a class have, so that nothing is looked up later.
-[[nodiscard]] nb::object attribute_of(const nb::type_object& type, const char* name) {
-    nb::object attribute = nb::getattr(type, name);
-    if (Py_TYPE(attribute.ptr())->tp_descr_set == nullptr) {
-        throw std::invalid_argument("The class of the answers has no attribute '" +
-                                    std::string(name) + "' that can be set.");
-    }
-    return attribute;
-}
-
-[[nodiscard]] bool set(const nb::object& attribute, const nb::object& object,
-                       const nb::object& value) noexcept {
-    PyObject* descriptor = attribute.ptr();
-    return Py_TYPE(descriptor)->tp_descr_set(descriptor, object.ptr(), value.ptr()) == 0;
-}
-
 // How many samples a call brings.
 [[nodiscard]] std::size_t samples(const std::vector<Events>& inputs) noexcept {
     std::size_t count = 0;
@@ -100,9 +84,7 @@ DenseMonitor::DenseMonitor(Program program, const std::vector<nb::str>& names,
 void DenseMonitor::set_time_scale(const nb::type_object& signal, const nb::object& scale,
                                   double rate, bool whole) {
     usage_.require_idle();
-    scale_attribute_ = attribute_of(signal, "_scale");
-    events_attribute_ = attribute_of(signal, "_events");
-    signal_ = signal;
+    signal_.emplace(signal, std::array{"_scale", "_events"});
     scale_ = scale;
     rate_ = rate;
     whole_ = whole;
@@ -225,20 +207,17 @@ PyObject* DenseMonitor::answer() const noexcept {
 
 // An object of the class of the answers; invalid, with a Python exception set, where memory ends.
 nb::object DenseMonitor::signal_of(const Events& events) const noexcept {
-    auto* type = reinterpret_cast<PyTypeObject*>(signal_.ptr());
     const std::size_t times = events.count * sizeof(*events.times);
     const std::size_t values = events.count * sizeof(*events.values);
-    auto signal = nb::steal(type->tp_alloc(type, 0));
     const auto bytes =
         nb::steal(PyBytes_FromStringAndSize(nullptr, static_cast<Py_ssize_t>(times + values)));
-    if (!signal.is_valid() || !bytes.is_valid()) return {};
+    if (!bytes.is_valid()) return {};
     if (events.count != 0) {
-        char* memory = PyBytes_AS_STRING(bytes.ptr());
+        char* memory = bytes_memory(bytes.ptr());
         std::memcpy(memory, events.times, times);
         std::memcpy(memory + times, events.values, values);
     }
-    if (!set(scale_attribute_, signal, scale_) || !set(events_attribute_, signal, bytes)) return {};
-    return signal;
+    return nb::steal(signal_->make({scale_, bytes}));
 }
 
 // ---- many samples -------------------------------------------------------------------------------

@@ -43,7 +43,7 @@ PyObject* EarlyMonitor::news(std::size_t output) noexcept {
                                          nb::borrow(decision.satisfied ? Py_True : Py_False),
                                          nb::steal(PyFloat_FromDouble(times_.at(decision.at)))});
             if (one == nullptr) return nullptr;
-            PyList_SET_ITEM(list.ptr(), place++, one);
+            fill_list(list.ptr(), place++, one);
         }
     }
     return list.release().ptr();

@@ -3,11 +3,10 @@
 
 #include "../early/origin.hpp"
 #include "names.hpp"
+#include "result_class.hpp"
 
 #include <nanobind/nanobind.h>
 
-#include <array>
-#include <cstddef>
 #include <cstdint>
 #include <tuple>
 #include <utility>
@@ -41,33 +40,6 @@ class EarlyBackend {
 
     // A list of verdicts, or None; null, with a Python exception set, is a refusal.
     [[nodiscard]] virtual PyObject* update(PyObject* time, const Named& values) noexcept = 0;
-};
-
-// A class of objects with slots, which are filled without a call of Python code.
-template <std::size_t count>
-class ResultClass {
-  public:
-    ResultClass(const nb::object& type, const std::array<const char*, count>& slots) : type_(type) {
-        for (std::size_t i = 0; i < count; ++i)
-            slots_[i] = type.attr(slots[i]);
-    }
-
-    // Null, with a Python exception set, where that fails.
-    [[nodiscard]] PyObject* make(const std::array<nb::object, count>& values) const noexcept {
-        auto* type = reinterpret_cast<PyTypeObject*>(type_.ptr());
-        auto made = nb::steal(type->tp_alloc(type, 0));
-        if (!made.is_valid()) return nullptr;
-        for (std::size_t i = 0; i < count; ++i) {
-            PyObject* slot = slots_[i].ptr();
-            if (!values[i].is_valid()) return nullptr;
-            if (Py_TYPE(slot)->tp_descr_set(slot, made.ptr(), values[i].ptr()) != 0) return nullptr;
-        }
-        return made.release().ptr();
-    }
-
-  private:
-    nb::object type_;
-    std::array<nb::object, count> slots_; // descriptors
 };
 
 } // namespace rtamt::python

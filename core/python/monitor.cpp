@@ -122,15 +122,15 @@ PyObject* Monitor::update_pairs(PyObject* time, PyObject* pairs) noexcept {
             constexpr bool plain = std::remove_cvref_t<decltype(numbers)>::plain;
             if (!PyList_Check(pairs) && !PyTuple_Check(pairs)) return "pairs";
             std::size_t guess = 0;
-            for (Py_ssize_t i = 0; i < PySequence_Fast_GET_SIZE(pairs); ++i) {
-                const auto pair = held<plain>(PySequence_Fast_GET_ITEM(pairs, i));
+            for (Py_ssize_t i = 0; i < sequence_size(pairs); ++i) {
+                const auto pair = held<plain>(sequence_item(pairs, i));
                 const nb::ft_object_guard guard(pair);
                 if ((!PyTuple_Check(pair.ptr()) && !PyList_Check(pair.ptr())) ||
-                    PySequence_Fast_GET_SIZE(pair.ptr()) != 2) {
+                    sequence_size(pair.ptr()) != 2) {
                     return "pairs";
                 }
-                const auto name = held<plain>(PySequence_Fast_GET_ITEM(pair.ptr(), 0));
-                const auto value = held<plain>(PySequence_Fast_GET_ITEM(pair.ptr(), 1));
+                const auto name = held<plain>(sequence_item(pair.ptr(), 0));
+                const auto value = held<plain>(sequence_item(pair.ptr(), 1));
                 if (const auto index = names_.place(name.ptr(), guess, plain)) {
                     places.given[*index] = true;
                     if (!numbers.read(value.ptr(), places.values[*index])) {

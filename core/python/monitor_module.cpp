@@ -20,7 +20,6 @@
 
 #include <memory>
 #include <new>
-#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -29,9 +28,11 @@ namespace rtamt::python {
 namespace {
 
 PyObject* wrong_count(PyObject* self, const char* method, Py_ssize_t count) noexcept {
-    const std::string_view type = Py_TYPE(self)->tp_name;
-    return PyErr_Format(PyExc_TypeError, "%s.%s takes 2 arguments, got %zd.",
-                        type.data() + type.rfind('.') + 1, method, count);
+    const nb::object type =
+        nb::steal(PyObject_GetAttrString(reinterpret_cast<PyObject*>(Py_TYPE(self)), "__name__"));
+    if (!type.is_valid()) return nullptr;
+    return PyErr_Format(PyExc_TypeError, "%U.%s takes 2 arguments, got %zd.", type.ptr(), method,
+                        count);
 }
 
 template <class Monitor>

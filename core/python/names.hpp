@@ -2,6 +2,7 @@
 #pragma once
 
 #include "../values/vectors.hpp"
+#include "cpython.hpp"
 
 #include <nanobind/nanobind.h>
 
@@ -22,14 +23,14 @@ struct Named {
     PyObject* const* values;
 
     [[nodiscard]] std::size_t count() const noexcept {
-        return names == nullptr ? 0 : static_cast<std::size_t>(PyTuple_GET_SIZE(names));
+        return names == nullptr ? 0 : static_cast<std::size_t>(tuple_size(names));
     }
 
     // Calls `take` with every name and value until it answers what is wrong; null if nothing is.
     template <class Take>
     RTAMT_INLINE const char* each(Take&& take) const noexcept {
         for (std::size_t i = 0; i < count(); ++i) {
-            const char* wrong = take(PyTuple_GET_ITEM(names, i), values[i]);
+            const char* wrong = take(tuple_item(names, static_cast<Py_ssize_t>(i)), values[i]);
             if (wrong != nullptr) return wrong;
         }
         return nullptr;
@@ -42,7 +43,7 @@ struct InDict {
     PyObject* dict;
 
     [[nodiscard]] std::size_t count() const noexcept {
-        return PyDict_Check(dict) ? static_cast<std::size_t>(PyDict_GET_SIZE(dict)) : SIZE_MAX;
+        return PyDict_Check(dict) ? static_cast<std::size_t>(dict_size(dict)) : SIZE_MAX;
     }
 
     template <class Take>

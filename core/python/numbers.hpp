@@ -2,6 +2,7 @@
 #pragma once
 
 #include "../values/vectors.hpp"
+#include "cpython.hpp"
 
 #include <nanobind/nanobind.h>
 
@@ -30,7 +31,7 @@ struct PlainNumbers {
 
     [[nodiscard]] RTAMT_INLINE static bool read(PyObject* object, double& value) noexcept {
         if (PyFloat_Check(object)) [[likely]] {
-            value = PyFloat_AS_DOUBLE(object);
+            value = float_value(object);
             return !std::isnan(value);
         }
         if (!PyLong_CheckExact(object)) return false;
@@ -69,7 +70,7 @@ class Numbers {
     // itself raises stays set.
     [[nodiscard]] bool read(PyObject* object, double& value) const noexcept {
         if (PyFloat_CheckExact(object)) [[likely]] {
-            value = PyFloat_AS_DOUBLE(object);
+            value = float_value(object);
             return !std::isnan(value);
         }
         Py_INCREF(object); // its own __float__ may drop the last reference

@@ -56,7 +56,7 @@ inline constexpr double exact = 0x1p53;
     }
     double number = 0.0;
     if (PyFloat_Check(time)) {
-        number = PyFloat_AS_DOUBLE(time);
+        number = float_value(time);
     } else if (PyLong_CheckExact(time)) {
         number = PyLong_AsDouble(time);
         if (PyErr_Occurred() != nullptr && !forget_no_number()) return std::nullopt;

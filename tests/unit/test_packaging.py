@@ -100,6 +100,16 @@ def test_the_stub_names_what_the_core_has():
         assert {method for method in methods if not hasattr(getattr(core(), name), method)} == set()
 
 
+def test_the_binding_uses_the_stable_abi_alone():
+    """Wheels for Python 3.12 and newer are compiled for it; the macros of other builds are in one header."""
+    unstable = re.compile(r"\bPy[A-Z]\w*?_(?:Fast_)?(?:AS|GET|SET)_[A-Z]+\b|->tp_\w+|\b_Py\w+")
+    sources = sorted((ROOT / "core/python").glob("*.[ch]pp"))
+    found = {path.name: set(unstable.findall(path.read_text(encoding="utf-8"))) for path in sources}
+    assert {"PyFloat_AS_DOUBLE", "PyTuple_GET_ITEM", "PySequence_Fast_GET_SIZE"} <= found.pop("cpython.hpp")
+    assert {name: names for name, names in found.items() if names} == {}
+    assert PROJECT["tool"]["scikit-build"]["wheel"]["py-api"] == "cp312"
+
+
 def test_every_vendored_folder_is_in_the_file_of_licences():
     """The file is part of wheels and of the source distribution by the pattern in pyproject.toml."""
     tracked = subprocess.run(["git", "ls-files"], cwd=ROOT, check=True, capture_output=True, text=True).stdout
