@@ -300,7 +300,7 @@ class Specification(SpecificationText):
         )
         domain = self._domain_for(time, period, tolerance, resolution).online
         requirements = [self._watched(name, semantics).formula for name in self.requirements]
-        if mode.monitors:
+        if mode.name != DELAYED:
             return monitor_of(mode, domain)(
                 formula,
                 domain,

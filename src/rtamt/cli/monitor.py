@@ -28,7 +28,6 @@ from rtamt.cli.stdin_reader import STDIN, Samples, lines_of
 from rtamt.cli.terminal import printed, say
 from rtamt.errors import StlError, TraceError
 from rtamt.rewrite.check import unbounded_future
-from rtamt.signals.dense import Dense
 from rtamt.signals.regular import TOLERANCE
 from rtamt.signals.signal import Signal
 from rtamt.signals.trace import in_seconds
@@ -134,7 +133,8 @@ def run(args: argparse.Namespace) -> int:
     if early is not None:
         watched = early
     elif dense:
-        watched = EventFeed(spec.monitor(time=Dense(spec.resolution), watch=names), told, names)
+        monitor: Any = spec.monitor(watch=names)
+        watched = EventFeed(monitor, told, names)
     else:
         watched = _watched(spec, args.tolerance, told, names)
     samples = Samples(watched.monitor.input_names, args.time_column, dense=dense, unit=args.time_unit)

@@ -1,10 +1,8 @@
-"""The engine of a time domain: the folder of this package that has its name."""
+"""The engine of a time domain: ``ENGINE`` in the folder that the time domain names."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cache
-from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -31,10 +29,5 @@ class Engine:
 
 def engine_of(domain: TimeDomain) -> Engine:
     """Return the engine of a time domain."""
-    return _engine(domain.name)
-
-
-@cache
-def _engine(name: str) -> Engine:
-    found: Engine = import_module(f"{__package__}.{name}").ENGINE
+    found: Engine = domain.part("engine")
     return found

@@ -12,6 +12,7 @@ monitor              messages and ticks to robustness, verdicts and conditions
 watch                what is monitored together: its samples, and what is reported of it
 output_group         outputs whose robustness is reported
 early_watch          outputs that are monitored before their horizon
+watches              the watches of each time domain
 diagnostics          conditions as ROS diagnostics
 publisher            output as messages
 message_definitions  the definitions of ``rtamt_msgs``

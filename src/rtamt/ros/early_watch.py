@@ -5,16 +5,14 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, NamedTuple
 
 from rtamt.ros.watch import MessageWatch, SampledWatch, Watch
-from rtamt.signals.dense import Dense
-from rtamt.signals.ticks import NANOSECOND
 from rtamt.verdicts.at_start import StartMonitor
 
 if TYPE_CHECKING:
     from collections.abc import Container, Mapping
-    from fractions import Fraction
 
     from rtamt.ros.binding import Output
     from rtamt.ros.watch import Record
+    from rtamt.signals.domain_interface import TimeDomain
 
 
 class Bounds(NamedTuple):
@@ -97,21 +95,18 @@ class _AtStart(Watch):
 class EarlyWatch(_AtStart, SampledWatch):
     """Samples one period apart."""
 
-    def __init__(self, output: Output, topic_of: Mapping[str, str], period: Fraction) -> None:
-        SampledWatch.__init__(self, [output], topic_of, period)
-        _AtStart.__init__(
-            self, output, StartMonitor(output.specification, time="discrete", period=period, time_unit="ns")
-        )
+    def __init__(self, output: Output, topic_of: Mapping[str, str], domain: TimeDomain) -> None:
+        assert domain.period is not None
+        SampledWatch.__init__(self, [output], topic_of, domain.period)
+        _AtStart.__init__(self, output, StartMonitor(output.specification, time=domain, time_unit="ns"))
 
 
 class EarlyDenseWatch(_AtStart, MessageWatch):
     """Samples at the times in the messages' headers, each topic on its own time base."""
 
-    def __init__(self, output: Output, topic_of: Mapping[str, str]) -> None:
+    def __init__(self, output: Output, topic_of: Mapping[str, str], domain: TimeDomain) -> None:
         MessageWatch.__init__(self, [output], topic_of)
-        _AtStart.__init__(
-            self, output, StartMonitor(output.specification, time=Dense(NANOSECOND), time_unit="ns")
-        )
+        _AtStart.__init__(self, output, StartMonitor(output.specification, time=domain, time_unit="ns"))
 
     def take(
         self, stamp: int, values: Mapping[str, float], wanted: Container[str] | None = None

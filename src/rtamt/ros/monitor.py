@@ -8,20 +8,20 @@ from typing import TYPE_CHECKING, Any
 from rtamt.errors import StlError, UsageError
 from rtamt.language.units import duration, positive_period
 from rtamt.ros.diagnostics import Condition, Level, Notice
-from rtamt.ros.early_watch import Bounds, EarlyDenseWatch, EarlyWatch
+from rtamt.ros.early_watch import Bounds
 from rtamt.ros.fields import reader, stamp_of
-from rtamt.ros.output_group import DenseWatch, DiscreteWatch, group_outputs
-from rtamt.ros.watch import Robustness, Verdict
+from rtamt.ros.watch import MessageWatch, Robustness, SampledWatch, Verdict
 from rtamt.signals.domains import DEFAULT, time_domain
+from rtamt.signals.ticks import NANOSECOND
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Container, Mapping, Sequence
 
     from rtamt.language.units import Duration
-    from rtamt.ros.binding import Binding
+    from rtamt.ros.binding import Binding, Output
     from rtamt.ros.early_watch import EarlyStanding
     from rtamt.ros.output_group import Standing
-    from rtamt.ros.watch import MessageWatch, Record, SampledWatch, Watch
+    from rtamt.ros.watch import Record, Watch
 
 #: The default number of silent periods after which a topic is stale; in dense time, seconds.
 STALE_PERIODS = 10
@@ -99,22 +99,10 @@ class RosMonitor:
         for known in binding.inputs:
             self._readers.setdefault(known.topic, []).extend((name, reader(name)) for name in known.fields)
         topic_of = {name: known.topic for known in binding.inputs for name in known.fields}
-        self._dense: list[MessageWatch] = []
-        self._discrete: list[SampledWatch] = []
-        if self._domain.continuous:
-            self._dense = [
-                *(DenseWatch(outputs, topic_of) for outputs in group_outputs(binding.outputs)),
-                *(EarlyDenseWatch(output, topic_of) for output in binding.outputs if output.early),
-            ]
-        else:
-            assert self.period is not None
-            self._discrete = [
-                *(
-                    DiscreteWatch(outputs, topic_of, self.period)
-                    for outputs in group_outputs(binding.outputs)
-                ),
-                *(EarlyWatch(output, topic_of, self.period) for output in binding.outputs if output.early),
-            ]
+        #: The outputs, grouped by the numbers that they read.
+        self.watches = self._watches(binding.outputs, topic_of)
+        self._by_message = [watch for watch in self.watches if isinstance(watch, MessageWatch)]
+        self._sampled = [watch for watch in self.watches if isinstance(watch, SampledWatch)]
         #: Topics for which records are created, such as those with subscribers; None: all.
         self.wanted: Container[str] | None = None
         self._values: dict[str, float] = {}
@@ -128,10 +116,15 @@ class RosMonitor:
         self._foreign: set[str] = set()  # topics whose timestamps are from another clock
         self._timeless = False  # whether messages before the simulated clock is set have been reported
 
-    @property
-    def watches(self) -> Sequence[Watch]:
-        """The outputs, grouped by the numbers that they read."""
-        return self._dense or self._discrete
+    def _watches(self, outputs: Sequence[Output], topic_of: Mapping[str, str]) -> Sequence[Watch]:
+        make = self._domain.part("watches")
+        if make is None:
+            raise UsageError(f"nodes do not monitor in {self.time} time; choose discrete or dense time")
+        # Timestamps are nanoseconds, and so are ticks.
+        watches: Sequence[Watch] = make(
+            outputs, topic_of, type(self._domain).of(self.period, self._domain.tolerance, NANOSECOND)
+        )
+        return watches
 
     def _period(self, period: Duration | None) -> Fraction | None:
         """Return seconds; None in dense time."""
@@ -177,7 +170,7 @@ class RosMonitor:
         stamp = stamp_of(message) or now
         last = self._stamps.get(topic)
         # Before the simulated clock is set, messages without a timestamp are ordered by arrival only.
-        if last is not None and stamp <= last and (stamp or self._dense):
+        if last is not None and stamp <= last and (stamp or self._by_message):
             if stamp == last:
                 self._repeat(topic)
                 return records
@@ -187,14 +180,14 @@ class RosMonitor:
         self._faults.pop(topic, None)
         self._repeated.discard(topic)
         self._values.update(values)
-        for watch in self._dense:
+        for watch in self._by_message:
             if topic not in watch.topics:
                 continue
             if self._all_speak(watch):
                 records += self._tell(watch, stamp, values)
             else:
                 watch.hold(stamp, values)
-        for group in self._discrete:
+        for group in self._sampled:
             if topic in group.topics:
                 instant = now if self._is_foreign(topic, stamp, now) else stamp
                 group.hold(topic, instant, values)
@@ -209,7 +202,7 @@ class RosMonitor:
         """
         self._advance(now)
         records = self._look_for_silence(now)
-        for watch in self._discrete:
+        for watch in self._sampled:
             records += self._sample(watch, now)
         return records
 
@@ -238,7 +231,7 @@ class RosMonitor:
 
     def pause(self, now: int) -> float:
         """Return how many seconds a node may sleep before it calls :meth:`tick`, at most :data:`PAUSE`."""
-        due = [watch.due for watch in self._discrete if watch.due is not None and self._all_speak(watch)]
+        due = [watch.due for watch in self._sampled if watch.due is not None and self._all_speak(watch)]
         return min(PAUSE, max(0.0, (min(due) - now) / 1e9)) if due else PAUSE
 
     def _all_speak(self, watch: Watch) -> bool:
@@ -264,7 +257,7 @@ class RosMonitor:
             self._begin_anew(f"the clock went back by {_seconds(self._last - now)}")
         elif self._last == 0 and now:  # the clock starts: earlier messages arrive now, and are not stale
             self._heard = dict.fromkeys(self._heard, now)
-            for watch in self._discrete:
+            for watch in self._sampled:
                 watch.clock_begins(now)
         elif self._last is not None and self._leap and now - self._last > self._leap:
             self._skip_ahead(now, now - self._last)
@@ -278,7 +271,7 @@ class RosMonitor:
             self._forget(topic)
             self._stamps.pop(topic, None)
             self._silent.discard(topic)
-        for watch in self._discrete:
+        for watch in self._sampled:
             watch.leap(now)
         self._say(Level.WARN, f"the clock went forward by {_seconds(by)} at once: all monitors begin anew")
 
@@ -320,7 +313,7 @@ class RosMonitor:
             for topic, heard in self._heard.items()
             if topic not in self._silent and now - heard > self._stale
         }
-        for group in self._discrete:
+        for group in self._sampled:
             if stale & group.topics and self._all_speak(group):
                 records += self._sample(
                     group, min(self._heard[topic] for topic in group.topics) + self._stale

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from rtamt.engine.dense.monitor import points_of
@@ -11,17 +10,18 @@ from rtamt.language.formula import variables
 from rtamt.rewrite.check import always_has_a_value
 from rtamt.rewrite.horizon import horizon
 from rtamt.ros.watch import MessageWatch, Robustness, SampledWatch, Verdict
-from rtamt.signals.dense import Dense
-from rtamt.signals.discrete import Discrete
-from rtamt.signals.ticks import NANOSECOND
 from rtamt.verdicts.robustness_and_truth import outputs_under
 
 if TYPE_CHECKING:
     from collections.abc import Container, Mapping, Sequence
+    from fractions import Fraction
 
     from rtamt.language.formula import Formula
     from rtamt.ros.binding import Output
     from rtamt.ros.watch import Record
+    from rtamt.signals.dense import Dense
+    from rtamt.signals.discrete import Discrete
+    from rtamt.signals.domain_interface import TimeDomain
     from rtamt.specification import Specification
     from rtamt.verdicts.robustness_and_truth import Outputs
 
@@ -34,16 +34,15 @@ class Standing:
 
     __slots__ = ("horizon", "lag", "latest", "output", "satisfied", "topic", "truth", "undecided", "verdicts")
 
-    def __init__(self, output: Output, period: Fraction | None) -> None:
-        spec = output.specification
-        domain = Dense() if period is None else Discrete(period)
-        depth = horizon(domain.ground(spec.formula)[0], period or Fraction(1))
+    def __init__(self, output: Output, domain: TimeDomain) -> None:
+        assert domain.step is not None
+        depth = horizon(domain.ground(output.specification.formula)[0], domain.step)
         assert depth is not None, "unbounded future was refused"
         self.output = output
         self.topic = output.topic
         self.verdicts = output.verdicts
         self.horizon = float(depth)
-        self.lag = int(depth / (period or NANOSECOND))
+        self.lag = int(depth / domain.step)
         self.forget()
 
     def forget(self) -> None:
@@ -103,12 +102,14 @@ def _together(outputs: Sequence[Output], formulas: Sequence[Outputs]) -> tuple[S
 class DiscreteWatch(SampledWatch):
     """Outputs whose robustness is reported with every sample, from one program with shared sub-formulas."""
 
-    def __init__(self, outputs: Sequence[Output], topic_of: Mapping[str, str], period: Fraction) -> None:
+    def __init__(self, outputs: Sequence[Output], topic_of: Mapping[str, str], domain: Discrete) -> None:
+        period = domain.period
+        assert period is not None
         super().__init__(outputs, topic_of, period)
         self.formulas = tuple(_past(output, period) for output in outputs)
-        self.standings: tuple[Standing, ...] = tuple(Standing(output, period) for output in outputs)
+        self.standings: tuple[Standing, ...] = tuple(Standing(output, domain) for output in outputs)
         spec, every = _together(outputs, self.formulas)
-        self._monitor = spec.monitor(time=Discrete(period), semantics="standard", watch=every)
+        self._monitor = spec.monitor(time=domain, semantics="standard", watch=every)
 
     @property
     def samples(self) -> int:
@@ -158,15 +159,13 @@ class DiscreteWatch(SampledWatch):
 class DenseWatch(MessageWatch):
     """Samples at the times in the messages' headers, each topic on its own time base."""
 
-    def __init__(self, outputs: Sequence[Output], topic_of: Mapping[str, str]) -> None:
+    def __init__(self, outputs: Sequence[Output], topic_of: Mapping[str, str], domain: Dense) -> None:
         super().__init__(outputs, topic_of)
         formulas = tuple(_past(output, None) for output in outputs)
-        self.standings: tuple[Standing, ...] = tuple(Standing(output, None) for output in outputs)
+        self.standings: tuple[Standing, ...] = tuple(Standing(output, domain) for output in outputs)
         # Timestamps and ticks are both integer nanoseconds: results need no conversion.
         spec, every = _together(outputs, formulas)
-        self._monitor = spec.monitor(
-            time=Dense(NANOSECOND), semantics="standard", watch=every, time_unit="ns"
-        )
+        self._monitor = spec.monitor(time=domain, semantics="standard", watch=every, time_unit="ns")
         places = {formula: i for i, formula in enumerate(dict.fromkeys(every), 1)}
         #: Of each output the places of robustness and truth in what became known.
         self._places = [(places[both.robustness], places[both.truth]) for both in formulas]

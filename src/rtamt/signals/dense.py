@@ -49,6 +49,13 @@ class Dense(TimeDomain):
     continuous: ClassVar[bool] = True
     unit = TICKS
     setting: ClassVar[str] = "resolution"
+    parts: ClassVar[Mapping[str, str]] = {
+        "engine": "rtamt.engine.dense:ENGINE",
+        "stream": "rtamt.verdicts.streaming:DenseStream",
+        "eager": "rtamt.verdicts.dense_early:DenseEagerMonitor",
+        "interval": "rtamt.verdicts.dense_interval:DenseIntervalMonitor",
+        "watches": "rtamt.ros.watches:of_messages",
+    }
 
     resolution: Fraction
 

@@ -51,6 +51,14 @@ class Discrete(TimeDomain):
     continuous: ClassVar[bool] = False
     unit = PERIODS
     setting: ClassVar[str] = "period"
+    parts: ClassVar[Mapping[str, str]] = {
+        "engine": "rtamt.engine.discrete:ENGINE",
+        "stream": "rtamt.verdicts.streaming:DiscreteStream",
+        "eager": "rtamt.verdicts.eager:EagerMonitor",
+        "interval": "rtamt.verdicts.discrete_interval:DiscreteIntervalMonitor",
+        "causation": "rtamt.verdicts.causation:CausationMonitor",
+        "watches": "rtamt.ros.watches:sampled",
+    }
 
     period: Fraction | None
     tolerance: float

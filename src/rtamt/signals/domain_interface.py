@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from importlib import import_module
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from rtamt.rewrite.ground import grounds
@@ -32,7 +33,7 @@ class TimeDomain(ABC):
     """A time domain: the step in which bounds are counted, and the conversion of data to a trace.
 
     Immutable; ``rtamt.Discrete(...)`` and ``rtamt.Dense(...)``. What evaluates and monitors formulas in a
-    time domain is its engine (``rtamt.engine.domains``).
+    time domain is its engine (``rtamt.engine.domains``), one of its ``parts``.
     """
 
     __slots__ = ()
@@ -47,6 +48,18 @@ class TimeDomain(ABC):
     unit: ClassVar[BoundUnit]
     #: The setting that is the length of a step.
     setting: ClassVar[str]
+    #: What higher layers have for this time domain, as ``module:name`` by purpose: the required ``engine``,
+    #: ``stream`` (checks in chunks), ``watches`` (what ROS nodes run), and a monitor for each verdict mode.
+    parts: ClassVar[Mapping[str, str]]
+
+    @classmethod
+    def part(cls, purpose: str) -> Any:
+        """Import what a higher layer has for this time domain; None where it has nothing."""
+        place = cls.parts.get(purpose)
+        if place is None:
+            return None
+        module, name = place.split(":")
+        return getattr(import_module(module), name)
 
     # Settings; those that do not concern a time domain have their defaults.
     #: The sampling period in seconds; None where there is none, or where it depends on the timestamps.

@@ -18,10 +18,10 @@ if TYPE_CHECKING:
 
     from rtamt.language.units import Duration
 
+_LISTED: dict[str, type[TimeDomain]] = {domain.name: domain for domain in (Discrete, Dense)}
+
 #: By name, in the order of their codes in programs; the first is the default.
-DOMAINS: Mapping[str, type[TimeDomain]] = MappingProxyType(
-    {domain.name: domain for domain in (Discrete, Dense)}
-)
+DOMAINS: Mapping[str, type[TimeDomain]] = MappingProxyType(_LISTED)
 
 #: The name of the default time domain.
 DEFAULT = next(iter(DOMAINS))

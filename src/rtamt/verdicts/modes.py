@@ -1,22 +1,16 @@
-"""The verdict modes: what a monitor reports of a formula, and which monitor does. THE LIST of them.
+"""The verdict modes: what a monitor reports of a formula. THE LIST of them.
 
 ``Specification.monitor(verdict=...)``, ``rtamt monitor --verdict``, their errors and the reference read it.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import UsageError, did_you_mean, shown
-from rtamt.signals.dense import Dense
-from rtamt.signals.discrete import Discrete
-from rtamt.verdicts.causation import CausationMonitor
-from rtamt.verdicts.dense_early import DenseEagerMonitor
-from rtamt.verdicts.dense_interval import DenseIntervalMonitor
-from rtamt.verdicts.discrete_interval import DiscreteIntervalMonitor
-from rtamt.verdicts.eager import EagerMonitor
+from rtamt.signals.domains import DOMAINS
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -28,11 +22,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Mode:
-    """What a monitor reports; ``monitors`` by the name of the time domain, none for the robustness itself."""
+    """What a monitor reports. Which monitor does, is the part of the time domain that has the name of the mode."""
 
     name: str
     doc: str
-    monitors: Mapping[str, Callable[..., EarlyMonitor]] = field(default_factory=dict)
     #: The settings of the mode alone, by name, as ``Specification.monitor`` takes them.
     settings: tuple[str, ...] = ()
     #: Whether predicates are true or false, and not a distance.
@@ -47,20 +40,17 @@ MODES: Mapping[str, Mode] = MappingProxyType(
             Mode(
                 "eager",
                 "whether the formula holds at each sample, as soon as no later sample can change it",
-                MappingProxyType({Discrete.name: EagerMonitor, Dense.name: DenseEagerMonitor}),
                 settings=("ranges",),
                 boolean=True,
             ),
             Mode(
                 "interval",
                 "bounds of the robustness, from what is known by now",
-                MappingProxyType({Discrete.name: DiscreteIntervalMonitor, Dense.name: DenseIntervalMonitor}),
                 settings=("at", "ranges", "lateness", "on_correction"),
             ),
             Mode(
                 "causation",
                 "by how much each sample alone violates or satisfies the formula",
-                MappingProxyType({Discrete.name: CausationMonitor}),
             ),
         )
     }
@@ -91,10 +81,11 @@ def mode_of(verdict: Any, settings: Mapping[str, Any]) -> Mode:
 
 def monitor_of(mode: Mode, domain: TimeDomain) -> Callable[..., EarlyMonitor]:
     """Return the monitor of a mode in a time domain; raise :class:`UsageError` where there is none."""
-    if domain.name not in mode.monitors:
-        choices = " or ".join(mode.monitors)
+    found: Callable[..., EarlyMonitor] | None = domain.part(mode.name)
+    if found is None:
+        choices = " or ".join(name for name, each in DOMAINS.items() if mode.name in each.parts)
         raise UsageError(f"verdict='{mode.name}' needs {choices} time; use it, or verdict='{DELAYED}'")
-    return mode.monitors[domain.name]
+    return found
 
 
 def semantics_in(mode: Mode, semantics: str | PredicateSemantics) -> str | PredicateSemantics:

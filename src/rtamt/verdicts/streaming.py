@@ -14,10 +14,9 @@ from rtamt.engine.dense.groups import own_variables
 from rtamt.engine.dense.monitor import finish_ticks, known_ticks, push_ticks
 from rtamt.engine.discrete.monitor import push_samples
 from rtamt.errors import TraceError, UsageError
-from rtamt.language.units import check_unit, positive_period
+from rtamt.language.units import check_unit
 from rtamt.rewrite.semantics import semantics_of
 from rtamt.signals import arrays, dense_arrays
-from rtamt.signals.dense import Dense
 from rtamt.signals.discrete import Discrete
 from rtamt.signals.domains import time_domain
 from rtamt.signals.regular import TOLERANCE, check_increasing, infer_period
@@ -29,14 +28,16 @@ from rtamt.verdicts.offline import end_of
 from rtamt.verdicts.robustness_and_truth import outputs_under
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping
+    from collections.abc import Callable, Iterable, Iterator, Mapping
 
     from rtamt.engine.dense.monitor import DenseMonitor
     from rtamt.engine.discrete.monitor import Monitor
     from rtamt.language.units import Duration
     from rtamt.settings import Semantics
     from rtamt.signals.arrays import Stamps
+    from rtamt.signals.dense import Dense
     from rtamt.signals.dense_arrays import Samples
+    from rtamt.signals.domain_interface import TimeDomain
     from rtamt.specification import Specification
 
 
@@ -64,26 +65,34 @@ def check_stream(
     >>> result.robustness, result.satisfied, result.first_violation, result.samples
     (-1.0, False, 5.0, 6)
     """
-    dense = (spec.domain if time is None else time_domain(time)).continuous
-    stream: _Stream = (
-        _DenseStream(spec, semantics, time_unit)
-        if dense
-        else _DiscreteStream(spec, semantics, time_unit, period, tolerance)
-    )
+    kind = spec.domain if time is None else time_domain(time)
+    domain = type(kind).of(spec.period if period is None else period, tolerance, spec.resolution)
+    stream = _stream_of(domain)(spec, semantics, time_unit, domain)
     for chunk in chunks:
         stream.take(chunk)
     return stream.finish()
 
 
+def _stream_of(domain: TimeDomain) -> Callable[..., Stream]:
+    found: Callable[..., Stream] | None = domain.part("stream")
+    if found is None:
+        raise UsageError(f"recordings in {domain.name} time are not checked in chunks; evaluate them whole")
+    return found
+
+
 def check_streamable(spec: Specification) -> None:
-    """Raise :class:`BoundError` where a formula needs the whole recording at once."""
+    """Raise :class:`BoundError` where a formula needs the whole recording at once, else as :func:`check_stream`."""
+    _stream_of(spec.domain)
     for alone in spec.requirements.values():
         outputs = outputs_under(alone.formula, alone.semantics, alone.roles)
         check_in_chunks(anchor(outputs.robustness), alone.text)
 
 
-class _Stream(ABC):
-    """Requirements over chunks."""
+class Stream(ABC):
+    """Requirements over chunks; that of a time domain takes the time domain as well.
+
+    ``unit``: of times that are numbers.
+    """
 
     def __init__(self, spec: Specification, semantics: Semantics | None, unit: str | None) -> None:
         if not spec.input_names:
@@ -125,24 +134,22 @@ class _Stream(ABC):
             raise TraceError("the trace is empty: give at least one sample")
 
 
-class _DiscreteStream(_Stream):
+class DiscreteStream(Stream):
+    """Chunks of samples one period apart; without a period it is inferred from the first chunk."""
+
     def __init__(
-        self,
-        spec: Specification,
-        semantics: Semantics | None,
-        unit: str | None,
-        period: Duration | None,
-        tolerance: float,
+        self, spec: Specification, semantics: Semantics | None, unit: str | None, domain: Discrete
     ) -> None:
         super().__init__(spec, semantics, unit)
-        self._period = spec.period if period is None else positive_period(period)
-        self._tolerance = tolerance
+        self._tolerance = domain.tolerance
+        self._period = domain.period
         self._group = Group(self.requirements, spec.input_names)
         self._monitor: Monitor | None = None
         # The stamps of positions where something is violated, and of the first.
         self._kept: dict[int, Any] = {}
 
     def take(self, chunk: Any) -> None:
+        """See :class:`Stream`."""
         stamps, columns, n = arrays.columns_of(chunk, self.spec.input_names, self.unit, self.spec.types)
         if not n:
             return
@@ -191,6 +198,7 @@ class _DiscreteStream(_Stream):
         return next(iter(self._group.outputs.values())).last
 
     def finish(self) -> StreamResult:
+        """See :class:`Stream`."""
         self.require_samples()
         assert self._monitor is not None
         self._known(self._monitor, self._monitor.finish())
@@ -201,10 +209,15 @@ class _DiscreteStream(_Stream):
         return self.result(found, self._period)
 
 
-class _DenseStream(_Stream):
-    def __init__(self, spec: Specification, semantics: Semantics | None, unit: str | None) -> None:
+class DenseStream(Stream):
+    """Chunks in which each variable has timestamps of its own."""
+
+    def __init__(
+        self, spec: Specification, semantics: Semantics | None, unit: str | None, domain: Dense
+    ) -> None:
         super().__init__(spec, semantics, unit)
-        Dense(spec.resolution).check(spec.formula, spec.text)
+        self._domain = domain
+        domain.check(spec.formula, spec.text)
         self._groups = [(group, self._monitor(group)) for group in self._grouped()]
         self._scale: TimeScale | None = None
         self._counts: dict[str, int] = {}
@@ -221,11 +234,11 @@ class _DenseStream(_Stream):
             yield Group(some, [name for name in self.spec.input_names if name in names])
 
     def _monitor(self, group: Group) -> DenseMonitor:
-        domain = Dense(self.spec.resolution)
-        spec = group.begin(domain, self.spec)
-        return spec.monitor(time=domain, semantics="standard", watch=group.formulas[1:])
+        spec = group.begin(self._domain, self.spec)
+        return spec.monitor(time=self._domain, semantics="standard", watch=group.formulas[1:])
 
     def take(self, chunk: Any) -> None:
+        """See :class:`Stream`."""
         arrays.require_no_unit(chunk, self.unit)
         columns = dense_arrays.columns_of(chunk, self.spec.input_names, self.declared)
         given = {name: column for name, column in columns.items() if len(column[0])}
@@ -233,7 +246,7 @@ class _DenseStream(_Stream):
             return
         times = [each for each, _ in given.values()]
         if self._scale is None:
-            self._scale = TimeScale.of(self.spec.resolution, times, self.unit)
+            self._scale = TimeScale.of(self._domain.resolution, times, self.unit)
         self._scale = self._scale.widened(times)
         samples = {}
         for name, column in columns.items():
@@ -264,6 +277,7 @@ class _DenseStream(_Stream):
             output.take(ticks - start, values, None if end is None else end - start)
 
     def finish(self) -> StreamResult:
+        """See :class:`Stream`."""
         self.require_samples()
         for name in self.spec.input_names:
             if name not in self._last:
@@ -275,7 +289,7 @@ class _DenseStream(_Stream):
             # The last values hold for ever, and past windows slide on over them until all has settled.
             start = self._start(group)
             leaves = (leaf for each in group.requirements.values() for leaf in each.leaves)
-            until = max((end_of(leaf, start, end, self.spec.resolution) for leaf in leaves), default=end)
+            until = max((end_of(leaf, start, end, self._domain.resolution) for leaf in leaves), default=end)
             behind = [(name, self._last[name]) for name in group.names]
             held = {
                 name: (np.array([until]), np.array([value])) for name, (last, value) in behind if last < until
