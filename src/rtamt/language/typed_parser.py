@@ -35,7 +35,8 @@ class TypedParser(NameParser):
         span: Span | None = None,
     ) -> Apply:
         """Apply an operator to operands as their types demand. ``places``: where the operands are written."""
-        if self.scope.types or self.scope.enumerations:
+        # What a template is applied to may have a type that the file of the template does not know.
+        if self.scope.types or self.scope.enumerations or self.scope.arguments:
             try:
                 op, args = typed(op, args, lambda k: self._written(places[k]))
             except MistypedError as error:

@@ -3,6 +3,7 @@
 import os
 import pickle
 
+import numpy as np
 import pytest
 
 import rtamt
@@ -188,3 +189,12 @@ def test_files_are_limited(folder, monkeypatch):
     monkeypatch.setattr(imports, "MOST_FILES", 100)
     with pytest.raises(rtamt.ParseError, match="at most 20 files may import one another"):
         loaded(folder, 'import "n0.stl" x > 3')
+
+
+def test_a_boolean_argument_of_an_imported_template_is_its_truth(tmp_path):
+    (tmp_path / "own.stl").write_text("def seen(p) = once(p)")
+    (tmp_path / "spec.stl").write_text('import "own.stl" bool b; seen(b)')
+    here = rtamt.parse("bool b; def seen(p) = once(p); seen(b)")
+    imported = rtamt.load(tmp_path / "spec.stl")
+    assert imported.formula == here.formula
+    assert imported.evaluate({"b": [False, True]}).signal.values.tolist() == [-np.inf, np.inf]
