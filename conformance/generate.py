@@ -64,7 +64,11 @@ class Drawing:
         if depth == 0 or self.chance(2):
             return Const(self.half()) if self.chance(3) else Var(self.random.choice("xy"))
         op = self.random.choice(self.numbers)
-        return op(*(self.number(depth - 1) for _ in op.operands))
+        return op(*(self.operand(sort, depth - 1) for sort in op.operands), interval=self.interval(op))
+
+    def operand(self, sort: Sort, depth: int) -> Formula:
+        """Draw an operand of a number."""
+        return self.number(depth) if sort is Sort.NUMBER else self.plain()
 
     def plain(self) -> Formula:
         """Draw a predicate that any tool has: a variable against a number."""
@@ -76,6 +80,8 @@ class Drawing:
         if op.bounds is Bounds.NONE or (op.bounds is Bounds.OPTIONAL and self.chance(5)):
             return None
         begin = self.random.choice((0, 0, 0, 1, 2, 3))
+        if op.bounds is Bounds.DURATION:
+            return Interval(begin * self.step, begin * self.step)
         if op.bounds is Bounds.OPTIONAL and self.chance(10):
             return Interval(begin * self.step, None)
         return Interval(begin * self.step, (begin + self.random.choice((0, 1, 1, 2, 3))) * self.step)
@@ -83,9 +89,15 @@ class Drawing:
     def alone(self, op: Operator) -> Formula:
         """Draw a formula with one operator over plain predicates or, for a number's, in one."""
         if op in self.numbers or op in self.comparisons:
-            others = (Var("y") if self.chance(2) else Const(self.half()) for _ in op.operands[1:])
-            given: list[Formula] = [Var("x"), *others]
-            made = op(*given)
+            given: list[Formula] = []
+            for sort in op.operands:
+                if sort is not Sort.NUMBER:
+                    given.append(self.plain())
+                elif any(isinstance(operand, Var) for operand in given):
+                    given.append(Var("y") if self.chance(2) else Const(self.half()))
+                else:
+                    given.append(Var("x"))
+            made = op(*given, interval=self.interval(op))
             return made if op in self.comparisons else STL["ge"](made, Const(self.half()))
         made = op(*(self.plain() for _ in op.operands), interval=self.interval(op))
         return made if op.operands else STL["or"](made, self.plain())

@@ -8,7 +8,7 @@ from protocol import Writer, horizon, serve
 
 import rtamt
 from rtamt.language.operators import STL
-from rtamt.language.records import Fixity
+from rtamt.language.records import Bounds, Fixity
 
 BACKEND = os.environ.get("RTAMT_BENCH_BACKEND", "cpp")
 MODES = [["discrete", "offline"], ["discrete", "online"], ["dense", "offline"], ["dense", "online"]]
@@ -17,21 +17,31 @@ MODES = [["discrete", "offline"], ["discrete", "online"], ["dense", "offline"], 
 def spelled(op):
     """Return the form in which an operator is written, from the table of operators."""
     sign = op.spellings[0]
-    operands = ", ".join(f"{{{k}}}" for k in range(len(op.operands)))
     if op.fixity is Fixity.ATOM:
         return op.name
-    if op.fixity is Fixity.FUNCTION:
-        return f"{sign}({operands})"
+    if op.fixity is Fixity.CONDITIONAL:
+        return f"({sign} {{0}} then {{1}} else {{2}})"
     return f"({{0}}) {sign}{{I}} ({{1}})" if len(op.operands) == 2 else f"{sign}{{I}} ({{0}})"
 
 
 class Text(Writer):
-    """The language, with intervals that may be open ahead."""
+    """The language, with intervals that may be open ahead and operands that may be left out."""
 
     def interval(self, bounds):
         """Write inf for no end."""
         begin, end = bounds
         return f"[{begin}:{'inf' if end is None else end}]"
+
+    def write(self, node):
+        """Write a function with the operands that it has."""
+        op = STL.get(node.get("op", ""))
+        if op is None or op.fixity is not Fixity.FUNCTION:
+            return super().write(node)
+        bounds = node.get("interval")
+        text = "" if bounds is None else self.interval(bounds)
+        if bounds is not None and op.bounds is Bounds.DURATION:
+            text = f"[{bounds[0]}]"
+        return f"{op.spellings[0]}{text}({', '.join(map(self.write, node['args']))})"
 
 
 TEXT = Text({op.name: spelled(op) for op in STL})

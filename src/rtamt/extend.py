@@ -22,7 +22,7 @@ from rtamt.language.dense_definitions import QUARTERS, Steps
 from rtamt.language.formula import Apply, Const, Formula, Interval, Var, variables
 from rtamt.language.operators import STL
 from rtamt.language.records import Blocks, Bounds, Compiled, Fixity, Language, Operator, Sort, Tense
-from rtamt.rewrite.semantics import truth
+from rtamt.rewrite.truth import truth
 
 __all__ = [
     "QUARTERS",

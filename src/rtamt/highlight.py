@@ -11,6 +11,7 @@ from pygments.lexer import RegexLexer, words
 from pygments.token import Comment, Keyword, Name, Number, Operator, Punctuation, String, Whitespace
 
 from rtamt.language.declarations import TYPES
+from rtamt.language.grammar import ELSE, THEN
 from rtamt.language.lexer import is_word
 from rtamt.language.operators import STL, Fixity, Tense
 from rtamt.language.units import UNITS
@@ -60,9 +61,10 @@ def logical() -> list[str]:
     """Return the other keywords: connectives and truth values.
 
     >>> logical()
-    ['and', 'false', 'iff', 'implies', 'not', 'or', 'true', 'xor']
+    ['and', 'else', 'false', 'if', 'iff', 'implies', 'not', 'or', 'then', 'true', 'xor']
     """
-    return sorted({s for op in STL for s in op.spellings if is_word(s)} - {*temporal(), *functions()})
+    words = {s for op in STL for s in op.spellings if is_word(s)} | {THEN, ELSE}
+    return sorted(words - {*temporal(), *functions()})
 
 
 def symbols() -> list[str]:

@@ -78,13 +78,42 @@ FORMULAS = [
         "wrap(x, 0, y > 3) > 1",
         "           ^^^^^",
         ParseError,
-        "'wrap' takes a number, and 'y > 3' is a formula, true or false; write a signal or arithmetic",
+        "'wrap' takes a number, and 'y > 3' is a formula, true or false; write a signal or arithmetic, "
+        "such as (if y > 3 then 1 else 0)",
     ),
     (
         "minimum[0:2](once x) > 1",
         "             ^^^^^^",
         ParseError,
-        "'minimum' takes a number, and 'once x' is a formula, true or false; write a signal or arithmetic",
+        "'minimum' takes a number, and 'once x' is a formula, true or false; write a signal or arithmetic, "
+        "such as (if once x then 1 else 0)",
+    ),
+    (
+        "if x > 3",
+        "        ^",
+        ParseError,
+        "expected 'then' after '3', got the end of the text; a choice is written if x > 3 then 1 else 0, "
+        'and a variable with this name "if"',
+    ),
+    (
+        "(if x > 3 then y) > 2",
+        "                ^",
+        ParseError,
+        "expected 'else' after 'y', got ')'; a choice is written if x > 3 then 1 else 0, "
+        'and a variable with this name "if"',
+    ),
+    (
+        "if x > 3 then y > 2 else 3",
+        "              ^^^^^",
+        ParseError,
+        "'if' takes a number, and 'y > 2' is a formula, true or false; write a signal or arithmetic, "
+        "such as (if y > 2 then 1 else 0)",
+    ),
+    (
+        "x + if x > 3 then y else 3",
+        "    ^^",
+        ParseError,
+        "'if' binds more weakly than the '+' before it; put parentheses around it: + (if ...)",
     ),
     ("min(x)", "^^^^^^", ParseError, "'min' takes 2 or more operands, got 1"),
     ("abs(x, y)", "^^^^^^^^^", ParseError, "'abs' takes 1 operand, got 2"),

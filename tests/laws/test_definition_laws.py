@@ -11,8 +11,9 @@ from hypothesis import strategies as st
 
 from rtamt.errors import EvaluationError
 from rtamt.language.formula import Apply, Const, Formula, Interval, Var, children, fold, postorder
-from rtamt.language.operators import STL, Bounds, Operator, Sort, Tense
+from rtamt.language.operators import STL, Bounds, Operator, Sort, Tense, holds
 from rtamt.reference.discrete import ReferenceMonitor, evaluate, evaluate_all, history
+from rtamt.rewrite.desugar import spelled_out
 from rtamt.rewrite.horizon import horizon
 from tests.oracle import boolean
 from tests.strategies import chunkings, formulas, traces
@@ -32,6 +33,9 @@ def value(formula, trace, period=PERIOD):
 
 
 def operands(op: Operator) -> tuple[Formula, ...]:
+    if Sort.CONDITION in op.operands:
+        names = iter("xyx")
+        return tuple(holds(Var("y")) if sort is Sort.CONDITION else Var(next(names)) for sort in op.operands)
     if len(op.operands) > 2:  # limits that are not reversed
         return (Var("x"), Const(-1.0), Const(1.5))
     return tuple(Var(name) for name, _ in zip("xy", op.operands, strict=False))
@@ -42,6 +46,8 @@ def intervals(draw, op: Operator) -> Interval | None:
     if op.bounds is Bounds.NONE:
         return None
     begin, length = draw(st.integers(0, 4)), draw(st.integers(0, 4))
+    if op.bounds is Bounds.DURATION:
+        return Interval(begin * PERIOD, begin * PERIOD)
     bounded = Interval(begin * PERIOD, (begin + length) * PERIOD)
     if op.bounds is Bounds.REQUIRED:
         return bounded
@@ -105,7 +111,7 @@ def test_every_sub_formula_has_the_value_it_has_alone(formula, trace):
     value(formula, trace)
     n = len(trace["x"])
     every = evaluate_all(formula, trace, n, PERIOD)
-    assert set(every) == set(postorder(formula))
+    assert set(every) == set(postorder(spelled_out(formula)))  # conditions are true or false
     for sub, values in every.items():
         np.testing.assert_array_equal(values, evaluate(sub, trace, n, PERIOD))
 

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from rtamt.errors import EvaluationError
 from rtamt.language.dense_definitions import QUARTERS, Steps, critical, lifted
 from rtamt.language.formula import Apply, Const, Formula, Interval, Var, postorder
-from rtamt.language.operators import STL, Bounds, Operator, Sort, Tense
+from rtamt.language.operators import STL, Bounds, Operator, Sort, Tense, holds
 from rtamt.reference import discrete as reference
 from rtamt.reference.dense import DenseReferenceMonitor, StepFunction, evaluate
 from rtamt.rewrite.horizon import horizon
@@ -36,6 +36,9 @@ def named(ops):
 
 
 def operands(op: Operator) -> tuple[Formula, ...]:
+    if Sort.CONDITION in op.operands:
+        names = iter("xyx")
+        return tuple(holds(Var("y")) if sort is Sort.CONDITION else Var(next(names)) for sort in op.operands)
     if len(op.operands) > 2:  # limits that are not reversed
         return (Var("x"), Const(-1.0), Const(1.5))
     return tuple(Var(name) for name, _ in zip("xy", op.operands, strict=False))
@@ -46,6 +49,8 @@ def intervals(draw, op: Operator) -> Interval | None:
     if op.bounds is Bounds.NONE:
         return None
     begin, length = draw(st.integers(0, 4)), draw(st.integers(0, 4))
+    if op.bounds is Bounds.DURATION:
+        return Interval(begin * TICK, begin * TICK)
     bounded = Interval(begin * TICK, (begin + length) * TICK)
     if op.bounds is Bounds.REQUIRED:
         return bounded

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from rtamt.language.enclosures import Enclosure, extended
 from rtamt.language.operators import STL
 from rtamt.language.parser import parse_formula
-from rtamt.rewrite.semantics import truth
+from rtamt.rewrite.truth import truth
 
 # The truths of predicates are operators too, though the language does not have them.
 EXTENDED = [op for op in STL if op.extension] + [

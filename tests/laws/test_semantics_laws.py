@@ -17,7 +17,8 @@ from rtamt.language.formula import Apply, children, postorder, variables
 from rtamt.language.operators import Sort
 from rtamt.language.printer import canonical
 from rtamt.rewrite.horizon import horizon
-from rtamt.rewrite.semantics import SEMANTICS, truth
+from rtamt.rewrite.semantics import SEMANTICS
+from rtamt.rewrite.truth import truth
 from tests.laws.test_dense_definition_laws import TICK, dense_formulas, value
 from tests.laws.test_engine_laws import by_definition, online
 from tests.oracle import interface

@@ -54,7 +54,10 @@ def values(
 ) -> np.ndarray:
     """Return the value of a formula at each of n samples."""
 
-    def step(node: Formula, below: tuple[np.ndarray, ...]) -> np.ndarray:
+    def step(node: Formula, below: tuple[Any, ...]) -> Any:
+        return lambda: value(node, below)  # what is inside a predicate has no value of its own
+
+    def value(node: Formula, below: tuple[Any, ...]) -> np.ndarray:
         if is_predicate(node):
             return _predicate(node, case(node, semantics, inputs), columns, n, period)
         assert isinstance(node, Apply)
@@ -62,9 +65,9 @@ def values(
         if node.op.bounds is not Bounds.NONE:
             begin, end = (0, None) if node.interval is None else (node.interval.begin, node.interval.end)
             window = (int(begin / period), None if end is None else int(end / period))
-        return node.op.definition(*(below or (n,)), *window)
+        return node.op.definition(*([operand() for operand in below] or (n,)), *window)
 
-    return fold(formula, step)
+    return fold(formula, step)()
 
 
 def _predicate(node: Formula, which: str, columns: Mapping[str, Any], n: int, period: Fraction) -> np.ndarray:

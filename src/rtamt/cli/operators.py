@@ -79,6 +79,15 @@ def _called(name: str, language: Language) -> list[Operator]:
     return found
 
 
+#: How the interval of an operator is shown.
+_INTERVALS = {
+    Bounds.NONE: "",
+    Bounds.OPTIONAL: " [a:b]?",
+    Bounds.REQUIRED: " [a:b]",
+    Bounds.DURATION: " [d]?",
+}
+
+
 def _written(op: Operator) -> str:
-    interval = {Bounds.NONE: "", Bounds.OPTIONAL: " [a:b]?", Bounds.REQUIRED: " [a:b]"}[op.bounds]
+    interval = _INTERVALS[op.bounds]
     return " ".join(op.spellings) + interval

@@ -143,6 +143,11 @@ def div(x: Array, y: Array) -> Array:
         return x / (y + 0.0)
 
 
+def if_(truth: Array, x: Array, y: Array) -> Array:
+    """``if φ then x else y``, by the truth of φ, +inf or -inf."""
+    return np.where(truth > 0, x, y)
+
+
 # ---- predicates ---------------------------------------------------------------------------------
 
 

@@ -101,6 +101,16 @@ def no_close(language: Language, tokens: Tokens, at: int, opening: Token, expect
     return no_operator(language, tokens, at, expected)
 
 
+def no_word(tokens: Tokens, at: int, word: str) -> Complaint:
+    """Return the error for a missing word of a choice."""
+    token = tokens[at]
+    return _bad_character(token) or (
+        f"expected '{word}' after {tokens[at - 1]}, got {token}; a choice is written if x > 3 then 1 else 0, "
+        f'and a variable with this name "if"',
+        token.span,
+    )
+
+
 def _bad_character(token: Token) -> Complaint | None:
     if token.kind == "unknown":
         meant = _MEANT.get(token.text, "")

@@ -17,6 +17,9 @@ MAX_DEPTH = 200
 #: The spelling of infinity, unless a variable has this name.
 INFINITY = "inf"
 
+#: The words between the operands of ``if``.
+THEN, ELSE = "then", "else"
+
 
 def is_infix(op: Operator) -> bool:
     """Return whether an operator is written between its operands.

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 def parse_interval(parser: FormulaParser, op: Operator, token: Token) -> Interval | None:
-    """``interval = ( "[" | "(" ) , bound , ( ":" | "," ) , bound , ( "]" | ")" )``: read one after ``op``.
+    """``interval = ( "[" | "(" ) , bound , [ ( ":" | "," ) , bound ] , ( "]" | ")" )``: read one after ``op``.
 
     ``token``: the operator as it is written. A bound without a unit has the default unit of the parser; a lower
     bound without a unit has that of the upper bound, as in RTAMT. A parenthesis excludes the bound beside it.
@@ -41,16 +41,23 @@ def parse_interval(parser: FormulaParser, op: Operator, token: Token) -> Interva
     first = parser.index
     begin, begin_unit, begin_span = _bound(parser)
     separator = parser.token
-    if not parser.accept(":") and not parser.accept(","):
-        raise parser.error(f"expected ':' or ',' and an upper bound, got {separator}", separator.span)
-    end, end_unit, end_span = _bound(parser)
+    end, end_unit, end_span = begin, begin_unit, begin_span
+    if op.bounds is not Bounds.DURATION:
+        if not parser.accept(":") and not parser.accept(","):
+            raise parser.error(f"expected ':' or ',' and an upper bound, got {separator}", separator.span)
+        end, end_unit, end_span = _bound(parser)
+    elif separator.text in (":", ","):
+        raise parser.error(
+            f"'{token.text}' takes one duration, such as {token.text}[5], got {separator}", separator.span
+        )
     closing = parser.token
-    if not parser.accept("]") and not parser.accept(")"):
+    if not parser.accept("]") and (op.bounds is Bounds.DURATION or not parser.accept(")")):
         raise parser.error(f"expected ']' after the bounds, got {closing}", closing.span)
     begin_open, end_open = opening.text == "(", closing.text == ")"
     span = Span(opening.start, closing.end)
     if begin is None:
-        raise parser.error("the lower bound of an interval may not be infinite", begin_span, BoundError)
+        what = "a duration" if op.bounds is Bounds.DURATION else "the lower bound of an interval"
+        raise parser.error(f"{what} may not be infinite", begin_span, BoundError)
     if end is None and op.bounds is Bounds.REQUIRED:
         raise _unbounded(parser, token, end_span)
     default = "" if parser.unit == "s" else parser.unit
@@ -84,7 +91,7 @@ def _begins_open(parser: FormulaParser, op: Operator) -> bool:
 
     Otherwise it begins an operand: ``always(x)``. What is taken for an interval here has no other reading.
     """
-    if op.bounds is Bounds.NONE:
+    if op.bounds in (Bounds.NONE, Bounds.DURATION):
         return False
     separator = _behind_bound(parser, parser.index + 1)
     if separator is None or parser.tokens[separator].text not in (",", ":"):

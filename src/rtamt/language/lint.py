@@ -71,17 +71,17 @@ def _nodes(document: Document) -> Iterator[Apply]:
             yield node
 
 
-def _operands(document: Document, sort: Sort) -> Iterator[tuple[Formula, str]]:
-    """Yield every operand that is read as this sort, and the formula at its position."""
+def _operands(document: Document, *sorts: Sort) -> Iterator[tuple[Formula, str]]:
+    """Yield every operand that is read as one of these sorts, and the formula at its position."""
     for node in _nodes(document):
-        for wanted, operand in zip(node.op.operands, node.args, strict=True):
-            if wanted is sort:
+        for wanted, operand in zip(node.op.operands, node.args, strict=False):
+            if wanted in sorts:
                 span = operand.span
                 yield operand, "this" if span is None else f"'{document.text[span.start : span.end]}'"
 
 
 def _number_as_formula(document: Document) -> Found:
-    for operand, written in _operands(document, Sort.FORMULA):
+    for operand, written in _operands(document, Sort.FORMULA, Sort.CONDITION):
         if is_number(operand):
             such = f", such as {operand.name} > 0" if isinstance(operand, Var) else ""
             yield operand.span, f"{written} is a number where a formula is expected; compare it{such}"

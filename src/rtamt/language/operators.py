@@ -71,7 +71,7 @@ def builtin(name: str) -> Operator | None:
 
 # ---- expansions: (operands..., interval) -> simpler formula -------------------------------------
 
-N, F = Sort.NUMBER, Sort.FORMULA
+N, F, C = Sort.NUMBER, Sort.FORMULA, Sort.CONDITION
 
 
 def _ne(a: Formula, b: Formula, _i: Interval | None) -> Formula:
@@ -270,6 +270,10 @@ STL: Language = Language.of((
               "clip(x, -1, 1) >= 0", definition=f.clip, expansion=_clip, strict=True),
     _function("wrap", 3, "The first operand moved into [second, third) by whole multiples of their difference.",
               "wrap(x, -180, 180) <= 90", definition=f.wrap, expansion=_wrap, strict=True),
+    Operator("if", ("if",), Fixity.CONDITIONAL, 100, (C, N, N), N,
+             "The number after 'then' where the condition holds, else the number after 'else'.",
+             "(if x >= 3 then x else y) <= 5", r"\mathbf{{if}}\ {0}\ \mathbf{{then}}\ {1}\ \mathbf{{else}}\ {2}",
+             d.if_, expansion=lambda condition, a, b, _i: choice(condition, a, b), strict=True),
     _prefix("neg", "-", 120, "Minus.", "-x >= 2", operands=(N,), result=N, latex="-{0}",
             definition=d.neg, kernel=Pointwise("neg"), extension=e.neg, slopes=e.slopes(-1)),
     _infix("mul", "*", 110, "Product.", "2 * x <= 3", operands=(N, N), result=N, latex=r"{0} \cdot {1}",

@@ -4,31 +4,43 @@
 
     expression = operand , { infix operator , [ interval ] , expression | "in" , set }
     set        = "{" , expression , { "," , expression } , "}"
-    operand    = number | name | atom | group | call | prefix | use of a template
+    operand    = number | name | atom | group | call | prefix | choice | use of a template
     group      = "(" , expression , ")"
     call       = function , [ interval ] , "(" , expression , { "," , expression } , ")"
     prefix     = prefix operator , [ interval ] , expression
-    interval   = "[" , bound , ( ":" | "," ) , bound , "]"
+    choice     = "if" , expression , "then" , expression , "else" , expression
+    interval   = ( "[" | "(" ) , bound , [ ( ":" | "," ) , bound ] , ( "]" | ")" )
     bound      = ( number , [ "/" , number ] | constant ) , [ unit ] | "inf"
     name       = word , { "." , word } | topic | '"' , characters , '"'
 
 Words such as ``always``, ``G`` or ``min`` are operators only where an operator can stand: a prefix
 operator needs something after it that begins an operand or an interval, a function needs ``(``,
-and an infix operator stands after an operand. Comparisons in one direction chain: ``1 <= x < 3`` is
-``1 <= x and x < 3``; so ``x in {1, 2}`` is ``x == 1 or x == 2``, and ``in`` is a name where no ``{`` follows.
+and an infix operator stands after an operand. ``if`` is one where a variable could not stand, unless it is
+declared; what follows ``else`` extends as far as arithmetic does. Comparisons in one direction chain: ``1 <= x < 3``
+is ``1 <= x and x < 3``; so ``x in {1, 2}`` is ``x == 1 or x == 2``, and ``in`` is a name where no ``{`` follows.
 """
 
 from __future__ import annotations
 
+from itertools import pairwise
 from math import inf, isinf
 from typing import TYPE_CHECKING
 
 from rtamt.errors import NameInFormulaError, did_you_mean
 from rtamt.language import diagnostics
 from rtamt.language.formula import Apply, Const, Formula, Span
-from rtamt.language.grammar import INFINITY, MAX_DEPTH, chains, is_number, is_predicate, passes_on
+from rtamt.language.grammar import (
+    ELSE,
+    INFINITY,
+    MAX_DEPTH,
+    THEN,
+    chains,
+    is_number,
+    is_predicate,
+    passes_on,
+)
 from rtamt.language.intervals import parse_interval
-from rtamt.language.operators import STL, Bounds, Fixity, Language, Operator
+from rtamt.language.operators import STL, Bounds, Fixity, Language, Operator, Sort
 from rtamt.language.scope import Scope
 from rtamt.language.templates import Template, parse_use
 from rtamt.language.typed_parser import TypedParser
@@ -46,9 +58,12 @@ class FormulaParser(TypedParser):
 
     # ---- productions ---------------------------------------------------------------------------
 
+    #: The word of a choice that ends the operand here, which is no operand itself.
+    _awaited: str | None = None
+
     def formula(self) -> Formula:
         """Parse a top-level expression, whatever the depth of the caller's stack."""
-        self._depth = 0
+        self._depth, self._awaited = 0, None
         try:
             return self.expression()
         except RecursionError:
@@ -102,7 +117,7 @@ class FormulaParser(TypedParser):
         return self.expression(op.power + 1 if op.fixity is Fixity.LEFT else op.power, op)
 
     def operand(self, power: int, under: Operator | None) -> Formula:
-        """``operand = number | name | atom | group | call | prefix``."""
+        """``operand = number | name | atom | group | call | prefix | choice``."""
         token = self.tokens[self.index]
         if token.kind == "number":
             return self.number()
@@ -115,6 +130,8 @@ class FormulaParser(TypedParser):
             if op.fixity is Fixity.ATOM:
                 self.index += 1
                 return Apply(op, (), None, token.span)
+            if op.fixity is Fixity.CONDITIONAL and self._begins_choice(self.index):
+                return self.choice(op, power, under)
         if token.kind == "name" and self.tokens[self.index + 1].text == "(":
             template = self.scope.templates.get(token.text)
             if template is not None:
@@ -156,11 +173,11 @@ class FormulaParser(TypedParser):
         opening = self.token
         if not self.accept("("):
             raise self.error(f"expected '(' after '{name.text}', got {opening}", opening.span)
-        starts, operands = [self.token.start], [self.argument(op)]
+        starts, operands = [self.token.start], [self.argument(op, 0)]
         ends = [self.tokens[self.index - 1].end]
         while self.accept(","):
             starts.append(self.token.start)
-            operands.append(self.argument(op))
+            operands.append(self.argument(op, len(operands)))
             ends.append(self.tokens[self.index - 1].end)
         if not self.accept(")"):
             raise self.error(
@@ -168,28 +185,52 @@ class FormulaParser(TypedParser):
             )
         span = Span(name.start, self.tokens[self.index - 1].end)
         count = len(op.operands)
-        if len(operands) != count and not (op.folds and len(operands) > count):
-            more = " or more" if op.folds else ""
-            noun = "operand" if count == 1 and not op.folds else "operands"
-            raise self.error(f"'{name.text}' takes {count}{more} {noun}, got {len(operands)}", span)
+        least = count - op.optional
+        if not (least <= len(operands) <= count or (op.folds and len(operands) > count)):
+            number = f"{least} or {count}" if op.optional else f"{count} or more" if op.folds else str(count)
+            noun = "operand" if number == "1" else "operands"
+            raise self.error(f"'{name.text}' takes {number} {noun}, got {len(operands)}", span)
         places = list(map(Span, starts, ends))
         result = self.apply(op, tuple(operands[:count]), places[:count], interval, span)
         for operand, place in zip(operands[count:], places[count:], strict=True):
             result = self.apply(op, (result, operand), (span, place), interval, span)
         return result
 
-    def argument(self, op: Operator) -> Formula:
-        """Parse an operand of a function; strict functions take no formula for a number."""
+    def argument(self, op: Operator, position: int, power: int = 0) -> Formula:
+        """Parse an operand of an operator; strict ones take no formula for a number."""
         start = self.token.start
-        operand = self.expression()
-        if op.strict and not is_number(operand):
+        operand = self.expression(power)
+        sort = op.operands[min(position, len(op.operands) - 1)]
+        if op.strict and sort is Sort.NUMBER and not is_number(operand):
             end = self.tokens[self.index - 1].end
+            written = self.text[start:end]
             raise self.error(
-                f"'{op.spellings[0]}' takes a number, and '{self.text[start:end]}' is a formula, true or false; "
-                f"write a signal or arithmetic",
+                f"'{op.spellings[0]}' takes a number, and '{written}' is a formula, true or false; "
+                f"write a signal or arithmetic, such as (if {written} then 1 else 0)",
                 Span(start, end),
             )
         return operand
+
+    def choice(self, op: Operator, power: int, under: Operator | None) -> Formula:
+        """``choice = "if" , expression , "then" , expression , "else" , expression``."""
+        first = self.next()
+        if power > op.power:  # it could end before the next operator, or after it
+            by = "" if under is None else under.spellings[0]
+            raise self.error(
+                f"'{first.text}' binds more weakly than the '{by}' before it; "
+                f"put parentheses around it: {by} ({first.text} ...)",
+                first.span,
+            )
+        operands, places, outer = [], [], self._awaited
+        for position, word in enumerate((THEN, ELSE, None)):
+            self._awaited = word or outer
+            start = self.token.start
+            operands.append(self.argument(op, position, 0 if word else op.power))
+            places.append(Span(start, self.tokens[self.index - 1].end))
+            if word and not self.accept(word):
+                raise self.error(*diagnostics.no_word(self.tokens, self.index, word))
+        span = Span(first.start, self.tokens[self.index - 1].end)
+        return self.apply(op, tuple(operands), places, None, span)
 
     def prefix(self, op: Operator, power: int, under: Operator | None) -> Formula:
         """``prefix = prefix operator , [ interval ] , expression``; a minus before a number is its sign."""
@@ -245,7 +286,7 @@ class FormulaParser(TypedParser):
             end += 1
         token = self.tokens[end]
         op = self.language.opening(token.text)
-        opens = (
+        opens = token.text != self._awaited and (
             token.kind in ("name", "number", "quoted")
             or token.text == "("
             or (token.text == "[" and end > at)
@@ -253,6 +294,28 @@ class FormulaParser(TypedParser):
             or self._begins_topic(end)
         )
         return opens == ((end - at) % 2 == 0)
+
+    def _begins_choice(self, at: int) -> bool:
+        """Return whether the ``if`` at this token begins a choice, for a variable of that name cannot stand there."""
+        if self.tokens[at].text in self.scope:
+            return False
+        after = self.tokens[at + 1]
+        if self.language.infix(after.text) is None:
+            return after.kind in ("name", "number", "quoted") or after.text == "(" or self.opens(at + 1)
+        # `if - x then` has no other reading, for two operands are adjacent.
+        depth = 0
+        for before, token in pairwise(self.tokens[at + 1 :]):
+            depth += (before.text in ("(", "[")) - (before.text in (")", "]"))
+            if depth < 0 or before.text in (";", "="):
+                return False
+            if depth == 0 and token.text == THEN and self._ends_operand(before):
+                return True
+        return False
+
+    def _ends_operand(self, token: Token) -> bool:
+        if token.kind == "name":
+            return self.language.infix(token.text) is None and self.language.opening(token.text) is None
+        return token.kind in ("number", "quoted") or token.text == ")"
 
     def _is_infix_word(self, at: int) -> bool:
         token = self.tokens[at]

@@ -14,9 +14,9 @@ from string import Formatter
 from typing import TYPE_CHECKING, TypeGuard
 
 from rtamt.language.formula import COUNTLESS, Apply, Const, Formula, Interval, Parameter, Var, size
-from rtamt.language.grammar import INFINITY, is_infix, is_predicate, passes_on, sign
+from rtamt.language.grammar import ELSE, INFINITY, THEN, is_infix, is_predicate, passes_on, sign
 from rtamt.language.lexer import NAME, TOPIC, is_word, quoted
-from rtamt.language.operators import STL, TRUTH, Fixity, Language, Operator
+from rtamt.language.operators import STL, TRUTH, Bounds, Fixity, Language, Operator
 from rtamt.language.units import UNITS, decimal
 from rtamt.language.value_types import Enumeration
 
@@ -67,11 +67,21 @@ def to_text(
             raise TypeError(f"{type(node).__name__} is not a formula")
         if node.op is TRUTH:
             return node.args
-        op, word = node.op, node.op.spellings[0] + interval_text(node.interval)
+        op, word = node.op, node.op.spellings[0] + _bounds(node)
         if op.fixity is Fixity.ATOM:
             return (word,)
         if op.fixity is Fixity.FUNCTION:
             return (word, "(", *_joined(_operands(node), ", "), ")")
+        if op.fixity is Fixity.CONDITIONAL:
+            condition, first, second = node.args
+            return (
+                f"{word} ",
+                *group(condition, _is_choice(condition)),
+                f" {THEN} ",
+                *group(first, _is_choice(first)),
+                f" {ELSE} ",
+                second,
+            )
         if op.fixity is Fixity.PREFIX:
             (operand,) = node.args
             if _needs_group(operand, op) or _reads_on(operand, op, language):
@@ -125,11 +135,13 @@ def canonical(formula: Formula, language: Language = STL, *, limit: int = LONGES
         op = node.op
         if op is TRUTH:
             return node.args
-        word = _longest(op.spellings) + interval_text(node.interval, ",", str)
+        word = _longest(op.spellings) + _bounds(node, ",", str)
         if op.fixity is Fixity.ATOM:
             return (word,)
         if is_infix(op):
             return ("(", node.args[0], ")", word, "(", node.args[1], ")")
+        if op.fixity is Fixity.CONDITIONAL:
+            return (f"{word}(", node.args[0], f"){THEN}(", node.args[1], f"){ELSE}(", node.args[2], ")")
         return (word, "(", *_joined(node.args, ","), ")")
 
     return _written(formula, pieces, limit)
@@ -151,6 +163,8 @@ def to_latex(formula: Formula) -> str:
         child, op = node.args[k], node.op
         if is_infix(op):
             return _falls_apart(child, op, Fixity.RIGHT if k else Fixity.LEFT, minus)
+        if op.fixity is Fixity.CONDITIONAL:
+            return k < 2 and _is_choice(child)
         if op.fixity is Fixity.PREFIX and isinstance(child, Apply) and child.op.fixity is Fixity.PREFIX:
             return not passes_on(op)
         return _needs_group(child, op) or (op.fixity is Fixity.FUNCTION and isinstance(child, Apply))
@@ -161,10 +175,12 @@ def to_latex(formula: Formula) -> str:
         elif isinstance(node, Var):
             yield _latex_name(node.name)
         elif isinstance(node, Apply):
-            for literal, operand, exposed in _template(_latex_of(node.op), node.interval is not None):
+            for literal, operand, exposed in _template(
+                _latex_of(node.op, len(node.args)), node.interval is not None
+            ):
                 yield literal
                 if operand == "I":
-                    yield _latex_interval(node.interval)
+                    yield _latex_interval(node)
                 elif operand is not None:
                     k = int(operand)
                     yield from ("(", node.args[k], ")") if exposed and grouped(node, k) else (node.args[k],)
@@ -272,6 +288,10 @@ def _is_negative(formula: Formula) -> bool:
     return isinstance(formula, Const) and not _is_member(formula) and copysign(1.0, formula.value) < 0
 
 
+def _is_choice(formula: Formula) -> bool:
+    return isinstance(formula, Apply) and formula.op.fixity is Fixity.CONDITIONAL
+
+
 def _needs_group(operand: Formula, op: Operator) -> bool:
     """Return whether the operand of a prefix operator needs parentheses (also a number after a minus)."""
     operand = _written_operand(operand)
@@ -287,7 +307,7 @@ def _falls_apart(child: Formula, op: Operator, side: Fixity, minus: Operator | N
         return minus is None or minus.power <= op.power
     if not isinstance(child, Apply) or child.op.fixity in (Fixity.FUNCTION, Fixity.ATOM):
         return False
-    if is_predicate(child.op) and is_predicate(op):
+    if _is_choice(child) or (is_predicate(child.op) and is_predicate(op)):
         return True
     chain = child.op.power == op.power and child.op.fixity is op.fixity is side
     return child.op.power <= op.power and not chain
@@ -330,6 +350,8 @@ def _name(name: str, language: Language) -> str:
         or (opening is not None and opening.fixity is Fixity.ATOM)
         or (opening is not None and opening.fixity is Fixity.PREFIX and len(name) > 2)
         or (infix is not None and len(name) > 1)
+        or (opening is not None and opening.fixity is Fixity.CONDITIONAL)
+        or name in (THEN, ELSE)
     )
     return quoted(name) if spelled_out else name
 
@@ -344,6 +366,14 @@ def _longest(spellings: tuple[str, ...]) -> str:
 
 def _rational(value: Fraction) -> str:
     return decimal(value) or str(value)
+
+
+def _bounds(node: Apply, separator: str = ":", form: Callable[[Fraction], str] = _rational) -> str:
+    """Return an operator's interval or duration as it was written, or nothing if there is none."""
+    if node.interval is not None and node.op.bounds is Bounds.DURATION:
+        unit = node.interval.end_unit
+        return f"[{form(node.interval.begin / UNITS[unit or 's'])}{unit}]"
+    return interval_text(node.interval, separator, form)
 
 
 def interval_text(
@@ -366,13 +396,13 @@ def interval_text(
 # ---- LaTeX ---------------------------------------------------------------------------------------
 
 
-def _latex_of(op: Operator) -> str:
-    """Return an operator's template, or one built from its first spelling."""
+def _latex_of(op: Operator, operands: int) -> str:
+    """Return an operator's template for so many operands, or one built from its first spelling."""
     if op.latex:
         return op.latex
     word = op.spellings[0].replace("{", "{{").replace("}", "}}")
     name = rf"\mathrm{{{{{_escaped(word)}}}}}_{{I}}"
-    fields = [f"{{{k}}}" for k in range(len(op.operands))]
+    fields = [f"{{{k}}}" for k in range(operands)]
     if is_infix(op):
         return rf"{fields[0]} \mathbin{{{{{name}}}}} {fields[1]}"
     return f"{name}({', '.join(fields)})" if op.fixity is Fixity.FUNCTION else " ".join([name, *fields])
@@ -393,7 +423,8 @@ def _template(template: str, timed: bool) -> tuple[tuple[str, str | None, bool],
     return tuple(parts)
 
 
-def _latex_interval(interval: Interval | None) -> str:
+def _latex_interval(node: Apply) -> str:
+    interval = node.interval
     if interval is None or interval.implied:
         return ""
     interval = interval.written or interval
@@ -402,6 +433,8 @@ def _latex_interval(interval: Interval | None) -> str:
         return _rational(value / UNITS[unit or "s"]) + (rf"\,\mathrm{{{unit}}}" if unit else "")
 
     begin = bound(interval.begin, interval.begin_unit if interval.begin else "")
+    if node.op.bounds is Bounds.DURATION:
+        return f"{{{begin}}}"
     opening, closing = "(" if interval.begin_open else "[", ")" if interval.end_open else "]"
     end = r"\infty)" if interval.end is None else bound(interval.end, interval.end_unit) + closing
     return f"{{{opening}{begin}, {end}}}"

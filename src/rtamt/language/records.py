@@ -26,14 +26,16 @@ class Fixity(Enum):
     LEFT = "left"  # a - b - c  is  (a - b) - c
     RIGHT = "right"  # a -> b -> c  is  a -> (b -> c)
     FUNCTION = "function"  # abs(x)
+    CONDITIONAL = "conditional"  # if φ then x else y
     ATOM = "atom"  # true
 
 
 class Sort(Enum):
-    """The type of an operand: a number, or a formula that holds or does not."""
+    """The type of an operand: a number, a formula with its robustness, or a formula of which only the truth counts."""
 
     NUMBER = "number"
     FORMULA = "formula"
+    CONDITION = "condition"  # evaluates to +inf where it holds, else -inf, under every semantics
 
 
 class Tense(Enum):
@@ -50,6 +52,7 @@ class Bounds(Enum):
     NONE = "none"
     OPTIONAL = "optional"  # left out: [0, inf)
     REQUIRED = "required"  # and bounded
+    DURATION = "duration"  # one duration, [d]; left out: one sampling period
 
 
 @dataclass(frozen=True, slots=True)
@@ -153,6 +156,7 @@ class Operator:
     dual: str | None = None
     twin: str | None = None
     guards: tuple[str | None, ...] = ()
+    optional: int = 0  # how many of the last operands may be left out
     strict: bool = False  # a formula is no operand, though others read its robustness as a number
     folds: bool = False  # a function that accepts more operands: f(a, b, c) is f(f(a, b), c)
     keeps: tuple[int, ...] = ()  # the operands, Boolean or of an enumeration too, whose type the result has
@@ -165,7 +169,7 @@ class Operator:
 
     def check(self) -> None:
         """Raise :class:`UsageError` if the record is not a valid operator."""
-        arity = {Fixity.ATOM: 0, Fixity.PREFIX: 1, Fixity.LEFT: 2, Fixity.RIGHT: 2}.get(self.fixity)
+        arity = _ARITY.get(self.fixity)
         if arity is not None and len(self.operands) != arity:
             raise UsageError(
                 f"the operator '{self.name}' is written as {self.fixity.value} and needs {arity} operands, "
@@ -231,6 +235,8 @@ class Operator:
             return (builtin, (self.name,))
         return object.__reduce__(self)
 
+
+_ARITY = {Fixity.ATOM: 0, Fixity.PREFIX: 1, Fixity.LEFT: 2, Fixity.RIGHT: 2, Fixity.CONDITIONAL: 3}
 
 #: Punctuation of the language, which cannot be the spelling of an operator.
 _PUNCTUATION = frozenset("()[],;:=@")

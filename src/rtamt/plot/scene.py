@@ -15,7 +15,7 @@ from rtamt.plot.band import Band, band
 from rtamt.plot.clock import Clock
 from rtamt.plot.lines import Line, Range, ranges
 from rtamt.plot.panels import groups
-from rtamt.rewrite.semantics import is_predicate
+from rtamt.rewrite.truth import is_predicate
 from rtamt.verdicts.robustness_and_truth import outputs_under
 
 if TYPE_CHECKING:

@@ -23,8 +23,9 @@ from rtamt.language.operators import Bounds, Tense
 from rtamt.language.undefined_value import undefined
 from rtamt.reference.definition_adapter import check_dense_meaning, signal_of
 from rtamt.rewrite.check import check_dense
-from rtamt.rewrite.desugar import rebuilt, spelled_out
+from rtamt.rewrite.desugar import spelled_out
 from rtamt.rewrite.horizon import horizons
+from rtamt.rewrite.truth import rebuilt
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

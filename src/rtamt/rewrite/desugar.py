@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rtamt.language.formula import Apply, Formula, Span, children, fold, folds, postorder
+from rtamt.rewrite.truth import rebuilt, with_truths
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
@@ -20,7 +21,7 @@ def desugar(formula: Formula) -> Formula:
     >>> str(desugar(parse_formula("x >= 3 -> y <= 2")))
     '-(x - 3) or 2 - y'
     """
-    return fold(formula, expand)
+    return fold(spelled_out(formula), expand)
 
 
 def written(core: Formula, formulas: Iterable[Formula]) -> Formula:
@@ -51,15 +52,15 @@ def as_written(formulas: Iterable[Formula]) -> dict[Formula, Formula]:
         _rebuild_above(expanded, {id(arg) for arg in args}, within)
         return expanded
 
-    folds(tuple(formulas), step)
+    folds(tuple(map(with_truths, formulas)), step)
     return found
 
 
 def spelled_out(formula: Formula) -> Formula:
     """Return the formula with all operators expanded that have an expansion and no definition.
 
-    Every analysis of what operators read or mean starts here. If there is nothing to expand, the result is
-    the same object.
+    Conditions become +inf where they hold, else -inf. Every analysis of what operators read or mean starts here.
+    If there is nothing to expand, the result is the same object.
 
     >>> from dataclasses import replace
     >>> from rtamt.language.formula import Var
@@ -70,7 +71,7 @@ def spelled_out(formula: Formula) -> Formula:
     'not(x and y)'
     """
     if not any(isinstance(node, Apply) and node.op.definition is None for node in postorder(formula)):
-        return formula
+        return with_truths(formula)
 
     def step(node: Formula, args: tuple[Formula, ...]) -> Formula:
         if not isinstance(node, Apply) or node.op.definition is not None:
@@ -79,7 +80,7 @@ def spelled_out(formula: Formula) -> Formula:
         expanded = stamped(node.op.expansion(*args, node.interval), args, node.span)
         return _rebuild_above(expanded, {id(arg) for arg in args}, step)
 
-    return fold(formula, step)
+    return with_truths(fold(formula, step))
 
 
 def expand(node: Formula, args: tuple[Formula, ...]) -> Formula:
@@ -106,13 +107,6 @@ def stamped(formula: Formula, operands: tuple[Formula, ...], span: Span | None) 
         return Apply(node.op, args, node.interval, span) if isinstance(node, Apply) else node
 
     return _rebuild_above(formula, stop, stamp)
-
-
-def rebuilt(node: Apply, args: tuple[Formula, ...]) -> Apply:
-    """Return the node over new operands; the same object if they are the same objects."""
-    if all(new is old for new, old in zip(args, node.args, strict=True)):
-        return node
-    return Apply(node.op, args, node.interval, node.span)
 
 
 def _rebuild_above(

@@ -11,7 +11,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rtamt.language.formula import Apply, Formula, Interval, folds, postorder
-from rtamt.rewrite.desugar import rebuilt
+from rtamt.rewrite.truth import rebuilt
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

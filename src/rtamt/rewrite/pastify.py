@@ -15,9 +15,9 @@ from fractions import Fraction
 
 from rtamt.errors import BoundError, SpecificationError
 from rtamt.language.formula import Apply, Formula, Interval, fold, postorder
-from rtamt.language.operators import STL, Tense
-from rtamt.rewrite.check import unbounded_future
-from rtamt.rewrite.desugar import spelled_out
+from rtamt.language.grammar import is_number
+from rtamt.language.operators import STL, Sort, Tense
+from rtamt.rewrite.check import has_future, unbounded_future
 from rtamt.rewrite.horizon import horizon
 
 #: The largest number of distinct sub-formulas of a result: a shared one may be needed at 2ⁿ delays.
@@ -37,7 +37,6 @@ def pastify(
     >>> str(pastify(parse_formula("always[0:10](x >= 3 -> eventually[0:5] y >= 3)")))
     'historically[0:10](once[5:5](x >= 3) -> once[0:5](y >= 3))'
     """
-    formula = spelled_out(formula)
     node = unbounded_future(formula)
     if node is not None:
         raise BoundError(
@@ -60,8 +59,11 @@ def expand_future_shorthand(formula: Formula) -> Formula:
             return node, False
         args = tuple(arg for arg, _ in below)
         future = node.op.tense is Tense.FUTURE or any(ahead for _, ahead in below)
-        if future and node.op.tense is not Tense.NONE and node.op.expansion is not None:
-            return expand_future_shorthand(node.op.expansion(*args, node.interval)), True
+        defined = node.op.definition is not None
+        if node.op.expansion is not None and (not defined or (future and node.op.tense is not Tense.NONE)):
+            expanded = expand_future_shorthand(node.op.expansion(*args, node.interval))
+            if future or has_future(expanded):
+                return expanded, True
         return replace(node, args=args), future
 
     return fold(formula, step)[0]
@@ -118,6 +120,8 @@ class _Pastifier:
         if not self.has_future[id(node)]:
             return self._shifted(node, delay)
         assert isinstance(node, Apply)
+        if node.op.strict:
+            args = tuple(map(_as_number, node.op.operands, node.args, args))
         if node.op.tense is Tense.FUTURE:
             return _past_twin(node, args, self.text)
         if node.op.tense is Tense.PAST:
@@ -139,6 +143,14 @@ class _Pastifier:
         meant = self._shifted(STL["true"](), delay)
         pair = (meant, operand) if how == "implies" else (operand, meant)
         return Apply(STL[how], pair, None, operand.span)
+
+
+def _as_number(sort: Sort, operand: Formula, delayed: Formula) -> Formula:
+    """Return a delayed number as a number: ``once`` makes a formula of it."""
+    if sort is not Sort.NUMBER or is_number(delayed) or not is_number(operand):
+        return delayed
+    assert isinstance(delayed, Apply)
+    return replace(delayed, op=STL["maximum"])
 
 
 def _unit(formula: Formula) -> str:

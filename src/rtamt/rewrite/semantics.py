@@ -20,11 +20,11 @@ from types import MappingProxyType
 from typing import TypeAlias
 
 from rtamt.errors import EvaluationError, StlError, UsageError, did_you_mean, shown
-from rtamt.language.formula import Apply, Const, Formula, fold, variables
-from rtamt.language.grammar import is_number
-from rtamt.language.operators import STL, Sort, holds, is_truth
+from rtamt.language.formula import Const, Formula, variables
+from rtamt.language.operators import STL
 from rtamt.language.printer import excerpt
-from rtamt.rewrite.desugar import rebuilt, spelled_out
+from rtamt.rewrite.desugar import spelled_out
+from rtamt.rewrite.truth import replaced, truth
 
 #: The role of each variable: ``"input"`` or ``"output"``.
 Roles: TypeAlias = Mapping[str, str]
@@ -33,22 +33,6 @@ Roles: TypeAlias = Mapping[str, str]
 PredicateSemantics: TypeAlias = Callable[[Formula, Roles], Formula]
 
 ROLES = ("input", "output")
-
-
-def truth(predicate: Formula) -> Formula:
-    """Return the formula that is +inf where a predicate holds and -inf where it does not.
-
-    ``>`` and ``>=`` differ at equality; a number holds where it is positive.
-
-    >>> from rtamt.language.parser import parse_formula
-    >>> truth(parse_formula("x >= 3")), truth(parse_formula("x + 1"))
-    (<formula x >= 3>, <formula x + 1 > 0>)
-    """
-    if isinstance(predicate, Apply) and predicate.op.truth is not None:
-        return predicate.op.truth(*predicate.args, predicate.interval)
-    if isinstance(predicate, Apply) and is_truth(predicate.op):
-        return predicate
-    return holds(predicate)
 
 
 def standard(predicate: Formula, _roles: Roles) -> Formula:
@@ -137,21 +121,7 @@ def apply_semantics(formula: Formula, semantics: str | PredicateSemantics, roles
         return formula
     formula = spelled_out(formula)  # the expansion of a custom operator may contain predicates
     all_roles = MappingProxyType({name: role_of(name, roles) for name in variables(formula)})
-    predicates = _predicates(formula)
-
-    def step(node: Formula, below: tuple[tuple[Formula, Formula], ...]) -> tuple[Formula, Formula]:
-        """Return the node read as a number, and read as a formula."""
-        if id(node) in predicates:
-            return node, _apply_to_predicate(node, semantics, all_roles)
-        if not isinstance(node, Apply):
-            return node, node
-        args = tuple(
-            as_formula if sort is Sort.FORMULA else as_number
-            for sort, (as_number, as_formula) in zip(node.op.operands, below, strict=True)
-        )
-        return node, rebuilt(node, args)
-
-    return fold(formula, step)[1]
+    return replaced(formula, lambda predicate: _apply_to_predicate(predicate, semantics, all_roles))
 
 
 def boolean(formula: Formula) -> Formula:
@@ -169,14 +139,6 @@ def no_verdict(error: EvaluationError) -> EvaluationError:
     return EvaluationError(f"there is no verdict, for which true counts as +inf and false as -inf: {error}")
 
 
-def is_predicate(formula: Formula) -> bool:
-    """Return whether a formula, where a formula is expected, is a predicate: a comparison or a number."""
-    if not isinstance(formula, Apply) or is_number(formula) or formula.op.truth is not None:
-        return True
-    sorts = formula.op.operands
-    return bool(sorts) and all(sort is Sort.NUMBER for sort in sorts)
-
-
 def role_of(name: str, roles: Roles) -> str:
     """Return the role of a variable or of one of its fields; the default is output.
 
@@ -184,24 +146,6 @@ def role_of(name: str, roles: Roles) -> str:
     ('input', 'output')
     """
     return roles.get(name) or roles.get(name.partition(".")[0], "output")
-
-
-def _predicates(formula: Formula) -> set[int]:
-    """Return the identities of the predicates: those where a formula is expected, outside other predicates."""
-    found: set[int] = set()
-    seen: set[int] = set()
-    stack = [formula]
-    while stack:
-        node = stack.pop()
-        if id(node) in seen:
-            continue
-        seen.add(id(node))
-        if not isinstance(node, Apply) or is_predicate(node):
-            found.add(id(node))
-        else:
-            operands = zip(node.op.operands, node.args, strict=True)
-            stack.extend(arg for sort, arg in operands if sort is Sort.FORMULA)
-    return found
 
 
 def _apply_to_predicate(predicate: Formula, semantics: PredicateSemantics, roles: Roles) -> Formula:

@@ -79,6 +79,7 @@ def formulas(
         and (arithmetic or op.result is Sort.FORMULA)
     ]
     by_sort = {sort: [op for op in operators if op.result is sort] for sort in Sort}
+    by_sort[Sort.CONDITION] = by_sort[Sort.FORMULA]
     samples = np.array(list(itertools.product(_PROBE, repeat=len(variables))))
     n = len(samples)
     columns = {name: samples[:, k].copy() for k, name in enumerate(variables)}
@@ -92,9 +93,9 @@ def formulas(
         return _Drawn(Const(doubled / 2), Sort.NUMBER, np.full(n, doubled / 2))
 
     def leaf(sort: Sort) -> _Drawn:
-        if sort is Sort.FORMULA and infinite and chance(12):
+        if sort is not Sort.NUMBER and infinite and chance(12):
             value = draw(st.sampled_from((np.inf, -np.inf)))
-            return _Drawn(Const(value), sort, np.full(n, value))
+            return _Drawn(Const(value), Sort.FORMULA, np.full(n, value))
         if variables and not chance(4):
             name = draw(st.sampled_from(list(variables)))
             return _Drawn(Var(name), Sort.NUMBER, columns[name])
@@ -105,6 +106,8 @@ def formulas(
         if op.bounds is Bounds.NONE or (op.bounds is Bounds.OPTIONAL and unbounded and chance(5)):
             return None
         begin = draw(st.integers(0, 3))
+        if op.bounds is Bounds.DURATION:
+            return Interval(begin * period, begin * period)
         if op.bounds is Bounds.OPTIONAL and unbounded and chance(6):
             return Interval(begin * period, None)
         return Interval(begin * period, (begin + draw(st.integers(0, 3))) * period)
@@ -121,7 +124,7 @@ def formulas(
         return _Drawn(Apply(op, tuple(o.formula for o in operands), window), op.result, probe, depth)
 
     def draw_one(depth: int, sort: Sort, *, strict: bool = False) -> _Drawn:
-        reusable = [d for d in pool if d.depth <= depth and (d.sort is sort or sort is Sort.FORMULA)]
+        reusable = [d for d in pool if d.depth <= depth and (d.sort is sort or sort is not Sort.NUMBER)]
         if reusable and chance(4):
             return draw(st.sampled_from(reusable))
         # Sometimes a number where a formula is expected, or the reverse: both are legal but for strict functions.
@@ -130,7 +133,9 @@ def formulas(
         if depth == 0 or not candidates or chance(10):
             return leaf(sort)
         op = draw(st.sampled_from(candidates))
-        operands = [draw_one(depth - 1, operand, strict=op.strict) for operand in op.operands]
+        optional = draw(st.integers(0, op.optional)) if op.optional else 0
+        sorts = op.operands[: len(op.operands) - optional]
+        operands = [draw_one(depth - 1, operand, strict=op.strict) for operand in sorts]
         window = interval(op)
         drawn = apply(op, operands, window)
         for kept in reversed(range(len(operands))):
@@ -154,7 +159,7 @@ def _meaning(op: Operator, window: Interval | None) -> Callable[..., Array]:
 
     def expanded(*operands: Any) -> Array:
         n = operands[0] if not op.operands else len(operands[0])
-        columns = {str(k): operands[k] for k in range(len(op.operands))}
+        columns = {str(k): x for k, x in enumerate(operands) if isinstance(x, np.ndarray)}
         formula = Apply(op, tuple(Var(name) for name in columns), window)
         try:
             return reference.evaluate(formula, columns, n, Fraction(1))

@@ -41,6 +41,7 @@ def formula(
         )
 
     by_sort = {sort: [op for op in STL if op.result is sort and allowed(op)] for sort in Sort}
+    by_sort[Sort.CONDITION] = by_sort[Sort.FORMULA]
 
     def number(depth: int) -> Formula:
         if depth == 0 or not by_sort[Sort.NUMBER] or rng.random() < 0.6:
@@ -50,7 +51,8 @@ def formula(
     def apply(op: Operator, depth: int) -> Formula:
         if op.name in ODD and rng.random() < 0.7:
             return number(0)
-        operands = [draw(sort, depth - 1) for sort in op.operands]
+        count = len(op.operands) - rng.randint(0, op.optional)
+        operands = [draw(sort, depth - 1) for sort in op.operands[:count]]
         return Apply(op, tuple(operands), _interval(rng, op, unbounded=kinds.get("unbounded", False)))
 
     def draw(sort: Sort, depth: int) -> Formula:
@@ -76,6 +78,8 @@ def _interval(rng: Random, op: Operator, *, unbounded: bool) -> Interval | None:
     if op.bounds is Bounds.NONE:
         return None
     begin, length = rng.randint(0, 2), rng.randint(0, 3)
+    if op.bounds is Bounds.DURATION:
+        return Interval(Fraction(begin), Fraction(begin))
     if op.bounds is Bounds.OPTIONAL and (unbounded or op.tense is Tense.PAST) and rng.random() < 0.3:
         return None if rng.random() < 0.5 else Interval(Fraction(begin), None)
     return Interval(Fraction(begin), Fraction(begin + length))

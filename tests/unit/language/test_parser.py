@@ -38,6 +38,7 @@ def test_every_spelling_of_every_operator(operator):
             Fixity.ATOM: spelling,
             Fixity.FUNCTION: f"{spelling}({', '.join(v.name for v in names)})",
             Fixity.PREFIX: f"{spelling}{bounds} v0",
+            Fixity.CONDITIONAL: f"{spelling} v0 then v1 else v2",
         }.get(operator.fixity, f"v0 {spelling}{bounds} v1")
         assert parse(text) == operator(*names, interval=interval)
 
@@ -58,6 +59,11 @@ def test_every_spelling_of_every_operator(operator):
         ("not always x", "not (always x)"),
         ("always not x", "always (not x)"),
         ("prev always x", "prev (always x)"),
+        ("if p then x else y + 1 > 2", "(if (p) then (x) else (y + 1)) > 2"),
+        ("if a then x else if b then y else z", "if a then x else (if b then y else z)"),
+        ("if -x > 1 then X else Y", '(if ((-x) > 1) then ("X") else "Y")'),
+        ("if > 3 and then - else > if", '"if" > 3 and "then" - "else" > "if"'),
+        ("if - then > 3", '"if" - "then" > 3'),
         ("x + y >= once[0:2] z", "(x + y) >= (once[0:2] z)"),
         ("x >= once y + z and x", "(x >= once(y + z)) and x"),
         ("x - prev y", "x - (prev y)"),
@@ -306,3 +312,9 @@ def test_parsing_changes_nothing_of_the_callers():
 )
 def test_comparisons_in_one_direction_chain(chain, meaning):
     assert parse(chain) == parse(meaning)
+
+
+def test_a_variable_called_if_stays_a_variable_where_it_is_declared():
+    assert parse("if > then", variables=["if", "then"]) == STL["gt"](Var("if"), Var("then"))
+    with pytest.raises(ParseError, match="expected an operator between 'if' and 'x'"):
+        parse("if x > 3 then 1 else 2", variables=["if", "x"])

@@ -10,7 +10,8 @@ import pytest
 
 import rtamt
 from rtamt.language.formula import Const, variables
-from rtamt.rewrite.semantics import SEMANTICS, Relative, truth
+from rtamt.rewrite.semantics import SEMANTICS, Relative
+from rtamt.rewrite.truth import truth
 
 IA = ("output_robustness", "input_vacuity", "input_robustness", "output_vacuity")
 ROLES = {"u": "input"}  # y is an output
