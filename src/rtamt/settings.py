@@ -9,6 +9,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, TypeAlias, TypedDict
 
 from rtamt.engine.backend import BACKENDS
+from rtamt.engine.domains import engine_of
 from rtamt.errors import UsageError, choices, did_you_mean, shown
 from rtamt.language.formula import Formula, variables
 from rtamt.language.operators import Language
@@ -93,6 +94,11 @@ def check_backend(backend: str) -> None:
     """Raise :class:`UsageError` unless the back end exists."""
     if backend not in BACKENDS:
         raise UsageError(f"unknown backend {shown(backend)}{choices(backend, BACKENDS, 'back ends')}")
+
+
+def require_backend(backend: str, domain: TimeDomain) -> None:
+    """Raise :class:`UsageError` unless the back end can run in this installation."""
+    engine_of(domain).backends[backend].require()
 
 
 def check_constants(constants: Mapping[str, float]) -> None:

@@ -16,7 +16,6 @@ import numpy as np
 from rtamt.cli.language import add_language_option, read_language
 from rtamt.cli.parameters import add_set_option, assigned
 from rtamt.cli.parser import complain
-from rtamt.engine.domains import engine_of
 from rtamt.errors import BoundError, SpecificationError, StlError, UsageError, readable
 from rtamt.files import nearest_file, write_bytes, write_text
 from rtamt.language.lexer import NAME
@@ -24,7 +23,7 @@ from rtamt.language.lint import CODES
 from rtamt.language.units import UNITS, decimal
 from rtamt.readers.formats import METADATA, SUFFIXES
 from rtamt.rewrite.semantics import SEMANTICS
-from rtamt.settings import check_backend
+from rtamt.settings import check_backend, require_backend
 from rtamt.signals.datetimes import nanoseconds_of
 from rtamt.signals.domains import DEFAULT, DOMAINS, time_domain
 from rtamt.texts import load, parse
@@ -169,7 +168,7 @@ def _read(args: argparse.Namespace, time: str, spec: str) -> Specification:
     domain = time_domain(time, args.period)
     check_backend(args.backend)
     try:
-        engine_of(domain).backends[args.backend].require()
+        require_backend(args.backend, domain)
     except UsageError as error:
         raise CommandError(f"{error}; on the command line: --backend python") from None
     if args.period is not None and domain.period is None:

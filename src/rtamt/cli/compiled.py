@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 
 from rtamt.cli.command import CommandError
 from rtamt.compiler.program import MAGIC, Program
-from rtamt.engine.native import core
 from rtamt.errors import UsageError
 from rtamt.language.units import format_duration
+from rtamt.verdicts.standalone import check_code
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -30,21 +30,10 @@ def compiled(path: str) -> Program | None:
         raise CommandError(f"cannot read '{path}': {error.strerror}") from error
     try:
         program = Program.from_bytes(code)
-        _check(program, code)
+        check_code(program, code)
     except UsageError as error:
         raise CommandError(f"{path}: {error}") from error
     return program
-
-
-def _check(program: Program, code: bytes) -> None:
-    """Raise :class:`UsageError` for what no core runs: an impossible width, an operand that is not there."""
-    try:
-        if not program.domain.continuous:
-            core().memory(code)
-        else:
-            core().DenseMonitor(code, list(program.inputs))
-    except ValueError as error:
-        raise UsageError(str(error).rstrip(".").replace("This", "this", 1)) from None
 
 
 def listing(program: Program) -> Iterator[str]:

@@ -19,7 +19,6 @@ from rtamt.cli.parser import OK
 from rtamt.cli.reading_options import add_reading_options, recording
 from rtamt.cli.terminal import printed, say
 from rtamt.compiler.plan import compile_program
-from rtamt.engine.domains import engine_of
 from rtamt.errors import BoundError, SpecificationError, UsageError, choices
 from rtamt.language.printer import excerpt
 from rtamt.language.units import format_duration
@@ -29,6 +28,7 @@ from rtamt.rewrite.early import ends_differently, loose
 from rtamt.rewrite.horizon import horizon
 from rtamt.rewrite.semantics import apply_semantics, boolean
 from rtamt.signals.domains import DOMAINS
+from rtamt.verdicts.standalone import state_bytes
 
 if TYPE_CHECKING:
     import argparse
@@ -167,7 +167,7 @@ def gather(spec: Specification) -> Facts:
         return replace(facts, offline_only=error.message)
     applied = desugar(_grounded(spec, _applied(spec)))
     program = compile_program((applied,), step, spec.input_names, domain=type(spec.domain))
-    memory = engine_of(domain).backends[spec.backend].memory(program)
+    memory = state_bytes(program, domain, spec.backend)
     return replace(facts, program=program, memory=memory)
 
 

@@ -11,6 +11,8 @@ from rtamt.compiler.early import compile_starts
 from rtamt.compiler.metadata import Metadata
 from rtamt.compiler.plan import compile_program
 from rtamt.compiler.program import Instruction, Program
+from rtamt.engine.domains import engine_of
+from rtamt.engine.native import core
 from rtamt.errors import UsageError
 from rtamt.language.formula import Apply, Const, Formula, Var, fold, variables
 from rtamt.language.parameters import bounds_of
@@ -140,6 +142,22 @@ def bounds_program(
     )
     told = (len(instructions) - 1,) * len(BOUNDS)
     return Program(tuple(instructions), inputs, told, period, metadata=metadata)
+
+
+def check_code(program: Program, code: bytes) -> None:
+    """Raise :class:`UsageError` for bytes that no core runs: an impossible width, an operand that does not exist."""
+    try:
+        if program.domain.continuous:
+            core().DenseMonitor(code, list(program.inputs))
+        else:
+            core().memory(code)
+    except ValueError as error:
+        raise UsageError(str(error).rstrip(".").replace("This", "this", 1)) from None
+
+
+def state_bytes(program: Program, domain: TimeDomain, backend: str) -> int | None:
+    """Return the size of a monitor's state; None where it depends on the samples, or without the compiled core."""
+    return engine_of(domain).backends[backend].memory(program)
 
 
 def _with_parameters(formula: Formula, structural: frozenset[str], values: dict[str, float]) -> Formula:
