@@ -8,12 +8,14 @@ from collections.abc import Iterable, Sized
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from functools import partial
+from itertools import chain
 from typing import TYPE_CHECKING, Any
 
 from rtamt.engine.offline import Evaluators
 from rtamt.errors import StlError, UsageError, placed, shown
 from rtamt.results import Result, requirements_of
 from rtamt.signals.arrays import is_number
+from rtamt.signals.binding import union
 from rtamt.verdicts.offline import judge
 
 if TYPE_CHECKING:
@@ -150,11 +152,20 @@ def evaluate_all(
         with _place(number):
             queries.append(spec._query(tolerance=tolerance, **reading))
     # One program serves all queries that read the recording in the same way.
-    alike: dict[Hashable, list[int]] = {}
+    alike: dict[Hashable, list[tuple[list[int], dict[str, tuple[str, str]]]]] = {}
     for number, (spec, query) in enumerate(zip(specs, queries, strict=True)):
-        alike.setdefault((query.domain, query.unit, spec.backend), []).append(number)
+        groups = alike.setdefault((query.domain, query.unit, spec.backend), [])
+        places = spec.binding.places()
+        fitting = next(
+            (g for g in groups if all(g[1].get(n, place) == place for n, place in places.items())), None
+        )
+        if fitting is None:
+            fitting = ([], {})
+            groups.append(fitting)
+        fitting[0].append(number)
+        fitting[1].update(places)
     results: dict[int, Result] = {}
-    for numbers in alike.values():
+    for numbers, _ in chain.from_iterable(alike.values()):
         asked = {number: (specs[number], queries[number]) for number in numbers}
         results.update(_evaluate_alike(asked, data))
     return [results[number] for number in range(len(specs))]
@@ -166,7 +177,7 @@ def evaluate_requirements(spec: Specification, data: Any) -> Mapping[str, Result
     ``data`` and errors as for :meth:`Specification.evaluate`, which computes verdicts when they are asked for.
     """
     query = spec._query()
-    recording = spec._with_units(query.record(data, spec.input_names, spec.types))
+    recording = spec._with_units(query.record(spec.binding.applied(data), spec.input_names, spec.types))
     spec._check(query, recording)
     outputs = [one._outputs() for one in spec.requirements.values()]
     return requirements_of(spec, judge(outputs, recording, spec._signals_of), query.semantics)
@@ -180,7 +191,8 @@ def _evaluate_alike(asked: _Asked, data: Any) -> Iterator[tuple[int, Result]]:
     names = tuple(dict.fromkeys(name for spec, _ in asked.values() for name in spec.input_names))
     spec, query = next(iter(asked.values()))
     types = {name: type_ for spec, _ in asked.values() for name, type_ in spec.types.items()}
-    whole = query.record(data, names, types)
+    binding = union([spec.binding for spec, _ in asked.values()])
+    whole = query.record(binding.applied(data), names, types)
     for number, (_, query) in asked.items():
         if query.domain.step is None:  # otherwise checked without the recording
             with _place(number):

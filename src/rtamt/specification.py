@@ -103,6 +103,7 @@ class Specification(SpecificationText):
         Interval(lower=-3.0, upper=1.5)
         """
         query = self._query(time, period, tolerance, resolution, semantics, time_unit)
+        data = self.binding.applied(data)
         recording = self._with_units(self._recorded(query, data, uncertainty, ranges))
         self._check(query, recording)
         return self._result(query, recording)
@@ -313,7 +314,7 @@ class Specification(SpecificationText):
                 requirements=requirements,
                 **settings,
             )
-        return engine_of(domain).monitor(
+        monitor = engine_of(domain).monitor(
             formula,
             domain,
             text=self.text,
@@ -325,6 +326,8 @@ class Specification(SpecificationText):
             requirements=requirements,
             **settings,
         )
+        monitor.bind(self.binding)
+        return monitor
 
     def compile(
         self,
@@ -398,7 +401,7 @@ class Specification(SpecificationText):
         return _factory, (
             self.text,
             values,
-            {**settings, "roles": dict(self.roles)},
+            {**settings, "roles": dict(self.roles), "columns": dict(self.columns)},
             self.document.selected,
             formula,
         )

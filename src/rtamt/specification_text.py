@@ -26,6 +26,7 @@ from rtamt.rewrite.horizon import horizon
 from rtamt.rewrite.pastify import pastify
 from rtamt.rewrite.semantics import apply_semantics, semantics_of
 from rtamt.settings import check_parameters
+from rtamt.signals.binding import Binding
 from rtamt.signals.discrete import DISCRETE, Discrete
 from rtamt.signals.domains import Defaults, time_domain
 from rtamt.signals.ticks import NANOSECOND
@@ -59,6 +60,8 @@ class SpecificationText:
     semantics: str | PredicateSemantics = "standard"
     #: From a variable to ``"input"`` or ``"output"``: what the text declares, and what was given.
     roles: Mapping[str, str] = field(default_factory=dict)
+    #: The recorded names of variables that replace those the text declares.
+    columns: Mapping[str, str] = field(default_factory=dict)
 
     def __repr__(self) -> str:
         return f"<specification {f'{self.name}: ' if self.name else ''}{self.formula}>"
@@ -321,6 +324,30 @@ class SpecificationText:
         """
         declared = {d.name: d.unit for d in self.document.declarations if d.unit}
         return MappingProxyType({name: declared[name] for name in self.input_names if name in declared})
+
+    @cached_property
+    def recorded(self) -> Mapping[str, str]:
+        """The recorded names of the variables that the formula reads, as far as the text declares them.
+
+        >>> import rtamt
+        >>> spec = rtamt.parse('input float z [m] = "setpoint.position[2]"; always(z <= 3)')
+        >>> dict(spec.recorded), spec.evaluate({"setpoint.position[2]": [1, 2]}).robustness
+        ({'z': 'setpoint.position[2]'}, 1.0)
+        """
+        declared = {d.name: d.column for d in self.document.declarations if d.column} | {**self.columns}
+        found = {}
+        for name in self.input_names:
+            head, dot, field_of = name.partition(".")
+            if name in declared:
+                found[name] = declared[name]
+            elif dot and head in declared:
+                found[name] = f"{declared[head]}.{field_of}"
+        return MappingProxyType(found)
+
+    @cached_property
+    def binding(self) -> Binding:
+        """Where recordings have the variables that the formula reads, and in which units they are declared."""
+        return Binding(self.input_names, tuple(self.recorded.items()), tuple(self.units.items()))
 
     @cached_property
     def _declared(self) -> tuple[str, ...]:

@@ -289,7 +289,8 @@ DOCUMENTS = [
         "float x = 3; x > 1",
         "        ^",
         ParseError,
-        "a variable has no value of its own; define it after the declarations: x = ...",
+        "a variable has no value of its own; define it after the declarations: x = ..., "
+        'or give its recorded name in quotes: x = "..."',
     ),
     ("float x input int x x > 1", "                  ^", ParseError, "'x' is declared twice"),
     ("float x; const float x = 1; x > 1", "                     ^", ParseError, "'x' is declared twice"),

@@ -8,12 +8,14 @@ from typing import TYPE_CHECKING
 
 from rtamt.cli.command import CommandError, read_specifications
 from rtamt.cli.outcome import Requirement
-from rtamt.cli.reading_options import reading_of
+from rtamt.cli.parser import complain
+from rtamt.cli.reading_options import names_of, reading_of
 from rtamt.cli.runner import evaluate
 from rtamt.readers.sql import shown
 
 if TYPE_CHECKING:
     from argparse import Namespace
+    from collections.abc import Mapping
 
     from rtamt.cli.reading_options import Reading
     from rtamt.language.document import Requirement as Written
@@ -32,7 +34,7 @@ def requirements_and_traces(args: Namespace, command: str) -> tuple[list[Require
     A requirement is called by its ID (what stands after ``require``) where no other one has it.
     """
     given, traces = _split(args)
-    specs = read_specifications(args, args.time, given)
+    specs = [_renamed(spec, names_of(args.name)) for spec in read_specifications(args, args.time, given)]
     if not traces:
         raise CommandError(
             f"there is no trace to {command}: name a file, or --sql URL; see 'rtamt {command} --help'"
@@ -45,6 +47,15 @@ def requirements_and_traces(args: Namespace, command: str) -> tuple[list[Require
     ids = Counter(known.name for spec in specs for known in spec.document.requirements if known.explicit)
     taken = ids + Counter(called)
     return [_rows(*each, taken) for each in zip(specs, given, called, strict=True)], traces
+
+
+def _renamed(spec: Specification, names: Mapping[str, str]) -> Specification:
+    """Return a specification whose variables have the recorded names of the command line, which replace its own."""
+    for name, column in names.items():
+        known = spec.recorded.get(name, column)
+        if known != column:
+            complain(f"--name {name}={column} replaces '{known}', the recorded name in the specification")
+    return replace(spec, columns=names) if names else spec
 
 
 def _rows(spec: Specification, text: str, label: str, taken: Counter[str]) -> Requirement:

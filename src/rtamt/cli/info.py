@@ -20,6 +20,7 @@ from rtamt.cli.reading_options import add_reading_options, recording
 from rtamt.cli.terminal import printed, say
 from rtamt.compiler.plan import compile_program
 from rtamt.errors import BoundError, SpecificationError, UsageError, choices
+from rtamt.language.lexer import quoted
 from rtamt.language.printer import excerpt
 from rtamt.language.units import format_duration
 from rtamt.rewrite.check import check_online
@@ -204,6 +205,7 @@ def _variables(spec: Specification) -> list[dict[str, Any]]:
                 "type": declaration.type if declaration else None,
                 "role": declaration.role if declaration else None,
                 "unit": (declaration.unit or None) if declaration else None,
+                "recorded": spec.recorded.get(name),
                 "topic": spec.document.topics.get(name.split(".")[0]),
             }
         )
@@ -280,7 +282,8 @@ def _lines(facts: Facts) -> Iterator[str]:
     for i, variable in enumerate(_variables(spec)):
         topic = variable["topic"] and f"({variable['topic']})"
         unit = variable["unit"] and f"[{variable['unit']}]"
-        words = [variable["role"], variable["type"], variable["name"], unit, topic]
+        recorded = variable["recorded"] and f"= {quoted(variable['recorded'])}"
+        words = [variable["role"], variable["type"], variable["name"], unit, recorded, topic]
         yield f"{'' if i else 'variables':<11}{' '.join(word for word in words if word)}"
     if not spec.input_names:
         yield "variables  none"

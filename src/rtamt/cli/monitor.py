@@ -137,7 +137,13 @@ def run(args: argparse.Namespace) -> int:
         watched = EventFeed(monitor, told, names)
     else:
         watched = _watched(spec, args.tolerance, told, names)
-    samples = Samples(watched.monitor.input_names, args.time_column, dense=dense, unit=args.time_unit)
+    samples = Samples(
+        watched.monitor.input_names,
+        args.time_column,
+        dense=dense,
+        unit=args.time_unit,
+        binding=spec.binding,
+    )
     if sys.stdin is None:
         raise CommandError(f"{STDIN} is closed: give one JSON object a line, or CSV with a header row")
     if sys.stdin.isatty():
@@ -155,6 +161,8 @@ def _follow(watched: Feed, samples: Samples, live: Live | None, *, keep_going: b
         except TraceError as error:
             problem = str(error)
         else:
+            while samples.conversions:
+                complain(f"note: {STDIN}: {samples.conversions.pop(0)}")
             problem = watched.take(*sample, number) if sample is not None else ""
             if live is not None and sample is not None and not problem:
                 live.units.update(samples.units)

@@ -49,7 +49,7 @@ class Outcome:
     ``first_violation``: seconds (a decimal where a double cannot hold them), or a date; None where there is
     none. ``moment``: the same as text: seconds, or a date with the seconds since the start of the recording.
     ``period``: None in dense time.
-    ``notes``: what the verdict has to do without (:attr:`Trace.losses`).
+    ``notes``: what to know beside the verdict (:attr:`Trace.remarks`).
     ``decided_at``: when its verdict was decided, where nothing later was read; the robustness is then known to lie
     within ``bounds``, and NaN where these differ.
     ``episodes``: of violation; None where they are not known. ``episodes_text``: the same as part of a sentence.

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -19,7 +19,7 @@ from rtamt.signals.regular import check_regular, infer_period
 
 if TYPE_CHECKING:
     import argparse
-    from collections.abc import Collection, Mapping, Sequence
+    from collections.abc import Collection, Sequence
 
     from rtamt.readers.assemble import Choice
     from rtamt.results import Result
@@ -32,7 +32,6 @@ class Reading:
     """How recordings are read: the options of ``rtamt.read``, and a clock chosen for all signals."""
 
     time: str | None = None
-    names: Mapping[str, str] = field(default_factory=dict)
     unit: str | None = None
     sheet: str | None = None
     query: str | None = None
@@ -109,7 +108,7 @@ def reading_of(
 
     ``read``: the variables of the requirements; ``whole``: never in chunks; ``early``: no further than needed.
     """
-    names = _names_of(args.name)
+    names = names_of(args.name)
     for name in names:
         if name not in read:
             raise CommandError(f"--name {name}={names[name]}: no formula reads '{name}'")
@@ -118,7 +117,6 @@ def reading_of(
             raise CommandError(f"--skip-nan {name}: no formula reads '{name}'")
     return Reading(
         args.time_column,
-        names,
         args.time_unit,
         args.sheet,
         args.query,
@@ -132,7 +130,7 @@ def reading_of(
     )
 
 
-def _names_of(texts: Sequence[str]) -> dict[str, str]:
+def names_of(texts: Sequence[str]) -> dict[str, str]:
     """Return variables and their columns from texts such as ``v=battery_status[1].voltage_v``."""
     names = {}
     for text in texts:
@@ -147,7 +145,7 @@ def recording(args: argparse.Namespace, source: str) -> Trace:
     """Return all that is in a recording, read and put on one clock as the options say."""
     with opened(source, args.sheet, args.query, args.recover) as found:
         wanted = choice(
-            args.time_column, None, _names_of(args.name), None, args.skip_nan, args.hold_for, args.time_unit
+            args.time_column, None, names_of(args.name), None, args.skip_nan, args.hold_for, args.time_unit
         )
         trace = trace_of(found, wanted)
     return trace if args.resample is None else trace.resample(args.resample, args.how)
@@ -174,18 +172,30 @@ def whole_recording(specs: Sequence[Specification], trace: str, reading: Reading
 def choice_for(specs: Sequence[Specification], trace: str, reading: Reading) -> Choice:
     """Return which columns of a recording some requirements read, and how."""
     columns = dict.fromkeys(name for spec in specs for name in spec.input_names)
+    _check_places(specs)
     # In discrete time a gap is an error, unless each signal has a clock of its own, or is resampled.
     gaps = has_own_clocks(specs[0], trace, reading)
-    names = dict(reading.names)
+    names: dict[str, str] = {}
     if is_bag(trace):
         from rtamt.ros.bags import columns_of
 
         for spec in specs:
-            names = {**columns_of(spec), **names}
+            names.update(columns_of(spec))
+    for spec in specs:
+        names.update(spec.recorded)
     skipped = [name for name in reading.skip_nan if name in columns]
     return replace(
         choice(reading.time, columns or None, names, None, skipped, reading.hold_for, reading.unit), gaps=gaps
     )
+
+
+def _check_places(specs: Sequence[Specification]) -> None:
+    """Raise where specifications read one variable of different columns: each then reads the recording alone."""
+    places: dict[str, str] = {}
+    for spec in specs:
+        for name, (column, _) in spec.binding.places().items():
+            if places.setdefault(name, column) != column:
+                raise TraceError(f"'{name}' is recorded as '{places[name]}' and as '{column}'", variable=name)
 
 
 def has_own_clocks(spec: Specification, trace: str, reading: Reading) -> bool:

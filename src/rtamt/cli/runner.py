@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from rtamt.cli.reading_options import Reading
     from rtamt.results import Result
     from rtamt.signals.trace import Trace
+    from rtamt.specification import Specification
     from rtamt.verdicts.chunks import StreamResult
 
 #: Bytes of a file from which on it is read in chunks, where format and formula allow it.
@@ -136,7 +137,9 @@ def _early(requirement: Requirement, trace: str, reading: Reading) -> list[Outco
         with opened(trace, reading.sheet, reading.query, reading.recover) as source:
             if len(source.tables) > 1 or source.tables[0].chunks is None:
                 return None
-            chunks = _Chunks(chunks_of(source, choice_for([requirement.spec], trace, reading)))
+            chunks = _Chunks(
+                requirement.spec, chunks_of(source, choice_for([requirement.spec], trace, reading))
+            )
             if not any(map(check.take, chunks)):
                 return None
     except StlError:  # the check of the whole recording reports what is wrong
@@ -154,7 +157,7 @@ def _early(requirement: Requirement, trace: str, reading: Reading) -> list[Outco
             part.samples,
             part.period,
             notes=(
-                *chunks.losses,
+                *chunks.remarks,
                 f"{_stop(row, rows)} at {moment_of(part.decided_at, chunks.start)}, {_UNREAD}",
             ),
             decided_at=told(part.decided_at),
@@ -184,7 +187,9 @@ def _in_chunks(requirement: Requirement, trace: str, reading: Reading) -> list[O
         check_streamable(requirement.spec)
         with opened(trace, reading.sheet, reading.query, reading.recover) as source:
             if all(table.chunks is not None for table in source.tables) and len(source.tables) == 1:
-                chunks = _Chunks(chunks_of(source, choice_for([requirement.spec], trace, reading)))
+                chunks = _Chunks(
+                    requirement.spec, chunks_of(source, choice_for([requirement.spec], trace, reading))
+                )
                 found = check_stream(requirement.spec, chunks)
     except BoundError:
         pass  # the formula needs the whole recording at once
@@ -209,7 +214,7 @@ def _in_chunks(requirement: Requirement, trace: str, reading: Reading) -> list[O
             moment_of(part.first_violation, chunks.start),
             part.samples,
             part.period,
-            notes=chunks.losses,
+            notes=chunks.remarks,
             **episodes_of(part.episodes, chunks.start),
             seconds=seconds,
         )
@@ -233,7 +238,7 @@ def _check(requirement: Requirement, trace: str, data: Trace | None, reading: Re
         place = f"{shown(trace)}: "
         if spec.domain.continuous and any(whole.channel(name).times is None for name in whole):
             raise TraceError(NO_STAMPS)
-        whole = on_clock(whole, spec, trace, reading)
+        whole = on_clock(spec.binding.applied(whole), spec, trace, reading)
         alone = len(spec.requirements) == 1
         parts = (
             evaluate_requirements(spec, whole).values()
@@ -268,7 +273,7 @@ def _outcome(requirement: Requirement, trace: str, result: Result, data: Trace, 
         moment_of(violated, recording.origin),
         recording.samples,
         recording.domain.period,
-        notes=data.losses,
+        notes=data.remarks,
         **episodes_of(episodes, recording.origin),
         seconds=time.perf_counter() - begin,
         result=result,
@@ -278,14 +283,14 @@ def _outcome(requirement: Requirement, trace: str, result: Result, data: Trace, 
 class _Chunks:
     """Chunks, and what has to be known of them: whether their stamps are dates, how many samples there were."""
 
-    def __init__(self, chunks: Iterator[Trace]) -> None:
-        self._chunks = chunks
+    def __init__(self, spec: Specification, chunks: Iterator[Trace]) -> None:
+        self._chunks = map(spec.binding.applied, chunks)
         self._counts: Counter[str] = Counter()
         self.last: Trace | None = None
         #: The first time of all.
         self.start: Any = 0.0
         #: What the last chunk says, which is about all before it, too.
-        self.losses: tuple[str, ...] = ()
+        self.remarks: tuple[str, ...] = ()
 
     def __iter__(self) -> Iterator[Trace]:
         for chunk in self._chunks:
@@ -294,7 +299,7 @@ class _Chunks:
             else:
                 self._counts.update({name: len(self.last[name].values) for name in self.last})
             self.last = chunk
-            self.losses = chunk.losses
+            self.remarks = chunk.remarks
             yield chunk
 
     def before(self, error: StlError) -> int:

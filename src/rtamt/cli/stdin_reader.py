@@ -16,8 +16,10 @@ from rtamt.readers.frames import field_of
 from rtamt.readers.source import Source, Table
 from rtamt.readers.timestamps import CHOICES
 from rtamt.signals.arrays import TIME, missing_sample, missing_variable
+from rtamt.signals.binding import Binding, missing
 from rtamt.signals.time_columns import is_stamps, may_be_stamps, split_unit
 from rtamt.signals.trace import in_seconds
+from rtamt.signals.unit_conversion import conversion_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -40,7 +42,8 @@ class Samples:
 
     A stamp is seconds; ``dense``: or what else a file of the same columns is read as, and a sample may
     hold some of the values only. ``time_name``: the column of stamps, "" for none, by default the one
-    that :func:`rtamt.read` would take. ``unit``: of stamps that are numbers.
+    that :func:`rtamt.read` would take. ``unit``: of stamps that are numbers. ``binding``: under which names the
+    variables are recorded, and in which units they are declared.
     """
 
     def __init__(
@@ -50,13 +53,18 @@ class Samples:
         *,
         dense: bool = False,
         unit: str | None = None,
+        binding: Binding | None = None,
     ) -> None:
         self._names = tuple(names)
-        self._choice = Choice(time=time_name, units={} if unit is None else {TIME: unit})
+        self._binding = Binding(self._names) if binding is None else binding
+        units = {} if unit is None else {TIME: unit}
+        self._choice = Choice(time=time_name, names=dict(self._binding.columns), units=units)
         self._dense = dense
         self._read: Callable[[str, int], Sample] | None = None
         #: The units that the header of CSV gives.
         self.units: dict[str, str] = {}
+        #: What became of other units, a sentence each.
+        self.conversions: list[str] = []
 
     def read(self, line: bytes, number: int) -> Sample | None:
         """Return the sample in line ``number`` (from 1); None for an empty line, a comment, the CSV header.
@@ -74,18 +82,40 @@ class Samples:
                 return self._read(text, number)
             stamps = _Stamps(self._names, self._choice, self._dense)
             if text.lstrip().startswith("{"):
-                reader = JsonSamples(self._names, stamps, self._dense)
+                reader = JsonSamples(self._names, stamps, self._dense, self._choice.names)
                 sample = reader.read(text, number)
                 self._read = reader.read
                 return sample
-            rows = CsvSamples(self._names, stamps, self._dense, text, number)
+            rows = CsvSamples(self._names, stamps, self._dense, text, number, self._choice.names)
             self.units = rows.units
-            self._read = rows.read
+            self._read = self._converted(rows)
         except TraceError as error:
             if str(error).startswith(STDIN):
                 raise
             raise _error(number, str(error).replace(f" of {STDIN}", "", 1), error.variable) from None
         return None
+
+    def _converted(self, rows: CsvSamples) -> Callable[[str, int], Sample]:
+        """Return what reads rows, with values in their declared units."""
+        found = {}
+        for name, declared in self._binding.units:
+            recorded = rows.units.get(name, "")
+            conversion = conversion_of(name, recorded, declared) if recorded else None
+            self.units[name] = declared
+            if conversion is not None:
+                found[name] = conversion
+                self.conversions.append(f"{name} was converted from {recorded} to {declared}")
+        if not found:
+            return rows.read
+
+        def read(text: str, number: int) -> Sample:
+            time, values = rows.read(text, number)
+            for name, conversion in found.items():
+                if name in values:
+                    values[name] = float(conversion(values[name]))
+            return time, values
+
+        return read
 
 
 def lines_of(stream: Iterable[bytes]) -> Iterator[bytes]:
@@ -132,11 +162,13 @@ class _Stamps:
         fields = tuple(field_of(column, kind) for column, kind in self._kinds.items())
         source = Source(STDIN, (Table(fields, _load),))
         known = {name for field in fields for name in (field.name, field.column)}
-        names = tuple(name for name in self._names if all_named or name in known)
+        columns = self._choice.names
+        names = tuple(name for name in self._names if all_named or columns.get(name, name) in known)
         time = self._choice.time
         if time is None and not any(self._kinds.values()) and not any(is_stamps(f.name) for f in fields):
             time = ""  # the columns' names do not decide, and no row has been seen yet
-        choice = Choice(time=time, columns=names, units=self._choice.units)
+        read = {name: column for name, column in columns.items() if name in names}
+        choice = Choice(time=time, columns=names, names=read, units=self._choice.units)
         (selection,) = select(source, choice)
         self.clock = clock_of(source, selection, choice)
         if self.clock is not None and self._samples:
@@ -172,10 +204,13 @@ def _load(_: Sequence[Field]) -> list[Raw]:
 class JsonSamples:
     """Samples as JSON objects; the first one determines the key of the timestamp."""
 
-    def __init__(self, names: tuple[str, ...], stamps: _Stamps, dense: bool) -> None:
+    def __init__(
+        self, names: tuple[str, ...], stamps: _Stamps, dense: bool, columns: Mapping[str, str]
+    ) -> None:
         self._names = names
         self._stamps = stamps
         self._dense = dense
+        self._columns = {name: columns.get(name, name) for name in names}
 
     def read(self, text: str, number: int) -> Sample:
         """Return the sample in one line."""
@@ -184,10 +219,11 @@ class JsonSamples:
             self._stamps.look(_flat(data), all_named=False)
         clock = self._stamps.clock
         names = [name for name in self._names if clock is None or name != TIME]
-        names = [name for name in names if not self._dense or _has(data, name)]
+        columns = self._columns
+        names = [name for name in names if not self._dense or _has(data, columns[name])]
         for name in names:
-            self._stamps.require(name, _given(data, name, number), number)
-        values = {name: _number(data, name, number) for name in names}
+            self._stamps.require(columns[name], _given(data, columns[name], number, name), number)
+        values = {name: _number(data, columns[name], number) for name in names}
         stamp = None if clock is None else _stamp(data, clock.field.column, number)
         return self._stamps.sample(stamp, values, number)
 
@@ -195,12 +231,21 @@ class JsonSamples:
 class CsvSamples:
     """Samples as rows of CSV under a header row."""
 
-    def __init__(self, names: tuple[str, ...], stamps: _Stamps, dense: bool, text: str, number: int) -> None:
+    def __init__(
+        self,
+        names: tuple[str, ...],
+        stamps: _Stamps,
+        dense: bool,
+        text: str,
+        number: int,
+        recorded: Mapping[str, str],
+    ) -> None:
         self._dense = dense
         self._stamps = stamps
         self._header, _ = read_header(iter([text]), STDIN, number - 1)
-        columns = [split_unit(column)[0] for column in self._header.names]
-        if names and not any(is_stamps(c) or may_be_stamps(c) or c in names for c in columns):
+        columns = [*self._header.names, *(split_unit(column)[0] for column in self._header.names)]
+        known = {*names, *recorded.values()}
+        if names and not any(is_stamps(c) or may_be_stamps(c) or c in known for c in columns):
             shown = text if len(text) <= 60 else f"{text[:60]}..."
             raise _error(
                 number,
@@ -320,11 +365,14 @@ def _number(data: dict[str, Any], name: str, number: int) -> float:
     raise _error(number, f"'{name}' is {_shown(value)}, expected a number", name)
 
 
-def _given(data: dict[str, Any], name: str, number: int) -> Any:
+def _given(data: dict[str, Any], name: str, number: int, variable: str = "") -> Any:
     try:
         return _member(data, name)
     except KeyError:
-        raise _error(number, str(missing_variable(name, list(data))), name) from None
+        known = list(data)
+        other = variable and variable != name
+        error = missing("the data", variable, name, known) if other else missing_variable(name, known)
+        raise _error(number, str(error), name) from None
 
 
 def _has(data: dict[str, Any], name: str) -> bool:

@@ -13,6 +13,7 @@ from rtamt.language.formula import Formula, types_of, variables
 from rtamt.language.printer import excerpt
 from rtamt.rewrite.horizon import horizon
 from rtamt.signals import arrays
+from rtamt.signals.binding import Binding
 from rtamt.signals.episodes import EpisodeTracker
 
 if TYPE_CHECKING:
@@ -94,11 +95,16 @@ class OnlineMonitor:
         self._types = types_of(formula)
         self._output_of = {watched.name: output for output, watched in enumerate(watch, 1)}
         self._declared = frozenset(declared)
+        self._binding = Binding(self.input_names)
         self._factory = factory
         self._usage = UsageGuard()  # serialises operations of several steps
         self._finished = False
         #: What collects the episodes of each formula; None where nobody asked for them.
         self._episodes: list[EpisodeTracker] | None = None
+
+    def bind(self, binding: Binding) -> None:
+        """Find variables in chunks of recordings as a specification does."""
+        self._binding = binding
 
     def _remember_episodes(self, *, continuous: bool) -> None:
         self._episodes = [EpisodeTracker(continuous=continuous) for _ in self._formulas]

@@ -217,13 +217,11 @@ class DeclarationParser(RequirementParser):
             raise self.error(f"'{name}' is a field of '{head}', which is declared", token.span)
         if name in self._declarations or name in self._constants or (constant and name in self._given):
             raise self.error(f"'{name}' is declared twice{self._from(name)}", token.span)
-        value = None
-        if self.accept("="):
-            if not constant:
-                raise self.error(
-                    f"a variable has no value of its own; define it after the declarations: {name} = ...",
-                    self.tokens[self.index - 1].span,
-                )
+        value, column = None, ""
+        unit = "" if constant else self._unit(token)
+        if not constant and self.accept("="):
+            column = self._column(name, type_name)
+        elif self.accept("="):
             value = self._value(type_)
             self._constants[name] = value
             if kind == "parameter":
@@ -236,9 +234,29 @@ class DeclarationParser(RequirementParser):
             )
         if type_ is not None:
             self._types[name] = type_
-        self._declarations[name] = Declaration(
-            name, type_name, kind, role, value, self._unit(token), token.span
-        )
+        unit = unit or self._unit(token)
+        self._declarations[name] = Declaration(name, type_name, kind, role, value, unit, column, token.span)
+
+    def _column(self, name: str, type_name: str) -> str:
+        """``'"' , characters , '"'``: the recorded name of a variable, of a message its topic."""
+        token = self.token
+        if token.kind != "quoted":
+            raise self.error(
+                f"a variable has no value of its own; define it after the declarations: {name} = ..., "
+                f'or give its recorded name in quotes: {name} = "..."',
+                self.tokens[self.index - 1].span,
+            )
+        self.next()
+        if not token.name.strip() or not token.name.isprintable():
+            raise self.error("a recorded name is one line of visible characters", token.span)
+        if self.token.text == "[":
+            raise self.error(
+                f"the unit stands before the recorded name: {name} [...] = {token.text}", self.token.span
+            )
+        if type_name not in self._imports:
+            return token.name
+        self._topics[name] = token.name
+        return ""
 
     def _unit(self, name: Token) -> str:
         """``[ "[" , unit , "]" ]``: the unit of what is called ``name``, "" where none is written."""

@@ -34,7 +34,7 @@ class Import:
 class Declaration:
     """A declared variable (with its role, if any), constant or parameter (with its value as written).
 
-    ``unit``: as written, such as m/s.
+    ``unit``: as written, such as m/s. ``column``: the name under which recordings have the variable.
     """
 
     name: str
@@ -43,6 +43,7 @@ class Declaration:
     role: Literal["input", "output"] | None = None
     value: float | None = None
     unit: str = ""
+    column: str = ""
     span: Span | None = field(default=None, compare=False, repr=False)
 
 

@@ -8,8 +8,8 @@
     separator   = ";" | after a named assertion, a requirement or a template, as in RTAMT's files: the end of the line
     statement   = assertion | requirement | template, see templates.py
     import      = ( "from" , module , "import" , word | "import" , '"' , path , '"' ) , [ ";" ]
-    declaration = ( [ "input" | "output" ] , type , name |
-                  ( "const" | "parameter" ) , type , name , "=" , value ) , [ "[" , unit , "]" ] , [ ";" ]
+    declaration = ( [ "input" | "output" ] , type , name , [ "[" , unit , "]" ] , [ "=" , '"' , recorded name , '"' ] |
+                  ( "const" | "parameter" ) , type , name , "=" , value , [ "[" , unit , "]" ] ) , [ ";" ]
     annotation  = "@" , "topic" , "(" , name , "," , topic , ")" , [ ";" ]
     assertion   = [ name , "=" ] , expression
     requirement = "require" , id , [ '"' , characters , '"' ] ,

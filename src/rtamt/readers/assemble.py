@@ -123,8 +123,8 @@ def _wanted(source: Source, choice: Choice) -> list[tuple[str, Table, Field]]:
     everything = [(table, field) for table in source.tables for field in table.fields]
     columns = _Columns(source, everything)
     if choice.columns is None:
-        for column in choice.names.values():
-            columns.find(column)
+        for name, column in choice.names.items():
+            columns.find(column, name)
         new = {column: name for name, column in choice.names.items()}
         result = [
             (new.get(field.column, new.get(field.name, field.name)), table, field)
@@ -138,7 +138,7 @@ def _wanted(source: Source, choice: Choice) -> list[tuple[str, Table, Field]]:
     for name in dict.fromkeys(choice.columns):
         if name == TIME and name not in choice.names and _has_clock_called_otherwise(source, choice):
             continue
-        found.append((name, *columns.find(choice.names.get(name, name))))
+        found.append((name, *columns.find(choice.names.get(name, name), name)))
     _check_skipped(source, found, choice)
     return found
 
@@ -181,8 +181,11 @@ class _Columns:
             self._by_column[field.column].append((table, field))
             self._by_name[field.name].append((table, field))
 
-    def find(self, column: str) -> tuple[Table, Field]:
-        """Return the one column that is called so; raise :class:`TraceError` where there is none, or are several."""
+    def find(self, column: str, name: str = "") -> tuple[Table, Field]:
+        """Return the one column that is called so; raise :class:`TraceError` where there is none, or are several.
+
+        ``name``: of the signal that is read of it.
+        """
         found = self._by_column.get(column) or self._by_name.get(column) or []
         if len(found) == 1:
             return found[0]
@@ -192,9 +195,10 @@ class _Columns:
                 variable=column,
             )
         names = [field.name for same in self._by_column.values() for _, field in same]
+        of = f", the recorded name of '{name}'" if name and name != column else ""
         raise TraceError(
-            f"{self._source.name} has no column '{column}'{choices(column, names, 'columns')}",
-            variable=column,
+            f"{self._source.name} has no column '{column}'{of}{choices(column, names, 'columns')}",
+            variable=name or column,
         )
 
 

@@ -71,7 +71,7 @@ class Trace(Clocked):
     1.0
     """
 
-    __slots__ = ("_channels", "_losses", "_notes", "_origin", "_source")
+    __slots__ = ("_channels", "_conversions", "_losses", "_notes", "_origin", "_source")
 
     def __init__(
         self,
@@ -80,12 +80,14 @@ class Trace(Clocked):
         source: str = "data",
         notes: Sequence[str] = (),
         losses: Sequence[str] = (),
+        conversions: Sequence[str] = (),
         origin: np.datetime64 | None = None,
     ) -> None:
         self._channels = dict(channels)
         self._source = source
         self._notes = tuple(notes)
         self._losses = tuple(losses)
+        self._conversions = tuple(conversions)
         self._origin = origin
 
     # ---- what is in it ---------------------------------------------------------------------------
@@ -102,8 +104,13 @@ class Trace(Clocked):
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """What was guessed or left out while reading, one sentence each, including :attr:`losses`."""
-        return (*self._notes, *self._losses)
+        """What was guessed, left out or converted, one sentence each, including :attr:`remarks`."""
+        return (*self._notes, *self.remarks)
+
+    @property
+    def remarks(self) -> tuple[str, ...]:
+        """What reports show beside a verdict: :attr:`losses`, and signals whose unit was converted."""
+        return (*self._conversions, *self._losses)
 
     @property
     def losses(self) -> tuple[str, ...]:
@@ -322,9 +329,21 @@ class Trace(Clocked):
 
     # ---- inside ----------------------------------------------------------------------------------
 
-    def _with(self, channels: Mapping[str, Channel], losses: Sequence[str] = ()) -> Trace:
-        notes, losses = self._notes, (*self._losses, *losses)
-        return Trace(channels, source=self._source, notes=notes, losses=losses, origin=self._origin)
+    def with_channels(self, channels: Mapping[str, Channel], conversions: Sequence[str] = ()) -> Trace:
+        """Return the trace with other signals; ``conversions``: what became of their units, a sentence each."""
+        return self._with(channels, conversions=conversions)
+
+    def _with(
+        self, channels: Mapping[str, Channel], losses: Sequence[str] = (), conversions: Sequence[str] = ()
+    ) -> Trace:
+        return Trace(
+            channels,
+            source=self._source,
+            notes=self._notes,
+            losses=(*self._losses, *losses),
+            conversions=(*self._conversions, *conversions),
+            origin=self._origin,
+        )
 
     def _timed(self) -> list[Any]:
         return [c for c in self._channels.values() if c.times is not None and len(c.times)]

@@ -99,7 +99,9 @@ def test_json(run):
         "formula": "next(req.value >= 3)",
         "latex": run("info", "next(req.value >= 3)", "--latex").out.strip(),
         "semantics": "standard",
-        "variables": [{"name": "req.value", "type": None, "role": None, "unit": None, "topic": None}],
+        "variables": [
+            {"name": "req.value", "type": None, "role": None, "unit": None, "recorded": None, "topic": None}
+        ],
         "parameters": [],
         "period": 1.0,
         "resolution": None,

@@ -134,6 +134,7 @@ class DenseMonitor(DenseMonitorBase, OnlineMonitor):
         Variables may be left out or have no samples. Returns and raises as :meth:`update` does.
         """
         arrays.require_no_unit(data, self._unit)
+        data = self._binding.applied(data, partial=True)
         return self._take(dense_arrays.columns_of(data, self.input_names, self._declared))
 
     @exclusive

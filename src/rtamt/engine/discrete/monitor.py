@@ -234,6 +234,7 @@ class Monitor(MonitorBase, OnlineMonitor):
         """
         if self._finished:
             raise self._is_finished()
+        data = self._binding.applied(data)
         return self._push(*arrays.columns_of(data, self.input_names, self._times.unit, self._types))
 
     def _push(self, stamps: Stamps | None, given: Mapping[str, arrays.FloatArray], n: int) -> Signal:

@@ -1,0 +1,117 @@
+"""Where the variables of a specification are in recordings: recorded names, and declared units.
+
+``input float z_sp [m] = "trajectory_setpoint.position[2]"``: the variable z_sp is in metres, and recordings have it
+under another name, perhaps in another unit.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+from rtamt.errors import TraceError, choices
+from rtamt.signals.arrays import TIME, is_frame, is_mapping
+from rtamt.signals.time_columns import check_frame, split_unit
+from rtamt.signals.trace import Trace
+from rtamt.signals.unit_conversion import converted
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
+    from rtamt.signals.trace import Channel
+
+
+@dataclass(frozen=True, slots=True)
+class Binding:
+    """The recorded names and the declared units of the variables that a specification reads."""
+
+    names: tuple[str, ...]
+    #: Pairs of a variable and its recorded name.
+    columns: tuple[tuple[str, str], ...] = ()
+    #: Pairs of a variable and its declared unit.
+    units: tuple[tuple[str, str], ...] = ()
+
+    def places(self) -> dict[str, tuple[str, str]]:
+        """Return the recorded name and the unit of each variable."""
+        columns, units = dict(self.columns), dict(self.units)
+        return {name: (columns.get(name, name), units.get(name, "")) for name in self.names}
+
+    def applied(self, data: Any, *, partial: bool = False) -> Any:
+        """Return data with the variables under their own names, in their declared units.
+
+        Applying it again changes nothing. ``partial``: for a chunk, which need not have all variables. Raises
+        :class:`TraceError` for a recorded name that is missing and units that cannot be converted.
+        """
+        if isinstance(data, Trace):
+            return self._trace(data) if self.columns or self.units else data
+        if not self.columns:
+            return data
+        if is_mapping(data):
+            return self._mapping(data, partial)
+        return self._frame(data) if is_frame(data) else data
+
+    def _trace(self, trace: Trace) -> Trace:
+        channels = {name: trace.channel(name) for name in trace}
+        by_column = {split_unit(channel.column)[0]: name for name, channel in reversed(channels.items())}
+        by_column |= {channel.column: name for name, channel in reversed(channels.items())}
+        columns = dict(self.columns)
+        source = {}
+        for name in self.names:
+            column = columns.get(name)
+            if column is None:
+                place = name if name in channels else None
+            else:
+                place = by_column.get(column, column if column in channels else name)
+                if place not in channels:
+                    raise missing(trace.source, name, column, trace.names)
+            if place is not None:
+                source[name] = place
+        made: dict[str, Channel] = {}
+        for place, channel in channels.items():
+            readers = [name for name, other in source.items() if other == place]
+            if not readers and place not in source:
+                made[place] = channel
+            made.update({n: replace(channel, column=columns.get(n, channel.column)) for n in readers})
+        notes = []
+        for name, unit in self.units:
+            channel_of = made.get(name)
+            if channel_of is None or not channel_of.unit:
+                continue
+            values = converted(channel_of.values, name, channel_of.unit, unit)
+            if values is not channel_of.values:
+                notes.append(f"{name} was converted from {channel_of.unit} to {unit}")
+            made[name] = replace(channel_of, values=values, unit=unit)
+        return trace.with_channels(made, notes)
+
+    def _mapping(self, data: Mapping[Any, Any], partial: bool) -> dict[Any, Any]:
+        found = {}
+        for name, column in self.columns:
+            if column in data:
+                found[name] = data[column]
+            elif name not in data and name.split(".")[0] not in data and not partial:
+                raise missing("the data", name, column, [str(key) for key in data if key != TIME])
+        used = {column for name, column in self.columns if name in found} - set(self.names)
+        return {**{key: value for key, value in data.items() if key not in used}, **found}
+
+    def _frame(self, data: Any) -> dict[Any, Any]:
+        columns = dict(self.columns)
+        check_frame(data, TIME, (*self.names, *columns.values()))
+        return self._mapping({name: data[name] for name in data.columns}, partial=False)
+
+
+def union(bindings: Iterable[Binding]) -> Binding:
+    """Return what several bindings say, which do not contradict each other."""
+    bindings = list(bindings)
+    names, columns, units = (
+        tuple(dict.fromkeys(each for binding in bindings for each in getattr(binding, part)))
+        for part in ("names", "columns", "units")
+    )
+    return Binding(names, columns, units)
+
+
+def missing(source: str, name: str, column: str, known: Any) -> TraceError:
+    """Return the error for a variable that a recording does not have under its recorded name."""
+    return TraceError(
+        f"{source} has no '{column}', the recorded name of '{name}'{choices(column, known, 'signals')}",
+        variable=name,
+    )

@@ -1,0 +1,136 @@
+"""From the unit of a recording to the declared one, with exact factors and offsets of pint.
+
+Two units can be converted if they are the same product of base units. Angles are base units here: 1 rpm is 6 deg/s, but
+not a number of hertz, although radians have no dimension.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import lru_cache
+from math import lcm
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rtamt.errors import TraceError
+from rtamt.extras import library
+
+if TYPE_CHECKING:
+    from rtamt.signals.arrays import FloatArray
+
+#: Products of powers of units: nothing that a library of units would have to compute for long.
+_UNIT = re.compile(r"(?:[^\W\d]|[°%µμΩ_])+")
+_POWER = r"(?:(?:\^|\*\*)?-?\d|[⁻]?[⁰¹²³⁴-⁹])?"
+_TEXT = re.compile(
+    rf"\(*(?:1|{_UNIT.pattern}){_POWER}\)*(?:\s*[*/·⋅ ]\s*\(*(?:1|{_UNIT.pattern}){_POWER}\)*)*"
+)
+#: The longest unit that is looked up.
+_LONGEST = 60
+#: Ways of writing that a number has no unit.
+_NONE = ("-", "1", "[-]", "none")
+_EXACT = 2**53
+
+
+@dataclass(frozen=True, slots=True)
+class Conversion:
+    """``scale`` times a value plus ``offset``, both exact."""
+
+    scale: Fraction
+    offset: Fraction
+
+    def __call__(self, values: Any) -> Any:
+        """Return a number, or an array of them, in the other unit.
+
+        Whole numbers are multiplied and divided, so that what the unit makes a round number is one: 36 km/h is 10 m/s.
+        """
+        below = lcm(self.scale.denominator, self.offset.denominator)
+        factor, shift = int(self.scale * below), int(self.offset * below)
+        if max(abs(factor), abs(shift), below) >= _EXACT:
+            return values * float(self.scale) + float(self.offset)
+        values = values * float(factor)
+        if shift:
+            values = values + float(shift)
+        return values if below == 1 else values / float(below)
+
+
+def converted(values: FloatArray, name: str, recorded: str, declared: str) -> FloatArray:
+    """Return the values of a variable in its declared unit; the same array where nothing is to be done."""
+    conversion = conversion_of(name, recorded, declared)
+    if conversion is None:
+        return values
+    with np.errstate(over="ignore"):
+        new = conversion(values)
+    beyond = np.isinf(new) & ~np.isinf(values)
+    if beyond.any():
+        i = int(beyond.argmax())
+        raise TraceError(
+            f"'{name}' is {values[i]:g} {recorded} at sample {i}, beyond the range of a double in {declared}",
+            variable=name,
+            index=i,
+        )
+    return np.asarray(new, dtype=np.float64)
+
+
+def conversion_of(name: str, recorded: str, declared: str) -> Conversion | None:
+    """Return how values of a variable are converted, None where they stay what they are.
+
+    Raises :class:`TraceError` for units that are unknown or differ in more than factor and offset, and
+    :class:`UsageError` where the library is missing.
+    """
+    if _plain(recorded) == _plain(declared):
+        return None
+    library("pint", f"converting '{name}' from {recorded} to {declared}", "units")
+    kinds = {"recorded": recorded, "declared": declared}
+    for kind, other in (("recorded", "declared"), ("declared", "recorded")):
+        if _parsed(kinds[kind]) is None:
+            raise TraceError(
+                f"the {kind} unit '{kinds[kind]}' of '{name}' is unknown, so that it cannot be converted ({other}: "
+                f"{kinds[other]}); declare the recorded unit, or give another one to rtamt.read(units=...)",
+                variable=name,
+            )
+    found = _conversion(recorded, declared)
+    if found is None:
+        raise TraceError(
+            f"'{name}' is recorded in {recorded}, which cannot be converted to {declared}, its declared unit",
+            variable=name,
+        )
+    return None if found == Conversion(Fraction(1), Fraction(0)) else found
+
+
+def _plain(unit: str) -> str:
+    return "".join(unit.split())
+
+
+@lru_cache(maxsize=1)
+def _registry() -> Any:
+    return library("pint", "converting units", "units").UnitRegistry(non_int_type=Fraction)
+
+
+@lru_cache(maxsize=512)
+def _parsed(unit: str) -> Any:
+    """Return a unit of the library; None for a text that is no unit."""
+    registry = _registry()
+    text = "" if unit.strip().lower() in _NONE else unit.strip()
+    if len(text) > _LONGEST or (text and _TEXT.fullmatch(text) is None):
+        return None
+    try:
+        return registry.parse_units(text)
+    except Exception:  # noqa: BLE001 - a library's own: undefined units, syntax, tokens
+        return None
+
+
+@lru_cache(maxsize=512)
+def _conversion(recorded: str, declared: str) -> Conversion | None:
+    """Return the conversion between two known units; None where there is none."""
+    registry, first, second = _registry(), _parsed(recorded), _parsed(declared)
+    try:
+        if registry.get_root_units(first)[1] != registry.get_root_units(second)[1]:
+            return None
+        at = [Fraction(registry.Quantity(Fraction(i), first).to(second).magnitude) for i in range(3)]
+    except Exception:  # noqa: BLE001 - a library's own: logarithmic units, offsets inside a product
+        return None
+    scale = at[1] - at[0]
+    return Conversion(scale, at[0]) if at[2] - at[1] == scale else None
