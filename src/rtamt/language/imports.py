@@ -146,9 +146,8 @@ def _inside(folder: str, path: str) -> str | None:
 def _missing(folder: str | None, path: str) -> str:
     packaged = sorted(known.name for known in PACKAGED.glob("*.stl"))
     if folder is None:
-        hint = did_you_mean(path, packaged)
         return (
-            f"there is no file '{path}' in the package{hint}; a text has no folder of its own: "
+            f"there is no file '{path}' in the package ({', '.join(packaged)}), and a text has no folder of its own: "
             f"to import from a folder, load a file with rtamt.load, or name the folder: rtamt.parse(text, folder=...)"
         )
     near = nearest_file(os.path.join(folder, path))

@@ -69,7 +69,7 @@ def check_stream(
     domain = type(kind).of(spec.period if period is None else period, tolerance, spec.resolution)
     stream = _stream_of(domain)(spec, semantics, time_unit, domain)
     for chunk in chunks:
-        stream.take(spec.binding.applied(chunk, partial=dense))
+        stream.take(spec.binding.applied(chunk, partial=domain.continuous))
     return stream.finish()
 
 

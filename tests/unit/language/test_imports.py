@@ -145,11 +145,12 @@ def test_what_cannot_be_imported(folder, tmp_path_factory, path, message):
 
 
 def test_a_text_imports_only_from_the_package():
+    packaged = ", ".join(sorted(path.name for path in imports.PACKAGED.glob("*.stl")))
     with pytest.raises(rtamt.ParseError) as caught:
         rtamt.parse('import "lib/patterns.stl" near')
     assert caught.value.message == (
-        "there is no file 'lib/patterns.stl' in the package; a text has no folder of its own: to import from a folder, "
-        "load a file with rtamt.load, or name the folder: rtamt.parse(text, folder=...)"
+        f"there is no file 'lib/patterns.stl' in the package ({packaged}), and a text has no folder of its own: to "
+        "import from a folder, load a file with rtamt.load, or name the folder: rtamt.parse(text, folder=...)"
     )
     with pytest.raises(rtamt.UsageError, match="folder is 3, expected text or a Path"):
         rtamt.parse("x > 3", folder=3)
