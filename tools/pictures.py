@@ -20,7 +20,7 @@ from rtamt.cli import main
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 from tests.unit.report.browser import chromium
-from tools import walkthrough
+from tools import patterns, walkthrough
 
 IMAGES = Path(__file__).parents[1] / "docs" / "images"
 
@@ -41,6 +41,7 @@ def draw() -> None:
     save(dense.plot(rows=3, figure=Figure()), "plot_dense.png")
     save(discrete.plot_tree(figure=Figure()), "tree.png")
     walkthrough.draw(IMAGES / "early.gif")
+    patterns.draw(IMAGES)
     gallery()
     reports()
 

@@ -40,7 +40,16 @@ SECTIONS = {
     "How-to": ("how-to", ["logs"]),
     "Reference": (
         "reference",
-        ["language", "grammar", "specification-files", "command-line", "api", "messages", "warnings"],
+        [
+            "language",
+            "grammar",
+            "specification-files",
+            "patterns",
+            "command-line",
+            "api",
+            "messages",
+            "warnings",
+        ],
     ),
     "Explanation": (
         "explanation",

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import re
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from tools import patterns
 
 import rtamt
 
@@ -14,6 +17,9 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     Truth = list[bool]
+
+ROOT = Path(__file__).parents[3]
+LIBRARY = ROOT / "src" / "rtamt" / "library" / "patterns.stl"
 
 #: What a pattern requires of the instants of one scope.
 PATTERNS: dict[str, tuple[str, Callable[[Truth, Truth], bool]]] = {
@@ -79,27 +85,25 @@ _SPECS: dict[str, rtamt.Specification] = {}
 
 def _spec(call: str) -> rtamt.Specification:
     if call not in _SPECS:
-        text = f'import "patterns.stl" bool p; bool q; bool r; bool s; require R: {call}'
-        _SPECS[call] = rtamt.parse(text)
+        _SPECS[call] = patterns.specification(call)
     return _SPECS[call]
 
 
-#: Of the patterns with times: a call, p and s of a satisfying trace, and of a violating one.
-TIMED = {
-    "response_within(p, s, 2s)": (("100100", "001100"), ("100100", "000100")),
-    "invariance(p, s, duration=2s)": (("010000", "011100"), ("010000", "011000")),
-    "recurrence(p, 2s)": (("001001", "000000"), ("100001", "000000")),
-    "minimum_duration(p, 2s)": (("0111011", "0000000"), ("0110000", "0000000")),
-    "maximum_duration(p, 2s)": (("0110110", "0000000"), ("0111000", "0000000")),
-}
+@pytest.mark.parametrize("group", patterns.EXAMPLES)
+def test_the_page_shows_a_satisfying_and_a_violating_trace_of_each_pattern(group):
+    for call, (shared, *different) in patterns.EXAMPLES[group].items():
+        results = [_spec(call).evaluate(patterns.signals({**shared, **own})) for own in different]
+        assert [result.satisfied for result in results] == [True, False], call
 
 
-@pytest.mark.parametrize("call", TIMED)
-def test_a_pattern_with_times_separates_two_traces(call):
-    for traces, satisfied in zip(TIMED[call], (True, False), strict=True):
-        p, s = ([value == "1" for value in trace] for trace in traces)
-        result = _spec(call).evaluate({"p": p, "q": p, "r": p, "s": s})
-        assert result.satisfied is satisfied, (call, traces)
+def test_the_page_has_every_pattern_with_its_formula():
+    page = (ROOT / "docs" / "reference" / "patterns.md").read_text(encoding="utf-8")
+    library = LIBRARY.read_text(encoding="utf-8").replace("\n    ", " ")
+    defined = re.findall(r"^def (\w+)(\(.*?\)) = +(.*)$", library, re.MULTILINE)
+    shown = {call.partition("(")[0] for group in patterns.EXAMPLES.values() for call in group}
+    assert {name for name, _, _ in defined} == shown | {"within_scope"}
+    for name, parameters, formula in defined:
+        assert name == "within_scope" or f"| `{name}{parameters}` | `{formula}` |" in page
 
 
 def test_a_pattern_of_margins_has_the_robustness_of_its_worst_instant():
