@@ -5,13 +5,14 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from rtamt.language.formula import Apply, Const, Formula, Interval, Var, fold
+from rtamt.rewrite.ground import ground
 
 if TYPE_CHECKING:
     from fractions import Fraction
 
 
 def in_steps(formula: Formula, step: Fraction) -> Formula:
-    """Return a formula with its bounds in steps, samples or ticks, instead of seconds."""
+    """Return a formula with closed bounds in steps, samples or ticks, instead of seconds."""
 
     def counted(node: Formula, args: tuple[Formula, ...]) -> Formula:
         if not isinstance(node, Apply):
@@ -21,7 +22,7 @@ def in_steps(formula: Formula, step: Fraction) -> Formula:
             bounds = Interval(bounds.begin / step, None if bounds.end is None else bounds.end / step)
         return Apply(node.op, args, bounds)
 
-    return fold(formula, counted)
+    return fold(ground(formula, step), counted)
 
 
 def tree(formula: Formula) -> dict[str, Any]:

@@ -47,7 +47,7 @@ def operands(op: Operator) -> tuple[Formula, ...]:
 @st.composite
 def intervals(draw, op: Operator) -> Interval | None:
     if op.bounds is Bounds.NONE:
-        return None
+        return Interval(TICK, TICK, implied=True) if op.one_tick else None
     begin, length = draw(st.integers(0, 4)), draw(st.integers(0, 4))
     if op.bounds is Bounds.DURATION:
         return Interval(begin * TICK, begin * TICK)

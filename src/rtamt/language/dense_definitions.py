@@ -141,6 +141,26 @@ def historically(t: int, x: Steps, a: int, b: int | None) -> float:
     return min(_behind(t, x, a, b), default=inf)
 
 
+# ---- edges --------------------------------------------------------------------------------------
+
+
+def _before(t: int, x: Steps, tick: int) -> float | None:
+    """Return the value of φ one tick ago; None where that is before t₀."""
+    return x.at(t - tick) if t - tick >= x.times[0] else None
+
+
+def rise(t: int, x: Steps, tick: int, _: int | None) -> float:
+    """``rise φ``: φ(t) and not φ(t - 1 tick), hence φ within the first tick."""
+    before = _before(t, x, tick)
+    return x.at(t) if before is None else min(-before, x.at(t))
+
+
+def fall(t: int, x: Steps, tick: int, _: int | None) -> float:
+    """``fall φ``: φ(t - 1 tick) and not φ(t), hence -φ within the first tick."""
+    before = _before(t, x, tick)
+    return -x.at(t) if before is None else min(before, -x.at(t))
+
+
 # ---- two operands in time -----------------------------------------------------------------------
 
 

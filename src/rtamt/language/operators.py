@@ -14,6 +14,7 @@ those of the core.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from fractions import Fraction
 from math import inf
 from typing import Any
@@ -91,12 +92,19 @@ def _unless(a: Formula, b: Formula, i: Interval | None) -> Formula:
     return STL["or"](STL["always"](a, interval=whole), STL["until"](a, b, interval=i))
 
 
-def _rise(a: Formula, _i: Interval | None) -> Formula:
-    return STL["and"](STL["prev"](STL["not"](a)), a)
+def _before(a: Formula, tick: Interval | None) -> Formula:
+    """Return the formula one sample, in dense time one tick, ago; it holds where there is none."""
+    if tick is None:
+        return STL["prev"](a)
+    return STL["historically"](a, interval=replace(tick, implied=False))
 
 
-def _fall(a: Formula, _i: Interval | None) -> Formula:
-    return STL["and"](STL["prev"](a), STL["not"](a))
+def _rise(a: Formula, tick: Interval | None) -> Formula:
+    return STL["and"](_before(STL["not"](a), tick), a)
+
+
+def _fall(a: Formula, tick: Interval | None) -> Formula:
+    return STL["and"](_before(a, tick), STL["not"](a))
 
 
 def _function(name: str, arity: int, doc: str, example: str, **more: Any) -> Operator:
@@ -367,8 +375,10 @@ STL: Language = Language.of((
            tense=Tense.PAST, bounds=Bounds.OPTIONAL, definition=d.since, dense=dense.since, kernel=Since(),
            guards=(None, "and")),
     # ---- edges -------------------------------------------------------------------------------
-    _function("rise", 1, "Holds now and not one sample ago.", "rise(x >= 3)", operands=(F,), result=F,
-              latex=r"\uparrow {0}", tense=Tense.PAST, reach=1, discrete_only=True, definition=d.rise, expansion=_rise),
-    _function("fall", 1, "Held one sample ago and does not now.", "fall(x >= 3)", operands=(F,), result=F,
-              latex=r"\downarrow {0}", tense=Tense.PAST, reach=1, discrete_only=True, definition=d.fall, expansion=_fall),
+    _function("rise", 1, "Holds now and not one sample (in dense time one tick) ago, or at the start.", "rise(x >= 3)",
+              operands=(F,), result=F, latex=r"\uparrow {0}", tense=Tense.PAST, reach=1, one_tick=True,
+              definition=d.rise, dense=dense.rise, expansion=_rise),
+    _function("fall", 1, "Held one sample (in dense time one tick) ago and does not now, or fails at the start.",
+              "fall(x >= 3)", operands=(F,), result=F, latex=r"\downarrow {0}", tense=Tense.PAST, reach=1, one_tick=True,
+              definition=d.fall, dense=dense.fall, expansion=_fall),
 ))  # fmt: skip

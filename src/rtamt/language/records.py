@@ -214,7 +214,7 @@ class Operator:
                 f"the operator '{self.name}' reads the {self.tense.value} and takes no interval: "
                 f"say how far it reads, reach= a number of samples, or None for all of them"
             )
-        if self.reach is not None and self.dense is not None:
+        if self.reach is not None and self.dense is not None and not self.one_tick:
             raise UsageError(
                 f"the operator '{self.name}' has a dense definition and a reach in samples, which dense time "
                 f"does not have: give it an interval, or reach=None"

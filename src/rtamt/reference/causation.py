@@ -17,6 +17,7 @@ from rtamt.language.operators import Bounds, Pointwise, Shift, Since, Tense, Win
 from rtamt.reference.discrete_bounds import bounds
 from rtamt.rewrite.desugar import desugar
 from rtamt.rewrite.early import connects
+from rtamt.rewrite.ground import ground
 from rtamt.signals.outcomes import Causation
 
 if TYPE_CHECKING:
@@ -47,7 +48,7 @@ def causation(formula: Formula, known: Knowledge, period: Fraction, m: int) -> l
     >>> causation(parse_formula("always(x >= 3)"), Knowledge({"x": Enclosure(x, x)}, 3), Fraction(1), 1)
     [Causation(violation=-1.0, satisfaction=-inf)]
     """
-    core = desugar(formula)
+    core = desugar(ground(formula, period))
     causes = _Causes(known, period, m + known.n + sum(_reach(node, period) + 1 for node in postorder(core)))
     return [causes.at(core, t) for t in range(m)]
 

@@ -24,6 +24,7 @@ from rtamt.language.undefined_value import undefined
 from rtamt.reference.definition_adapter import check_dense_meaning, signal_of
 from rtamt.rewrite.check import check_dense
 from rtamt.rewrite.desugar import spelled_out
+from rtamt.rewrite.ground import ground
 from rtamt.rewrite.horizon import horizons
 from rtamt.rewrite.truth import rebuilt
 
@@ -79,7 +80,7 @@ def evaluate(formula: Formula, signals: Mapping[str, Events], tick: Fraction) ->
     >>> evaluate(lately, {"x": ([0, 20, 30, 60], [0.0, 6.0, 0.0, 0.0])}, Fraction(1, 10))
     StepFunction(times=array([ 0, 10, 30, 50]), values=array([-inf,   0.,   6.,   0.]))
     """
-    formula = _with_dense_meaning(formula)
+    formula = _with_dense_meaning(formula, tick)
     trace = _Trace.of(signals, tick)
     steps = _evaluate(formula, trace, _read(formula, trace.last, tick))
     return _changes(steps, None, trace.last)
@@ -102,7 +103,7 @@ class DenseReferenceMonitor:
     """
 
     def __init__(self, formulas: Sequence[Formula], inputs: Sequence[str], tick: Fraction) -> None:
-        self._formulas = [_with_dense_meaning(formula) for formula in formulas]
+        self._formulas = [_with_dense_meaning(formula, tick) for formula in formulas]
         self._inputs = tuple(inputs)
         self._tick = tick
         self._depths = [_depths(formula, tick) for formula in self._formulas]
@@ -258,10 +259,10 @@ def _window(node: Apply, tick: Fraction) -> tuple[int, int | None]:
     return int(begin / tick) * QUARTERS, None if end is None else int(end / tick) * QUARTERS
 
 
-def _with_dense_meaning(formula: Formula) -> Formula:
+def _with_dense_meaning(formula: Formula, tick: Fraction) -> Formula:
     """Replace the operators in time that dense time knows only by their expansions (a user's own)."""
     check_dense(formula)
-    formula = spelled_out(formula)
+    formula = spelled_out(ground(formula, tick, continuous=True))
 
     def step(node: Formula, args: tuple[Formula, ...]) -> Formula:
         if not isinstance(node, Apply):
@@ -272,7 +273,7 @@ def _with_dense_meaning(formula: Formula) -> Formula:
         if node.op.expansion is None:
             check_dense_meaning(node.op)
             return node
-        return _with_dense_meaning(node.op.expansion(*args, node.interval))
+        return _with_dense_meaning(node.op.expansion(*args, node.interval), tick)
 
     return fold(formula, step)
 

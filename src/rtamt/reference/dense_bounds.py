@@ -21,6 +21,7 @@ from rtamt.reference.definition_adapter import signal_of
 from rtamt.reference.discrete_bounds import ANYTHING, Range, componentwise, pointwise
 from rtamt.rewrite.check import check_dense
 from rtamt.rewrite.desugar import desugar, written
+from rtamt.rewrite.ground import ground
 from rtamt.rewrite.horizon import horizons
 
 if TYPE_CHECKING:
@@ -98,7 +99,7 @@ def bounds(formula: Formula, known: DenseKnowledge, tick: Fraction) -> StepBound
     StepBounds(times=(0, 3, 4, 6), lower=(-2.0, 1.0, 1.0, -3.0), upper=(-2.0, 1.0, 2.0, 2.0))
     """
     check_dense(formula)
-    core = desugar(formula)
+    core = desugar(ground(formula, tick, continuous=True))
     start = known.start
     origin = (0 if start is None else start) * QUARTERS
     signals = {name: _signal(name, known, origin, started=start is not None) for name in known.samples}

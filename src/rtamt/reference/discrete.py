@@ -20,6 +20,7 @@ from rtamt.language.operators import Bounds, Tense
 from rtamt.language.undefined_value import at_sample, undefined
 from rtamt.reference.definition_adapter import values_of
 from rtamt.rewrite.desugar import spelled_out
+from rtamt.rewrite.ground import ground, grounds
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -51,7 +52,7 @@ def evaluate(
     >>> evaluate(lately, {"x": np.array([1.0, 2.0, 3.0, 4.0])}, 4, Fraction(1))
     array([-inf, -inf,   1.,   2.])
     """
-    return _evaluate(spelled_out(formula), _Stretch(columns, n, period, start))
+    return _evaluate(spelled_out(ground(formula, period)), _Stretch(columns, n, period, start))
 
 
 def evaluate_all(
@@ -62,7 +63,7 @@ def evaluate_all(
     Arguments and errors are those of :func:`evaluate`; each array has shape (n,).
     """
     every: dict[Formula, Array] = {}
-    _evaluate(spelled_out(formula), _Stretch(columns, n, period, start), every=every)
+    _evaluate(spelled_out(ground(formula, period)), _Stretch(columns, n, period, start), every=every)
     return every
 
 
@@ -79,7 +80,7 @@ def history(formula: Formula, period: Fraction) -> int | None:
     >>> history(STL["prev"](lately), Fraction(1, 10))
     6
     """
-    formula = spelled_out(formula)
+    formula = spelled_out(ground(formula, period))
     return _reaches(formula, period, Tense.PAST)[id(formula)]
 
 
@@ -111,7 +112,7 @@ class ReferenceMonitor:
         history: int | None,
         start: float = 0.0,
     ) -> None:
-        self._formulas = tuple(map(spelled_out, formulas))
+        self._formulas = tuple(spelled_out(each) for each in grounds(formulas, period))
         self._inputs = inputs
         self._period = period
         self._horizons = tuple(horizons)

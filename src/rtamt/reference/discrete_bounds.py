@@ -22,6 +22,7 @@ from rtamt.language.formula import Apply, Const, Formula, Var, fold
 from rtamt.language.operators import Bounds, Pointwise, Shift, Since, Tense, Until, Window
 from rtamt.language.undefined_value import at_sample, undefined
 from rtamt.rewrite.desugar import desugar, written
+from rtamt.rewrite.ground import ground
 from rtamt.rewrite.horizon import horizons
 
 if TYPE_CHECKING:
@@ -74,7 +75,7 @@ def bounds(formula: Formula, known: Knowledge, period: Fraction, start: float = 
     >>> bounds(soon, Knowledge({"x": Enclosure(x, x)}, 2, {"x": (0.0, 5.0)}), Fraction(1))
     Enclosure(lower=array([ 1., -2., -3.]), upper=array([2., 2., 2.]))
     """
-    core = desugar(formula)
+    core = desugar(ground(formula, period))
     ahead = horizons(core, period)
     closed = known.n if known.closed is None else known.closed
 

@@ -130,10 +130,13 @@ def check_online(formula: Formula, text: str | None = None) -> None:
         )
 
 
-def check_dense(formula: Formula, text: str | None = None) -> None:
-    """Raise :class:`SpecificationError` at the first operator that is defined only in discrete time."""
+def check_dense(formula: Formula, text: str | None = None, *, ticks: bool = True) -> None:
+    """Raise :class:`SpecificationError` at the first operator that is defined only in discrete time.
+
+    ``ticks``: whether an operator may read one tick behind.
+    """
     for node in postorder(spelled_out(formula)):
-        if isinstance(node, Apply) and node.op.discrete_only:
+        if isinstance(node, Apply) and (node.op.discrete_only or (node.op.one_tick and not ticks)):
             raise SpecificationError(
                 f"'{node.op.name}' means one sample away, which dense time does not have; "
                 f"use a window such as once[0:1], or discrete time",

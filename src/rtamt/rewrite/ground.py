@@ -11,6 +11,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rtamt.language.formula import Apply, Formula, Interval, folds, postorder
+from rtamt.language.units import UNITS
 from rtamt.rewrite.truth import rebuilt
 
 if TYPE_CHECKING:
@@ -70,6 +71,9 @@ def closed(interval: Interval, step: Fraction) -> Interval:
 
 
 def _grounded(node: Apply, step: Fraction, *, continuous: bool) -> Interval | None:
-    if node.interval is None:
-        return Interval(step, step, implied=True) if continuous and node.op.one_tick else None
-    return closed(node.interval, step)
+    if node.interval is not None:
+        return closed(node.interval, step)
+    if not (continuous and node.op.one_tick):
+        return None
+    unit = next((unit for unit, seconds in UNITS.items() if (step / seconds).denominator == 1), "")
+    return Interval(step, step, unit, unit, implied=True)

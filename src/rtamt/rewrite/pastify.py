@@ -44,8 +44,11 @@ def pastify(
             text,
             node.span,
         )
+    written = _unit(formula) or ("" if unit == "s" else unit)
     formula = expand_future_shorthand(formula)
-    return _Pastifier(formula, period, text, unit).delayed(formula, horizon(formula, period) or Fraction(0))
+    return _Pastifier(formula, period, text, written).delayed(
+        formula, horizon(formula, period) or Fraction(0)
+    )
 
 
 def expand_future_shorthand(formula: Formula) -> Formula:
@@ -75,7 +78,7 @@ class _Pastifier:
     def __init__(self, formula: Formula, period: Fraction, text: str | None, unit: str) -> None:
         self.period = period
         self.text = text
-        self.unit = _unit(formula) or ("" if unit == "s" else unit)
+        self.unit = unit
         self.has_future: dict[int, bool] = {}
         for node in postorder(formula):
             below = any(self.has_future[id(arg)] for arg in node.args) if isinstance(node, Apply) else False
@@ -156,7 +159,9 @@ def _as_number(sort: Sort, operand: Formula, delayed: Formula) -> Formula:
 def _unit(formula: Formula) -> str:
     """Return the unit in which the bounds of the formula are written, so that delays look the same."""
     intervals = (node.interval for node in postorder(formula) if isinstance(node, Apply))
-    units = (unit for i in intervals if i is not None for unit in (i.end_unit, i.begin_unit))
+    units = (
+        unit for i in intervals if i is not None and not i.implied for unit in (i.end_unit, i.begin_unit)
+    )
     return next(filter(None, units), "")
 
 

@@ -90,7 +90,7 @@ def _is_watchable(node: Formula, reads: Collection[str]) -> bool:
     if isinstance(node, Apply):
         op = node.op
         past = op.tense is not Tense.FUTURE and (op.definition is not None or not has_future(node))
-        return past and not op.discrete_only
+        return past and not op.discrete_only and not op.one_tick
     return not isinstance(node, Var) or node.name in reads
 
 
@@ -163,7 +163,7 @@ class StlDenseTimeOfflineSpecification(ExplainedSpecification, DenseTimeSpecific
 
         Both are missing if no signal has samples: there is no instant then.
         """
-        check_dense(part, self._parsed_document.text)
+        check_dense(part, self._parsed_document.text, ticks=False)
         read = tuple(dict.fromkeys((*variables(self._result), *variables(part))))
         held = {name: columns[name] for name in read if name in columns}
         if held and not any(times for times, _ in held.values()):
@@ -205,7 +205,7 @@ class StlDenseTimeOnlineSpecification(OnlineSpecification, DenseTimeSpecificatio
         Also raises :class:`RTAMTException` for an operator that is undefined in dense time.
         """
         for formula in outermost([*self._formulas.values()]):
-            check_dense(formula, self._parsed_document.text)
+            check_dense(formula, self._parsed_document.text, ticks=False)
         super().pastify()
 
     @raises_rtamt
@@ -323,7 +323,7 @@ class StlDenseTimeOnlineSpecification(OnlineSpecification, DenseTimeSpecificatio
     def _require_monitor(self) -> DenseMonitor:
         if self._monitor is None:
             formula, text = self._result, self._parsed_document.text
-            check_dense(formula, text)
+            check_dense(formula, text, ticks=False)
             require_past(formula, text)
             # Variables that the result does not read need no samples.
             reads = set(variables(formula))

@@ -102,6 +102,8 @@ def formulas(
         return number(anywhere=True)
 
     def interval(op: Operator) -> Interval | None:
+        if op.one_tick and not discrete:
+            return Interval(period, period, implied=True)
         unbounded = unbounded_past if op.tense is Tense.PAST else unbounded_future
         if op.bounds is Bounds.NONE or (op.bounds is Bounds.OPTIONAL and unbounded and chance(5)):
             return None

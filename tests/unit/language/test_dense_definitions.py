@@ -96,6 +96,11 @@ def test_until_does_not_ask_for_its_first_operand_when_the_second_comes():
         ("always[4:inf] x", "6@0 0@5 6@6 6@9", "0@0 6@2"),
         ("always[0:100] x", "6@0 0@5", "0@0"),  # the last value holds for ever
         ("eventually[100:200] x", "6@0 1@5", "1@0"),
+        # A pulse of one tick, at the first instant as if the operand had not held, or had held, before.
+        ("rise(x >= 1)", "3@0 -1@4 2@6 2@9", "2@0 -2@1 1@6 -1@7"),
+        ("rise(x >= 1)", "-1@0 2@6 -1@7 2@8 2@9", "-2@0 1@6 -2@7 1@8 -1@9"),
+        ("fall(x >= 1)", "3@0 -1@4 2@6 2@9", "-2@0 2@4 -2@5 -1@7"),
+        ("fall(x >= 1)", "-1@0 2@6 2@9", "2@0 -2@1 -1@7"),
         ("x - 1 > 0 or -x >= 2", "0@0 -5@2 4@3", "-1@0 3@2"),
         ("x == 1", "1@0 3@1 -1@2", "-0@0 -2@1"),
         ("true", "1@2 2@3", "inf@2"),
@@ -227,9 +232,9 @@ def test_what_has_no_value_after_everything_that_is_asked_for_is_no_error():
 
 def test_an_operator_of_samples_has_no_meaning_in_dense_time():
     with pytest.raises(SpecificationError) as caught:
-        evaluate(parse_formula("rise(x)"), {"x": signal("1@0")}, ONE)
+        evaluate(parse_formula("prev x"), {"x": signal("1@0")}, ONE)
     assert str(caught.value) == (
-        "'rise' means one sample away, which dense time does not have; "
+        "'prev' means one sample away, which dense time does not have; "
         "use a window such as once[0:1], or discrete time"
     )
 
