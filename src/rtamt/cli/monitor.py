@@ -143,6 +143,7 @@ def run(args: argparse.Namespace) -> int:
         dense=dense,
         unit=args.time_unit,
         binding=spec.binding,
+        types=spec.types,
     )
     if sys.stdin is None:
         raise CommandError(f"{STDIN} is closed: give one JSON object a line, or CSV with a header row")

@@ -184,8 +184,10 @@ def choice_for(specs: Sequence[Specification], trace: str, reading: Reading) -> 
     for spec in specs:
         names.update(spec.recorded)
     skipped = [name for name in reading.skip_nan if name in columns]
+    types = {name: type_ for spec in specs for name, type_ in spec.types.items()}
     return replace(
-        choice(reading.time, columns or None, names, None, skipped, reading.hold_for, reading.unit), gaps=gaps
+        choice(reading.time, columns or None, names, None, skipped, reading.hold_for, reading.unit, types),
+        gaps=gaps,
     )
 
 

@@ -8,15 +8,26 @@ from math import isinf
 from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import TraceError
+from rtamt.language.value_types import Enumeration
 from rtamt.readers.assemble import Choice, clock_of, select
-from rtamt.readers.csv import Column, Header, check_width, is_boolean, numbers, read_header, truth
+from rtamt.readers.csv import (
+    Column,
+    Header,
+    check_width,
+    is_boolean,
+    is_number,
+    numbers,
+    read_header,
+    truth,
+)
 from rtamt.readers.csv_cells import Cells
 from rtamt.readers.dates import EXAMPLE, is_date
 from rtamt.readers.frames import field_of
-from rtamt.readers.source import Source, Table
+from rtamt.readers.source import Source, Table, printable
 from rtamt.readers.timestamps import CHOICES
 from rtamt.signals.arrays import TIME, missing_sample, missing_variable
 from rtamt.signals.binding import Binding, missing
+from rtamt.signals.coding import NO_TYPES
 from rtamt.signals.time_columns import is_stamps, may_be_stamps, split_unit
 from rtamt.signals.trace import in_seconds
 from rtamt.signals.unit_conversion import conversion_of
@@ -24,9 +35,11 @@ from rtamt.signals.unit_conversion import conversion_of
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
+    from rtamt.language.value_types import ValueType
     from rtamt.readers.assemble import Selection
     from rtamt.readers.source import Field, Raw
     from rtamt.readers.timestamps import Clock
+    from rtamt.signals.coding import Types
 
 #: What messages call the input.
 STDIN = "stdin"
@@ -54,7 +67,9 @@ class Samples:
         dense: bool = False,
         unit: str | None = None,
         binding: Binding | None = None,
+        types: Types = NO_TYPES,
     ) -> None:
+        self._types = types
         self._names = tuple(names)
         self._binding = Binding(self._names) if binding is None else binding
         units = {} if unit is None else {TIME: unit}
@@ -82,11 +97,11 @@ class Samples:
                 return self._read(text, number)
             stamps = _Stamps(self._names, self._choice, self._dense)
             if text.lstrip().startswith("{"):
-                reader = JsonSamples(self._names, stamps, self._dense, self._choice.names)
+                reader = JsonSamples(self._names, stamps, self._dense, self._choice.names, self._types)
                 sample = reader.read(text, number)
                 self._read = reader.read
                 return sample
-            rows = CsvSamples(self._names, stamps, self._dense, text, number, self._choice.names)
+            rows = CsvSamples(self._names, stamps, self._dense, text, number, self._choice.names, self._types)
             self.units = rows.units
             self._read = self._converted(rows)
         except TraceError as error:
@@ -205,9 +220,15 @@ class JsonSamples:
     """Samples as JSON objects; the first one determines the key of the timestamp."""
 
     def __init__(
-        self, names: tuple[str, ...], stamps: _Stamps, dense: bool, columns: Mapping[str, str]
+        self,
+        names: tuple[str, ...],
+        stamps: _Stamps,
+        dense: bool,
+        columns: Mapping[str, str],
+        types: Types,
     ) -> None:
         self._names = names
+        self._types = types
         self._stamps = stamps
         self._dense = dense
         self._columns = {name: columns.get(name, name) for name in names}
@@ -223,7 +244,7 @@ class JsonSamples:
         names = [name for name in names if not self._dense or _has(data, columns[name])]
         for name in names:
             self._stamps.require(columns[name], _given(data, columns[name], number, name), number)
-        values = {name: _number(data, columns[name], number) for name in names}
+        values = {name: _number(data, columns[name], number, self._types.get(name)) for name in names}
         stamp = None if clock is None else _stamp(data, clock.field.column, number)
         return self._stamps.sample(stamp, values, number)
 
@@ -239,7 +260,9 @@ class CsvSamples:
         text: str,
         number: int,
         recorded: Mapping[str, str],
+        types: Types,
     ) -> None:
+        self._types = types
         self._dense = dense
         self._stamps = stamps
         self._header, _ = read_header(iter([text]), STDIN, number - 1)
@@ -273,13 +296,25 @@ class CsvSamples:
             given = [c for c in given if row[c.position].strip()]
         for column in given:
             self._stamps.require(column.name, row[column.position].strip(), number)
+        members = {c.name: self._member(c, row, number) for c in given if c.name in self._types}
+        codes = {name: code for name, code in members.items() if code is not None}
+        given = [c for c in given if c.name not in codes]
         truths = [c for c in given if self._is_boolean(c.name, row[c.position].strip())]
         given = [c for c in given if c not in truths]
         values = dict(zip((c.name for c in given), numbers(row, header, number, given), strict=True))
         values |= {c.name: float(truth(row[c.position].strip(), c.name, header, number)) for c in truths}
+        values |= codes
         clock = self._stamps.clock
         stamp = None if clock is None else row[header.names.index(clock.field.column)]
         return self._stamps.sample(stamp, values, number)
+
+    def _member(self, column: Column, row: Sequence[str], number: int) -> float | None:
+        """Return the code of the member in a cell, None where a number is expected."""
+        text = row[column.position].strip()
+        type_ = self._types.get(column.name)
+        if not isinstance(type_, Enumeration) or (is_number(text) and type_.code(text) is None):
+            return None
+        return _code(text, column.name, type_, number)
 
     def _is_boolean(self, name: str, text: str) -> bool:
         """Return whether a column holds true and false, as its first cell tells, as in a file."""
@@ -350,8 +385,10 @@ def _stamp(data: dict[str, Any], name: str, number: int) -> str:
     return str(int(value)) if isinstance(value, int) else repr(seconds)  # an integer to its last digit
 
 
-def _number(data: dict[str, Any], name: str, number: int) -> float:
+def _number(data: dict[str, Any], name: str, number: int, type_: ValueType | None = None) -> float:
     value = _given(data, name, number)
+    if isinstance(value, str) and isinstance(type_, Enumeration):
+        return _code(value, name, type_, number)
     if isinstance(value, (bool, int, float)):
         try:
             return float(value)
@@ -363,6 +400,14 @@ def _number(data: dict[str, Any], name: str, number: int) -> float:
     if value in _INFINITIES:
         return float(value)
     raise _error(number, f"'{name}' is {_shown(value)}, expected a number", name)
+
+
+def _code(text: str, name: str, type_: Enumeration, number: int) -> float:
+    """Return the code of a member, which is given by its name."""
+    code = type_.code(text)
+    if code is None:
+        raise _error(number, f"'{name}' is '{printable(text)}', which is {type_.stranger(text)}", name)
+    return float(code)
 
 
 def _given(data: dict[str, Any], name: str, number: int, variable: str = "") -> Any:

@@ -11,9 +11,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rtamt.errors import TraceError, choices, did_you_mean, shown
+from rtamt.language.value_types import Enumeration
 from rtamt.readers.gaps import Gaps
 from rtamt.readers.timestamps import Clock, guess_field
 from rtamt.signals.arrays import TIME, is_number, missing_sample
+from rtamt.signals.coding import encoded_value
 from rtamt.signals.ticks import NANOSECOND, TimeScale
 from rtamt.signals.trace import Channel, Trace, in_seconds
 
@@ -22,6 +24,7 @@ if TYPE_CHECKING:
     from fractions import Fraction
 
     from rtamt.readers.source import Field, Raw, Source, Table
+    from rtamt.signals.coding import Types
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,6 +36,8 @@ class Choice:
     names: Mapping[str, str] = dataclasses.field(default_factory=dict)
     units: Mapping[str, str] = dataclasses.field(default_factory=dict)
     skip_nan: tuple[str, ...] = ()
+    #: The types of signals whose values may be names.
+    types: Types = dataclasses.field(default_factory=dict)
     #: Seconds for which a value takes the place of samples that are left out.
     hold_for: Fraction | None = None
     #: Whether a value may be missing; discrete time needs one of every signal at every sample.
@@ -107,7 +112,9 @@ def select(source: Source, choice: Choice) -> list[Selection]:
     of_table: dict[int, list[tuple[str, Field]]] = defaultdict(list)
     skipped = set(choice.skip_nan)
     for name, table, field in _wanted(source, choice):
-        of_table[id(table)].append((name, dataclasses.replace(field, skip_nan=name in skipped)))
+        of_table[id(table)].append(
+            (name, dataclasses.replace(field, skip_nan=name in skipped, type=choice.types.get(name)))
+        )
     found = []
     for table in source.tables:
         clock, guessed = _time_field(source, table, choice)
@@ -129,7 +136,7 @@ def _wanted(source: Source, choice: Choice) -> list[tuple[str, Table, Field]]:
         result = [
             (new.get(field.column, new.get(field.name, field.name)), table, field)
             for table, field in everything
-            if field.kind != "text" or field.column in new
+            if field.kind != "text" or field.column in new or field.name in choice.types
         ]
         _check_unique(source, result)
         _check_skipped(source, result, choice)
@@ -313,13 +320,17 @@ def numbers_of(raw: Raw, field: Field, source: str, before: int = 0) -> tuple[An
             if len(beyond):
                 raise _no_number(plain[beyond[0]], field, source, before + int(beyond[0]))
         return numbers, missing
+    if plain.dtype.kind == "U" and isinstance(field.type, Enumeration):
+        plain = plain.astype(object)
     if plain.dtype.kind != "O":
         raise _no_number(plain[0] if len(plain) else plain.dtype, field, source, before)
     absent = np.array([value is None for value in plain], dtype=bool)
     missing = absent if missing is None else missing | absent
     values = np.zeros(len(plain))
     for i in np.flatnonzero(~missing):
-        value = plain[i]
+        value = encoded_value(
+            plain[i], field.column, field.type, f"sample {before + i} of {source}", before + int(i)
+        )
         if not is_number(value) and not isinstance(value, Decimal):
             raise _no_number(value, field, source, before + int(i))
         values[i] = value

@@ -6,12 +6,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rtamt.readers.csv import Header, is_boolean, number, truth
+from rtamt.errors import shown
+from rtamt.language.value_types import Enumeration
+from rtamt.readers.csv import Header, is_boolean, is_number, number, truth
 from rtamt.readers.dates import DateError, Dates, is_date
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from rtamt.language.value_types import ValueType
     from rtamt.readers.source import Raw
 
 #: From here on a double may not be the integer that was written.
@@ -25,12 +28,21 @@ class Cells:
     """
 
     def __init__(
-        self, header: Header, name: str, dated: bool | None = None, *, skip_nan: bool = False
+        self,
+        header: Header,
+        name: str,
+        dated: bool | None = None,
+        *,
+        skip_nan: bool = False,
+        type_: ValueType | None = None,
     ) -> None:
         self._skip_nan = skip_nan
+        self._enumeration = type_ if isinstance(type_, Enumeration) else None
         self._header = header
         self._name = name
-        self._dated = dated  # None: not known before the first cell that is not empty
+        self._dated = (
+            dated if self._enumeration is None else False
+        )  # None: not known before the first cell that is not empty
         self._boolean = False
         self._dates = Dates()
         self._whole = True  # whether all numbers are integers that an int64 holds
@@ -68,9 +80,23 @@ class Cells:
         return values
 
     def _of(self, given: Sequence[tuple[str, int]]) -> Raw:
+        if self._enumeration is not None:
+            return self._codes(given, self._enumeration)
         if self._dated:
             return self._moments(given)
         return self._truths(given) if self._boolean else self._numbers(given)
+
+    def _codes(self, given: Sequence[tuple[str, int]], enumeration: Enumeration) -> Raw:
+        """Return the codes of members, which are given by name or by code."""
+        values = []
+        for text, line in given:
+            code = enumeration.code(text)
+            if code is None and not is_number(text):
+                problem = f"'{self._name}' is {shown(text)}, which is {enumeration.stranger(text)}"
+                raise self._header.error(line, problem, self._name)
+            values.append(self._number(text, line) if code is None else float(code))
+        self._whole = False
+        return np.array(values, dtype=np.float64)
 
     def _truths(self, given: Sequence[tuple[str, int]]) -> Raw:
         truths = [truth(text, self._name, self._header, line) for text, line in given]

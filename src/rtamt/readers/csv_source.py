@@ -108,7 +108,7 @@ def _blocks(
         line += len(block)
     # What was a number so far stays one.
     dated = False if line > header.line else None
-    cells = [Cells(header, field.column, dated, skip_nan=field.skip_nan) for field in wanted]
+    cells = [Cells(header, f.column, dated, skip_nan=f.skip_nan, type_=f.type) for f in wanted]
     for several in blocks(chain(block, lines), replace(header, line=line)):
         numbers = [number for number, _ in several]
         for column, place in zip(cells, columns, strict=True):

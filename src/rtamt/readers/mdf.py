@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rtamt.errors import TraceError
+from rtamt.language.value_types import Enumeration
 from rtamt.readers.source import Field, Source, Table, damage, library, printable
 
 if TYPE_CHECKING:
@@ -44,7 +45,8 @@ _FUNCTIONS = frozenset(
 def open_mdf(path: str) -> Source:
     """Open a measurement file; channels of one name in several groups are called ``group.name``.
 
-    Channels whose values are texts for numbers (modes, states) are read as the numbers.
+    Channels whose values are texts for numbers (modes, states) are read as the numbers, or as the codes of an
+    enumeration, whose members are found by these texts.
     """
     asammdf = library("asammdf", "MDF")
     with _complaints() as complaints:
@@ -83,12 +85,12 @@ def _table(file: Any, number: int, counts: Counter[str]) -> Table:
 
     def load(wanted: Sequence[Field]) -> list[Raw]:
         for field in wanted:
-            if field.kind == "text":
+            if field.kind == "text" and not isinstance(field.type, Enumeration):
                 raise TraceError(f"the channel '{field.column}' holds texts or bytes, expected numbers")
         return [
             np.asarray(file.get_master(number))
             if field == clock
-            else _samples(file, number, places[field.column])
+            else _samples(file, number, places[field.column], by_name=isinstance(field.type, Enumeration))
             for field in wanted
         ]
 
@@ -188,6 +190,10 @@ def _is_arithmetic(node: ast.AST) -> bool:
     return isinstance(node, _ARITHMETIC)
 
 
+def _text(value: Any) -> Any:
+    return value.decode("utf-8", "replace").rstrip("\0").strip() if isinstance(value, bytes) else value
+
+
 def _is_text(channel: Any) -> bool:
     return hasattr(channel, "byte_offset") and (
         channel.data_type in _NO_NUMBERS or channel.channel_type == _VARIABLE_LENGTH
@@ -199,9 +205,13 @@ def _unit(channel: Any) -> str:
     return str(channel.unit or getattr(conversion, "unit", "") or "").strip()
 
 
-def _samples(file: Any, group: int, index: int) -> Raw:
+def _samples(file: Any, group: int, index: int, *, by_name: bool) -> Raw:
+    """Return the values of a channel; ``by_name``: the texts that its value table has for numbers."""
     signal = file.get(group=group, index=index, ignore_invalidation_bits=True)
-    if signal.samples.dtype.kind in "SUO":
+    texts = signal.samples.dtype.kind in "SUO"
+    if texts and by_name:
+        signal.samples = np.array([*map(_text, signal.samples.tolist()), None], dtype=object)[:-1]
+    elif texts:
         raw = file.get(group=group, index=index, ignore_invalidation_bits=True, raw=True)
         signal = raw if raw.samples.dtype.kind in "fiub" else signal
     bits = signal.invalidation_bits

@@ -13,12 +13,14 @@ from rtamt.readers.assemble import Choice, chunks_of, trace_of
 from rtamt.readers.formats import FORMATS, format_of
 from rtamt.readers.sql import is_url, open_sql
 from rtamt.signals.arrays import TIME
+from rtamt.signals.coding import NO_TYPES
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
 
     from rtamt.language.units import Duration
     from rtamt.readers.source import Source
+    from rtamt.signals.coding import Types
     from rtamt.signals.trace import Trace
 
 
@@ -33,6 +35,7 @@ def read(
     sheet: str | None = None,
     query: str | None = None,
     skip_nan: Iterable[str] = (),
+    types: Types = NO_TYPES,
     hold_for: Duration | None = None,
     recover: bool = False,
 ) -> Trace:
@@ -54,9 +57,10 @@ def read(
 
     A value that is missing (an empty cell, null, pandas' NaN) is no sample: the signal then has a
     clock of its own. Any other NaN stays, and an evaluation that reads it is an error; for the signals
-    in ``skip_nan`` it is a missing value, too. ``hold_for``: how long, in seconds or as text such as
-    ``"500ms"``, the value before may take the place of samples that are missing; one that is missing for
-    longer is an error.
+    in ``skip_nan`` it is a missing value, too. ``types``: those of a specification (``spec.types``), so that text
+    columns, and the value tables of MDF and ROS, are read as the codes of its enumerations. ``hold_for``: how long,
+    in seconds or as text such as ``"500ms"``, the value before may take the place of samples that are missing; one
+    that is missing for longer is an error.
 
     What was guessed or left out is in ``Trace.notes``, and printed with it; what a
     verdict has to do without is in ``Trace.losses``, too.
@@ -81,7 +85,7 @@ def read(
       v  2 samples, 0 s to 2 s
     """
     with opened(source, sheet, query, recover) as found:
-        return trace_of(found, choice(time, columns, names, units, skip_nan, hold_for, time_unit))
+        return trace_of(found, choice(time, columns, names, units, skip_nan, hold_for, time_unit, types))
 
 
 def scan(
@@ -95,6 +99,7 @@ def scan(
     sheet: str | None = None,
     query: str | None = None,
     skip_nan: Iterable[str] = (),
+    types: Types = NO_TYPES,
     hold_for: Duration | None = None,
 ) -> Iterator[Trace]:
     r"""Read a recording in chunks, in memory that does not grow with its length; arguments as for :func:`read`.
@@ -116,7 +121,7 @@ def scan(
     with opened(source, sheet, query) as found:
         if any(table.chunks is None for table in found.tables) or len(found.tables) != 1:
             raise UsageError(f"{found.name} cannot be read in chunks; read it whole with rtamt.read")
-        yield from chunks_of(found, choice(time, columns, names, units, skip_nan, hold_for, time_unit))
+        yield from chunks_of(found, choice(time, columns, names, units, skip_nan, hold_for, time_unit, types))
 
 
 def choice(
@@ -127,6 +132,7 @@ def choice(
     skip_nan: Iterable[str] = (),
     hold_for: Duration | None = None,
     time_unit: str | None = None,
+    types: Types = NO_TYPES,
 ) -> Choice:
     """Return the arguments of :func:`read` as one record."""
     for argument, given in (("columns", columns), ("skip_nan", skip_nan)):
@@ -138,6 +144,7 @@ def choice(
         dict(names or {}),
         dict(units or {}) if time_unit is None else {**(units or {}), TIME: check_unit(time_unit)},
         tuple(skip_nan),
+        types,
         None if hold_for is None else positive_period(hold_for, "longest time for which a value is held"),
     )
 

@@ -13,10 +13,12 @@ import numpy as np
 
 from rtamt.errors import TraceError
 from rtamt.extras import library
+from rtamt.language.value_types import Enumeration
 from rtamt.readers.formats import BAG, MCAP, METADATA
 from rtamt.readers.mcap import refuse_encodings, salvage
 from rtamt.readers.source import Field, Source, Table, printable, reason
 from rtamt.signals.arrays import is_number
+from rtamt.signals.recoding import Recoding
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -127,6 +129,7 @@ def _table(reader: Any, topic: str, connections: list[Any]) -> Table | None:
         paths = [steps[field.column] for field in wanted if field != clock]
         stamps: list[int] = []
         rows: list[list[Any]] = []
+        recodings: dict[int, Recoding] = {}
         others = 0
         for known, recorded, data in messages(reader, connections):
             message = _message(reader, known, data)
@@ -141,7 +144,17 @@ def _table(reader: Any, topic: str, connections: list[Any]) -> Table | None:
                 )
             stamps.append(stamp)
             rows.append([_at(message, path) for path in paths])
+            if len(rows) == 1:
+                enumerated = [(k, f) for k, f in enumerate(f for f in wanted if f != clock) if f.type]
+                recodings = {
+                    k: Recoding(_at(message, _holder(steps[f.column])), f.type)
+                    for k, f in enumerated
+                    if isinstance(f.type, Enumeration)
+                }
         losses[:] = [] if not others else [_repeated(topic, others)]
+        for k, recoding in recodings.items():
+            for row in rows:
+                row[k] = None if row[k] is None else recoding(float(row[k]))
         return _columns(wanted, clock, stamps, rows)
 
     fields = [Field(column, column, "", "number") for column in steps]
@@ -198,6 +211,12 @@ def _numbers(message: Any, before: Steps = ()) -> Iterator[Steps]:
     elif isinstance(message, (np.ndarray, list)) and len(message) <= _ELEMENTS:
         for index, item in enumerate(message):
             yield from _numbers(item, (*before, index))
+
+
+def _holder(path: Steps) -> Steps:
+    """Return the way to the message that holds what is at the end of a way."""
+    fields = [k for k, step in enumerate(path) if isinstance(step, str)]
+    return path[: fields[-1]] if fields else ()
 
 
 def _text(path: Steps) -> str:

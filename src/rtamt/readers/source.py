@@ -26,6 +26,8 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
+    from rtamt.language.value_types import ValueType
+
     #: Values of one column as the source has them; a masked value is a missing one.
     Raw = NDArray[Any]
 
@@ -38,7 +40,7 @@ class Field:
     """A column.
 
     ``kind``: "number", "time" (dates, stamps of a known unit), "text", or "" while unknown. ``skip_nan``:
-    whether a NaN in it is a missing value, and no mistake.
+    whether a NaN in it is a missing value, and no mistake. ``type``: of the variable, if its values may be names.
     """
 
     column: str
@@ -46,6 +48,7 @@ class Field:
     unit: str = ""
     kind: str = ""
     skip_nan: bool = field(default=False, compare=False)
+    type: ValueType | None = field(default=None, compare=False)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import UsageError, shown, with_article
 from rtamt.extras import message_class
-from rtamt.language.formula import variables
+from rtamt.language.formula import types_of, variables
 from rtamt.language.grammar import is_number
 from rtamt.rewrite.check import unbounded_future
 from rtamt.ros.fields import Path, check_path, path_of
@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
     from rtamt.language.document import Document
     from rtamt.language.formula import Formula
+    from rtamt.language.value_types import ValueType
     from rtamt.specification import Specification
 
 
@@ -97,6 +98,8 @@ class Binding:
     name: str
     inputs: tuple[Input, ...]
     outputs: tuple[Output, ...]
+    #: The types of the fields that are Booleans or of an enumeration.
+    value_types: Mapping[str, ValueType] = field(default_factory=dict)
 
     def check(self, load: Callable[[MessageType], Any] = MessageType.load) -> Mapping[MessageType, Any]:
         """Load every message type and check its fields; return the classes.
@@ -151,7 +154,7 @@ def bind(spec: Specification, verdict: str | None = None) -> Binding:
     formulas = [output.specification.formula for output in outputs]
     inputs = tuple(_inputs(formulas, document, types))
     _check_topics(inputs, outputs)
-    return Binding(document.name or "rtamt", inputs, outputs)
+    return Binding(document.name or "rtamt", inputs, outputs, types_of(*formulas))
 
 
 def _is_open(output: Output) -> bool:

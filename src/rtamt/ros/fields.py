@@ -6,10 +6,14 @@ import re
 from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import TraceError, UsageError, choices, with_article
+from rtamt.language.value_types import Enumeration
 from rtamt.signals.arrays import is_number
+from rtamt.signals.recoding import Recoding
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+
+    from rtamt.language.value_types import ValueType
 
 #: Fields of messages begin with a letter; names with a leading underscore are Python's own.
 _STEP = re.compile(r"([A-Za-z]\w*)((?:\[\d+\])*)")
@@ -44,17 +48,19 @@ def follow(message: Any, path: Path) -> Any:
     return message
 
 
-def reader(name: str) -> Callable[[Any], float]:
+def reader(name: str, type_: ValueType | None = None) -> Callable[[Any], float]:
     """Return a function that reads a number from a message.
 
-    ``name``: as written in a formula, the variable first. The function raises :class:`TraceError` if
-    a message has no such number: array lengths differ from message to message.
+    ``name``: as written in a formula, the variable first. ``type_``: that of the variable; members of an
+    enumeration are found by the constants of the message that have their names. The function raises
+    :class:`TraceError` if a message has no such number: array lengths differ from message to message.
 
     >>> from types import SimpleNamespace
     >>> reader("scan.ranges[1]")(SimpleNamespace(ranges=[0.5, 0.75]))
     0.75
     """
     path = path_of(name)
+    recoding: Recoding | None = None
 
     def read(message: Any) -> float:
         try:
@@ -65,9 +71,20 @@ def reader(name: str) -> Callable[[Any], float]:
             raise TraceError(f"a message has no field '{name}'", variable=name) from None
         if not is_number(value):
             raise TraceError(f"'{name}' is {value!r} in a message, expected a number", variable=name)
-        return float(value)
+        if not isinstance(type_, Enumeration):
+            return float(value)
+        nonlocal recoding
+        if recoding is None:
+            recoding = Recoding(holder_of(message, path), type_)
+        return recoding(float(value))
 
     return read
+
+
+def holder_of(message: Any, path: Path) -> Any:
+    """Return the message that holds what is at the end of a path."""
+    fields = [k for k, step in enumerate(path) if isinstance(step, str)]
+    return follow(message, path[: fields[-1]]) if fields else message
 
 
 def check_path(name: str, sample: Any, kind: str) -> None:

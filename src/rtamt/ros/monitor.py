@@ -97,7 +97,9 @@ class RosMonitor:
             self._leap = min(self._stale or most, most)
         self._readers: dict[str, list[tuple[str, Callable[[Any], float]]]] = {}
         for known in binding.inputs:
-            self._readers.setdefault(known.topic, []).extend((name, reader(name)) for name in known.fields)
+            self._readers.setdefault(known.topic, []).extend(
+                (name, reader(name, binding.value_types.get(name))) for name in known.fields
+            )
         topic_of = {name: known.topic for known in binding.inputs for name in known.fields}
         #: The outputs, grouped by the numbers that they read.
         self.watches = self._watches(binding.outputs, topic_of)

@@ -17,6 +17,7 @@ resampling        signals at other instants: a regular grid, or those of other s
 listing           a trace as text: its signals topic by topic
 arrays            data (lists, arrays, frames, objects) to float64 arrays
 coding            names of members to their codes; Booleans are 1 or 0
+recoding          codes that a recording has under other numbers: constants of messages
 dense_arrays      dense-time data to int64 ticks and float64 values
 regular           infer the sampling period; check order and distance of timestamps
 ticks             times to int64 ticks and back

@@ -12,8 +12,10 @@ from hypothesis import strategies as st
 
 import rtamt
 from rtamt.errors import UsageError
+from rtamt.language.value_types import Enumeration
 from rtamt.ros import Robustness, RosMonitor, Verdict, bind
 from rtamt.ros.diagnostics import Level
+from rtamt.ros.fields import reader
 from tests.unit.ros.messages import HEAD, NO_CLOCK, SECOND, message, monitor, numbers, said
 
 
@@ -203,3 +205,33 @@ def test_each_requirement_is_published_also_where_no_declared_message_is_for_it(
     records = monitor.message("rtamt/x", SimpleNamespace(value=4.0), 500_000_000)
     told = {record.output.name: record.value for record in records if isinstance(record, Robustness)}
     assert told == {"rob.value": 3, "REQ-12": -1}
+
+
+def test_constants_of_a_message_are_members_of_an_enumeration_by_name():
+    class Verdict(SimpleNamespace):
+        UNKNOWN, SATISFIED, VIOLATED = 0, 1, 2
+
+    read = reader("v.verdict", Enumeration("V", (("VIOLATED", 0), ("SATISFIED", 7))))
+    assert [read(Verdict(verdict=code)) for code in (0, 1, 2, 3)] == [8, 7, 0, 3]
+    plain = reader("v.verdict", Enumeration("V", (("ON", 1),)))
+    assert [plain(Verdict(verdict=code)) for code in (0, 1)] == [0, 1]
+
+
+def test_a_field_of_a_message_may_be_of_an_enumeration():
+    text = """from rtamt_msgs.msg import Verdict
+    from rtamt_msgs.msg import FloatStamped
+    enum V { VIOLATED, SATISFIED }
+    input Verdict v  V v.verdict  output FloatStamped rob
+    @ topic(v, /v)  @ topic(rob, /rob)
+    rob.value = v.verdict == SATISFIED"""
+
+    class Message(SimpleNamespace):
+        UNKNOWN, SATISFIED, VIOLATED = 0, 1, 2
+
+    watched = RosMonitor(bind(rtamt.parse(text)), time="dense")
+    records = [
+        record
+        for at, code in enumerate((1, 2), 1)
+        for record in watched.message("/v", Message(verdict=code), at * SECOND)
+    ]
+    assert numbers(records) == [(1, inf), (2, -inf)]

@@ -1,0 +1,109 @@
+"""Values of enumerations in files: text columns, value tables and constants, found by the names of members."""
+
+from __future__ import annotations
+
+from math import inf
+
+import asammdf
+import numpy as np
+import pandas as pd
+import polars as pl
+import pyarrow as pa
+import pyarrow.parquet as pq
+import pytest
+
+import rtamt
+from rtamt.cli import main
+from tests.unit.readers.bags import SECOND, Bag
+
+TEXT = "enum Mode { MANUAL, AUTO = 4, RTL } input Mode mode  mode == AUTO"
+SPEC = rtamt.parse(TEXT)
+COLUMN = ["MANUAL", "AUTO", "RTL"]
+IS_AUTO = [-inf, inf, -inf]
+
+
+def values(source, **more):
+    return SPEC.evaluate(
+        rtamt.read(source, columns=["mode"], types=SPEC.types, **more)
+    ).signal.values.tolist()
+
+
+@pytest.mark.parametrize(
+    "source",
+    [
+        {"time": [0, 1, 2], "mode": COLUMN},
+        {"time": [0, 1, 2], "mode": np.array(COLUMN)},
+        {"time": [0, 1, 2], "mode": [0, 4, 5]},
+        pd.DataFrame({"time": [0, 1, 2], "mode": COLUMN}),
+        pd.DataFrame({"time": [0, 1, 2], "mode": pd.Categorical(COLUMN)}),
+        pl.DataFrame({"time": [0, 1, 2], "mode": COLUMN}),
+        pa.table({"time": [0, 1, 2], "mode": pa.array(COLUMN).dictionary_encode()}),
+    ],
+)
+def test_text_columns_in_memory(source):
+    assert values(source) == IS_AUTO
+
+
+def test_frames_are_evaluated_without_reading_them_before():
+    for frame in (pd.DataFrame({"mode": COLUMN}), pl.DataFrame({"mode": COLUMN})):
+        assert SPEC.evaluate(frame).signal.values.tolist() == IS_AUTO
+
+
+def test_text_columns_of_csv_and_parquet(tmp_path):
+    path = tmp_path / "log.csv"
+    path.write_text("time,mode\n0,MANUAL\n1, AUTO \n2,5\n")
+    assert values(path) == IS_AUTO
+    assert rtamt.read(path, types=SPEC.types).names == ("mode",)
+    chunks = rtamt.scan(path, columns=["mode"], types=SPEC.types)
+    assert rtamt.check_stream(SPEC, chunks).robustness == -inf
+    pq.write_table(pa.table({"time": [0, 1, 2], "mode": COLUMN}), tmp_path / "log.parquet")
+    assert values(tmp_path / "log.parquet") == IS_AUTO
+
+
+def test_an_empty_cell_is_a_missing_member(tmp_path):
+    path = tmp_path / "log.csv"
+    path.write_text("time,mode\n0,MANUAL\n1,\n2,AUTO\n")
+    trace = rtamt.read(path, columns=["mode"], types=SPEC.types)
+    assert (trace["mode"].times.tolist(), trace["mode"].values.tolist()) == ([0, 2], [0, 4])
+
+
+def test_an_unknown_name_in_a_file_is_an_error_with_its_line(tmp_path, capsys):
+    path, text = tmp_path / "log.csv", tmp_path / "mode.stl"
+    path.write_text("time,mode\n0,MANUAL\n1,Auto\n")
+    text.write_text(TEXT)
+    with pytest.raises(rtamt.TraceError) as info:
+        values(path)
+    assert (
+        str(info.value)
+        == f"{path}, line 3: 'mode' is 'Auto', which is no member of Mode; did you mean 'AUTO'?"
+    )
+    assert main(["check", str(text), str(path)]) == 2
+    assert "line 3: 'mode' is 'Auto'" in capsys.readouterr().err
+    with pytest.raises(rtamt.TraceError) as info:
+        values({"mode": ["AUTO", "Hover"]})
+    assert str(info.value) == (
+        "'mode' is 'Hover' at sample 1 of a dict, which is no member of Mode; its members are MANUAL, AUTO, RTL"
+    )
+
+
+def test_the_value_table_of_a_measurement_is_read_by_name(tmp_path):
+    table = {f"val_{i}": i for i in range(3)} | {f"text_{i}": name for i, name in enumerate(COLUMN)}
+    with asammdf.MDF(version="4.10") as file:
+        raw = np.array([0, 1, 2], dtype="u1")
+        file.append([asammdf.Signal(raw, np.arange(3.0), name="mode", conversion=table)])
+        file.save(tmp_path / "log.mf4")
+    assert values(tmp_path / "log.mf4") == IS_AUTO
+    assert rtamt.read(tmp_path / "log.mf4")["mode"].values.tolist() == [0, 1, 2]
+
+
+def test_constants_of_a_message_are_read_by_name(tmp_path):
+    """Members have other codes than the constants UNKNOWN=0, SATISFIED=1, VIOLATED=2 of the message."""
+    with Bag(tmp_path, "mcap") as bag:
+        kind = "rtamt_msgs/msg/Verdict"
+        for at in range(4):
+            message = bag.store.types[kind](header=bag.header(at * SECOND), name="", verdict=at, horizon=0.0)
+            bag.write("/verdict", kind, at * SECOND, message)
+    spec = rtamt.parse("enum V { VIOLATED, SATISFIED = 2, } V v  v == VIOLATED; v == SATISFIED")
+    trace = rtamt.read(bag.path, columns=["v"], names={"v": "/verdict.verdict"}, types=spec.types)
+    # 0 and 3 are no constants of these names: they equal no member, also where a member has that code.
+    assert trace["v"].values.tolist() == [3, 2, 0, 3]
