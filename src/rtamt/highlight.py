@@ -32,6 +32,7 @@ DECLARING = (
     "output",
     "const",
     "parameter",
+    "table",
     "topic",
     "require",
     "severity",

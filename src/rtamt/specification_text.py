@@ -289,6 +289,7 @@ class SpecificationText:
             variables=self.document.variables or None,
             types=self.document.types,
             enumerations=self.document.enumerations,
+            tables=self.document.tables,
             unit=self.unit,
             parameters=self.parameters,
             templates=self.document.templates,

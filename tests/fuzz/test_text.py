@@ -28,6 +28,8 @@ WORDS += [
     "const",
     "def",
     "def f(x, y = 2) =",
+    "table t = {(0, 1), (2, 3)}",
+    "parameter float p = 2",
     "f(",
     'import "control.stl"',
     "stays(x, 1, y = 2)",

@@ -14,7 +14,7 @@ import picture
 
 import rtamt
 from rtamt.cli import COMMANDS, overview, parser_of
-from rtamt.language import enumerations, parser, specfile, templates
+from rtamt.language import enumerations, parser, specfile, tables, templates
 from rtamt.language.lint import RULES
 from rtamt.language.operators import STL, Bounds, Fixity, Tense
 
@@ -124,6 +124,7 @@ def grammar() -> str:
         f"## A formula\n\n{_productions(parser)}\n\n```ebnf\n{listing}\n```\n\n"
         f"## A specification file\n\n{_productions(specfile)}\n\n"
         f"## Enumerations\n\n{_productions(enumerations)}\n\n"
+        f"## Lookup tables\n\n{_productions(tables)}\n\n"
         f"## Templates\n\n{_productions(templates)}\n"
     )
 

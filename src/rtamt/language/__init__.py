@@ -30,6 +30,7 @@ declarations         what stands before the formulas of a file: imports, declara
 enumerations         ``enum Mode { MANUAL, AUTO = 4 }``
 specfile             specification files (``.stl``) to a document, and their grammar
 document             the content of a specification file
+tables               ``table name = {(x, y), ...}``, a function of one number
 parameters           values of parameters, set without parsing again
 requirements         ``require ID "text" severity WORD: formula``
 lint                 the table of warnings

@@ -17,12 +17,14 @@ from rtamt.language.lexer import Token, quoted
 from rtamt.language.operators import Fixity, Language
 from rtamt.language.requirements import RequirementParser
 from rtamt.language.scope import Scope
+from rtamt.language.tables import begins_table, parse_table
 from rtamt.language.value_types import BOOLEAN, Enumeration
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping
 
     from rtamt.language.document import Document
+    from rtamt.language.records import Operator
     from rtamt.language.templates import Template
     from rtamt.language.value_types import ValueType
 
@@ -70,6 +72,7 @@ class DeclarationParser(RequirementParser):
         self._declarations: dict[str, Declaration] = {}
         self._topics: dict[str, str] = {}
         self._templates: dict[str, Template] = {}
+        self._tables: dict[str, Operator] = {}
 
     def _header(self) -> str | None:
         """``header = "specification" , word``."""
@@ -129,6 +132,7 @@ class DeclarationParser(RequirementParser):
                 *document.templates,
                 *document.variables,
                 *document.enumerations,
+                *document.tables,
             )
             library.documents[file] = document, {**dict.fromkeys(names, file), **other.origins}
         document, origins = library.documents[file]
@@ -145,6 +149,7 @@ class DeclarationParser(RequirementParser):
         self._definitions.update(definitions)
         self._templates.update(templates)
         self._enumerations.update(document.enumerations)
+        self._tables.update(document.tables)
         self._types.update(document.types)
         self._topics.update(document.topics)
         self._imports.update({each.name: each for each in document.imports})
@@ -161,6 +166,21 @@ class DeclarationParser(RequirementParser):
         self._enumerations[known.name] = known
         return True
 
+    def _table(self) -> bool:
+        """Take the declaration of a table, if there is one here."""
+        if not begins_table(self):
+            return False
+        token = self._at(1)
+        table = parse_table(self)
+        if table.name in (*self._declarations, *self._given, *self._taken_names()):
+            raise self.error(f"'{table.name}' is declared twice{self._from(table.name)}", token.span)
+        self._tables[table.name] = table
+        return True
+
+    def _taken_names(self) -> set[str]:
+        """Return the names of what a text declares or defines, apart from variables."""
+        return {*self._constants, *self._tables, *self._definitions, *self._templates}
+
     def _scope(self, variables: Collection[str] | None, pending: Mapping[str, str] | None = None) -> Scope:
         """Return what names mean by now."""
         return Scope(
@@ -172,6 +192,7 @@ class DeclarationParser(RequirementParser):
             parameters=self._parameters,
             types=self._types,
             enumerations=self._enumerations,
+            tables=self._tables,
         )
 
     def _declaration(self) -> bool:
@@ -215,7 +236,8 @@ class DeclarationParser(RequirementParser):
         message = head in self._declarations and self._declarations[head].type in self._imports
         if head != name and head in self._declarations and not (message and type_ is not None):
             raise self.error(f"'{name}' is a field of '{head}', which is declared", token.span)
-        if name in self._declarations or name in self._constants or (constant and name in self._given):
+        taken = name in self._declarations or name in self._constants or name in self._tables
+        if taken or (constant and name in self._given):
             raise self.error(f"'{name}' is declared twice{self._from(name)}", token.span)
         value, column = None, ""
         unit = "" if constant else self._unit(token)

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from rtamt.language.formula import Formula, Span
+    from rtamt.language.records import Operator
     from rtamt.language.templates import Template
     from rtamt.language.value_types import Enumeration, ValueType
 
@@ -105,6 +106,8 @@ class Document:
     imported: Mapping[tuple[str, str], tuple[str, str]] = field(
         default_factory=lambda: MappingProxyType({}), compare=False, repr=False
     )
+    #: The tables that formulas may use, by name.
+    tables: Mapping[str, Operator] = field(default_factory=lambda: MappingProxyType({}))
     #: The name of the assertion or requirement selected by :meth:`select`.
     selected: str | None = None
     #: The document it was selected from, with every requirement; None if nothing was selected.

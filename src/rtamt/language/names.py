@@ -133,6 +133,9 @@ class NameParser:
         if name in scope.templates:
             signature = scope.templates[name].signature
             raise self.error(f"'{name}' is a template; give it arguments: {signature}", span)
+        if name in scope.tables:
+            call = f"{scope.tables[name].spellings[0]}(x)"
+            raise self.error(f"'{name}' is a table; give it an operand: {call}", span)
         value = scope.constants.get(name)
         if value is not None:
             if name in scope.parameters:

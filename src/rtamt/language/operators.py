@@ -184,6 +184,11 @@ def holds(number: Formula) -> Formula:
     return _GT(number, Const(0.0))
 
 
+def reaches(number: Formula, least: Formula) -> Formula:
+    """Return the formula that is +inf where ``number`` is at least ``least``, else -inf."""
+    return _GE(number, least)
+
+
 # The first operand where it is at least the second, else undefined; not part of the language either.
 _AT_LEAST = _function(
     "at_least", 2, "The first operand, which must be at least the second.", "at_least(x, 3) > 5",

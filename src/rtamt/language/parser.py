@@ -132,11 +132,14 @@ class FormulaParser(TypedParser):
                 return Apply(op, (), None, token.span)
             if op.fixity is Fixity.CONDITIONAL and self._begins_choice(self.index):
                 return self.choice(op, power, under)
+        table = self.scope.tables.get(token.name) if token.kind in ("name", "quoted") else None
+        if table is not None and self.tokens[self.index + 1].text in ("(", "["):
+            return self.call(table)
         if token.kind == "name" and self.tokens[self.index + 1].text == "(":
             template = self.scope.templates.get(token.text)
             if template is not None:
                 return parse_use(self, template)
-            hint = did_you_mean(token.text, self.scope.templates)
+            hint = did_you_mean(token.text, (*self.scope.templates, *self.scope.tables))
             if hint or token.text in self.scope.pending:
                 message = self.scope.pending.get(token.text) or f"'{token.text}' is not a function{hint}"
                 raise self.error(message, token.span, NameInFormulaError)
@@ -353,6 +356,7 @@ def parse_formula(
     variables: Collection[str] | None = None,
     types: Mapping[str, ValueType] | None = None,
     enumerations: Mapping[str, Enumeration] | None = None,
+    tables: Mapping[str, Operator] | None = None,
     unit: str = "s",
     parameters: Collection[str] = (),
     templates: Mapping[str, Template] | None = None,
@@ -383,6 +387,7 @@ def parse_formula(
         parameters=parameters,
         types=types or {},
         enumerations=enumerations or {},
+        tables=tables or {},
     )
     parser = FormulaParser(text, language, unit, scope)
     formula = parser.formula()

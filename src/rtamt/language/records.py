@@ -166,6 +166,8 @@ class Operator:
     # the operands, and the monotonicity of the result in each operand.
     extension: Callable[..., Any] | None = None
     slopes: Callable[..., tuple[int | None, ...]] | None = None
+    # Of an operator that a text declares: what makes it again, a function and its arguments.
+    maker: tuple[Callable[..., Operator], tuple[Any, ...]] | None = None
 
     def check(self) -> None:
         """Raise :class:`UsageError` if the record is not a valid operator."""
@@ -233,6 +235,8 @@ class Operator:
 
         if builtin(self.name) is self:
             return (builtin, (self.name,))
+        if self.maker is not None:
+            return self.maker
         return object.__reduce__(self)
 
 

@@ -41,7 +41,10 @@ class RequirementParser(FormulaParser):
             raise self.error(
                 "the name of a requirement is one line of visible characters, such as REQ-12", span
             )
-        if name in self._definitions or name in self._names or name in self.scope.templates:
+        if any(
+            name in known
+            for known in (self._definitions, self._names, self.scope.templates, self.scope.tables)
+        ):
             raise self.error(f"'{name}' is the name of another requirement or definition", span)
         if name in self.scope.constants:
             raise self.error(f"'{name}' is the name of a constant; give the requirement another one", span)

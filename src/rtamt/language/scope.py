@@ -10,6 +10,7 @@ if TYPE_CHECKING:
     from collections.abc import Collection, Mapping
 
     from rtamt.language.formula import Formula
+    from rtamt.language.records import Operator
     from rtamt.language.templates import Argument, Template
     from rtamt.language.value_types import Enumeration, ValueType
 
@@ -20,7 +21,7 @@ class Scope:
 
     ``pending`` holds names that cannot be used here, each with an explanation; ``arguments`` what the parameters
     of a template stand for, in its formula. ``types``: of variables and constants that are Booleans or of an
-    enumeration. ``enumerations``: by name.
+    enumeration. ``enumerations`` and ``tables``: by name.
     """
 
     constants: Mapping[str, float] = field(default_factory=lambda: MappingProxyType({}))
@@ -33,6 +34,7 @@ class Scope:
     parameters: Collection[str] = ()
     types: Mapping[str, ValueType] = field(default_factory=lambda: MappingProxyType({}))
     enumerations: Mapping[str, Enumeration] = field(default_factory=lambda: MappingProxyType({}))
+    tables: Mapping[str, Operator] = field(default_factory=lambda: MappingProxyType({}))
 
     def __reduce__(self) -> tuple[Any, ...]:
         # A read-only view can be neither pickled nor copied; the mapping behind it can.
@@ -41,7 +43,7 @@ class Scope:
 
     def __contains__(self, name: str) -> bool:
         """Return whether a name is declared; a field (``req.value``) is declared if its signal is."""
-        if name in self.definitions or name in self.constants or name in self.arguments:
+        if any(name in known for known in (self.definitions, self.constants, self.arguments, self.tables)):
             return True
         declared = self.variables or ()
         return name in declared or name.split(".", 1)[0] in declared
@@ -49,7 +51,7 @@ class Scope:
     @property
     def names(self) -> tuple[str, ...]:
         """Every declared name."""
-        return (*(self.variables or ()), *self.constants, *self.definitions, *self.arguments)
+        return (*(self.variables or ()), *self.constants, *self.definitions, *self.arguments, *self.tables)
 
     @property
     def slashes(self) -> int:

@@ -3,7 +3,7 @@
 ::
 
     document    = [ "specification" , word ] , { import } ,
-                  { declaration | annotation | enumeration, see enumerations.py } ,
+                  { declaration | annotation | enumeration, see enumerations.py | table, see tables.py } ,
                   statement , { separator , statement } , [ ";" ]
     separator   = ";" | after a named assertion, a requirement or a template, as in RTAMT's files: the end of the line
     statement   = assertion | requirement | template, see templates.py
@@ -41,6 +41,7 @@ from rtamt.language.formula import Formula, Span, Var, postorder
 from rtamt.language.imports import Library
 from rtamt.language.operators import STL, Language
 from rtamt.language.scope import Scope
+from rtamt.language.tables import begins_table
 from rtamt.language.templates import begins_template, parse_template, templates_to_come
 
 if TYPE_CHECKING:
@@ -90,7 +91,7 @@ class _DocumentParser(DeclarationParser):
         name = self._header()
         while self._import():
             pass
-        while self._enumeration() or self._declaration() or self._annotation():
+        while self._enumeration() or self._table() or self._declaration() or self._annotation():
             pass
         declared = tuple(d.name for d in self._declarations.values() if d.kind == "var")
         variables = tuple(dict.fromkeys((*self._given, *declared)))
@@ -115,6 +116,7 @@ class _DocumentParser(DeclarationParser):
             MappingProxyType(self._types),
             frozenset(self.used),
             imported=MappingProxyType(self.library.found),
+            tables=MappingProxyType(self._tables),
         )
 
     # ---- the formulas ----------------------------------------------------------------------------
@@ -129,7 +131,8 @@ class _DocumentParser(DeclarationParser):
             required = self._requires()
             if self._imports_file():
                 raise self.error("imports stand at the beginning, before declarations", self.token.span)
-            declares = self.token.text == "@" or self._declares() or begins_enumeration(self)
+            declares = self.token.text == "@" or self._declares()
+            declares = declares or begins_enumeration(self) or begins_table(self)
             if (found or self._templates) and not required and declares:
                 raise self.error(
                     "declarations and annotations stand before the first formula", self.token.span
@@ -223,7 +226,7 @@ class _DocumentParser(DeclarationParser):
         return {n: f"'{n}' is only defined further down; move its definition up" for n in names}
 
     def _check_new(self, name: str, token: Token) -> None:
-        if name in self._definitions or name in self._names or name in self._templates:
+        if name in self._taken_names() - self._constants.keys() or name in self._names:
             raise self.error(f"'{name}' is defined twice{self._from(name)}", token.span)
         if name in self._constants:
             raise self.error(f"'{name}' is a constant already{self._from(name)}", token.span)

@@ -294,6 +294,7 @@ class Declarations(ABC):
             variables=document.variables or None,
             types=document.types,
             enumerations=document.enumerations,
+            tables=document.tables,
             unit=self._unit,
             parameters=document.parameters,
         )
