@@ -12,8 +12,9 @@ from hypothesis import strategies as st
 import rtamt
 from rtamt.errors import EvaluationError
 from rtamt.language.printer import to_text
-from rtamt.verdicts.early_check import EarlyCheck, holds_at_end
-from tests.strategies import formulas, traces
+from rtamt.verdicts.dense_early_check import DenseEarlyCheck
+from rtamt.verdicts.early_check import DiscreteEarlyCheck, holds_at_end
+from tests.strategies import dense_chunkings, dense_traces, formulas, traces
 
 FORMULAS = formulas(unbounded_future=True)
 
@@ -37,7 +38,7 @@ def test_a_check_that_stops_early_equals_that_of_the_whole_recording(backend, so
     specs = [spec for spec in every if spec.input_names and holds_at_end(spec)]
     assume(specs)
     n = len(next(iter(columns.values())))
-    check = EarlyCheck(specs)
+    check = DiscreteEarlyCheck(specs)
     try:
         expected = [spec.evaluate({"time": np.arange(n) + 5.0, **columns}) for spec in specs]
         stopped = any(check.take(chunk) for chunk in _chunks(columns, n, cuts))
@@ -63,6 +64,50 @@ def test_a_check_that_stops_early_equals_that_of_the_whole_recording(backend, so
             assert earliest == found.samples - 1
 
 
+@pytest.mark.parametrize("backend", ["cpp", "python"])
+@given(st.data())
+def test_a_check_in_dense_time_that_stops_early_equals_that_of_the_whole_recording(backend, data):
+    some = data.draw(st.lists(formulas(discrete=False, unbounded_future=True), min_size=1, max_size=3))
+    every = [rtamt.parse(to_text(f), time="dense", resolution=1, backend=backend) for f in some]
+    specs = [spec for spec in every if spec.input_names]
+    assume(specs)
+    trace = {
+        name: (times.astype(float), values)
+        for name, (times, values) in data.draw(dense_traces(max_size=8)).items()
+    }
+    chunks = data.draw(dense_chunkings(trace))
+    check = DenseEarlyCheck(specs)
+    try:
+        expected = [spec.evaluate({name: trace[name] for name in spec.input_names}) for spec in specs]
+        stopped = any(map(check.take, chunks))
+    except (EvaluationError, rtamt.TraceError):
+        assume(False)
+    if not stopped:
+        assert check.decided is None
+        return
+    for found, whole in zip(check.decided, expected, strict=True):
+        assert found.satisfied == whole.satisfied
+        assert found.first_violation == rtamt.first_violation(whole)
+        assert found.bounds.lower <= whole.robustness <= found.bounds.upper
+        assert found.period is None
+
+
+def test_nothing_in_dense_time_is_read_behind_the_sample_that_decides_the_last_requirement():
+    def chunks():
+        yield {"x": ([0, 1.5], [5, 1])}
+        yield {"y": ([0.5, 2, 3], [0, 0, 0])}
+        yield {"x": ([4], [5]), "y": ([4.25], [4])}
+        raise AssertionError
+
+    first, second = (rtamt.parse(text, time="dense") for text in ("always(x >= 3)", "eventually(y >= 3)"))
+    check = DenseEarlyCheck([first, second])
+    assert any(map(check.take, chunks()))
+    assert [(d.satisfied, d.first_violation, d.decided_at, d.samples) for d in check.decided] == [
+        (False, 1.5, 1.5, 2),
+        (True, None, 4.25, 7),
+    ]
+
+
 def test_nothing_is_read_behind_the_sample_that_decides_the_last_requirement():
     def chunks():
         yield {"x": [5, 4, 1], "y": [0, 0, 0]}
@@ -70,7 +115,7 @@ def test_nothing_is_read_behind_the_sample_that_decides_the_last_requirement():
         raise AssertionError
 
     first, second = rtamt.parse("always(x >= 3)"), rtamt.parse("eventually(y >= 3)")
-    check = EarlyCheck([first, second])
+    check = DiscreteEarlyCheck([first, second])
     assert any(map(check.take, chunks()))
     assert [(d.satisfied, d.first_violation, d.samples) for d in check.decided] == [
         (False, 2.0, 3),

@@ -76,8 +76,9 @@ is bounded (but for always and eventually at its top). Many files are read on al
 
 --early stops reading once the verdict and the first violation are decided: the verdict is that of the whole
 recording, the robustness lies in the bounds that are printed, and nothing later is looked at. It applies to
-discrete time and formats that are read in chunks (CSV, Parquet, Arrow, SQL); 'rtamt info' reports for which formulas
-the end of a recording may change an early verdict, and these are checked over the whole recording.
+formats that are read in chunks (CSV, Parquet, Arrow, SQL) and bags, these in discrete time with --period. In
+discrete time, 'rtamt info' reports for which formulas the end of a recording may change an early verdict, and
+these are checked over the whole recording.
 
 --json prints one object a line: {"requirement", "trace", "satisfied", "robustness", "first_violation",
 "samples", "period", "episodes"}, of what was written with 'require' also "description" and "severity", or

@@ -20,12 +20,16 @@ from rtamt.readers.assemble import chunks_of
 from rtamt.readers.read import opened
 from rtamt.readers.sql import is_url, shown
 from rtamt.results import first_violation
+from rtamt.signals.arrays import TIME
 from rtamt.signals.episodes import Episodes
-from rtamt.verdicts.early_check import EarlyCheck, holds_at_end
+from rtamt.signals.resampling import Sampler
+from rtamt.verdicts.dense_early_check import DenseEarlyCheck
+from rtamt.verdicts.early_check import DiscreteEarlyCheck, holds_at_end
 from rtamt.verdicts.streaming import check_stream, check_streamable
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
+    from fractions import Fraction
 
     from rtamt.cli.outcome import Requirement
     from rtamt.cli.reading_options import Reading
@@ -128,19 +132,28 @@ def _early(requirement: Requirement, trace: str, reading: Reading) -> list[Outco
     begin = time.perf_counter()
     rows = requirement.rows or (requirement,)
     specs = [row.spec for row in rows]
-    if requirement.spec.domain.continuous or is_resampled(requirement.spec, trace, reading):
-        return None
     if not all(map(holds_at_end, specs)):
         return None
-    check = EarlyCheck(specs)
+    resampled = is_resampled(requirement.spec, trace, reading)
+    period = reading.resample or requirement.spec.period
+    if resampled and (
+        period is None or requirement.spec.domain.continuous or TIME in requirement.spec.input_names
+    ):
+        return None
+    if resampled and requirement.rows:
+        found = [_early(row, trace, reading) for row in requirement.rows]
+        return None if None in found else [o for each in found if each is not None for o in each]
     try:
         with opened(trace, reading.sheet, reading.query, reading.recover) as source:
-            if len(source.tables) > 1 or source.tables[0].chunks is None:
+            if not source.in_chunks:
                 return None
             chunks = _Chunks(
                 requirement.spec, chunks_of(source, choice_for([requirement.spec], trace, reading))
             )
-            if not any(map(check.take, chunks)):
+            check = (DenseEarlyCheck if requirement.spec.domain.continuous else DiscreteEarlyCheck)(specs)
+            if not any(
+                map(check.take, _sampled(chunks, specs[0], period, reading.how) if resampled else chunks)
+            ):
                 return None
     except StlError:  # the check of the whole recording reports what is wrong
         return None
@@ -153,12 +166,12 @@ def _early(requirement: Requirement, trace: str, reading: Reading) -> list[Outco
             "satisfied" if part.satisfied else "violated",
             part.bounds.lower if part.bounds.lower == part.bounds.upper else float("nan"),
             told(part.first_violation),
-            moment_of(part.first_violation, chunks.start),
+            moment_of(part.first_violation, part.start),
             part.samples,
             part.period,
             notes=(
                 *chunks.remarks,
-                f"{_stop(row, rows)} at {moment_of(part.decided_at, chunks.start)}, {_UNREAD}",
+                f"{_stop(row, rows)} at {moment_of(part.decided_at, part.start)}, {_UNREAD}",
             ),
             decided_at=told(part.decided_at),
             bounds=part.bounds,
@@ -166,6 +179,21 @@ def _early(requirement: Requirement, trace: str, reading: Reading) -> list[Outco
         )
         for row, part in zip(rows, check.decided, strict=True)
     ]
+
+
+def _sampled(
+    chunks: Iterable[Trace], spec: Specification, period: str | Fraction | None, how: str
+) -> Iterator[Mapping[str, Any]]:
+    """Yield chunks on a clock of their own: the values of all signals every ``period``."""
+    assert period is not None
+    sampler = Sampler(spec.input_names, period, how)
+    for chunk in chunks:
+        channels = {name: chunk.channel(name) for name in chunk}
+        known = sampler.take(
+            {name: (c.times, c.values) for name, c in channels.items() if c.times is not None}
+        )
+        if known is not None:
+            yield {TIME: known[0], **known[1]}
 
 
 def _stop(row: Requirement, rows: Sequence[Requirement]) -> str:

@@ -87,17 +87,39 @@ def trace_of(source: Source, choice: Choice) -> Trace:
 
 def chunks_of(source: Source, choice: Choice) -> Iterator[Trace]:
     """Read a source in chunks: traces that follow one another; what is noted in one is about all so far."""
-    (selection,) = select(source, choice)
+    selections = select(source, choice)
+    clocks = [clock_of(source, selection, choice) for selection in selections]
+    gaps = [_gaps(source, selection, choice) for selection in selections]
+    before = [0] * len(selections)
+    for chunk in _raw_chunks(source, selections):
+        channels: dict[str, Channel] = {}
+        for i, (selection, raws) in enumerate(zip(selections, chunk, strict=True)):
+            if len(selections) > 1 and not len(raws[0]):
+                continue  # nothing of this table
+            made, _ = _channels(source, selection, clocks[i], raws, choice, gaps[i], before[i])
+            channels.update(made)
+            before[i] += len(raws[0]) if raws else 0
+        notes = (*source.notes, *dict.fromkeys(note for clock in clocks if clock for note in clock.notes))
+        lost = (loss for each in gaps for gap in each.values() for loss in gap.losses())
+        losses = (*source.losses, *(loss for each in selections for loss in each.table.losses), *lost)
+        yield Trace(
+            _one_kind(channels, source.name),
+            source=source.name,
+            notes=notes,
+            losses=losses,
+            origin=source.origin,
+        )
+
+
+def _raw_chunks(source: Source, selections: Sequence[Selection]) -> Iterator[list[list[Raw]]]:
+    if source.together is not None:
+        places = {id(table): place for place, table in enumerate(source.tables)}
+        yield from source.together([(places[id(each.table)], each.fields) for each in selections])
+        return
+    (selection,) = selections
     assert selection.table.chunks is not None
-    clock = clock_of(source, selection, choice)
-    gaps = _gaps(source, selection, choice)
-    before = 0
     for raws in selection.table.chunks(selection.fields):
-        made, _ = _channels(source, selection, clock, raws, choice, gaps, before)
-        before += len(raws[0]) if raws else 0
-        notes = (*source.notes, *(() if clock is None else clock.notes))
-        losses = (*source.losses, *(loss for each in gaps.values() for loss in each.losses()))
-        yield Trace(made, source=source.name, notes=notes, losses=losses, origin=source.origin)
+        yield [raws]
 
 
 # ---- which columns -------------------------------------------------------------------------------

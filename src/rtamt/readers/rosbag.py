@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import os
 from contextlib import ExitStack, contextmanager
-from itertools import groupby
+from dataclasses import dataclass
+from itertools import groupby, islice
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
@@ -27,6 +28,8 @@ if TYPE_CHECKING:
 
 #: Elements of an array that become columns of their own; longer ones are images and clouds of points.
 _ELEMENTS = 1000
+#: Messages that are read at a time where a bag is read in chunks.
+_MESSAGES = 4096
 
 #: The steps from a message to a number in it.
 Steps = tuple["str | int", ...]
@@ -43,11 +46,16 @@ def open_bag(path: str, recover: bool = False) -> Source:
         reader, losses = stack.enter_context(open_reader(path, recover))
         # A damaged database may hold anything where a name was.
         ordered = sorted(reader.connections, key=lambda connection: str(connection.topic))
-        tables = [
-            _table(reader, topic, list(group)) for topic, group in groupby(ordered, lambda c: str(c.topic))
+        topics = [
+            _topic(reader, topic, list(group)) for topic, group in groupby(ordered, lambda c: str(c.topic))
         ]
-        found = tuple(table for table in tables if table is not None)
-        return Source(path, found, losses=losses, close=stack.pop_all().close)
+        found = [topic for topic in topics if topic is not None]
+
+        def together(wanted: Sequence[tuple[int, Sequence[Field]]]) -> Iterator[list[list[Raw]]]:
+            return _together(reader, [(found[place], fields) for place, fields in wanted])
+
+        tables = tuple(topic.table for topic in found)
+        return Source(path, tables, losses=losses, close=stack.pop_all().close, together=together)
 
 
 @contextmanager
@@ -112,8 +120,21 @@ def _existing(path: str) -> Path:
     return Path(path)
 
 
-def _table(reader: Any, topic: str, connections: list[Any]) -> Table | None:
-    """Return the table of a topic; None where it has no message."""
+@dataclass(frozen=True, slots=True, eq=False)
+class _Topic:
+    """A topic: its table, and where the numbers of its columns are in a message."""
+
+    table: Table
+    connections: list[Any]
+    steps: dict[str, Steps]
+
+    @property
+    def name(self) -> str:
+        return str(self.connections[0].topic)
+
+
+def _topic(reader: Any, topic: str, connections: list[Any]) -> _Topic | None:
+    """Return a topic; None where it has no message."""
     kinds = {connection.msgtype for connection in connections}
     first = next(messages(reader, connections), None)
     if first is None:
@@ -123,42 +144,82 @@ def _table(reader: Any, topic: str, connections: list[Any]) -> Table | None:
     connection, _, raw = first
     steps = {f"{topic}{_text(path)}": path for path in _numbers(_message(reader, connection, raw))}
     clock = Field(f"{topic} stamp", f"{topic} stamp", "ns", "number")
-    losses: list[str] = []
+    made: list[_Topic] = []
 
     def load(wanted: Sequence[Field]) -> list[Raw]:
-        paths = [steps[field.column] for field in wanted if field != clock]
-        stamps: list[int] = []
-        rows: list[list[Any]] = []
-        recodings: dict[int, Recoding] = {}
-        others = 0
+        rows = _Rows(made[0], wanted)
         for known, recorded, data in messages(reader, connections):
-            message = _message(reader, known, data)
-            stamp = _stamp(message) or recorded
-            if stamps and stamp <= stamps[-1]:
-                if stamp == stamps[-1]:  # a signal has one value at an instant: the first
-                    others += [_at(message, path) for path in paths] != rows[-1]
-                    continue
-                raise TraceError(
-                    f"the stamps on {topic} go back by {(stamps[-1] - stamp) / 1e9:.9g} s at message {len(stamps)}: "
-                    f"was simulated time set back? Cut the bag there"
-                )
-            stamps.append(stamp)
-            rows.append([_at(message, path) for path in paths])
-            if len(rows) == 1:
-                enumerated = [(k, f) for k, f in enumerate(f for f in wanted if f != clock) if f.type]
-                recodings = {
-                    k: Recoding(_at(message, _holder(steps[f.column])), f.type)
-                    for k, f in enumerated
-                    if isinstance(f.type, Enumeration)
-                }
-        losses[:] = [] if not others else [_repeated(topic, others)]
-        for k, recoding in recodings.items():
-            for row in rows:
-                row[k] = None if row[k] is None else recoding(float(row[k]))
-        return _columns(wanted, clock, stamps, rows)
+            rows.take(recorded, _message(reader, known, data))
+        return rows.columns()
 
     fields = [Field(column, column, "", "number") for column in steps]
-    return Table((clock, *fields), load, clock=clock, losses=losses)
+    made.append(_Topic(Table((clock, *fields), load, clock=clock), connections, steps))
+    return made[0]
+
+
+class _Rows:
+    """Messages of a topic in the order of their stamps, of which some fields are wanted."""
+
+    def __init__(self, topic: _Topic, wanted: Sequence[Field]) -> None:
+        self._topic, self._wanted = topic, wanted
+        self._paths = [topic.steps[field.column] for field in wanted if field != topic.table.clock]
+        self._stamps: list[int] = []
+        self._rows: list[list[Any]] = []
+        self._recodings: dict[int, Recoding] = {}
+        self._last: tuple[int, list[Any]] | None = None
+        self._count = self._others = 0
+
+    def take(self, recorded: int, message: Any) -> None:
+        """Take a message; of several with one stamp the first."""
+        stamp = _stamp(message) or recorded
+        row = [_at(message, path) for path in self._paths]
+        if self._last is not None and stamp <= self._last[0]:
+            if stamp == self._last[0]:  # a signal has one value at an instant: the first
+                self._others += row != self._last[1]
+                return
+            raise TraceError(
+                f"the stamps on {self._topic.name} go back by {(self._last[0] - stamp) / 1e9:.9g} s at message "
+                f"{self._count}: was simulated time set back? Cut the bag there"
+            )
+        if not self._count:
+            self._recodings = self._recodings_of(message)
+        self._count += 1
+        self._last = stamp, row
+        self._stamps.append(stamp)
+        self._rows.append(row)
+
+    def _recodings_of(self, message: Any) -> dict[int, Recoding]:
+        """Return how members of enumerations are read, by the place of their column."""
+        fields = [field for field in self._wanted if field != self._topic.table.clock]
+        return {
+            place: Recoding(_at(message, _holder(self._topic.steps[field.column])), field.type)
+            for place, field in enumerate(fields)
+            if isinstance(field.type, Enumeration)
+        }
+
+    def columns(self) -> list[Raw]:
+        """Return what came since the last call."""
+        table = self._topic.table
+        table.losses[:] = [] if not self._others else [_repeated(self._topic.name, self._others)]
+        assert table.clock is not None
+        rows = [list(row) for row in self._rows] if self._recodings else self._rows
+        for place, recoding in self._recodings.items():
+            for row in rows:
+                row[place] = None if row[place] is None else recoding(float(row[place]))
+        found = _columns(self._wanted, table.clock, self._stamps, rows)
+        self._stamps, self._rows = [], []
+        return found
+
+
+def _together(reader: Any, wanted: Sequence[tuple[_Topic, Sequence[Field]]]) -> Iterator[list[list[Raw]]]:
+    """Yield the columns of some topics, some messages at a time, in the order in which these were recorded."""
+    rows = {topic.name: _Rows(topic, fields) for topic, fields in wanted}
+    connections = [connection for topic, _ in wanted for connection in topic.connections]
+    found = messages(reader, connections)
+    while some := list(islice(found, _MESSAGES)):
+        for known, recorded, data in some:
+            rows[str(known.topic)].take(recorded, _message(reader, known, data))
+        yield [each.columns() for each in rows.values()]
 
 
 def _repeated(topic: str, count: int) -> str:
@@ -170,7 +231,7 @@ def _repeated(topic: str, count: int) -> str:
 
 
 def _columns(wanted: Sequence[Field], clock: Field, stamps: list[int], rows: list[list[Any]]) -> list[Raw]:
-    values = iter(zip(*rows, strict=True))
+    values: Iterator[tuple[Any, ...]] = iter(zip(*rows, strict=True) if rows else [()] * len(wanted))
     found: list[Raw] = []
     for field in wanted:
         if field == clock:

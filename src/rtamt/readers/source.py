@@ -81,6 +81,14 @@ class Source:
     #: What the recording should have and has not, because it is damaged: a sentence each.
     losses: tuple[str, ...] = ()
     close: Callable[[], None] | None = None
+    #: Places of tables, with fields of each, to the values of all of them, some at a time, in the order in which they
+    #: were recorded; None where tables cannot be read side by side.
+    together: Callable[[Sequence[tuple[int, Sequence[Field]]]], Iterator[list[list[Raw]]]] | None = None
+
+    @property
+    def in_chunks(self) -> bool:
+        """Whether it can be read in chunks."""
+        return self.together is not None or (len(self.tables) == 1 and self.tables[0].chunks is not None)
 
 
 def library(module: str, what: str) -> Any:
@@ -130,7 +138,18 @@ def missing_file(path: str) -> TraceError:
 
 def guarded(source: Source, guard: Callable[[], AbstractContextManager[None]]) -> Source:
     """Return a source that reads its tables under ``guard``: libraries read most of a file only then."""
-    return replace(source, tables=tuple(_guarded(table, guard) for table in source.tables))
+    together = source.together
+
+    def side_by_side(wanted: Sequence[tuple[int, Sequence[Field]]]) -> Iterator[list[list[Raw]]]:
+        assert together is not None
+        with guard():
+            yield from together(wanted)
+
+    return replace(
+        source,
+        tables=tuple(_guarded(table, guard) for table in source.tables),
+        together=None if together is None else side_by_side,
+    )
 
 
 def _guarded(table: Table, guard: Callable[[], AbstractContextManager[None]]) -> Table:

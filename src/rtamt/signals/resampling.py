@@ -12,7 +12,7 @@ from rtamt.language.units import duration
 from rtamt.signals.regular import merged
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     from numpy.typing import NDArray
 
@@ -50,6 +50,53 @@ def resampled(
     between = times[places] != grid
     both = np.concatenate((places, places[between] + 1))
     return found, _passed_over(name, both, len(times))
+
+
+class Sampler:
+    """Takes signals in chunks, each with its own samples, and gives their values at the instants of a grid.
+
+    The grid is that of :func:`grid_of`; an instant comes once every signal has a sample there, or later.
+    """
+
+    def __init__(self, names: Sequence[str], period: str | float | Fraction, how: str) -> None:
+        self._step, self._how = duration(period), how
+        self._pending: dict[str, tuple[Times, FloatArray]] = {}
+        self._names = names
+        self._start: Fraction | None = None
+        self._count = 0
+
+    def take(
+        self, chunk: Mapping[str, tuple[Times, FloatArray]]
+    ) -> tuple[Times, dict[str, FloatArray]] | None:
+        """Return what a chunk makes known: instants and the values of all signals there; None if it is nothing.
+
+        The first time these are two instants at least, from which the period can be told.
+        """
+        for name, (times, values) in chunk.items():
+            before = self._pending.get(name)
+            self._pending[name] = (
+                (times, values)
+                if before is None
+                else (np.concatenate((before[0], times)), np.concatenate((before[1], values)))
+            )
+        if any(name not in self._pending for name in self._names):
+            return None
+        timed = [times for times, _ in self._pending.values()]
+        if self._start is None:
+            self._start = max(_exact(times[0]) for times in timed)
+        last = min(_exact(times[-1]) for times in timed)
+        until = max(0, int((last - self._start) / self._step) + 1) if last >= self._start else 0
+        count = until - self._count
+        if count < (1 if self._count else 2):
+            return None
+        grid = _grid(self._start + self._count * self._step, self._step, count, timed[0].dtype)
+        found = {}
+        for name, (times, values) in self._pending.items():
+            found[name], _ = resampled(name, times, values, grid, self._how)
+            first = int(np.searchsorted(times, grid[-1], side="right")) - 1
+            self._pending[name] = times[first:], values[first:]
+        self._count = until
+        return grid, found
 
 
 def _passed_over(name: str, places: NDArray[np.intp], count: int) -> list[str]:

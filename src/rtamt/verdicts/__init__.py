@@ -23,6 +23,7 @@ causation             the monitor of what each sample alone causes
 prediction            predictions of later samples, and the radius of their errors
 caller_clock          times of early monitors in the format of the caller
 early_check           whether a recording can no longer change a verdict (``rtamt check --early``)
+dense_early_check     the same in dense time
 at_start              bounds and verdict at the start of the trace
 standalone            compile a requirement to a program that runs without Python
 ====================  =================================================================

@@ -169,6 +169,22 @@ class DenseEarlyMonitor(EarlyMonitor):
         return [(i, *(known[name] or ranges[i])) for name, i in numbers.items()]
 
 
+def push_tick(monitor: DenseEarlyMonitor, tick: int, row: Mapping[str, float]) -> None:
+    """Take the values of some variables at a tick."""
+    try:
+        monitor._backend.learn(
+            tick, monitor._row_of({name: (x, x) for name, x in row.items()}), monitor.samples
+        )
+    except monitor._undefined as error:
+        raise monitor._no_value(error) from None
+
+
+def decided_ticks(monitor: DenseEagerMonitor, output: int) -> list[tuple[int, int, bool, int]]:
+    """Return what the last call decided of an output: runs (begin, end, satisfied, decided at) in ticks."""
+    found: list[tuple[int, int, bool, int]] = monitor._backend.verdicts(output)
+    return found
+
+
 class DenseEagerMonitor(DenseEarlyMonitor, EarlyMonitorBase):
     """Reports whether a formula holds at each instant, each once, as soon as no later sample can change it.
 

@@ -1,8 +1,9 @@
-"""Checking a recording that comes in chunks no further than its verdicts need, in discrete time."""
+"""Checking a recording that comes in chunks no further than its verdicts need."""
 
 from __future__ import annotations
 
 import sys
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from fractions import Fraction
 from math import inf
@@ -23,7 +24,7 @@ from rtamt.verdicts.eager import EagerMonitor
 from rtamt.verdicts.robustness_and_truth import align_inputs, outputs_under
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
 
     from rtamt.language.formula import Formula
     from rtamt.signals.outcomes import Verdict
@@ -34,15 +35,16 @@ if TYPE_CHECKING:
 class Decided:
     """A verdict that no later sample can change.
 
-    ``decided_at``: the time of the sample that decided verdict and first violation. ``samples``: how many there were
-    up to it. ``bounds``: of the robustness, by then.
+    ``start``: of the trace. ``decided_at``: the time of the sample that decided verdict and first violation.
+    ``samples``: how many there were up to it. ``period``: None in dense time. ``bounds``: of the robustness, by then.
     """
 
     satisfied: bool
+    start: Any
     first_violation: Any
     decided_at: Any
     samples: int
-    period: Fraction
+    period: Fraction | None
     bounds: Interval
 
 
@@ -59,20 +61,61 @@ def holds_at_end(spec: Specification) -> bool:
     return spec.domain.continuous or ends_differently(truth, {}) is None
 
 
-class EarlyCheck:
+class EarlyCheck(ABC):
     """Checks requirements over chunks until all of them are decided.
 
     ``specs``: each of one requirement for which :func:`holds_at_end`. Raises the errors of ``check_stream``.
     """
 
-    def __init__(self, specs: Sequence[Specification], tolerance: float = TOLERANCE) -> None:
+    def __init__(self, specs: Sequence[Specification]) -> None:
         self._specs = specs
         self._names = tuple(dict.fromkeys(name for spec in specs for name in spec.input_names))
         self._types = {name: type_ for spec in specs for name, type_ in spec.types.items()}
+        self._open: dict[int, Watch] = {}
+        self._found: dict[int, Decided] = {}
+
+    @property
+    def decided(self) -> list[Decided] | None:
+        """What came of each specification; None while one is open."""
+        return None if self._open or not self._found else [self._found[i] for i in range(len(self._specs))]
+
+    @abstractmethod
+    def take(self, chunk: Any) -> bool:
+        """Take the next chunk; return whether everything is decided, so that no further one is needed."""
+
+    @abstractmethod
+    def _time(self, position: int) -> Any:
+        """Return a position as a time in the caller's form."""
+
+    def _close(
+        self,
+        number: int,
+        start: int,
+        violated: int | None,
+        decided: int,
+        samples: int,
+        period: Fraction | None,
+    ) -> None:
+        """Note that a requirement is decided, where its trace starts, and where it is violated first."""
+        watch = self._open.pop(number)
+        self._found[number] = Decided(
+            violated is None,
+            self._time(start),
+            None if violated is None else self._time(violated),
+            self._time(decided),
+            samples,
+            period,
+            watch.bounds,
+        )
+
+
+class DiscreteEarlyCheck(EarlyCheck):
+    """The check in discrete time, whose positions count samples."""
+
+    def __init__(self, specs: Sequence[Specification], tolerance: float = TOLERANCE) -> None:
+        super().__init__(specs)
         self._tolerance = tolerance
         self._period = specs[0].period
-        self._open: dict[int, _Requirement] = {}
-        self._found: dict[int, Decided] = {}
         self._samples = 0
         self._last: float | None = None
         self._start: Any = None
@@ -80,13 +123,8 @@ class EarlyCheck:
         self._times: list[Any] = []
         self._first = 0
 
-    @property
-    def decided(self) -> list[Decided] | None:
-        """What came of each specification; None while one is open."""
-        return None if self._open or not self._found else [self._found[i] for i in range(len(self._specs))]
-
     def take(self, chunk: Any) -> bool:
-        """Take the next chunk; return whether everything is decided, so that no further one is needed."""
+        """See :class:`EarlyCheck`."""
         stamps, columns, n = arrays.columns_of(chunk, self._names, types=self._types)
         if not n:
             return False
@@ -120,84 +158,106 @@ class EarlyCheck:
     def _begin(self, period: Fraction) -> None:
         for number, spec in enumerate(self._specs):
             formula = Discrete(period).check(spec.formula, spec.text)
-            self._open[number] = _Requirement(spec.with_formula(formula), period)
+            self._open[number] = _Samples(spec.with_formula(formula), period)
 
     def _step(self, sample: int, row: Mapping[str, float], period: Fraction) -> None:
         for number, each in list(self._open.items()):
-            if not each.take(sample, row):
-                continue
-            violated = each.violated
-            self._found[number] = Decided(
-                violated is None,
-                None if violated is None else self._time(violated),
-                self._time(sample),
-                sample + 1,
-                period,
-                each.bounds,
-            )
-            del self._open[number]
+            if each.take(sample, row):
+                self._close(number, 0, each.violated, sample, sample + 1, period)
 
     def _time(self, sample: int) -> Any:
         return self._times[sample - self._first] if sample else self._start
 
 
-class _Requirement:
-    """The parts of a requirement that must all hold, watched from sample to sample."""
+class Watch(ABC):
+    """The parts of a requirement that must all hold, watched from sample to sample.
 
-    def __init__(self, spec: Specification, period: Fraction) -> None:
+    ``unit``: the length of a period or tick in seconds.
+    """
+
+    def __init__(self, spec: Specification, unit: Fraction) -> None:
         outputs = outputs_under(spec.formula, spec.semantics, spec.roles)
-        domain = Discrete(period).online
-        self._names = spec.input_names
-        self._step = float(period)
+        self.names = spec.input_names
         #: Whether bounds hold at the end too; otherwise only the verdict gives the sign.
-        self._bounded = ends_differently(outputs.robustness, {}) is None
-        self._parts = [_Part(part, period) for part in conjuncts(outputs.truth)]
+        self._bounded = spec.domain.continuous or ends_differently(outputs.robustness, {}) is None
+        self._parts = [_Part(part, unit) for part in conjuncts(outputs.truth)]
         first, *others = (part.formula for part in self._parts)
-        watch = [Watched(str(i), formula, None) for i, formula in enumerate(others, 1)]
-        self._verdicts = EagerMonitor(
-            align_inputs(first, self._names), domain, watch=watch, backend=spec.backend
+        self._formulas = (
+            align_inputs(first, self.names),
+            align_inputs(outputs.robustness, self.names),
         )
-        robustness = align_inputs(outputs.robustness, self._names)
-        self._bounds = DiscreteIntervalMonitor(robustness, domain, at="start", backend=spec.backend)
+        self._watched = [Watched(str(i), formula, None) for i, formula in enumerate(others, 1)]
 
     @property
     def needed(self) -> int:
-        """The first sample, not counting that at the start, that may be the first violation."""
+        """The first position, not counting the start, that may be the first violation."""
         return min(part.certain if part.is_window else sys.maxsize for part in self._parts)
 
     @property
     def violated(self) -> int | None:
-        """The sample at which the requirement is first violated."""
+        """The position at which the requirement is first violated, from the first instant on."""
         return min((part.violated for part in self._parts if part.violated is not None), default=None)
 
     @property
     def bounds(self) -> Interval:
         """What is known of the robustness once the requirement is decided."""
         if self._bounded:
-            return self._bounds.interval()
+            return self._interval()
         return Interval(0.0, inf) if self.violated is None else Interval(-inf, 0.0)
 
-    def take(self, sample: int, row: Mapping[str, float]) -> bool:
-        """Take a sample; return whether the requirement is decided, and where it is violated first."""
-        time, mine = sample * self._step, {name: row[name] for name in self._names}
-        self._bounds.update(time, **mine)
-        found = self._verdicts.update(time, **mine)
-        for i, part in enumerate(self._parts):
-            part.take(self._verdicts[str(i)] if i else found)
+    @abstractmethod
+    def take(self, position: int, row: Mapping[str, float]) -> bool:
+        """Take values of variables at a position; return whether the requirement is decided."""
+
+    @abstractmethod
+    def _interval(self) -> Interval:
+        """Return the bounds of the robustness at the start."""
+
+    def _look(self, runs: Iterable[Iterable[tuple[int, int, bool]]]) -> bool:
+        """Take what was decided of each part; return whether everything is, and where it is violated first."""
+        for part, each in zip(self._parts, runs, strict=True):
+            part.take(each)
         violated = self.violated
         if violated is None:
             return all(part.satisfied for part in self._parts)
         return all(part.certain >= violated for part in self._parts)
 
 
+class _Samples(Watch):
+    """A requirement in discrete time."""
+
+    def __init__(self, spec: Specification, period: Fraction) -> None:
+        super().__init__(spec, period)
+        domain, (truth, robustness) = Discrete(period).online, self._formulas
+        self._step = float(period)
+        self._verdicts = EagerMonitor(truth, domain, watch=self._watched, backend=spec.backend)
+        self._bounds = DiscreteIntervalMonitor(robustness, domain, at="start", backend=spec.backend)
+
+    def _interval(self) -> Interval:
+        return self._bounds.interval()
+
+    def take(self, position: int, row: Mapping[str, float]) -> bool:
+        """See :class:`Watch`."""
+        time, mine = position * self._step, {name: row[name] for name in self.names}
+        self._bounds.update(time, **mine)
+        found = [self._verdicts.update(time, **mine)]
+        found += [self._verdicts[watched.name] for watched in self._watched]
+        return self._look(map(self._runs, found))
+
+    def _runs(self, verdicts: Iterable[Verdict]) -> Iterator[tuple[int, int, bool]]:
+        for verdict in verdicts:
+            sample = round(verdict.time / self._step)
+            yield sample, sample + 1, verdict.satisfied
+
+
 class _Part:
     """``always`` over a window from the start of the trace, or any other formula at the start.
 
-    ``certain``: the first sample of the window at which it is not decided that the formula holds; behind the window
+    ``certain``: the first position of the window at which it is not decided that the formula holds; behind the window
     the largest number.
     """
 
-    def __init__(self, formula: Formula, period: Fraction) -> None:
+    def __init__(self, formula: Formula, unit: Fraction) -> None:
         self.formula, self.certain, self._last, self.is_window = formula, 0, 0.0, False
         if (
             isinstance(formula, Apply)
@@ -205,11 +265,10 @@ class _Part:
             and formula.op.kernel == Window("min")
         ):
             (self.formula,), interval, self.is_window = formula.args, formula.interval, True
-            self.certain = 0 if interval is None else int(interval.begin / period)
+            self.certain = 0 if interval is None else int(interval.begin / unit)
             end = None if interval is None else interval.end
-            self._last = inf if end is None else int(end / period)
-        self._period = float(period)
-        self._ahead: set[int] = set()  # samples that hold, after one that is open
+            self._last = inf if end is None else int(end / unit)
+        self._ahead: dict[int, int] = {}  # runs that hold, after one that is open: from begin up to end
         self.violated: int | None = None
 
     @property
@@ -217,18 +276,17 @@ class _Part:
         """Whether the part holds."""
         return self.certain > self._last
 
-    def take(self, verdicts: list[Verdict]) -> None:
-        """Take what was decided."""
-        for verdict in verdicts:
-            sample = round(verdict.time / self._period)
-            if not self.certain <= sample <= self._last:
+    def take(self, runs: Iterable[tuple[int, int, bool]]) -> None:
+        """Take what was decided: runs from a position up to another."""
+        for begin, end, holds in runs:
+            first = max(begin, self.certain)
+            if first >= end or first > self._last:
                 continue
-            if verdict.satisfied:
-                self._ahead.add(sample)
-            elif self.violated is None or sample < self.violated:
-                self.violated = sample
+            if holds:
+                self._ahead[first] = end
+            elif self.violated is None or first < self.violated:
+                self.violated = first
         while self.certain in self._ahead:
-            self._ahead.remove(self.certain)
-            self.certain += 1
+            self.certain = self._ahead.pop(self.certain)
         if self.satisfied:
             self.certain = sys.maxsize

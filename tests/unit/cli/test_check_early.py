@@ -24,6 +24,21 @@ def test_early_stops_at_the_decision_and_does_not_see_what_comes_later(run, writ
     )
 
 
+@pytest.mark.parametrize("how", [(), ("--how", "linear")])
+@pytest.mark.parametrize("more", [("--time", "dense"), ("--resample", "2s")])
+def test_early_stops_in_dense_time_and_on_a_chosen_clock(run, write, more, how):
+    write("long.csv", f"{LONG}140000,oops\n")
+    write("short.csv", "time,x\n" + "".join(f"{i},{1 if i == 70 else 5}\n" for i in range(80)))
+    options = (*more, *(how if "--resample" in more else ()), "--json")
+    early = run("check", "always(x >= 3)", "long.csv", "--early", *options)
+    row, whole = (
+        json.loads(answer.out) for answer in (early, run("check", "always(x >= 3)", "short.csv", *options))
+    )
+    assert early.code == 1
+    assert (row["satisfied"], row["first_violation"]) == (False, whole["first_violation"]) == (False, 70)
+    assert (row["decided_at"], row["upper"], row["period"]) == (70, -2, whole["period"])
+
+
 def test_early_json_has_the_bounds_and_where_it_stopped(run, write):
     write("a.csv", "time,x\n0,5\n1,2\n2,6\n")
     (row,) = map(json.loads, run("check", "always(x >= 3)", "a.csv", "--early", "--json").out.splitlines())
@@ -47,8 +62,8 @@ def test_early_json_has_the_bounds_and_where_it_stopped(run, write):
     [
         ("always(x >= 0)", ()),  # decided by the end alone
         ("eventually[1:2] once[0:5](x >= 3)", ()),  # the end may change what was decided
-        ("always(x >= 3)", ("--time", "dense")),
-        ("always(x >= 3)", ("--resample", "1s")),
+        ("always(x >= 0)", ("--time", "dense")),
+        ("always(x >= 3)", ("--time", "dense", "--resample", "1s")),
         ("always(y >= 3)", ()),  # an error
     ],
 )
