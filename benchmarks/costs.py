@@ -150,6 +150,12 @@ def dense_offline(text: str) -> Callable[[], float]:
     return lambda: per(n * len(columns), lambda: core().dense_evaluate(code, columns))
 
 
+def against_minimum(name: str, window: str) -> Callable[[], float]:
+    """Evaluate an aggregate over 10^6 samples, and the minimum of the same window: the ratio."""
+    aggregate, minimum = (offline(f"{each}{window}(a) + b >= 0") for each in (name, "minimum"))
+    return lambda: aggregate() / minimum()
+
+
 def dense_online(text: str) -> Callable[[], float]:
     """``monitor.update(t, a=v)`` in dense time, one event an update: ns a call."""
     monitor = rtamt.parse(text).monitor(time="dense")
@@ -210,6 +216,15 @@ def rows() -> list[Row]:
     return [
         *(Row(f"offline {always.format(k)}", "ns/sample", 15, offline(always.format(k))) for k in WINDOWS),
         *(Row(f"offline a until[0:{k}] b", "ns/sample", 30, offline(f"a until[0:{k}] b")) for k in WINDOWS),
+        *(
+            Row(
+                f"offline {name}[0:1000](a) to minimum[0:1000](a)",
+                "ratio",
+                2,
+                against_minimum(name, "[0:1000]"),
+            )
+            for name in ("sum", "mean")
+        ),
         Row("the first, data checked and copied", "ns/sample", None, offline_face(always.format(10))),
         *(
             Row(f"online update(t, pairs), paper's API, k={k}", "ns/call", 250, online_pairs(k))

@@ -18,6 +18,7 @@ namespace rtamt::dense {
 namespace detail {
 
 struct Make {
+    static constexpr bool sums = false; // of step functions they are no step functions
     using Pointer = std::unique_ptr<Kernel>;
     const Instruction& at;
 

@@ -111,6 +111,6 @@ class Wedge final : public Temporal<typename Algebra::Domain> {
 
 template <class Algebra>
 using Slide = std::conditional_t<Algebra::Domain::total, Wedge<Algebra>,
-                                 Sliding<Extremum<Algebra>, typename Algebra::Domain>>;
+                                 Sliding<Joined<Algebra>, typename Algebra::Domain>>;
 
 } // namespace rtamt::dense

@@ -16,6 +16,7 @@ namespace rtamt::discrete {
 namespace detail {
 
 struct Make {
+    static constexpr bool sums = true;
     using Pointer = std::unique_ptr<Kernel>;
     const Instruction& at;
     std::int64_t lag = 0; // of the operands
@@ -71,6 +72,7 @@ std::size_t Kernels<D>::state_size(const Instruction& instruction, Sort sort) no
     case Opcode::shift:
     case Opcode::slide_max:
     case Opcode::slide_min:
+    case Opcode::slide_sum:
         return n * (sort == Sort::number ? sizeof(typename D::Number::Value)
                                          : sizeof(typename D::Value));
     case Opcode::until:

@@ -1,11 +1,12 @@
-// Extremum over all slots so far: unbounded once and historically.
+// Extremum over all slots so far: unbounded once and historically; and their sum.
 //
-// Cost: one comparison a sample. Memory: one value.
+// Cost: one operation a sample. Memory: one value.
 #pragma once
 
 #include "../values/algebra.hpp"
 #include "copy.hpp"
 #include "kernel.hpp"
+#include "undefined.hpp"
 
 namespace rtamt::discrete {
 
@@ -21,14 +22,17 @@ class Running final : public Scalar<typename Algebra::Value> {
         const Range present = block.present(this->lag());
         const auto* __restrict a = Kernel::a<Value>();
         auto* __restrict out = Kernel::out<Value>();
-        Value extremum = this->state();
-        fill_values(out, present.begin, extremum);
+        Value total = this->state();
+        fill_values(out, present.begin, total);
         for (std::size_t i = present.begin; i < present.end; ++i) {
-            extremum = Algebra::join(a[i], extremum);
-            out[i] = extremum;
+            total = Algebra::join(a[i], total);
+            out[i] = total;
         }
-        fill_values(out + present.end, block.count - present.end, extremum);
-        this->state() = extremum;
+        fill_values(out + present.end, block.count - present.end, total);
+        this->state() = total;
+        if constexpr (Algebra::partial) {
+            return first_undefined<typename Algebra::Domain>(out, present);
+        }
         return Kernel::defined;
     }
 };

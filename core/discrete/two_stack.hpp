@@ -18,6 +18,7 @@
 #include "copy.hpp"
 #include "journal.hpp"
 #include "kernel.hpp"
+#include "undefined.hpp"
 
 #include <algorithm>
 #include <concepts>
@@ -46,8 +47,8 @@ struct Operands {
 // The loops between the ends of stretches. To be specialised where a monoid allows better ones.
 //
 // Each sample waits for the one before it, and this latency is what small elements of doubles cost:
-// four of them are combined with each other before they meet the total. The operation is
-// associative, so the results are the same. Other elements cost their instructions.
+// four of them are combined with each other before they meet the total, where the operation is
+// associative, so that the results are the same. Other elements cost their instructions.
 template <Monoid M>
 struct Stretch {
     using Element = typename M::Element;
@@ -57,7 +58,7 @@ struct Stretch {
     static void flip(Element* ring, std::size_t width) noexcept {
         Element tail = M::identity;
         std::size_t i = width;
-        if constexpr (small) {
+        if constexpr (grouped) {
             for (; i >= 4; i -= 4) {
                 Element* cell = ring + (i - 4);
                 const Element two = M::prepend(cell[2], cell[3]);
@@ -92,15 +93,15 @@ struct Stretch {
     }
 
   private:
-    static constexpr bool small =
-        sizeof(Element) <= 2 * sizeof(double) && !std::integral<typename M::Value>;
+    static constexpr bool grouped = M::associative && sizeof(Element) <= 2 * sizeof(double) &&
+                                    !std::integral<typename M::Value>;
 
     // Hands over the total at each slot, then stores the slot's element. Answers the last total.
     template <class Take>
     [[nodiscard]] RTAMT_INLINE static Element each(Operands<M> in, Element* cells, Element back,
                                                    std::size_t count, Take&& take) noexcept {
         std::size_t i = 0;
-        if constexpr (small) {
+        if constexpr (grouped) {
             for (; i + 4 <= count; i += 4) {
                 const Element here[] = {in[i], in[i + 1], in[i + 2], in[i + 3]};
                 const Element two = M::append(here[0], here[1]);
@@ -251,6 +252,7 @@ class Sliding final : public Kernel {
         const Operands<M> in{a<Value>(), b<Value>()};
         stack_.push(in.from(present.begin), out + present.begin, present.end - present.begin);
         stack_.expire(out + present.end, block.count - present.end);
+        if constexpr (M::partial) return first_undefined<typename M::Domain>(out, present);
         return defined;
     }
 

@@ -1,4 +1,4 @@
-// Extremum over the last w slots: bounded once, historically, eventually, always.
+// Extremum over the last w slots: bounded once, historically, eventually, always; and their sum.
 //
 // The two stacks of two_stack.hpp. For real numbers the loops are unrolled by four, because a chain
 // of dependent comparisons is what would take the time.
@@ -10,12 +10,12 @@
 namespace rtamt::discrete {
 
 template <class Algebra>
-using Slide = Sliding<Extremum<Algebra>>;
+using Slide = Sliding<Joined<Algebra>>;
 
 template <class Algebra>
-    requires std::same_as<typename Algebra::Domain, Real>
-struct Stretch<Extremum<Algebra>> {
-    using In = Operands<Extremum<Algebra>>;
+    requires(std::same_as<typename Algebra::Domain, Real> && Algebra::associative)
+struct Stretch<Joined<Algebra>> {
+    using In = Operands<Joined<Algebra>>;
 
     static void flip(double* ring, std::size_t width) noexcept {
         double tail = Algebra::identity;

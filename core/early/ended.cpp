@@ -97,6 +97,20 @@ std::vector<Engine::Rest> Engine::ended(std::span<const std::uint32_t> refs, Tic
                 before = place(t) = Interval::join(b(t), Interval::meet(a(t), before));
             break;
         }
+        case Kind::sum: {
+            if (own.low <= -forever) {
+                Bounds sum = from == 0 ? Totals::Add::identity : place(from - 1);
+                for (Tick t = from; t < end; ++t) {
+                    if (t + own.high >= 0) sum = Totals::Add::join(a(t + own.high), sum);
+                    place(t) = sum;
+                }
+                break;
+            }
+            Totals totals(own.high - own.low + 1);
+            for (Tick t = from; t < end; ++t)
+                place(t) = t + own.high < 0 ? Totals::Add::identity : totals.at(t + own.high, a);
+            break;
+        }
         default: {
             const bool greatest = own.kind == Kind::greatest;
             const Bounds empty = greatest ? Interval::bottom : Interval::top;

@@ -18,6 +18,7 @@ Engine::Engine(Graph graph, std::vector<Bounds> ranges, bool late)
     std::size_t steps = 0;
     for (std::uint32_t i = 0; i < graph_.nodes.size(); ++i) {
         steps = std::max(steps, node(i).steps.size());
+        totals_.emplace_back(plus(node(i).high, plus(-node(i).low, 1)));
         for (const Step& step : node(i).steps) {
             partial_ = partial_ || info(step.opcode).partial;
             if (node(i).kind != Kind::atom || step.opcode != Opcode::input) continue;
@@ -44,6 +45,13 @@ Bounds Engine::at(std::uint32_t ref, Tick t) const noexcept {
     return {runs(ref, 0).at(t).value, -runs(ref, 1).at(t).value};
 }
 
+// A change, with samples up to a tick.
+void Engine::begin(Tick newest) noexcept {
+    clear();
+    seen_before_ = seen_;
+    seen_ = std::max(seen_, newest);
+}
+
 void Engine::clear() noexcept {
     for (State& state : nodes_) {
         state.out[0].clear();
@@ -61,6 +69,9 @@ std::optional<Engine::Failure> Engine::attempt(std::optional<Failure> failure) {
 void Engine::revert() {
     for (const Undo& undo : std::views::reverse(journal_))
         undo.runs->set(undo.l, undo.r, undo.old);
+    for (Totals& totals : totals_)
+        totals.forget();
+    seen_ = seen_before_;
     clear();
 }
 
@@ -69,7 +80,7 @@ void Engine::revert() {
 // Every atom is computed before anything changes.
 template <class Value>
 std::optional<Engine::Failure> Engine::take(Tick t, std::span<const Value> values) {
-    clear();
+    begin(t);
     const auto scratch = [&] {
         if constexpr (std::is_same_v<Value, double>) {
             return std::span(exact_);
@@ -119,7 +130,10 @@ void Engine::know(std::span<const Lesson> lessons) {
 }
 
 std::optional<Engine::Failure> Engine::learn(std::span<const Lesson> lessons) {
-    clear();
+    Tick newest = seen_;
+    for (const Lesson& lesson : lessons)
+        newest = std::max(newest, lesson.l);
+    begin(newest);
     journaling_ = partial_;
     know(lessons);
     for (const Lesson& lesson : lessons) {
@@ -132,7 +146,7 @@ std::optional<Engine::Failure> Engine::learn(std::span<const Lesson> lessons) {
 }
 
 std::optional<Engine::Failure> Engine::suppose(std::span<const Supposition> suppositions) {
-    clear();
+    begin(seen_);
     journaling_ = true;
     for (const Supposition& supposed : suppositions) {
         for (std::uint32_t i = 0; i < nodes_.size(); ++i) {
@@ -147,7 +161,7 @@ std::optional<Engine::Failure> Engine::suppose(std::span<const Supposition> supp
 }
 
 std::optional<Engine::Failure> Engine::suppose(std::span<const Lesson> lessons) {
-    clear();
+    begin(seen_);
     journaling_ = true;
     know(lessons);
     for (const Lesson& lesson : lessons) {
@@ -245,6 +259,9 @@ std::optional<Engine::Failure> Engine::propagate(bool first) {
                 }
             }
             if (failure && !first) return failure;
+        } else if (own.kind == Kind::sum) {
+            const auto failure = add_up(i, first);
+            if (failure && !first) return failure;
         } else {
             if (first && own.high < 0 && own.kind != Kind::held) { // nothing is in the window yet
                 const double empty = own.kind == Kind::least ? infinity : -infinity;
@@ -268,7 +285,8 @@ void Engine::settle(Tick closed, std::span<const Tick> wanted) {
         State& state = nodes_[i];
         const bool recursive =
             own.kind == Kind::since || own.kind == Kind::since_dense || own.low <= -forever;
-        const Tick open = std::max<Tick>(0, plus(plus(closed, 1), -own.horizon));
+        Tick open = std::max<Tick>(0, plus(plus(closed, 1), -own.horizon));
+        if (own.kind == Kind::sum) open = std::min(open, seen_ + 1); // samples may be left out
         Tick from = recursive ? open : std::max(need[i], open);
         if (need[i] >= forever) from = forever;
         state.from = std::max(state.from, from);
@@ -285,6 +303,7 @@ void Engine::settle(Tick closed, std::span<const Tick> wanted) {
         case Kind::least:
         case Kind::greatest:
         case Kind::held:
+        case Kind::sum:
             want(own.a, plus(from, own.low <= -forever ? own.high : own.low));
             break;
         default:
@@ -323,7 +342,13 @@ void Engine::transfer(Snapshot& snapshot) {
         registers[0].transfer(snapshot);
         registers[1].transfer(snapshot);
     }
-    if (snapshot.loading()) clear();
+    snapshot.item(seen_);
+    snapshot.require(seen_ >= -1 && seen_ < forever);
+    if (!snapshot.loading()) return;
+    seen_before_ = seen_;
+    for (Totals& totals : totals_)
+        totals.forget();
+    clear();
 }
 
 } // namespace rtamt::early

@@ -9,12 +9,14 @@
 #pragma once
 
 #include "graph.hpp"
+#include "totals.hpp"
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace rtamt::early {
@@ -133,14 +135,19 @@ class Engine {
     std::vector<std::vector<std::uint32_t>> readers_; // the atoms that read an input
     std::vector<Undo> journal_;                       // of a change that may fail
     bool journaling_ = false;
-    std::vector<double> exact_;   // results of steps
-    std::vector<Bounds> bounds_;  // results of steps
-    std::vector<Bounds> results_; // of atoms in a row
-    std::vector<Bounds> row_;     // knowledge of the inputs at a tick
+    std::vector<double> exact_;                // results of steps
+    std::vector<Bounds> bounds_;               // results of steps
+    std::vector<Bounds> results_;              // of atoms in a row
+    std::vector<Bounds> row_;                  // knowledge of the inputs at a tick
+    Tick seen_ = -1;                           // the newest tick of which samples came
+    Tick seen_before_ = -1;                    // the last change
+    std::vector<Totals> totals_;               // by node, of sums
+    std::vector<std::pair<Tick, Tick>> spans_; // where a sum may have changed
 
     [[nodiscard]] const Node& node(std::size_t i) const noexcept { return graph_.nodes[i]; }
     void know(std::span<const Lesson> lessons);
     [[nodiscard]] std::optional<Failure> attempt(std::optional<Failure> failure);
+    void begin(Tick newest) noexcept;
     void clear() noexcept;
 
     // engine.cpp: atoms and maps
@@ -150,6 +157,13 @@ class Engine {
                                                  bool supposed = false);
     [[nodiscard]] std::optional<Failure> remap(std::uint32_t index, Tick l, Tick r);
     [[nodiscard]] std::optional<Failure> propagate(bool first);
+
+    // sums.cpp
+    void lift(State& state, Tick l, Tick r, const Bounds& now);
+    [[nodiscard]] std::optional<Failure> add_up(std::uint32_t index, bool first);
+    [[nodiscard]] std::optional<Failure> add_windows(std::uint32_t index, Tick t, Tick r,
+                                                     bool first);
+    [[nodiscard]] std::optional<Failure> add_all(std::uint32_t index, Tick t);
 
     // kernels.cpp: all other nodes, a register at a time
     void change(State& state, int reg, Run run, double now);

@@ -127,12 +127,18 @@ void Graph::check() const {
         const bool pair = node.kind == Kind::both || node.kind == Kind::either ||
                           node.kind == Kind::until || node.kind == Kind::since ||
                           node.kind == Kind::since_dense;
-        require(node.kind <= Kind::held && (node.kind != Kind::held || node.low < 0));
+        require(node.kind <= Kind::sum && (node.kind != Kind::held || node.low < 0));
         if (node.kind == Kind::atom || node.kind == Kind::map) require(!node.steps.empty());
         if (node.kind != Kind::atom) require(earlier(node.a));
         if (pair || (node.kind == Kind::map && node.b != none)) require(earlier(node.b));
         require(node.low <= node.high && node.high > -forever && node.low < forever);
         require(node.low >= 0 || node.high <= 0);
+        if (node.kind == Kind::sum) {
+            require(node.high <= 0 && node.steps.size() == 1 &&
+                    (node.steps.front().opcode == Opcode::slide_sum ||
+                     node.steps.front().opcode == Opcode::run_sum));
+            continue;
+        }
         for (std::size_t s = 0; s < node.steps.size(); ++s) {
             const Step& step = node.steps[s];
             require(step.opcode < static_cast<Opcode>(opcodes.size()) &&

@@ -14,6 +14,7 @@
 //     since        max(b, min(a, own value at t - 1))
 //     since_dense  min(a, max(b, own value at t - 1)): in dense time the rest of the tick counts
 //     held         a at t + low, before the start its first value; low is negative
+//     sum          the sum of a over w, behind t and cut at the start, in the order of totals.hpp
 #pragma once
 
 #include "../program/opcodes.hpp"
@@ -40,6 +41,7 @@ enum class Kind : std::uint8_t {
     since,
     since_dense,
     held,
+    sum,
 };
 
 // One operation of an expression; operands are earlier steps.
@@ -57,7 +59,7 @@ struct Node {
     Tick low = 0;
     Tick high = 0;
     Tick horizon = 0;        // how many ticks later the value is final; may be `forever`
-    std::vector<Step> steps; // of atoms; of maps one, over operands 0 and 1
+    std::vector<Step> steps; // of atoms; of maps one, over operands 0 and 1; of sums one, the sum
 };
 
 struct Graph {

@@ -2,7 +2,8 @@
 //
 // A `Make` has a template for every kind of kernel: unary and binary for an operation
 // (values/operations.hpp), shift, since and until for a domain, slide and running for an algebra;
-// each returns a `Make::Pointer`, which owns the kernel.
+// each returns a `Make::Pointer`, which owns the kernel. `Make::sums`: whether slide and
+// running have sums, which only samples have.
 #pragma once
 
 #include "../values/algebra.hpp"
@@ -54,7 +55,13 @@ template <ValueDomain N, class Make>
                 return make.template unary<Operation>();
             }
         },
-        [&] { return make_either<N>(opcode, make); });
+        [&]() -> typename Make::Pointer {
+            if constexpr (Make::sums) {
+                if (opcode == Opcode::slide_sum) return make.template slide<SumOf<N>>();
+                if (opcode == Opcode::run_sum) return make.template running<SumOf<N>>();
+            }
+            return make_either<N>(opcode, make);
+        });
 }
 
 template <ValueDomain D, class Make>

@@ -57,6 +57,8 @@ enum class Opcode : std::uint8_t {
     sign,
     mod,
     at_least,
+    slide_sum,
+    run_sum,
 };
 
 // What the number n of an instruction means.
@@ -75,7 +77,7 @@ struct OpcodeInfo {
     Sort gives;
 };
 
-inline constexpr std::array<OpcodeInfo, 45> opcodes{{
+inline constexpr std::array<OpcodeInfo, 47> opcodes{{
     {"input", 0, false, false, Count::input, Sort::either, Sort::either},
     {"const", 0, false, false, Count::none, Sort::either, Sort::either},
     {"neg", 1, true, false, Count::none, Sort::either, Sort::either},
@@ -121,10 +123,12 @@ inline constexpr std::array<OpcodeInfo, 45> opcodes{{
     {"sign", 1, true, false, Count::none, Sort::number, Sort::number},
     {"mod", 2, true, true, Count::none, Sort::number, Sort::number},
     {"at_least", 2, true, true, Count::none, Sort::number, Sort::number},
+    {"slide_sum", 1, false, true, Count::width, Sort::number, Sort::number},
+    {"run_sum", 1, false, true, Count::none, Sort::number, Sort::number},
 }};
 
 static_assert(opcodes[static_cast<std::size_t>(Opcode::call)].name == "call");
-static_assert(opcodes[static_cast<std::size_t>(Opcode::at_least)].name == "at_least");
+static_assert(opcodes[static_cast<std::size_t>(Opcode::run_sum)].name == "run_sum");
 
 [[nodiscard]] constexpr const OpcodeInfo& info(Opcode opcode) noexcept {
     return opcodes[static_cast<std::size_t>(opcode)];

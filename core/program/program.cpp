@@ -82,6 +82,10 @@ class Checker {
           info_(info(instruction_.opcode)), dense_(program.domain == Domain::dense) {}
 
     void check() const {
+        if (dense_ &&
+            (instruction_.opcode == Opcode::slide_sum || instruction_.opcode == Opcode::run_sum)) {
+            fail("is for discrete time, and dense time is wanted here");
+        }
         operands();
         numbers();
         lags();
@@ -283,6 +287,9 @@ bool Program::can_fail(const Instruction& instruction) const noexcept {
     case Opcode::mul:
     case Opcode::div:
         return !harmless(instruction.a, false) && !harmless(instruction.b, false);
+    case Opcode::slide_sum:
+    case Opcode::run_sum:
+        return !harmless(instruction.a, true);
     default:
         return true;
     }

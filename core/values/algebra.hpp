@@ -1,8 +1,12 @@
-// The two lattices of a value domain, so that no kernel is written once for max and again for min,
-// and the maps that until is made of.
+// What kernels join values with: the two lattices of a value domain, so that no kernel is written
+// once for max and again for min, and addition; and the maps that until is made of.
+//
+// `associative`: whether values may be joined in another grouping with the same result. `partial`:
+// whether a result may be undefined, as inf - inf is.
 #pragma once
 
 #include "domain.hpp"
+#include "functions.hpp"
 #include "real.hpp"
 
 namespace rtamt {
@@ -12,6 +16,8 @@ struct MaxOf {
     using Domain = D;
     using Value = typename D::Value;
     static constexpr Value identity = D::bottom;
+    static constexpr bool associative = true;
+    static constexpr bool partial = false;
     [[nodiscard]] static constexpr Value join(const Value& a, const Value& b) noexcept {
         return D::join(a, b);
     }
@@ -22,8 +28,28 @@ struct MinOf {
     using Domain = D;
     using Value = typename D::Value;
     static constexpr Value identity = D::top;
+    static constexpr bool associative = true;
+    static constexpr bool partial = false;
     [[nodiscard]] static constexpr Value join(const Value& a, const Value& b) noexcept {
         return D::meet(a, b);
+    }
+};
+
+// Addition of numbers. An undefined sum stays undefined, but for bounds of which nothing is known:
+// with these the sum may be anything.
+template <ValueDomain D>
+struct SumOf {
+    using Domain = D;
+    using Value = typename D::Value;
+    static constexpr Value identity = D::of(0.0);
+    static constexpr bool associative = false;
+    static constexpr bool partial = true;
+    [[nodiscard]] static Value join(const Value& a, const Value& b) noexcept {
+        if constexpr (requires { D::anything(a); }) {
+            if (D::undefined(a)) return D::anything(b) ? b : a;
+            if (D::undefined(b)) return D::anything(a) ? a : b;
+        }
+        return D::template apply<functions::Add>(a, b);
     }
 };
 

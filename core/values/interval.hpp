@@ -36,6 +36,9 @@ struct Interval {
     [[nodiscard]] static bool undefined(const Bounds& a) noexcept {
         return Real::undefined(a.lower) || Real::undefined(a.upper);
     }
+    [[nodiscard]] static constexpr bool anything(const Bounds& a) noexcept {
+        return a.lower == Real::bottom && a.upper == Real::top;
+    }
     [[nodiscard]] static constexpr Bounds of(double x) noexcept { return {x, x}; }
 
     // Of numbers that are known, what the function itself makes of them.

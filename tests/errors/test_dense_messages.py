@@ -163,6 +163,29 @@ def test_operators_that_dense_time_does_not_have() -> None:
         )
 
 
+@pytest.mark.parametrize(
+    ("name", "why"),
+    [
+        ("sum", "adds samples, which dense time does not have; use minimum or maximum"),
+        (
+            "mean",
+            "of a step signal is a line, not a step, and dense time has steps only; use atleast with a duration",
+        ),
+        (
+            "integral",
+            "of a step signal is a line, not a step, and dense time has steps only; use atleast with a duration",
+        ),
+    ],
+)
+def test_sums_that_dense_time_does_not_have(name: str, why: str) -> None:
+    with pytest.raises(rtamt.SpecificationError) as info:
+        rtamt.parse(f"{name}[0:5](x) >= 3", time="dense")
+    marks = "^" * len(f"{name}[0:5](x)")
+    assert str(info.value) == (
+        f"'{name}' {why}, or discrete time\n  line 1, column 1:\n    {name}[0:5](x) >= 3\n    {marks}"
+    )
+
+
 def test_wrong_settings() -> None:
     with pytest.raises(rtamt.UsageError) as info:
         rtamt.parse("x", time="dens")

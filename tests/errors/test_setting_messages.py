@@ -71,15 +71,15 @@ def test_a_semantics_that_raises_is_named_with_the_predicate():
 
 @pytest.mark.parametrize("ask", [lambda result: result.satisfied, lambda result: result.explain()])
 def test_an_operator_that_makes_nan_of_infinities_has_robustness_and_no_verdict(ask):
-    mean = Operator(
-        "mean", ("mean",), Fixity.PREFIX, 75, (Sort.FORMULA,), Sort.FORMULA, "The mean so far.", "mean[0:1] x",
+    avg = Operator(
+        "avg", ("avg",), Fixity.PREFIX, 75, (Sort.FORMULA,), Sort.FORMULA, "The mean so far.", "avg[0:1] x",
         definition=lambda x, _a, _b: np.array([x[: i + 1].mean() for i in range(len(x))]),
         tense=Tense.PAST, bounds=Bounds.REQUIRED,
     )  # fmt: skip
-    result = rtamt.parse("always(mean[0:1] x > 1)", language=STL.extend(mean)).evaluate({"x": [0, 3, 6]})
+    result = rtamt.parse("always(avg[0:1] x > 1)", language=STL.extend(avg)).evaluate({"x": [0, 3, 6]})
     assert result.robustness == -1.0
     with pytest.raises(rtamt.EvaluationError) as info:
-        ask(rtamt.parse("always(mean[0:1](x > 1))", language=STL.extend(mean)).evaluate({"x": [0, 3, 6]}))
+        ask(rtamt.parse("always(avg[0:1](x > 1))", language=STL.extend(avg)).evaluate({"x": [0, 3, 6]}))
     assert str(info.value).startswith(
-        "there is no verdict, for which true counts as +inf and false as -inf: the operator 'mean' gave NaN: "
+        "there is no verdict, for which true counts as +inf and false as -inf: the operator 'avg' gave NaN: "
     )

@@ -65,14 +65,14 @@ FORMULAS = [
         "^^^^^^",
         ParseError,
         "'zigzag' is not a function; functions: abs, sqrt, exp, pow, log, ln, min, max, sin, cos, tan, asin, acos, "
-        "atan, atan2, hypot and 16 more",
+        "atan, atan2, hypot and 19 more",
     ),
     (
         "abz(x)",
         "^^^",
         ParseError,
         "'abz' is not a function; did you mean 'abs'? (functions: abs, sqrt, exp, pow, log, ln, min, max, sin, cos, "
-        "tan, asin, acos, atan, atan2, hypot and 16 more)",
+        "tan, asin, acos, atan, atan2, hypot and 19 more)",
     ),
     (
         "wrap(x, 0, y > 3) > 1",
@@ -114,6 +114,13 @@ FORMULAS = [
         "    ^^",
         ParseError,
         "'if' binds more weakly than the '+' before it; put parentheses around it: + (if ...)",
+    ),
+    (
+        "sum[0:2](x >= 3) > 1",
+        "         ^^^^^^",
+        ParseError,
+        "'sum' takes a number, and 'x >= 3' is a formula, true or false; write a signal or arithmetic, "
+        "such as (if x >= 3 then 1 else 0)",
     ),
     ("min(x)", "^^^^^^", ParseError, "'min' takes 2 or more operands, got 1"),
     ("abs(x, y)", "^^^^^^^^^", ParseError, "'abs' takes 1 operand, got 2"),

@@ -222,6 +222,10 @@ def test_the_verdict_of_a_result_is_boolean_satisfaction(
     assert result.satisfied is satisfied(formula, columns, n, ONE)[0]
 
 
+#: They read a window, and have no value where it holds both infinities.
+SUMS = {"sum", "mean", "integral"}
+
+
 def places_without_value(formula: Formula, columns: dict[str, Any]) -> list[tuple[str, int]]:
     """Return each sub-formula and sample without a value where the operands have one, in order of the formula."""
     places: list[tuple[str, int]] = []
@@ -235,9 +239,14 @@ def places_without_value(formula: Formula, columns: dict[str, Any]) -> list[tupl
         )
         window = () if node.op.bounds is Bounds.NONE else (int(begin), None if end is None else int(end))
         value = node.op.definition(*(below or (n,)), *window)
-        if node.op.tense is Tense.NONE:  # others choose among values, and make none
+        new = np.zeros(n, bool)  # others choose among values, and make none
+        if node.op.tense is Tense.NONE:
             new = np.isnan(value) & ~np.any([np.isnan(operand) for operand in below], axis=0)
-            places.extend((str(node), int(i)) for i in np.flatnonzero(new))
+        elif node.op.name in SUMS:
+            new = np.isnan(
+                node.op.definition(np.nan_to_num(below[0], posinf=np.inf, neginf=-np.inf), *window)
+            )
+        places.extend((str(node), int(i)) for i in np.flatnonzero(new))
         return value
 
     with np.errstate(all="ignore"):

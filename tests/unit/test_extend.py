@@ -31,13 +31,13 @@ from rtamt.rewrite.desugar import desugar
 F, N = Sort.FORMULA, Sort.NUMBER
 
 
-def mean(x: Any, a: int, b: int) -> Any:
+def avg(x: Any, a: int, b: int) -> Any:
     return np.array([x[max(0, t - b) : t - a + 1].mean() if t >= a else 0.0 for t in range(len(x))])
 
 
-MEAN = Operator(
-    "mean", ("mean",), Fixity.PREFIX, 75, (F,), F, "The mean over the window behind.", "mean[0:2](x >= 3)",
-    definition=mean, tense=Tense.PAST, bounds=Bounds.REQUIRED,
+AVG = Operator(
+    "avg", ("avg",), Fixity.PREFIX, 75, (F,), F, "The mean over the window behind.", "avg[0:2](x >= 3)",
+    definition=avg, tense=Tense.PAST, bounds=Bounds.REQUIRED,
 )  # fmt: skip
 
 
@@ -63,7 +63,7 @@ def parsed(text: str, *operators: Operator, **more: Any) -> rtamt.Specification:
 
 
 def test_a_definition_alone_runs_beside_compiled_operators() -> None:
-    spec = parsed("always[0:1](mean[0:2](x >= 0) or y > 5)", MEAN)
+    spec = parsed("always[0:1](avg[0:2](x >= 0) or y > 5)", AVG)
     data = {"x": [0, 3, 6, 9, 3], "y": [0, 0, 9, 0, 0]}
     assert spec.evaluate(data).signal.values.tolist() == [0, 1.5, 4, 6, 6]
     monitor = spec.monitor()
@@ -101,9 +101,9 @@ def test_a_dense_definition_runs_beside_compiled_operators() -> None:
 def test_without_a_dense_definition_dense_time_refuses_on_both_back_ends() -> None:
     for backend in ("cpp", "python"):
         with pytest.raises(rtamt.UsageError) as info:
-            parsed("mean[0:2] x", MEAN, time="dense", backend=backend).evaluate({"x": [[0, 1.0]]})
+            parsed("avg[0:2] x", AVG, time="dense", backend=backend).evaluate({"x": [[0, 1.0]]})
         assert str(info.value) == (
-            "'mean' has no meaning in dense time; give its record a dense definition (dense=...) or an "
+            "'avg' has no meaning in dense time; give its record a dense definition (dense=...) or an "
             "expansion, or use discrete time"
         )
 
@@ -278,29 +278,29 @@ def test_a_class_that_cannot_be_made_is_told() -> None:
 
 
 def test_a_program_with_a_call_lists_it_and_does_not_serialise() -> None:
-    spec = parsed("(mean[0:2] x) >= 3", MEAN)
+    spec = parsed("(avg[0:2] x) >= 3", AVG)
     program = compile_program([desugar(spec.formula)], Fraction(1, 10))
-    assert "call mean[0:20] %0" in program.disassemble()
+    assert "call avg[0:20] %0" in program.disassemble()
     with pytest.raises(rtamt.UsageError) as info:
         program.to_bytes()
     assert str(info.value) == (
-        "the program calls 'mean', which the core does not know: bytes cannot carry an operator's own code; "
+        "the program calls 'avg', which the core does not know: bytes cannot carry an operator's own code; "
         "expand it into the operators of STL, or run the program in Python"
     )
 
 
 def test_a_library_that_is_not_there_is_told() -> None:
     for library, kernel, message in [
-        ("./nowhere.so", "mean", "the kernel of 'mean' cannot be loaded: ./nowhere.so: cannot open"),
+        ("./nowhere.so", "avg", "the kernel of 'avg' cannot be loaded: ./nowhere.so: cannot open"),
         (
             "libc.so.6",
-            "mean_",
-            "the kernel of 'mean' cannot be loaded: 'libc.so.6' has no kernel 'mean_'; name it",
+            "avg_",
+            "the kernel of 'avg' cannot be loaded: 'libc.so.6' has no kernel 'avg_'; name it",
         ),
     ]:
-        compiled = replace(MEAN, kernel=Compiled(library, discrete=kernel))
+        compiled = replace(AVG, kernel=Compiled(library, discrete=kernel))
         with pytest.raises(rtamt.UsageError) as info:
-            parsed("mean[0:2] x", compiled).evaluate({"x": [1.0]})
+            parsed("avg[0:2] x", compiled).evaluate({"x": [1.0]})
         assert str(info.value).startswith(message)
 
 
@@ -309,38 +309,38 @@ def test_a_library_that_is_not_there_is_told() -> None:
     [
         (
             {"definition": None},
-            "the operator 'mean' has no definition: give a function on arrays, or an expansion",
+            "the operator 'avg' has no definition: give a function on arrays, or an expansion",
         ),
-        ({"definition": 3}, "the definition of 'mean' is no function: give one on arrays"),
+        ({"definition": 3}, "the definition of 'avg' is no function: give one on arrays"),
         (
             {"kernel": Blocks(), "expansion": lambda a, _i: a},
-            "the operator 'mean' has an expansion and a kernel: keep one of them",
+            "the operator 'avg' has an expansion and a kernel: keep one of them",
         ),
         (
             {"definition": None, "kernel": Blocks(), "expansion": lambda a, _i: a},
-            "the operator 'mean' has a kernel and no definition that it could be held against: give one, "
+            "the operator 'avg' has a kernel and no definition that it could be held against: give one, "
             "a function on arrays",
         ),
         (
             {"bounds": Bounds.NONE},
-            "the operator 'mean' reads the past and takes no interval: say how far it reads, reach= a number of "
+            "the operator 'avg' reads the past and takes no interval: say how far it reads, reach= a number of "
             "samples, or None for all of them",
         ),
         (
             {"bounds": Bounds.NONE, "reach": 2, "dense": flips},
-            "the operator 'mean' has a dense definition and a reach in samples, which dense time does not have: "
+            "the operator 'avg' has a dense definition and a reach in samples, which dense time does not have: "
             "give it an interval, or reach=None",
         ),
         (
             {"tense": Tense.NONE},
-            "the operator 'mean' takes an interval and reads one instant only: say where it reads, "
+            "the operator 'avg' takes an interval and reads one instant only: say where it reads, "
             "tense=Tense.PAST or Tense.FUTURE",
         ),
     ],
 )
 def test_a_record_that_cannot_be_an_operator_is_refused(change: dict[str, Any], message: str) -> None:
     with pytest.raises(rtamt.UsageError) as info:
-        Language.of([replace(MEAN, **change)])
+        Language.of([replace(AVG, **change)])
     assert str(info.value) == message
 
 

@@ -11,10 +11,11 @@ import zlib
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, NamedTuple
 
+from rtamt.compiler.lower import seconds_per_step
 from rtamt.compiler.program import NO_OPERAND, OPCODES
 from rtamt.errors import UsageError
 from rtamt.language.formula import Apply, Const, Formula, Var, postorder
-from rtamt.language.operators import Pointwise, Shift, Since, Tense, Until, Window
+from rtamt.language.operators import Pointwise, Shift, Since, Sum, Tense, Until, Window
 from rtamt.rewrite.check import reads_unbounded_future
 from rtamt.rewrite.horizon import horizons
 from rtamt.signals.discrete import Discrete
@@ -28,6 +29,7 @@ if TYPE_CHECKING:
 #: In the order of the core's enumerations.
 KINDS = (
     "atom", "map", "both", "either", "least", "greatest", "until", "since", "since_dense", "held",
+    "sum",
 )  # fmt: skip
 ITEMS = ("value", "all", "some", "until", "both", "either")
 
@@ -191,6 +193,8 @@ def _node(graph: Graph, formula: Formula) -> int:
         return _pointwise(graph, formula, kernel, args)
     if isinstance(kernel, Window):
         return _window(graph, formula, kernel, args[0])
+    if isinstance(kernel, Sum):
+        return _sum(graph, formula, kernel, args[0])
     if isinstance(kernel, Shift):
         step = -1 if formula.op.tense is Tense.PAST else 1
         return _over(graph, "least" if kernel.fill > 0 else "greatest", args[0], step, step)
@@ -276,6 +280,25 @@ def _window(graph: Graph, formula: Apply, kernel: Window, operand: int) -> int:
     if formula.op.tense is Tense.PAST:
         return _over(graph, kind, operand, -end, -begin)
     return _over(graph, kind, operand, begin, end)
+
+
+def _sum(graph: Graph, formula: Apply, kernel: Sum, operand: int) -> int:
+    begin, end = interval_in_steps(graph, formula)
+    depth = graph.horizon(operand)
+    value = operand
+    if begin or end:
+        steps = (Step(OPCODES.index("slide_sum" if end < FOREVER else "run_sum")),)
+        value = _add(
+            graph,
+            Node(KINDS.index("sum"), operand, low=-end, high=-begin, horizon=depth, steps=steps),
+            (formula,),
+        )
+    for opcode, factor in seconds_per_step(graph.period) if kernel.seconds else ():
+        factors = (Step(OPCODES.index("const"), x=factor),)
+        number = _add(graph, Node(KINDS.index("atom"), steps=factors), (formula,))
+        steps = (Step(OPCODES.index(opcode)),)
+        value = _add(graph, Node(KINDS.index("map"), value, number, horizon=depth, steps=steps), (formula,))
+    return value
 
 
 def _before(graph: Graph, begin: int) -> int:

@@ -9,20 +9,30 @@ composed for a > 0.
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from fractions import Fraction
 from math import inf
 from typing import TYPE_CHECKING
 
 from rtamt.compiler.program import CallSite, Instruction, Program
 from rtamt.language.formula import Apply, Const, Formula, Parameter, Var, postorder
-from rtamt.language.operators import Bounds, Pointwise, Shift, Since, Tense, Until, Window
+from rtamt.language.operators import Bounds, Pointwise, Shift, Since, Sum, Tense, Until, Window
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
-    from fractions import Fraction
 
     from rtamt.signals.domain_interface import TimeDomain
 
-_IDENTITY = {"max": -inf, "min": inf}
+_IDENTITY = {"max": -inf, "min": inf, "sum": 0.0}
+
+
+def seconds_per_step(step: Fraction) -> tuple[tuple[str, float], ...]:
+    """Return the operations, each with a number, that make seconds of a count of steps.
+
+    One product if the step is a double; else n/d are two operations, which for counts round once.
+    """
+    if Fraction(float(step)) == step:
+        return (("mul", float(step)),)
+    return ("mul", float(step.numerator)), ("div", float(step.denominator))
 
 
 class Lowering(ABC):
@@ -86,7 +96,9 @@ class Lowering(ABC):
         if isinstance(kernel, Pointwise):
             return self.pointwise(node, kernel, args)
         if isinstance(kernel, Window):
-            return self.window(node, kernel, args[0])
+            return self.window(node, kernel.reduce, args[0])
+        if isinstance(kernel, Sum):
+            return self.sum(node, kernel, args[0])
         if isinstance(kernel, Shift):
             return self.shift_by_one(node, kernel, args[0])
         if isinstance(kernel, Since):
@@ -168,29 +180,38 @@ class Lowering(ABC):
         a, b = (*args, None)[:2]
         return self.emit(Instruction(kernel.opcode, a, b, lag=lag), node)
 
-    def window(self, node: Apply, kernel: Window, x: int) -> int:
-        """Lower the largest or smallest value in a window."""
+    def window(self, node: Apply, reduce: str, x: int) -> int:
+        """Lower the largest or smallest value in a window, or the sum of all."""
         begin, end = self.bounds(node)
-        fill = _IDENTITY[kernel.reduce]
+        fill = _IDENTITY[reduce]
         lag = self.lag(x)
         if node.op.tense is Tense.PAST:
             if end is None:
-                x = self.emit(Instruction(f"run_{kernel.reduce}", x, lag=lag), node)
+                x = self.emit(Instruction(f"run_{reduce}", x, lag=lag), node)
             else:
-                x = self.slide(kernel.reduce, x, end - begin + self.point, lag, node)
+                x = self.slide(reduce, x, end - begin + self.point, lag, node)
             return self.moved(x, begin, fill, lag, node) if begin else x
         assert end is not None, "unbounded future is cut off before"
         if end == 0:
             return x
         if begin == end:
             return self.moved(x, 0, fill, lag + end, node)
-        return self.slide(kernel.reduce, x, end - begin + self.point, lag + end, node)
+        return self.slide(reduce, x, end - begin + self.point, lag + end, node)
 
     def slide(self, reduce: str, x: int, width: int, lag: int, origin: Formula) -> int:
-        """Return the extremum over the last ``width`` steps."""
+        """Return the extremum or the sum over the last ``width`` steps."""
         if width == self.point:
             return x
         return self.emit(Instruction(f"slide_{reduce}", x, n=width, lag=lag), origin)
+
+    def sum(self, node: Apply, kernel: Sum, x: int) -> int:
+        """Lower the sum over a window of the past."""
+        x = self.window(node, "sum", x)
+        for opcode, factor in seconds_per_step(self.period) if kernel.seconds else ():
+            x = self.emit(
+                Instruction(opcode, x, self.emit(Instruction("const", x=factor), node), lag=self.lag(x)), node
+            )
+        return x
 
     def slid(self, reduce: str, x: int, width: int, lag: int, origin: Formula) -> int:
         """Return a window over an operand of since or until, delayed to their lag (except for constants)."""

@@ -43,6 +43,7 @@ OPCODES = (
     "shift", "slide_max", "slide_min", "run_max", "run_min", "since", "until", "call",
     "sin", "cos", "tan", "asin", "acos", "atan", "atan2", "hypot", "sinh", "cosh", "tanh",
     "degrees", "radians", "floor", "ceil", "round", "sign", "mod", "at_least",
+    "slide_sum", "run_sum",
 )  # fmt: skip
 
 #: Time domains, in the order of their codes.

@@ -18,7 +18,7 @@ import numpy as np
 from rtamt.errors import EvaluationError, StlError, UsageError
 from rtamt.language.dense_definitions import QUARTERS, Steps
 from rtamt.language.formula import Apply
-from rtamt.language.operators import Blocks, Bounds, Compiled, Pointwise, Shift, Since, Until, Window
+from rtamt.language.operators import Blocks, Bounds, Compiled, Pointwise, Shift, Since, Sum, Until, Window
 from rtamt.reference.definition_adapter import (
     DefinedEvents,
     DefinedSamples,
@@ -268,5 +268,5 @@ def _begin(node: Apply, step: Fraction) -> int:
 def is_built_in(node: Formula) -> bool:
     """Return whether the core has a built-in kernel for an operator."""
     return not isinstance(node, Apply) or isinstance(
-        node.op.kernel, Pointwise | Window | Shift | Since | Until
+        node.op.kernel, Pointwise | Window | Sum | Shift | Since | Until
     )

@@ -22,6 +22,7 @@ array([-inf,   1.,   3.,   3.])
 from __future__ import annotations
 
 import math
+from fractions import Fraction
 from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
@@ -273,6 +274,48 @@ def once(x: Array, a: int, b: int | None) -> Array:
 def historically(x: Array, a: int, b: int | None) -> Array:
     """``historically[a,b] φ``: inf of φ over [t-b, t-a] ∩ T."""
     return np.array([_inf(x, _behind(t, a, b)) for t in range(len(x))], float)
+
+
+# ---- sums over the past --------------------------------------------------------------------------
+
+
+def _added(values: list[float]) -> float:
+    total = 0.0
+    for value in values:
+        total += value
+    return total
+
+
+def _sum(x: list[float], window: range, width: int | None) -> float:
+    """Sum over a window of ``width`` samples (None: all so far), of which those before the trace are missing.
+
+    Doubles round, so that their order matters: the samples are cut into blocks of ``width``. A window is the end of
+    one, added backwards, and the begin of the next, added forwards.
+    """
+    block = 0 if width is None else (window.stop - 1) // width * width
+    ending, beginning = x[window.start : block], x[max(block, window.start) : window.stop]
+    return _added(ending[::-1]) + _added(beginning)
+
+
+def sum_(x: Array, a: int, b: int | None) -> Array:
+    """``sum[a,b](x)``: the sum of x over [t-b, t-a] ∩ T, NaN if it holds both infinities."""
+    xs, width = x.tolist(), None if b is None else b - a + 1
+    return np.array([_sum(xs, _behind(t, a, b), width) if t >= a else 0.0 for t in range(len(xs))], float)
+
+
+def mean(x: Array, a: int, b: int | None) -> Array:
+    """``mean[a,b](x)``: the mean of x over [t-b, t-a] ∩ T; x at the first sample where that is empty."""
+    counts = np.array([len(_behind(t, a, b)) for t in range(len(x))])
+    with np.errstate(all="ignore"):
+        return np.where(counts > 0, sum_(x, a, b) / np.maximum(counts, 1), x[:1])
+
+
+def integral(x: Array, a: int, b: int | None, period: Fraction = Fraction(1)) -> Array:
+    """``integral[a,b](x)``: the sum times the period n/d: one product if n/d is a double, else sum · n / d."""
+    sums = sum_(x, a, b)
+    if Fraction(float(period)) == period:
+        return mul(sums, np.array(float(period)))
+    return div(mul(sums, np.array(float(period.numerator))), np.array(float(period.denominator)))
 
 
 # ---- one sample away ----------------------------------------------------------------------------

@@ -37,6 +37,7 @@ from rtamt.language.records import (
     Shift,
     Since,
     Sort,
+    Sum,
     Tense,
     Until,
     Window,
@@ -56,6 +57,7 @@ __all__ = [
     "Shift",
     "Since",
     "Sort",
+    "Sum",
     "Tense",
     "Until",
     "Window",
@@ -221,6 +223,24 @@ def _wrap(x: Formula, lo: Formula, hi: Formula, _i: Interval | None) -> Formula:
     return choice(inside, x, choice(_GE(turned, hi), lo, turned))
 
 
+def _first(x: Formula) -> Formula:
+    """Return the number that is the first value of ``x`` for ever."""
+    zero = Const(0.0)
+    return STL["sum"](choice(STL["prev"](STL["false"]()), x, zero))
+
+
+def _mean(x: Formula, i: Interval | None) -> Formula:
+    total, count = (STL["sum"](each, interval=i) for each in (x, Const(1.0)))
+    if i is None or i.begin == 0:
+        return STL["div"](total, count)
+    begun = STL["once"](STL["true"](), interval=Interval(i.begin, i.begin))
+    return choice(begun, STL["div"](total, STL["max"](count, Const(1.0))), _first(x))
+
+
+_SAMPLES = "adds samples, which dense time does not have; use minimum or maximum"
+_LINE = "of a step signal is a line, not a step, and dense time has steps only; use atleast with a duration"
+
+
 def _math(
     name: str, doc: str, example: str, *slopes: int | None, definition: Any = None, **more: Any
 ) -> Operator:
@@ -350,6 +370,16 @@ STL: Language = Language.of((
     _function("maximum", 1, "The greatest number of the window behind.", "maximum[0:5](x) - x <= 3",
               latex=r"\mathrm{{maximum}}_{I}({0})", tense=Tense.PAST, bounds=Bounds.OPTIONAL,
               definition=d.once, dense=dense.once, kernel=Window("max"), guards=("and",), strict=True),
+    _function("sum", 1, "The sum of the samples in the window behind; 0 where there is none.", "sum[0:5](x) <= 3",
+              latex=r"\mathrm{{sum}}_{I}({0})", tense=Tense.PAST, bounds=Bounds.OPTIONAL, discrete_only=True,
+              why_discrete=_SAMPLES, definition=d.sum_, kernel=Sum(), guards=("zero",), strict=True),
+    _function("mean", 1, "The mean of the samples in the window behind; the first sample where there is none.",
+              "mean[0:5](x) <= 3", latex=r"\mathrm{{mean}}_{I}({0})", tense=Tense.PAST, bounds=Bounds.OPTIONAL,
+              discrete_only=True, why_discrete=_LINE, definition=d.mean, expansion=_mean, strict=True),
+    _function("integral", 1, "The sum over the window behind times the sampling period in seconds.",
+              "integral[0:5](x) <= 3", latex=r"\mathrm{{integral}}_{I}({0})", tense=Tense.PAST,
+              bounds=Bounds.OPTIONAL, discrete_only=True, why_discrete=_LINE, definition=d.integral, kernel=Sum(seconds=True),
+              guards=("zero",), strict=True),
     # ---- one sample away ---------------------------------------------------------------------
     _prefix("prev", "prev Y previous", 70, "One sample ago; holds where there is none.", "prev(x >= 3)",
             latex=r"\mathbf{{Y}} {0}", tense=Tense.PAST, reach=1, discrete_only=True,

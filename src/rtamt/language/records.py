@@ -71,6 +71,13 @@ class Window:
 
 
 @dataclass(frozen=True, slots=True)
+class Sum:
+    """Sum of the values in a window of the past, undefined (NaN) for inf - inf; ``seconds``: times the period."""
+
+    seconds: bool = False
+
+
+@dataclass(frozen=True, slots=True)
 class Shift:
     """The operand one sample away, ``fill`` where that sample does not exist."""
 
@@ -113,7 +120,7 @@ class Compiled:
     dense: str | None = None
 
 
-Kernel = Pointwise | Window | Shift | Since | Until | Blocks | Compiled
+Kernel = Pointwise | Window | Sum | Shift | Since | Until | Blocks | Compiled
 
 #: The default of ``reach``: not given.
 _UNSAID = -1
@@ -128,7 +135,7 @@ class Operator:
     without an interval, ``reach`` is the distance in samples, None for all samples.
     ``power`` is the binding power (higher binds tighter). ``guards`` determines how pastification keeps
     an operand that was delayed by d from being read before its first value:
-    ``"and"`` (the operand counts as false there), ``"implies"`` (as true), None (not necessary).
+    ``"and"`` (the operand counts as false there), ``"implies"`` (as true), ``"zero"`` (as 0), None (not necessary).
     ``twin`` names the past operator that a future one becomes ("" if the operand itself does).
     ``dual`` names the operator for which ``not op(x) == dual(not x)``.
     """
@@ -151,6 +158,9 @@ class Operator:
     discrete_only: bool = False
     one_tick: bool = (
         False  # in dense time its interval is the tick behind, in discrete time the sample behind
+    )
+    why_discrete: str = (
+        ""  # completes the message in dense time; by default that it reads a neighbouring sample
     )
     reach: int | None = _UNSAID
     dual: str | None = None

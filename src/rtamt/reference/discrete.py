@@ -10,20 +10,21 @@ It trusts its caller: bounds are whole multiples of the period, inputs hold no N
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import lcm
 from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
 from rtamt.errors import UsageError
-from rtamt.language.formula import Apply, Const, Formula, Var, fold
-from rtamt.language.operators import Bounds, Tense
+from rtamt.language.formula import Apply, Const, Formula, Var, fold, postorder
+from rtamt.language.operators import Bounds, Sum, Tense
 from rtamt.language.undefined_value import at_sample, undefined
 from rtamt.reference.definition_adapter import values_of
-from rtamt.rewrite.desugar import spelled_out
+from rtamt.rewrite.desugar import desugar, spelled_out
 from rtamt.rewrite.ground import ground, grounds
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
+    from collections.abc import Callable, Iterator, Mapping, Sequence
     from fractions import Fraction
 
     from numpy.typing import NDArray
@@ -120,6 +121,8 @@ class ReferenceMonitor:
         self._exact = [_Exact(formula, period) for formula in self._formulas]
         # Values still to be told lie up to a horizon back, and each reads `history` further.
         self._reach = None if history is None else history + max(self._horizons, default=0)
+        # Sums are aligned to sample 0: what is dropped is a multiple of their windows.
+        self._block = lcm(*(width for formula in self._formulas for width in _sum_widths(formula, period)))
         self.reset()
 
     @property
@@ -154,6 +157,7 @@ class ReferenceMonitor:
         samples = self._samples + len(columns[0])
         known = self._news(kept, samples, final=False)
         drop = 0 if self._reach is None else max(0, samples - self._reach - self._first)
+        drop -= drop % self._block
         self._kept = [column[drop:].copy() for column in kept]
         self._first += drop
         self._samples = samples
@@ -257,7 +261,11 @@ def _apply(node: Formula, below: tuple[Array, ...], stretch: _Stretch) -> Array:
         return np.array(stretch.columns[node.name], float)
     if not isinstance(node, Apply):
         raise TypeError(f"not a formula: {node!r}")
-    window = () if node.op.bounds is Bounds.NONE else _window(node, stretch.period)
+    window: tuple[int | Fraction | None, ...] = ()
+    if node.op.bounds is not Bounds.NONE:
+        window = _window(node, stretch.period)
+    if isinstance(node.op.kernel, Sum) and node.op.kernel.seconds:
+        window = (*window, stretch.period)
     return values_of(node, below, n, window, "sample")
 
 
@@ -267,6 +275,15 @@ def _window(node: Apply, period: Fraction) -> tuple[int, int | None]:
         return 0, None
     end = node.interval.end
     return int(node.interval.begin / period), None if end is None else int(end / period)
+
+
+def _sum_widths(formula: Formula, period: Fraction) -> Iterator[int]:
+    """Yield the width of the window of every bounded sum; the mean is one."""
+    for node in postorder(desugar(formula)):
+        if isinstance(node, Apply) and isinstance(node.op.kernel, Sum):
+            begin, end = _window(node, period)
+            if end is not None:
+                yield end - begin + 1
 
 
 def _reaches(formula: Formula, period: Fraction, tense: Tense) -> dict[int, int | None]:

@@ -11,7 +11,8 @@ It shares nothing with the engines but the formula, and trusts its caller as ``d
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from math import inf
+from fractions import Fraction
+from math import inf, isnan, nan
 from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
@@ -19,7 +20,7 @@ import numpy as np
 from rtamt.errors import SpecificationError
 from rtamt.language.enclosures import Enclosure, extended
 from rtamt.language.formula import Apply, Const, Formula, Var, fold
-from rtamt.language.operators import Bounds, Pointwise, Shift, Since, Tense, Until, Window
+from rtamt.language.operators import Bounds, Pointwise, Shift, Since, Sum, Tense, Until, Window
 from rtamt.language.undefined_value import at_sample, undefined
 from rtamt.rewrite.desugar import desugar, written
 from rtamt.rewrite.ground import ground
@@ -27,7 +28,6 @@ from rtamt.rewrite.horizon import horizons
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
-    from fractions import Fraction
 
     from numpy.typing import NDArray
 
@@ -121,8 +121,11 @@ def _apply(node: Formula, below: tuple[Enclosure, ...], known: Knowledge, period
         raise TypeError(f"not a formula: {node!r}")
     if node.op.extension is not None:
         return pointwise(node, tuple(_padded(x, _longest(below)) for x in below))
-    componentwise(node)
     window = () if node.op.bounds is Bounds.NONE else _window(node, period)
+    if isinstance(node.op.kernel, Sum):
+        sums = summed(below[0], *_window(node, period), known)
+        return _timed(sums, period) if node.op.kernel.seconds else sums
+    componentwise(node)
     if known.finished:
         return _by_bound(node, below, window)
     # Operands are constant after their last entry. So is the result: of an operator of the future from
@@ -131,6 +134,73 @@ def _apply(node: Formula, below: tuple[Enclosure, ...], known: Knowledge, period
     n = _longest(below) + behind
     lower, upper = _by_bound(node, tuple(_padded(x, n + ahead) for x in below), window)
     return Enclosure(lower[:n], upper[:n])
+
+
+def summed(x: Enclosure, a: int, b: int | None, known: Knowledge) -> Enclosure:
+    """Return the bounds of ``sum[a,b](x)``: sums of bounds, in the order in which the samples are added.
+
+    Where the trace goes on as far as a whole window, the order is open: the hull of all orders is taken. A sum since
+    the start is bounded there by 0 or not at all.
+    """
+    pairs = list(zip(x.lower.tolist(), x.upper.tolist(), strict=True))
+    seen = len(pairs) if known.finished else known.n
+    if not known.finished:
+        pairs += [pairs[-1]] * (max(0, seen + 1 - len(pairs)) + (a if b is None else b) + 1)
+    found = []
+    for t in range(len(pairs)):
+        begin, end = 0 if b is None else max(t - b, 0), t - a + 1
+        if end <= begin:
+            found.append((0.0, 0.0))
+        elif b is None:
+            total = _added(pairs[: min(end, seen)])
+            rest = pairs[seen:] if end > seen else []
+            low, high = total
+            if not isnan(low):
+                low = low if all(least >= 0 for least, _ in rest) else -inf
+                high = high if all(most <= 0 for _, most in rest) else inf
+            found.append((low, high))
+        elif end > seen and end - begin == b - a + 1 and len(set(pairs[begin:end])) == 1:
+            orders = [_in_order(pairs[begin:end], k) for k in range(end - begin)]
+            found.append((min(low for low, _ in orders), max(high for _, high in orders)))
+        else:
+            found.append(_in_order(pairs[begin:end], max((end - 1) // (b - a + 1) * (b - a + 1) - begin, 0)))
+    return Enclosure(*(np.array(ends, float) for ends in zip(*found, strict=True)))
+
+
+def _in_order(pairs: list[Range], block: int) -> Range:
+    """Add what is before ``block`` backwards, the rest forwards, and both."""
+    ending, beginning = _added(pairs[:block][::-1]), _added(pairs[block:])
+    return _plus(ending, beginning) if block else beginning
+
+
+def _added(pairs: list[Range]) -> Range:
+    total = 0.0, 0.0
+    for pair in pairs:
+        total = _plus(total, pair)
+    return total
+
+
+def _plus(x: Range, y: Range) -> Range:
+    """Add two numbers between bounds; inf - inf is the infinite end, and NaN of two numbers that are known.
+
+    What is added to a number of which nothing is known may be anything.
+    """
+    low, high = x[0] + y[0], x[1] + y[1]
+    if ANYTHING in (x, y):
+        return ANYTHING
+    known = x[0] == x[1] and y[0] == y[1]
+    if any(map(isnan, (*x, *y))) or (known and isnan(low)):
+        return nan, nan
+    return -inf if isnan(low) else low, inf if isnan(high) else high
+
+
+def _timed(sums: Enclosure, period: Fraction) -> Enclosure:
+    def seconds(each: NDArray[np.float64]) -> NDArray[np.float64]:
+        if Fraction(float(period)) == period:
+            return each * float(period)
+        return each * float(period.numerator) / float(period.denominator)
+
+    return Enclosure(seconds(sums.lower), seconds(sums.upper))
 
 
 def pointwise(node: Apply, operands: tuple[Enclosure, ...]) -> Enclosure:

@@ -8,7 +8,7 @@ from fractions import Fraction
 
 from rtamt.errors import BoundError, SpecificationError
 from rtamt.language.formula import Apply, Const, Formula, children, postorder
-from rtamt.language.operators import STL, Bounds, Pointwise, Tense
+from rtamt.language.operators import STL, Bounds, Pointwise, Sum, Tense
 from rtamt.language.printer import interval_text
 from rtamt.language.units import format_duration
 from rtamt.rewrite.desugar import spelled_out
@@ -137,9 +137,11 @@ def check_dense(formula: Formula, text: str | None = None, *, ticks: bool = True
     """
     for node in postorder(spelled_out(formula)):
         if isinstance(node, Apply) and (node.op.discrete_only or (node.op.one_tick and not ticks)):
+            why = node.op.why_discrete or (
+                "means one sample away, which dense time does not have; use a window such as once[0:1]"
+            )
             raise SpecificationError(
-                f"'{node.op.name}' means one sample away, which dense time does not have; "
-                f"use a window such as once[0:1], or discrete time",
+                f"'{node.op.name}' {why}, or discrete time",
                 text,
                 node.span,
             )
@@ -172,7 +174,8 @@ def always_has_a_value(formula: Formula) -> bool:
     for node in postorder(formula):
         if not isinstance(node, Apply):
             continue
-        partial = isinstance(node.op.kernel, Pointwise) and node.op.kernel.partial
+        kernel = node.op.kernel
+        partial = isinstance(kernel, Sum) or (isinstance(kernel, Pointwise) and kernel.partial)
         if partial or STL.get(node.op.name) is not node.op:
             return False
         # A predicate is a difference, and inf - inf is undefined.

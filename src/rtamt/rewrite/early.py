@@ -15,7 +15,7 @@ import numpy as np
 
 from rtamt.language.enclosures import Enclosure, extended
 from rtamt.language.formula import Apply, Const, Formula, Var, children, fold, postorder, variables
-from rtamt.language.operators import Bounds, Pointwise, Shift, Since, Tense, Until, Window
+from rtamt.language.operators import Bounds, Pointwise, Shift, Since, Sum, Tense, Until, Window
 from rtamt.rewrite.desugar import desugar, written
 
 if TYPE_CHECKING:
@@ -59,6 +59,8 @@ def loose(formula: Formula, period: Fraction | None) -> str | None:
     [None, 'x', None]
     """
     core = desugar(formula)
+    if any(map(_sums_all, postorder(core))):  # beyond the newest sample such a sum has no best bounds
+        return next(iter(variables(core)), None)
     constants = _constants(core)
     # Parents first: the instants at which a node is read, by its identity and sign.
     spans: dict[tuple[int, int], _Span] = {(id(core), 1): _PRESENT}
@@ -91,6 +93,13 @@ def loose(formula: Formula, period: Fraction | None) -> str | None:
         if any(not one.agrees(other, dense=period is None) for one in every for other in every):
             return name
     return None
+
+
+def _sums_all(node: Formula) -> bool:
+    """Return whether a node is a sum since the start of the trace."""
+    if not isinstance(node, Apply) or not isinstance(node.op.kernel, Sum):
+        return False
+    return node.interval is None or node.interval.end is None
 
 
 def _moves(node: Apply, constants: Mapping[int, float]) -> tuple[int | None, ...]:

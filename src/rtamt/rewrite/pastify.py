@@ -14,7 +14,7 @@ from dataclasses import replace
 from fractions import Fraction
 
 from rtamt.errors import BoundError, SpecificationError
-from rtamt.language.formula import Apply, Formula, Interval, fold, postorder
+from rtamt.language.formula import Apply, Const, Formula, Interval, fold, postorder
 from rtamt.language.grammar import is_number
 from rtamt.language.operators import STL, Sort, Tense
 from rtamt.rewrite.check import has_future, unbounded_future
@@ -144,6 +144,8 @@ class _Pastifier:
         if how is None or delay == 0:
             return operand
         meant = self._shifted(STL["true"](), delay)
+        if how == "zero":
+            return Apply(STL["if"], (meant, operand, Const(0.0)), None, operand.span)
         pair = (meant, operand) if how == "implies" else (operand, meant)
         return Apply(STL[how], pair, None, operand.span)
 

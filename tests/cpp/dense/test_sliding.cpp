@@ -6,7 +6,7 @@
 #include <memory>
 
 using dense_oracle::signal_of;
-using rtamt::Extremum;
+using rtamt::Joined;
 using rtamt::Max;
 using rtamt::Min;
 using rtamt::Real;
@@ -51,7 +51,7 @@ void check_windows() {
         const Signal signal = dense_oracle::random_signal(random, 0, 40);
         const std::int64_t width = random.between(0, 40);
         Wedge<Algebra> wedge(0, width);
-        Sliding<Extremum<Algebra>, Real> stacks(0, width);
+        Sliding<Joined<Algebra>, Real> stacks(0, width);
         wedge.begin(0);
         stacks.begin(0);
         const std::int64_t end = signal.times.back() + 60;

@@ -107,6 +107,27 @@ inline double pointwise(Opcode opcode, double a, double b) {
     }
 }
 
+// The last `width` samples in blocks of as many, from the first one on: the end of one block, added
+// backwards, and the begin of the next.
+inline double sum(const Slots& a, std::int64_t slot, std::int64_t width) {
+    std::vector<double> samples;
+    for (std::int64_t s = 0; s <= slot; ++s) {
+        const auto& sample = a[static_cast<std::size_t>(s)];
+        if (sample) samples.push_back(*sample);
+    }
+    if (samples.empty()) return 0;
+    const std::size_t last = samples.size() - 1;
+    const auto wide = static_cast<std::size_t>(width);
+    const std::size_t block = last / wide * wide;
+    double ending = 0;
+    double beginning = 0;
+    for (std::size_t i = block; i <= last; ++i)
+        beginning += samples[i];
+    for (std::size_t i = block; i-- > 0 && i + wide > last;)
+        ending += samples[i];
+    return ending + beginning;
+}
+
 // One slot of an instruction with state, given all slots of its operands up to it.
 inline double temporal(const Instruction& instruction, const Slots& a, const Slots& b,
                        std::int64_t slot) {
@@ -139,6 +160,10 @@ inline double temporal(const Instruction& instruction, const Slots& a, const Slo
         for (std::int64_t s = 0; s <= slot; ++s)
             value = std::min(value, at(a, s).value_or(inf));
         return value;
+    case Opcode::slide_sum:
+        return sum(a, slot, instruction.n);
+    case Opcode::run_sum:
+        return sum(a, slot, slot + 1);
     case Opcode::since: // the best psi so far, held since by phi
         value = -inf;
         for (std::int64_t s = 0; s <= slot; ++s) {

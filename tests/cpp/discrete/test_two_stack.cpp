@@ -66,8 +66,8 @@ void check_windows(const char* name) {
 
 template <ValueDomain D>
 void check_domain(const char* name) {
-    check_windows<Extremum<MaxOf<D>>, D>(name);
-    check_windows<Extremum<MinOf<D>>, D>(name);
+    check_windows<Joined<MaxOf<D>>, D>(name);
+    check_windows<Joined<MinOf<D>>, D>(name);
     check_windows<UntilSteps<D>, D>(name);
 }
 
@@ -92,8 +92,8 @@ TEST_CASE("the unrolled window gives what the general one gives") {
             lanes.push_back({{x}});
         std::vector<double> ring(width);
         std::vector<Lane::Value> lane_ring(width);
-        TwoStack<Extremum<Max>> unrolled(width, ring.data(), nullptr);
-        TwoStack<Extremum<MaxOf<Lane>>> general(width, lane_ring.data(), nullptr);
+        TwoStack<Joined<Max>> unrolled(width, ring.data(), nullptr);
+        TwoStack<Joined<MaxOf<Lane>>> general(width, lane_ring.data(), nullptr);
         std::vector<double> results(count);
         std::vector<Lane::Value> lane_results(count);
         unrolled.push({a.data(), nullptr}, results.data(), count);

@@ -32,6 +32,34 @@ TEST_CASE("extremum is its definition for any width lag and chunks") {
     }
 }
 
+TEST_CASE("sum is its definition to the bit for any width and chunks") {
+    Random random(6);
+    for (const std::size_t count : std::initializer_list<std::size_t>{0, 1, 2, 10, 257, 700}) {
+        std::vector<Signal> columns{random.signal(count, 0)};
+        for (double& value : columns[0])
+            value = value / 7 + 1e9 * (value > 0); // such that the order of additions shows
+        for (const std::int64_t width : {1, 2, 3, 4, 7, 8, 17, 100, 255, 256, 257, 800}) {
+            Builder builder;
+            const auto x = builder.input();
+            builder.output(builder.unary(Opcode::slide_sum, x, width, 0));
+            builder.output(builder.unary(Opcode::run_sum, x, 0, 0));
+            ways::check_all_ways(builder.program(), columns, count, random,
+                                 "width " + std::to_string(width) + ", count " +
+                                     std::to_string(count));
+        }
+    }
+}
+
+TEST_CASE("sum fails only while both infinities are in the window") {
+    Builder builder;
+    builder.output(builder.unary(Opcode::slide_sum, builder.input(), 3, 0));
+    std::vector<Signal> outputs;
+    CHECK(!ways::offline(builder.program(), {{1, inf, 3, 4, -inf, 0, 0, 1}}, 8, outputs));
+    CHECK((outputs[0] == Signal{1, inf, inf, inf, -inf, -inf, -inf, 1}));
+    const auto failure = ways::offline(builder.program(), {{1, inf, 3, -inf, 4}}, 5, outputs);
+    CHECK((failure && failure->instruction == 1 && failure->sample == 3));
+}
+
 TEST_CASE("window of a constant is cut at the ends of the trace") {
     Builder builder;
     const auto three = builder.constant(3.0);

@@ -24,8 +24,8 @@ template <ValueDomain D>
 void check_monoids() {
     oracle::Random random(1);
     const auto one = [&] { return laws::Sampler<D>::one(random); };
-    check_monoid<Extremum<MaxOf<D>>>(one);
-    check_monoid<Extremum<MinOf<D>>>(one);
+    check_monoid<Joined<MaxOf<D>>>(one);
+    check_monoid<Joined<MinOf<D>>>(one);
     check_monoid<UntilSteps<D>>([&] { return UntilSteps<D>::element(one(), one()); });
 }
 
