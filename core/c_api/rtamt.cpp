@@ -31,7 +31,7 @@ constexpr const char* out_of_memory = "There is not enough memory.";
 constexpr const char* no_monitor = "There is no monitor: it was not created.";
 constexpr const char* no_place = "The place for the result is null: pass an address.";
 
-// Calls `work` and answers its status; `say` takes the sentence of a failure.
+// Calls `work` and returns its status; `say` takes the message of a failure.
 template <class Work, class Say>
 [[nodiscard]] rtamt_status guarded(Work&& work, Say&& say) noexcept {
     try {

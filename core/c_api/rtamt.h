@@ -17,7 +17,7 @@
  *
  * A null pointer is an error like any other: RTAMT_REFUSED for a null monitor, for null memory with
  * a size that is not 0, and for a null place that a result must go to. Functions that return no
- * status answer a null monitor as they answer for what does not exist: NULL, 0 or -1. A place
+ * status return for a null monitor what they return for what does not exist: NULL, 0 or -1. A place
  * that a result need not go to may be null, as it says there.
  */
 #ifndef RTAMT_H
@@ -76,7 +76,7 @@ RTAMT_API uint32_t rtamt_abi(void);
 /* ---- life ------------------------------------------------------------------------------------ */
 
 /* A new monitor of a program; the bytes may go afterwards. A program that is damaged or cannot be
- * run is refused, and the sentence that says why is put into `message`, cut to `room` bytes; both
+ * run is refused, and the reason is put into `message`, cut to `room` bytes; both
  * may be 0. */
 RTAMT_API rtamt_status rtamt_create(const void* program, size_t size, rtamt_monitor** monitor,
                                     char* message, size_t room);
@@ -84,7 +84,7 @@ RTAMT_API rtamt_status rtamt_create(const void* program, size_t size, rtamt_moni
 /* Frees a monitor; NULL is none. */
 RTAMT_API void rtamt_destroy(rtamt_monitor* monitor);
 
-/* The sentence that says why the last call failed, valid until the next call. */
+/* The reason why the last call failed, valid until the next call. */
 RTAMT_API const char* rtamt_message(const rtamt_monitor* monitor);
 
 /* After RTAMT_UNDEFINED: the instruction without a value, and the index of the sample, or in dense
@@ -92,7 +92,7 @@ RTAMT_API const char* rtamt_message(const rtamt_monitor* monitor);
 RTAMT_API rtamt_status rtamt_failure(const rtamt_monitor* monitor, uint32_t* instruction,
                                      int64_t* step);
 
-/* ---- what the program says of itself --------------------------------------------------------- */
+/* ---- the metadata of the program ------------------------------------------------------------- */
 
 RTAMT_API rtamt_domain rtamt_time(const rtamt_monitor* monitor);
 RTAMT_API const char* rtamt_name(const rtamt_monitor* monitor);    /* may be empty */
@@ -149,13 +149,13 @@ RTAMT_API rtamt_status rtamt_finish(rtamt_monitor* monitor);
 /* Forgets the trace; parameters stay. */
 RTAMT_API rtamt_status rtamt_reset(rtamt_monitor* monitor);
 
-/* What the last rtamt_push or rtamt_finish made known of an output: answers how many values, and
+/* What the last rtamt_push or rtamt_finish made known of an output: returns how many values, and
  * where their steps (indices of samples, in dense time ticks from which on the value holds) and the
  * values themselves are, valid until the next call; either place may be null. */
 RTAMT_API size_t rtamt_last_output(const rtamt_monitor* monitor, uint32_t output, const int64_t** steps,
                             const double** values);
 
-/* Answers 1 and the last step at which an output is known, or 0 if it is not known anywhere, and -1
+/* Returns 1 and the last step at which an output is known, or 0 if it is not known anywhere, and -1
  * for a null monitor; the place may be null. */
 RTAMT_API int rtamt_known_until(const rtamt_monitor* monitor, uint32_t output, int64_t* step);
 

@@ -59,7 +59,7 @@ class Runner {
 // Samples come one period apart.
 class SampledRunner : public Runner {
   public:
-    // One value an input; the answers of the first outputs.
+    // One value an input; the values of the first outputs.
     virtual void step(const double* row, std::span<rtamt_value> known) = 0;
 
     // The same sample `count` times, all of them or none.

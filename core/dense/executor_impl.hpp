@@ -62,7 +62,7 @@ bool BasicExecutor<D>::open() noexcept {
     return true;
 }
 
-// Loads the inputs for the next step towards the target; answers how far it goes.
+// Loads the inputs for the next step towards the target; returns how far it goes.
 template <ValueDomain D>
 std::int64_t BasicExecutor<D>::step(std::int64_t target) noexcept {
     if (fresh_) {
@@ -79,7 +79,7 @@ std::int64_t BasicExecutor<D>::step(std::int64_t target) noexcept {
     return frontier;
 }
 
-// Answers whether no value is undefined.
+// Returns whether no value is undefined.
 template <ValueDomain D>
 bool BasicExecutor<D>::run_guarded(std::int64_t frontier) {
     const auto failed = wiring_.units().run_guarded(never, [&](const Unit& unit) {
@@ -121,7 +121,7 @@ void BasicExecutor<D>::deliver(Outputs outputs) {
 
 // ---- updates ------------------------------------------------------------------------------------
 
-// Runs everything up to the target; answers whether no value is NaN.
+// Runs everything up to the target; returns whether no value is NaN.
 template <ValueDomain D>
 bool BasicExecutor<D>::advance(std::int64_t target, Outputs outputs) {
     while (fresh_ || frontier_ < target) {

@@ -33,10 +33,10 @@ class Kernel {
         reset();
     }
 
-    // Moves the frontier; answers the first arrival of a value that is undefined, or never.
+    // Moves the frontier; returns the first arrival of a value that is undefined, or never.
     virtual std::int64_t run(std::int64_t frontier) = 0;
 
-    // What went wrong where run() answers a time and no value is undefined: null but for calls.
+    // What went wrong where run() returns a time and no value is undefined: null but for calls.
     [[nodiscard]] virtual const char* fault() const noexcept { return nullptr; }
 
     // Remembers the state; takes back everything since then.

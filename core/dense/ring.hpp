@@ -89,7 +89,7 @@ class Ring {
     }
 
     // How many cells from the front on satisfy a condition that, once false, stays so. Cost: the
-    // logarithm of the answer.
+    // logarithm of the result.
     template <class Condition>
     [[nodiscard]] std::size_t count_while(Condition&& condition) const noexcept {
         std::size_t low = 0; // so many do

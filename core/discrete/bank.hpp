@@ -17,7 +17,7 @@ namespace rtamt::discrete {
 template <class Value>
 class Bank {
   public:
-    // A new register; before at(). Answers its row.
+    // A new register; before at(). Returns its row.
     [[nodiscard]] std::uint32_t add() {
         cells_.emplace_back();
         return rows_++;

@@ -81,7 +81,7 @@ void BasicExecutor<D>::load(Columns columns, std::size_t offset, const Block& bl
     wiring_.formulas().load(columns, offset, block.count, skips);
 }
 
-// Answers whether no value is undefined.
+// Returns whether no value is undefined.
 template <ValueDomain D>
 bool BasicExecutor<D>::run_guarded(const Block& block) noexcept {
     const auto failed = wiring_.units().run_guarded(

@@ -43,7 +43,7 @@ struct Block {
 
 class Kernel {
   public:
-    // The answer of run() when no value is undefined.
+    // The result of run() when no value is undefined.
     static constexpr std::size_t defined = std::numeric_limits<std::size_t>::max();
 
     explicit Kernel(std::int64_t operand_lag) noexcept : lag_(operand_lag) {}
@@ -53,7 +53,7 @@ class Kernel {
     Kernel(Kernel&&) = delete;
     Kernel& operator=(Kernel&&) = delete;
 
-    // Computes a block; answers the first place where a present value is undefined, or `defined`.
+    // Computes a block; returns the first place where a present value is undefined, or `defined`.
     virtual std::size_t run(const Block& block) noexcept = 0;
 
     // Back to the state before the first slot, in a time that does not depend on the state's size.
@@ -65,7 +65,7 @@ class Kernel {
     // Takes back everything since the checkpoint.
     virtual void rollback() noexcept {}
 
-    // What went wrong where run() answers a place and no value is undefined: null but for calls.
+    // What went wrong where run() returns a place and no value is undefined: null but for calls.
     [[nodiscard]] virtual const char* fault() const noexcept { return nullptr; }
 
     // Writes or reads what the samples so far have left behind; not between checkpoint() and

@@ -15,7 +15,7 @@
 
 namespace rtamt::discrete {
 
-// Evaluates `function(i)` for each place of the range; answers the first whose value is undefined,
+// Evaluates `function(i)` for each place of the range; returns the first whose value is undefined,
 // or `defined`.
 template <class Operation, class Function>
 [[nodiscard]] RTAMT_INLINE std::size_t fill(typename Operation::Out::Value* __restrict out,

@@ -77,7 +77,7 @@ struct Stretch {
         }
     }
 
-    // In the first stretch of a trace: nothing is before it. Answers the new back.
+    // In the first stretch of a trace: nothing is before it. Returns the new back.
     [[nodiscard]] static Element grow(Operands<M> in, Element* cells, Element back, Value* out,
                                       std::size_t count) noexcept {
         return each(in, cells, back, count,
@@ -96,7 +96,7 @@ struct Stretch {
     static constexpr bool grouped = M::associative && sizeof(Element) <= 2 * sizeof(double) &&
                                     !std::integral<typename M::Value>;
 
-    // Hands over the total at each slot, then stores the slot's element. Answers the last total.
+    // Hands over the total at each slot, then stores the slot's element. Returns the last total.
     template <class Take>
     [[nodiscard]] RTAMT_INLINE static Element each(Operands<M> in, Element* cells, Element back,
                                                    std::size_t count, Take&& take) noexcept {

@@ -2,7 +2,7 @@
 //
 // Register 0 of a node holds its lower bounds L, register 1 its negated upper bounds -U. As
 // knowledge grows both only rise, so one set of kernels serves both: what takes the greatest in the
-// one takes the least in the other. A node tells its readers what changed in pieces, runs with one
+// one takes the least in the other. A node reports changes to its readers in pieces, runs with one
 // old and one new value, and only these are looked at: knowledge may come in any order.
 //
 // Cost: proportional to the pieces, whatever the bounds. Memory: the runs of what is still wanted.

@@ -45,8 +45,8 @@ class RollbackPlan {
             kernel->rollback();
     }
 
-    // Runs the guarded group: `run(unit)` answers where its first undefined value is, at `last` or
-    // later if nowhere. Answers the first failure.
+    // Runs the guarded group: `run(unit)` returns where its first undefined value is, at `last` or
+    // later if nowhere. Returns the first failure.
     template <class Place, class Run>
     [[nodiscard]] std::optional<std::pair<const Unit*, Place>> run_guarded(Place last,
                                                                            Run&& run) const {

@@ -51,7 +51,7 @@ struct Calls::Driven {
     };
     std::vector<State*> states;
 
-    // Calls `work` with the GIL; answers null, or that it raised something.
+    // Calls `work` with the GIL; returns null, or that it raised an exception.
     template <class Work>
     static const char* with_python(Driven& home, Work&& work) noexcept {
         const nb::gil_scoped_acquire gil;

@@ -171,7 +171,7 @@ bool DenseMonitor::read(PyObject* time, const Values& values) noexcept {
            usage_.refuse("time") != nullptr;
 }
 
-// Answers what is wrong, or null.
+// Returns what is wrong, or null.
 template <class Values, class Numbers>
 const char* DenseMonitor::read_values(const Values& values, const Numbers& numbers,
                                       const Places& places) const noexcept {
@@ -187,7 +187,7 @@ const char* DenseMonitor::read_values(const Values& values, const Numbers& numbe
     });
 }
 
-// Makes events of the instant; answers whether it may come now.
+// Makes events of the instant; returns whether it may come now.
 bool DenseMonitor::bind_buffers() noexcept {
     if (time_ > executor_.last_possible()) return false;
     for (std::size_t input = 0; input < row_.size(); ++input) {
@@ -205,7 +205,7 @@ PyObject* DenseMonitor::answer() const noexcept {
     return signal.release().ptr();
 }
 
-// An object of the class of the answers; invalid, with a Python exception set, where memory ends.
+// An object of the result class; invalid, with a Python exception set, if memory runs out.
 nb::object DenseMonitor::signal_of(const Events& events) const noexcept {
     const std::size_t times = events.count * sizeof(*events.times);
     const std::size_t values = events.count * sizeof(*events.values);

@@ -100,9 +100,9 @@ class DenseMonitor {
     std::vector<dense::EventList> spare_;            // of the next one, which may fail
     std::vector<std::optional<std::int64_t>> until_; // up to when each output was reported
     std::vector<std::int64_t> counts_;               // samples of each input
-    std::optional<ResultClass<2>> signal_;           // the class of the answers
+    std::optional<ResultClass<2>> signal_;           // the class of the results
     nb::object scale_;
-    nb::object nothing_;          // the answer without events
+    nb::object nothing_;          // the result without events
     bool has_time_scale_ = false; // whether the time scale has been set
     double rate_ = 1.0;           // ticks in 1
     bool whole_ = false;

@@ -1,4 +1,4 @@
-// What EarlyMonitor answers, and its state.
+// The results of EarlyMonitor, and its state.
 #include "early_monitor.hpp"
 
 #include <nanobind/stl/optional.h>

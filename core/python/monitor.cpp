@@ -52,7 +52,7 @@ Monitor::Monitor(Program program, const std::vector<nb::str>& names, double peri
 
 // ---- one sample ---------------------------------------------------------------------------------
 
-// Has `read(numbers, time, places)` read a sample, which answers what is wrong, or null. Plain
+// Has `read(numbers, time, places)` read a sample, which returns what is wrong, or null. Plain
 // numbers, which run no Python code, are read into row_ at once. `keeps`: an input that is left out
 // keeps its value.
 template <bool timed, bool keeps, class Read>

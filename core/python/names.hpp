@@ -26,7 +26,7 @@ struct Named {
         return names == nullptr ? 0 : static_cast<std::size_t>(tuple_size(names));
     }
 
-    // Calls `take` with every name and value until it answers what is wrong; null if nothing is.
+    // Calls `take` with every name and value until it returns what is wrong; null if nothing is.
     template <class Take>
     RTAMT_INLINE const char* each(Take&& take) const noexcept {
         for (std::size_t i = 0; i < count(); ++i) {

@@ -23,7 +23,7 @@ class ResultClass {
             auto* descriptor = Py_TYPE(slots_[i].ptr());
             set_[i] = reinterpret_cast<descrsetfunc>(PyType_GetSlot(descriptor, Py_tp_descr_set));
             if (set_[i] == nullptr) {
-                throw std::invalid_argument("The class of the answers has no attribute '" +
+                throw std::invalid_argument("The class of the results has no attribute '" +
                                             std::string(slots[i]) + "' that can be set.");
             }
         }

@@ -216,7 +216,7 @@ def _evaluate_alike(asked: _Asked, data: Any) -> Iterator[tuple[int, Result]]:
 
 
 def _with_one_extent(asked: _Asked, whole: DomainTrace) -> Iterator[tuple[DomainTrace, list[int]]]:
-    """Yield the parts of a recording that share a start and end, each with the queries that it answers.
+    """Yield the parts of a recording that share a start and end, each with its queries.
 
     The extent of a recording depends on the signals that a formula reads.
     """

@@ -202,7 +202,7 @@ class Result:
         tracker = WindowTracker(begin, end, continuous=self.trace.domain.continuous)
         tracker.take(positions, signal.values)
         tracker.finish(int(positions[-1]))
-        return [episode.retold(self.trace.time) for episode in tracker.episodes()]
+        return [episode.with_times(self.trace.time) for episode in tracker.episodes()]
 
     def explain(self, at: Any = None) -> Explanation:
         """Explain why the formula is satisfied or violated: which signals are responsible, and when.

@@ -340,7 +340,7 @@ class Specification(SpecificationText):
     ) -> Program:
         """Compile the requirement to a standalone program, which the core runs without Python.
 
-        Its outputs are ``robustness`` (ρ, or what ``semantics`` says) and ``verdict`` (+inf where the
+        Its outputs are ``robustness`` (ρ, or that of ``semantics``) and ``verdict`` (+inf where the
         formula holds, -inf where it does not); of several requirements these are of all together, and each has
         its own, ``robustness.R1`` and ``verdict.R1``. The parameters and named constants of the specification are
         parameters of the program, except those that bound an interval. Settings and errors as for :meth:`monitor`.

@@ -36,19 +36,19 @@ def sections(thing: griffe.Object) -> Iterator[griffe.DocstringSection]:
     """Yield the sections of a docstring: prose, the table of the parameters, examples and what follows them."""
     assert thing.docstring
     parameters = {p.name: p for p in _parameters(thing)}
-    texts, told = prose.parts_of(thing.docstring.value, parameters)
+    texts, described = prose.parts_of(thing.docstring.value, parameters)
     parts = [_linked(text, thing) for text in texts]
     first = next((i for i, part in enumerate(parts) if part.startswith("```")), len(parts))
     if parts[:first]:
         yield griffe.DocstringSectionText("\n\n".join(parts[:first]))
-    if parameters and (told or thing.is_function):
+    if parameters and (described or thing.is_function):
         yield griffe.DocstringSectionParameters(
             [
                 griffe.DocstringParameter(
                     name=name,
                     annotation=parameter.annotation,
                     value=None if parameter.default is None else str(parameter.default),
-                    description=_linked(told.get(name, ""), thing),
+                    description=_linked(described.get(name, ""), thing),
                 )
                 for name, parameter in parameters.items()
             ]

@@ -141,11 +141,13 @@ def _call(
         given = dict(zip(maker.parameters, node.args, strict=False))
         given |= {keyword.arg: keyword.value for keyword in node.keywords if keyword.arg}
         choices = {p: [t for t in _texts(v, where) if " " in t.strip()] for p, v in given.items()}
-        told = {parameter: texts for parameter, texts in choices.items() if texts}
+        known = {parameter: texts for parameter, texts in choices.items() if texts}
         texts = [
-            _filled(t, dict(zip(told, c, strict=True))) for t in maker.texts for c in product(*told.values())
+            _filled(t, dict(zip(known, c, strict=True)))
+            for t in maker.texts
+            for c in product(*known.values())
         ]
-        yield maker.kind, texts[:_MOST], [t for t in maker.texts if set(_HOLE.findall(t)) & set(told)]
+        yield maker.kind, texts[:_MOST], [t for t in maker.texts if set(_HOLE.findall(t)) & set(known)]
     elif node.args and (name in ERRORS or name == PARSER):
         last = _called(node.args[-1])
         kind = last if last in ERRORS else name if name in ERRORS else "ParseError"
@@ -204,9 +206,9 @@ def _part(node: ast.expr, where: Where) -> Sequence[str]:
     alternatives = isinstance(value, ast.IfExp) or (
         isinstance(value, ast.Name) and value.id not in where.parameters
     )
-    told = _texts(value, where) if alternatives else []
-    phrases = [text for text in told if text.count(" ") > 2]
-    return told if phrases and len(told) <= 3 else [f"\0{name}\0"]
+    known = _texts(value, where) if alternatives else []
+    phrases = [text for text in known if text.count(" ") > 2]
+    return known if phrases and len(known) <= 3 else [f"\0{name}\0"]
 
 
 def _assigned(name: str, function: ast.FunctionDef) -> Iterator[ast.expr]:

@@ -20,11 +20,11 @@ _START = re.compile(r"(?:^|(?<=[.)]\s))(?:``(\w+)``(?::\s| (?=as\s))|(?=(?:Raise
 
 def parts_of(text: str, parameters: Collection[str]) -> tuple[list[str], dict[str, str]]:
     """Return the parts of a docstring as Markdown, roles apart, and the descriptions of its parameters."""
-    told: dict[str, str] = {}
-    return list(_parts(text, parameters, told)), told
+    described: dict[str, str] = {}
+    return list(_parts(text, parameters, described)), described
 
 
-def _parts(text: str, parameters: Collection[str], told: dict[str, str]) -> Iterator[str]:
+def _parts(text: str, parameters: Collection[str], described: dict[str, str]) -> Iterator[str]:
     for paragraph in re.split(r"\n\s*\n", text):
         if paragraph.startswith("    "):  # a literal block: code to Markdown, too
             yield paragraph
@@ -33,7 +33,7 @@ def _parts(text: str, parameters: Collection[str], told: dict[str, str]) -> Iter
             yield _table(paragraph.splitlines())
             continue
         prose, sign, example = re.match(r"(?ms)(.*?)(^>>>|\Z)(.*)", paragraph).groups()  # type: ignore[union-attr]
-        rest = _without_parameters(re.sub("::$", ":", prose.strip()), parameters, told)
+        rest = _without_parameters(re.sub("::$", ":", prose.strip()), parameters, described)
         if rest:
             yield rest
         if sign:
@@ -47,8 +47,8 @@ def _table(lines: list[str]) -> str:
     return "\n".join(f"| {' | '.join(cell.replace('|', chr(92) + '|') for cell in row)} |" for row in rows)
 
 
-def _without_parameters(prose: str, parameters: Collection[str], told: dict[str, str]) -> str:
-    """Return a paragraph without the sentences about parameters, which are put into ``told``."""
+def _without_parameters(prose: str, parameters: Collection[str], described: dict[str, str]) -> str:
+    """Return a paragraph without the sentences about parameters, which are put into ``described``."""
     starts = [m for m in _START.finditer(prose) if not m[1] or m[1] in parameters]
     if not any(m[1] for m in starts):
         return prose
@@ -57,7 +57,7 @@ def _without_parameters(prose: str, parameters: Collection[str], told: dict[str,
     for match, end in zip(starts, ends, strict=True):
         if match[1]:
             sentence = prose[match.end() : end].strip()
-            told[match[1]] = f"{told[match[1]]} {sentence}" if match[1] in told else sentence
+            described[match[1]] = f"{described[match[1]]} {sentence}" if match[1] in described else sentence
         else:
             rest.append(prose[match.start() : end])
     return " ".join(part.strip() for part in rest if part.strip())

@@ -109,7 +109,7 @@ class KernelOf {
         std::string error; // what went wrong since the checkpoint
     };
 
-    // Calls `work`; answers null, or what it threw.
+    // Calls `work`; returns null, or what it threw.
     template <class Work>
     static const char* guarded(State& state, Work&& work) noexcept {
         try {

@@ -101,7 +101,7 @@ class Node:
                 self.publish(self.monitor.tick(now))
             notices = self.monitor.notices()
             conditions = self.conditions(now, notices)
-        self.tell(now, notices, conditions)  # messages need not wait for that
+        self.report(now, notices, conditions)  # messages need not wait for that
         self.sleep(self.monitor.pause(rospy.Time.now().to_nsec()))
 
     def sleep(self, seconds):
@@ -118,7 +118,7 @@ class Node:
         for record in records:
             self.publishers[self.outbox.topic(record)].publish(self.outbox.message(record))
 
-    def tell(self, now, notices, conditions):
+    def report(self, now, notices, conditions):
         """Log what happened; publish the conditions."""
         for notice in notices:
             LOGS[notice.level](notice.message)

@@ -65,15 +65,15 @@ class Monitor(Node):
     def quality(self):
         """Return the quality of service that is asked of topics, from parameters."""
         default = Quality()
-        told = Quality(
+        chosen = Quality(
             self.declare_parameter("reliability", default.reliability).value,
             self.declare_parameter("durability", default.durability).value,
             self.declare_parameter("depth", default.depth).value,
         )
         return QoSProfile(
-            depth=told.depth,
-            reliability=ReliabilityPolicy[told.reliability.upper()],
-            durability=DurabilityPolicy[told.durability.upper()],
+            depth=chosen.depth,
+            reliability=ReliabilityPolicy[chosen.reliability.upper()],
+            durability=DurabilityPolicy[chosen.durability.upper()],
         )
 
     def now(self):
@@ -130,7 +130,7 @@ def main():
     except RCLError:
         if rclpy.ok():
             raise
-        return 0  # it was about to publish when it was told to end
+        return 0  # it was about to publish when it was asked to end
     finally:
         if rclpy.ok():
             rclpy.shutdown()

@@ -77,7 +77,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     if sys.stderr is None:  # closed: what would be said there goes nowhere
         sys.stderr = open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115 - until the end of the process
     if sys.stdout is None:
-        say("rtamt: stdout is closed, so that nobody would see the answer; use > /dev/null", file=sys.stderr)
+        say("rtamt: stdout is closed, so that nobody would see the output; use > /dev/null", file=sys.stderr)
         return ERROR
     try:
         return _answer(list(sys.argv[1:] if argv is None else argv))

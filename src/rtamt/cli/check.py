@@ -53,14 +53,14 @@ the rows of a query (--sql URL --query TEXT). Timestamps are in the column calle
 stamp or datetime; without one, samples are one period apart. They are dates (ISO 8601) or numbers:
 seconds, or the unit in the header ('t [ms]') or of --time-unit; numbers too large for seconds
 are an error. Columns that no formula reads may hold anything.
-'rtamt info TRACE' tells what is in a file, and what is guessed of it.
+'rtamt info TRACE' lists the signals of a file, and what was inferred.
 
 With --time dense a value holds until the next one, and timestamps may lie anywhere; a variable has
-no sample where its cell is empty. A NaN is an error, unless --skip-nan says that it is no sample,
+no sample where its cell is empty. A NaN is an error, unless --skip-nan excludes it,
 either; --hold-for limits how long the value before then holds. With --time dense -o writes the robustness
 where it changes, and at the end.
 
-In a bag the annotations of SPEC say which topics are read ('@ topic(req, rtamt/req)'). In discrete time
+In a bag the annotations of SPEC select the topics ('@ topic(req, rtamt/req)'). In discrete time
 it is sampled as a node would: the latest message, every --period, which may be left out where all of
 these topics have the same stamps one period apart: then each message is a sample. With -o out.mcap the bag
 is written again, with the topics of robustness and verdicts that SPEC names.
@@ -88,7 +88,7 @@ It is left out where chunks, or --early, do not give them. The first violation o
 at which f does not hold, of a conjunction the first of its parts, of anything else the first instant of the trace:
 seconds, or a date where the trace has dates; null where there is none. The period of dense time is null. JSON has
 no infinities: they are the strings "inf" and "-inf". What --early decides also has "lower", "upper" and
-"decided_at"; "robustness" is null unless both are equal. The reports for --junit and --sarif say the same.
+"decided_at"; "robustness" is null unless both are equal. The reports for --junit and --sarif have the same content.
 
 examples:
   rtamt check examples/request_grant/spec.stl examples/request_grant/*.csv
@@ -159,7 +159,7 @@ def run(args: argparse.Namespace) -> int:
     reading = reading_of(args, variables_of(requirements), whole=whole, early=args.early)
     page = None if args.html is None else HtmlReport("rtamt check", given, requirements, traces, reading)
     found: list[Outcome] = []
-    told = {""}  # several requirements may have one reason
+    complaints = {""}  # several requirements may have one reason
     with Progress() as progress:
         progress.show(f"0/{pairs}")
         explain = args.junit is not None or args.sarif is not None
@@ -167,8 +167,8 @@ def run(args: argparse.Namespace) -> int:
             if page is not None:
                 page.add(outcome)
             found.append(outcome if args.output is not None else replace(outcome, result=None))
-            if outcome.error not in told:
-                told.add(outcome.error)
+            if outcome.error not in complaints:
+                complaints.add(outcome.error)
                 progress.clear()
                 complain(outcome.error)
             if args.json and not args.quiet:
@@ -263,7 +263,7 @@ def _as_table(requirements: Sequence[Requirement], found: Sequence[Outcome], col
 
 
 def _says_more(outcome: Outcome) -> bool:
-    """Return whether episodes say more than the row of the table, which has the first violation."""
+    """Return whether episodes add to the row of the table, which has the first violation."""
     found = outcome.episodes
     return (
         found is not None

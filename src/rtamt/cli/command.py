@@ -55,7 +55,7 @@ def options(parser: argparse.ArgumentParser, title: str) -> argparse._ArgumentGr
 
 
 def add_specification_options(parser: argparse.ArgumentParser, nargs: str | None = None) -> None:
-    """Add SPEC and what tells how to read it; ``nargs``: "?" where it may be left out."""
+    """Add SPEC and the options for reading it; ``nargs``: "?" where it may be left out."""
     parser.add_argument(
         "spec", metavar="SPEC", nargs=nargs, help="a specification file (.stl), or a formula in quotes"
     )
@@ -75,7 +75,7 @@ def add_specification_options(parser: argparse.ArgumentParser, nargs: str | None
         "--semantics",
         default="standard",
         metavar="NAME",
-        help=f"what a predicate is worth: {', '.join(SEMANTICS)} (default: standard, its robustness); "
+        help=f"the robustness of a predicate: {', '.join(SEMANTICS)} (default: standard, its robustness); "
         f"which variables are inputs is declared in the specification",
     )
     add_set_option(group)
@@ -133,7 +133,7 @@ def add_stamp_options(parser: argparse.ArgumentParser, what: str) -> None:
         "--time-unit",
         metavar="UNIT",
         choices=tuple(UNITS),
-        help=f"of timestamps that are numbers: {', '.join(UNITS)} (default: what the header says, else s)",
+        help=f"of timestamps that are numbers: {', '.join(UNITS)} (default: that of the header, else s)",
     )
 
 

@@ -1,4 +1,4 @@
-"""What ``rtamt info`` tells of a program that ``rtamt compile`` wrote."""
+"""``rtamt info`` for programs that ``rtamt compile`` wrote."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def compiled(path: str) -> Program | None:
 
 
 def listing(program: Program) -> Iterator[str]:
-    """Return what a program says of itself, line by line."""
+    """Return the metadata and the instructions of a program, line by line."""
     metadata = program.metadata
     assert metadata is not None
     if metadata.name:

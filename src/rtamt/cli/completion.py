@@ -49,7 +49,7 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _whole(file: Any) -> Parser:
-    """Return one parser with all commands, whose arguments that are files say so."""
+    """Return one parser with all commands, with completion of file arguments."""
     from rtamt.cli import COMMANDS
 
     whole = Parser(prog="rtamt")

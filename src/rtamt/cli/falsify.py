@@ -70,7 +70,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Search, and say what was found."""
+    """Search, and print what was found."""
     # Only this command needs them, and the others start faster without.
     from rtamt.search import falsify
     from rtamt.search.config import load_search
@@ -102,7 +102,7 @@ def run(args: argparse.Namespace) -> int:
             with replacing(args.plot) as new:
                 axes.figure.savefig(new, dpi=120)
         except (OSError, ValueError) as error:
-            raise UsageError(f"cannot write the picture '{args.plot}': {error}") from error
+            raise UsageError(f"cannot write the plot '{args.plot}': {error}") from error
     return VIOLATED if found.falsified else OK
 
 

@@ -24,7 +24,7 @@ OpenModelica and fmpy import. The unit needs neither Python nor a compiler."""
 
 _EPILOG = """\
 The variables of the requirement are inputs; robustness, verdict, known and known_since are outputs;
-parameters and named constants are parameters. docs/how-to/fmi.md says how communication steps become samples.
+parameters and named constants are parameters. docs/how-to/fmi.md describes how communication steps become samples.
 
 examples:
   rtamt fmu "(req >= 3) -> eventually[0:50ms](gnt >= 3)" -o build/response.fmu --period 10ms

@@ -42,7 +42,7 @@ if TYPE_CHECKING:
     from rtamt.specification import Specification
 
 _DESCRIPTION = """\
-Tell what a requirement reads, how far ahead it looks (its horizon), the same requirement with past
+Show what a requirement reads, how far ahead it looks (its horizon), the same requirement with past
 operators only (its pastified form), and what an online monitor of it runs and keeps in memory. Of a
 recording (CSV, Parquet, Excel, ..., or --sql): which signals are in it, and what was guessed. Of a program that
 'rtamt compile' wrote: what it holds."""
@@ -146,7 +146,7 @@ def _chosen(trace: Trace, texts: Sequence[str]) -> Trace:
 
 
 def _refuse_reading_options(args: argparse.Namespace) -> None:
-    """Raise :class:`CommandError` at an option that says how a recording is read: there is none."""
+    """Reject options for reading recordings, where there is none."""
     for option in ("time_column", "time_unit", "name", "sheet", "query", "skip_nan", "hold_for", "resample"):
         if getattr(args, option) not in (None, []):
             raise CommandError(
@@ -275,8 +275,8 @@ def _lines(facts: Facts) -> Iterator[str]:
         if requirement["explicit"] or len(required) > 1:
             about = [requirement["severity"], requirement["ahead"], requirement["description"]]
             label = "requires" if i == 0 else ""
-            told = ", ".join(filter(None, about))
-            yield f"{label:<11}{requirement['name']}: {requirement['formula']}  ({told})"
+            details = ", ".join(filter(None, about))
+            yield f"{label:<11}{requirement['name']}: {requirement['formula']}  ({details})"
     if spec.semantics != "standard":
         yield f"semantics  {spec.semantics}"
     for i, variable in enumerate(_variables(spec)):

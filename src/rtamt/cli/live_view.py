@@ -31,12 +31,12 @@ _MOST = 1000
 
 
 class Live:
-    """Draws on a terminal with rich, at most some times a second; a context, at whose end the last picture stays.
+    """Draws on a terminal with rich, at most some times a second; a context, at whose end the last view stays.
 
-    ``units``: of variables, shown behind their values. What is printed on stderr meanwhile goes above the picture.
+    ``units``: of variables, shown behind their values. What is printed on stderr meanwhile goes above the view.
     """
 
-    #: Seconds between two pictures.
+    #: Seconds between two updates.
     PAUSE = 0.05
 
     def __init__(

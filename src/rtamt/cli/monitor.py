@@ -49,14 +49,14 @@ _BLUR = 5e-7
 
 _DESCRIPTION = """\
 Watch a stream of samples. Each line of input is one sample; each line of output is the robustness
-at one instant, printed as soon as the future that the formula speaks of has passed (the rest
+at one instant, printed as soon as the formula's horizon has passed (the rest
 follows at the end of input)."""
 
 _EPILOG = """\
 input: JSON objects, one a line, or CSV with a header row. What the formula does not read is left
 out of account. Timestamps are found and read as in files (see 'rtamt check --help'): in time, t, timestamp,
 stamp or datetime, perhaps with a unit ('t [ms]', 'time_ms'), else in the one column of dates. Without any,
-samples are one period apart. A stream does not show its period in time: --period says it (default: 1 s,
+samples are one period apart. A stream does not show its period in time: --period sets it (default: 1 s,
 which stamps must then be apart). Fields: {"req": {"value": 3}} or {"req.value": 3}.
 
 With --time dense signals change at any instant, each on its own clock: a JSON object may hold some of
@@ -126,7 +126,7 @@ def run(args: argparse.Namespace) -> int:
     spec = read_specification(args, args.time)
     dense = spec.domain.continuous
     live = _live(printed(spec.formula), spec.units) if args.live else None
-    told = Output(verdicts=spec.semantics == "boolean", live=live)
+    output = Output(verdicts=spec.semantics == "boolean", live=live)
     names = tuple(spec.requirements) if len(spec.requirements) > 1 else ()
     watched: Feed
     early = _early(spec, args, live)
@@ -134,9 +134,9 @@ def run(args: argparse.Namespace) -> int:
         watched = early
     elif dense:
         monitor: Any = spec.monitor(watch=names)
-        watched = EventFeed(monitor, told, names)
+        watched = EventFeed(monitor, output, names)
     else:
-        watched = _watched(spec, args.tolerance, told, names)
+        watched = _watched(spec, args.tolerance, output, names)
     samples = Samples(
         watched.monitor.input_names,
         args.time_column,
@@ -195,9 +195,11 @@ def _early(spec: Specification, args: argparse.Namespace, live: Live | None) -> 
     return IntervalFeed(monitor) if isinstance(monitor, IntervalMonitor) else EagerFeed(monitor)
 
 
-def _watched(spec: Specification, tolerance: float | None, told: Output, names: Sequence[str]) -> SampleFeed:
+def _watched(
+    spec: Specification, tolerance: float | None, output: Output, names: Sequence[str]
+) -> SampleFeed:
     monitor = spec.monitor(tolerance=TOLERANCE if tolerance is None else tolerance, watch=names)
-    return SampleFeed(monitor, told, names, assumed=spec.period is None and tolerance is None)
+    return SampleFeed(monitor, output, names, assumed=spec.period is None and tolerance is None)
 
 
 def _live(title: str, units: Mapping[str, str]) -> Live:

@@ -44,7 +44,7 @@ class Requirement:
 
 @dataclass(frozen=True, slots=True)
 class Outcome:
-    """What came of one requirement over one recording, or the sentence that says why nothing did.
+    """The outcome of one requirement on one recording, or the reason why there is none.
 
     ``first_violation``: seconds (a decimal where a double cannot hold them), or a date; None where there is
     none. ``moment``: the same as text: seconds, or a date with the seconds since the start of the recording.
@@ -101,7 +101,7 @@ def moment_of(time: Any, start: Any) -> str:
     begin = _seconds(start)
     if (dated and isinstance(start, np.datetime64)) or (not dated and is_epoch(begin)):
         return moment_text(_seconds(time), begin)
-    return f"{str(told(time)).removesuffix('.0')} s"
+    return f"{str(plain_time(time)).removesuffix('.0')} s"
 
 
 def episodes_of(found: Episodes | None, start: Any) -> dict[str, Any]:
@@ -119,7 +119,7 @@ def episodes_of(found: Episodes | None, start: Any) -> dict[str, Any]:
         where = f"at {begin}" if begin == end else f"from {begin} to {end}"
         then = "" if begin == end else f" at {at}"
         text = f"{many} {where}: robustness {short(worst.worst)}{then}"
-    return {"episodes": found.retold(told), "episodes_text": text}
+    return {"episodes": found.with_times(plain_time), "episodes_text": text}
 
 
 def _seconds(time: Any) -> Fraction:
@@ -129,7 +129,7 @@ def _seconds(time: Any) -> Fraction:
     return Fraction(str(time))
 
 
-def told(time: Any) -> float | str | Decimal | None:
+def plain_time(time: Any) -> float | str | Decimal | None:
     """Return a time for reports: a date where the recording has dates, else seconds, with all their digits."""
     if time is None:
         return None

@@ -29,12 +29,12 @@ matplotlib: pip install 'rtamt[plot]'."""
 _EPILOG = """\
 Shaded: where a formula does not hold. Yellow: the implicant, the predicates on these intervals alone
 force the verdict. Diamond: the critical point. --bounds: a band from the lower to the upper bound of the
-robustness at the start, as known after each sample; it narrows to the robustness. Without -o the picture is
+robustness at the start, as known after each sample; it narrows to the robustness. Without -o the plot is
 shown in a window.
 
 examples:
   rtamt plot examples/request_grant/spec.stl examples/request_grant/c_violated.csv -o build/c.png
-  rtamt plot "always((req >= 3) -> eventually[0:5](gnt >= 3))" log.csv --time dense -o picture.svg
+  rtamt plot "always((req >= 3) -> eventually[0:5](gnt >= 3))" log.csv --time dense -o plot.svg
   rtamt plot requirement.stl log.csv --zoom violation -o violation.png
   rtamt plot requirement.stl log.csv --from 10 --to 12.5 -o part.png
   rtamt plot requirement.stl log.csv --tree -o formula.pdf"""
@@ -49,10 +49,10 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add_time_option(parser)
     add_instant_option(parser)
     add_reading_options(parser)
-    parser.add_argument("-o", "--output", metavar="FILE", help="write the picture: .png, .svg, .pdf, ...")
+    parser.add_argument("-o", "--output", metavar="FILE", help="write the plot: .png, .svg, .pdf, ...")
     parser.add_argument("--rows", type=int, default=6, metavar="N", help="formulas at most (default: 6)")
-    parser.add_argument("--from", dest="start", metavar="TIME", help="where the picture begins, as for --at")
-    parser.add_argument("--to", dest="end", metavar="TIME", help="where the picture ends, as for --at")
+    parser.add_argument("--from", dest="start", metavar="TIME", help="where the plot begins, as for --at")
+    parser.add_argument("--to", dest="end", metavar="TIME", help="where the plot ends, as for --at")
     parser.add_argument(
         "--zoom", metavar="{violation}", help="show the first violation and what is around it"
     )
@@ -98,7 +98,7 @@ def _window() -> Any:
     """Return a figure that can be shown in a window."""
     pyplot = matplotlib("pyplot")
     if pyplot.get_backend().lower() == "agg":
-        raise CommandError("there is no display to show the picture on: name a file, such as -o picture.png")
+        raise CommandError("there is no display to show the plot on: name a file, such as -o plot.png")
     return pyplot.figure()
 
 
@@ -109,6 +109,6 @@ def _sheet(path: str) -> Any:
     suffix = Path(path).suffix.lower().removeprefix(".")
     if suffix not in kinds:
         raise CommandError(
-            f"'{path}' is no kind of picture that can be written: choose from .{', .'.join(kinds)}"
+            f"'{path}' is no image format that can be written: choose from .{', .'.join(kinds)}"
         )
     return figure

@@ -104,7 +104,7 @@ def add_instant_option(parser: argparse.ArgumentParser) -> None:
 def reading_of(
     args: argparse.Namespace, read: Collection[str], *, whole: bool, early: bool = False
 ) -> Reading:
-    """Return what the options say.
+    """Return the reading that the options select.
 
     ``read``: the variables of the requirements; ``whole``: never in chunks; ``early``: no further than needed.
     """
@@ -142,7 +142,7 @@ def names_of(texts: Sequence[str]) -> dict[str, str]:
 
 
 def recording(args: argparse.Namespace, source: str) -> Trace:
-    """Return all that is in a recording, read and put on one clock as the options say."""
+    """Return all that is in a recording, read and resampled as the options select."""
     with opened(source, args.sheet, args.query, args.recover) as found:
         wanted = choice(
             args.time_column, None, names_of(args.name), None, args.skip_nan, args.hold_for, args.time_unit
@@ -252,7 +252,7 @@ def how_to_mend(error: Exception, data: Trace | None, before: int = 0) -> str:
 
 
 def instant(at: str | None, result: Result, option: str = "--at") -> Any:
-    """Return what ``--at`` or another option says, as the recording tells time; None where it is left out."""
+    """Return the time of ``--at`` or another option in the format of the recording; None where it is left out."""
     if at is None:
         return None
     times = result.signal.times.dtype.kind

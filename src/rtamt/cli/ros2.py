@@ -16,7 +16,7 @@ Watch a specification over topics of ROS 2, and publish its robustness and verdi
 Cyclone DDS, without an installation of ROS. 'ros2 node list' and 'ros2 topic list' show it."""
 
 _EPILOG = """\
-SPEC says which topics are read and written, and of which types (the paper's listing 8). Verdicts go to
+SPEC declares the topics that are read and written, and their types (the paper's listing 8). Verdicts go to
 the topic of the robustness with '/verdict' after it, the condition of every output to /diagnostics.
 ROS_DOMAIN_ID chooses the domain, CYCLONEDDS_URI the network, ROS_DISTRO the distribution.
 
@@ -60,7 +60,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Watch until the node is told to end."""
+    """Watch until the node is asked to end."""
     from rtamt.ros.dds.node import Node
     from rtamt.ros.dds.participant import Participant, Quality
     from rtamt.ros.dds.types import Types

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from rtamt.batch import evaluate_requirements
 from rtamt.cli.command import NO_STAMPS
-from rtamt.cli.outcome import Outcome, episodes_of, failed, moment_of, told
+from rtamt.cli.outcome import Outcome, episodes_of, failed, moment_of, plain_time
 from rtamt.cli.reading_options import choice_for, how_to_mend, is_resampled, on_clock, read_for
 from rtamt.errors import BoundError, StlError, TraceError
 from rtamt.readers.assemble import chunks_of
@@ -122,7 +122,7 @@ def _all_of(requirements: Sequence[Requirement], trace: str, reading: Reading) -
     whole: Trace | None
     try:
         whole = read_for([requirement.spec for requirement in requirements], trace, reading)
-    except StlError:  # each reads what it needs, and says what is wrong with that
+    except StlError:  # each reads what it needs, and reports what is wrong with that
         whole = None
     return [o for requirement in requirements for o in _check(requirement, trace, whole, reading)]
 
@@ -165,7 +165,7 @@ def _early(requirement: Requirement, trace: str, reading: Reading) -> list[Outco
             shown(trace),
             "satisfied" if part.satisfied else "violated",
             part.bounds.lower if part.bounds.lower == part.bounds.upper else float("nan"),
-            told(part.first_violation),
+            plain_time(part.first_violation),
             moment_of(part.first_violation, part.start),
             part.samples,
             part.period,
@@ -173,7 +173,7 @@ def _early(requirement: Requirement, trace: str, reading: Reading) -> list[Outco
                 *chunks.remarks,
                 f"{_stop(row, rows)} at {moment_of(part.decided_at, part.start)}, {_UNREAD}",
             ),
-            decided_at=told(part.decided_at),
+            decided_at=plain_time(part.decided_at),
             bounds=part.bounds,
             seconds=seconds,
         )
@@ -224,7 +224,7 @@ def _in_chunks(requirement: Requirement, trace: str, reading: Reading) -> list[O
     except StlError as error:
         if requirement.rows:
             return [o for row in requirement.rows for o in _in_chunks(row, trace, reading)]
-        # Whatever reads says where; whatever computes does not know.
+        # Errors of readers name the place; errors of evaluations do not.
         place = "" if shown(trace) in str(error) else f"{shown(trace)}: "
         mend = "" if chunks is None else how_to_mend(error, chunks.last, chunks.before(error))
         return [failed(requirement, trace, f"{place}{error}{mend}", begin)]
@@ -238,7 +238,7 @@ def _in_chunks(requirement: Requirement, trace: str, reading: Reading) -> list[O
             shown(trace),
             "satisfied" if part.satisfied else "violated",
             part.robustness,
-            told(part.first_violation),
+            plain_time(part.first_violation),
             moment_of(part.first_violation, chunks.start),
             part.samples,
             part.period,
@@ -285,7 +285,7 @@ def _check(requirement: Requirement, trace: str, data: Trace | None, reading: Re
 
 
 def _outcome(requirement: Requirement, trace: str, result: Result, data: Trace, begin: float) -> Outcome:
-    """Return what an evaluation of ``data`` says of one requirement."""
+    """Return the outcome of one requirement on ``data``."""
     try:
         satisfied, violated = result.satisfied, first_violation(result)
         episodes = Episodes.of(result.episodes())
@@ -297,7 +297,7 @@ def _outcome(requirement: Requirement, trace: str, result: Result, data: Trace, 
         shown(trace),
         "satisfied" if satisfied else "violated",
         result.robustness,
-        told(violated),
+        plain_time(violated),
         moment_of(violated, recording.origin),
         recording.samples,
         recording.domain.period,
@@ -317,7 +317,7 @@ class _Chunks:
         self.last: Trace | None = None
         #: The first time of all.
         self.start: Any = 0.0
-        #: What the last chunk says, which is about all before it, too.
+        #: The notes of the last chunk, which include those of all before.
         self.remarks: tuple[str, ...] = ()
 
     def __iter__(self) -> Iterator[Trace]:

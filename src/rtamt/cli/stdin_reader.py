@@ -1,4 +1,4 @@
-"""Lines of text to samples: JSON objects, or CSV with a header row; the first line tells which."""
+"""Lines of text to samples: JSON objects, or CSV with a header row; the first line decides."""
 
 from __future__ import annotations
 
@@ -317,7 +317,7 @@ class CsvSamples:
         return _code(text, column.name, type_, number)
 
     def _is_boolean(self, name: str, text: str) -> bool:
-        """Return whether a column holds true and false, as its first cell tells, as in a file."""
+        """Return whether a column holds true and false, from its first cell, as in a file."""
         return self._boolean.setdefault(name, is_boolean(text))
 
 

@@ -113,7 +113,7 @@ class Graph:
         return self.nodes[ref // 2].horizon
 
     def fingerprint(self) -> bytes:
-        """Return what tells this graph from others."""
+        """Return what distinguishes this graph from others."""
         return zlib.crc32(repr((self.nodes, self.outputs, self.items)).encode()).to_bytes(4, "little")
 
 

@@ -61,13 +61,13 @@ class Metadata:
             raise damaged(f"the length of its step is {numerator}/{denominator} s")
         name, formula = reader.text(), reader.text()
         names = tuple(reader.text() for _ in range(inputs))
-        told = tuple(reader.text() for _ in range(outputs))
+        results = tuple(reader.text() for _ in range(outputs))
         parameters = {reader.text(): tuple(reader.numbers()) for _ in range(reader.number())}
         meanings = {reader.number(): reader.text() for _ in range(reader.number())}
         early = reader.bytes(reader.number())
         reader.end()
         metadata = Metadata(
-            name, formula, told, MappingProxyType(parameters), MappingProxyType(meanings), early
+            name, formula, results, MappingProxyType(parameters), MappingProxyType(meanings), early
         )
         return metadata, names, Fraction(numerator, denominator)
 

@@ -224,11 +224,11 @@ class Program:
         records = _RECORD.iter_unpack(body[_HEADER.size : _HEADER.size + _RECORD.size * size])
         instructions = tuple(_instruction(i, record, inputs) for i, record in enumerate(records))
         end = len(body) - length
-        told = struct.unpack(f"<{outputs}I", body[end - 4 * outputs : end])
-        if any(place >= size for place in told):
+        places = struct.unpack(f"<{outputs}I", body[end - 4 * outputs : end])
+        if any(place >= size for place in places):
             raise damaged("it has an output that is no instruction")
         metadata, names, period = Metadata.from_bytes(body[end:], inputs, outputs)
-        return Program(instructions, names, told, period, domain=_DOMAINS[domain], metadata=metadata)
+        return Program(instructions, names, places, period, domain=_DOMAINS[domain], metadata=metadata)
 
     def disassemble(self) -> str:
         """Return a listing: index, lag in samples, instruction.

@@ -107,7 +107,7 @@ class DenseMonitor:
     def set_time_scale(self, signal: type, scale: Any, rate: float, whole: bool = False) -> None:
         """Set the times that update() accepts: numbers of so many ticks, or only integers (``whole``).
 
-        Its answers are of the class ``signal``, their ``_scale`` is the given one and their ``_events``
+        Its results are of the class ``signal``, their ``_scale`` is the given one and their ``_events``
         are bytes: the ticks, then the values.
         """
 

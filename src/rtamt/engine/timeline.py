@@ -58,7 +58,7 @@ class Timeline(ABC):
 
     @abstractmethod
     def closes(self, end: int, formula: Formula, at: int) -> bool:
-        """Return whether an interval of cells up to ``end`` is better told by its last cell than by ``end``.
+        """Return whether an interval of cells up to ``end`` is reported by its last cell instead of ``end``.
 
         It is part of the answer to why the formula has its verdict at the cell ``at``.
         """

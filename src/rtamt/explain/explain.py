@@ -47,7 +47,7 @@ def explain(
 ) -> Explanation:
     """Explain a formula's verdict and robustness at an instant (by default the first).
 
-    ``recording``: normalised, as a result holds it. ``at``: a time as the caller tells time. ``text``: from
+    ``recording``: normalised, as a result holds it. ``at``: a time in the caller's format. ``text``: from
     which the formula was read, to quote predicates as they were written. ``semantics`` gives the
     formula whose value counts as that of a predicate. Raises :class:`UsageError` where ``at`` is not in the
     recording.
@@ -86,7 +86,7 @@ class _Explainer:
         self._walk = Walk(self._signals, self._line.period, self._line.end)
 
     def _measured(self, formulas: list[Formula]) -> dict[str, StepFunction]:
-        """Return what each of as many formulas as there are leaves is worth, by the leaf's name."""
+        """Evaluate a formula for each leaf; return the values by the leaf's name."""
         steps = self._line.measured(formulas) if formulas else []
         return dict(zip(self._structure.leaves, steps, strict=True))
 
@@ -98,13 +98,13 @@ class _Explainer:
         implicant = self._implicant(cell, satisfied)
         critical, point = self._critical(cell, implicant)
         stretches = [self._stretch(interval, cell, satisfied) for interval in implicant]
-        told = to_text(self._formula, limit=PAGE)
+        text = to_text(self._formula, limit=PAGE)
         violation = None
         if not satisfied and cell == 0:
             violation = first_violation(outputs_of(self._formula).truth, self._recording, self._evaluators)
         show = self._line.show
         return Explanation(
-            told,
+            text,
             self._line.time(cell),
             satisfied,
             robustness,
@@ -112,7 +112,7 @@ class _Explainer:
             critical,
             tuple(stretch for stretch, _ in stretches),
             summary(
-                told,
+                text,
                 "satisfied" if satisfied else "violated",
                 robustness,
                 show(cell) if cell else None,
@@ -132,12 +132,12 @@ class _Explainer:
         Where several places have the value of the robustness it is, if there is one, a place that overturns
         the verdict alone; such a place is in every implicant.
         """
-        first = self._told(self._walk.down(self._structure.core, cell), cell)
+        first = self._described(self._walk.down(self._structure.core, cell), cell)
         if overturns(first[0]):
             return first
         others = self._places(implicant, self._signals.at(self._structure.core, cell))
-        told = (self._told(point, cell) for point in islice(others, _TRIED))
-        return next((other for other in told if overturns(other[0])), first)
+        candidates = (self._described(point, cell) for point in islice(others, _TRIED))
+        return next((other for other in candidates if overturns(other[0])), first)
 
     def _places(self, implicant: list[Interval], robustness: float) -> Iterator[Point]:
         """Yield the places of an implicant that have the value of the robustness."""
@@ -150,7 +150,7 @@ class _Explainer:
                     cells = (start,) if self._dense else range(start, stop)
                     yield from (Point(there, interval.sign, interval.name) for there in cells)
 
-    def _told(self, point: Point, cell: int) -> tuple[CriticalPoint, int]:
+    def _described(self, point: Point, cell: int) -> tuple[CriticalPoint, int]:
         """Return a place that has the value of the robustness as a critical point, and its cell."""
         start, end = point.cell, point.cell + 1
         value = point.sign * self._signals.at(self._structure.core, cell)
@@ -166,7 +166,7 @@ class _Explainer:
             if self._dense:
                 start, end = self._values[point.name].around(point.cell)
             lowest, highest = self._follows(point, start, end, cell)
-        told = CriticalPoint(
+        found = CriticalPoint(
             words,
             None if leaf is None else leaf.formula,
             self._line.time(point.cell),
@@ -178,7 +178,7 @@ class _Explainer:
             highest,
             decided_by,
         )
-        return told, point.cell
+        return found, point.cell
 
     def _follows(self, point: Point, start: int, end: int, cell: int) -> tuple[float, float]:
         """Return the robustness when the critical value goes, up to sign, to -inf and to +inf alone."""

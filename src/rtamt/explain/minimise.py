@@ -1,8 +1,8 @@
 """From enough to just enough: intervals are taken away as long as the verdict is forced without them.
 
 A set of intervals forces the verdict if the formula has it when each predicate has its truth on its
-intervals and, everywhere else, the truth that speaks against the verdict, at each of its places.
-Operators being monotone, no other values there can be worse. The engine says so, on the formula
+intervals and, everywhere else, the truth that contradicts the verdict, at each of its places.
+Operators being monotone, no other values there can be worse. The engine decides this on the formula
 with two variables for a predicate (``Structure.polar``) that are +inf or -inf.
 """
 

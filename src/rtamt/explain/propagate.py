@@ -108,7 +108,7 @@ class Demands:
         return having
 
     def _support(self, node: Formula, sign: int) -> Cells:
-        # What holds is known up to the end: nothing is said of later, so that nothing fails there either.
+        # What holds is known up to the end: later instants are not part of the explanation.
         holds = self._holds[node]
         return holds if self.truth(sign) else (self._all - holds).within(0, self._end)
 

@@ -1,4 +1,4 @@
-"""What an explanation says: as data, and as sentences."""
+"""Explanations as data and as sentences."""
 
 from __future__ import annotations
 
@@ -24,8 +24,8 @@ class CriticalPoint:
     """The predicate and the instant whose value is, up to sign, the robustness.
 
     ``predicate`` is its text and ``formula`` the predicate itself; both are None where no predicate
-    decides, and ``decided_by`` says what does: "predicate", "start" or "end" (of the recording: a
-    window there is empty), or "constant". ``time``: as the caller tells time. ``value``: of the
+    decides, and ``decided_by`` is what does: "predicate", "start" or "end" (of the recording: a
+    window there is empty), or "constant". ``time``: in the caller's format. ``value``: of the
     predicate there; the robustness is ``polarity`` (+1 or -1) times it. ``start`` and ``end``: in dense
     time the segment [start, end) around ``time`` with that value, else ``time`` itself.
 
@@ -51,7 +51,7 @@ class CriticalPoint:
 class Stretch:
     """A predicate and an interval on which it held, or failed, throughout; part of an implicant.
 
-    ``start`` and ``end`` are times as the caller tells time, None for an end that never comes; ``end``
+    ``start`` and ``end`` are times in the caller's format, None for an end that never comes; ``end``
     belongs to the interval if ``closed``, as it always does in discrete time. ``lowest`` and
     ``highest``: of the predicate's robustness on the interval. The predicate's value on it depends on
     the signals from ``reads_from`` to ``reads_to``: more than the interval where operators in time stand

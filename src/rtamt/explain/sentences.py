@@ -63,12 +63,12 @@ def cause(stretch: Stretch, when: str) -> str:
 def _decision(point: CriticalPoint, when: str) -> str:
     if point.predicate is None:
         return _NO_PREDICATE[point.decided_by]
-    told = f"critical point at {when}: '{point.predicate}' is {_short(point.value)}"
+    sentence = f"critical point at {when}: '{point.predicate}' is {_short(point.value)}"
     if point.decided_by == "constant":
-        return f"{told}, a constant"
+        return f"{sentence}, a constant"
     if point.lowest == point.highest:
-        return f"{told}; others give the same robustness"
-    return f"{told}; the robustness follows it{_reach(point)}"
+        return f"{sentence}; others give the same robustness"
+    return f"{sentence}; the robustness follows it{_reach(point)}"
 
 
 def _reach(point: CriticalPoint) -> str:

@@ -3,7 +3,7 @@
 Each function is given the cells ``asked`` at which an operator has the truth that is to be explained, and
 where its operands have the truth that brings it about; it returns cells of the operands, within
 those, that bring it about at all of ``asked``. Few long intervals are preferred to many short ones.
-In discrete time no more is taken than is needed; in dense time, where one tick of a segment says
+In discrete time no more is taken than is needed; in dense time, where one tick of a segment means
 nothing, the whole segment within the window.
 """
 

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
     from rtamt.compiler.program import Program
 
-#: What a simulator may want to filter by: the runtime says nothing else.
+#: The log category by which a simulator filters; the runtime has no other.
 _LOG = {
     "logStatusError": "what cannot go on",
     "logStatusDiscard": "what was refused; the unit is as it was",

@@ -47,7 +47,7 @@ def export(
 
     ``version``: 2 for FMI 2.0, 3 for FMI 3.0. Other settings, and errors, as for
     ``Specification.compile``. The unit is for machines like this one; it needs neither Python nor a
-    compiler. docs/how-to/fmi.md says what its variables mean and how steps become samples.
+    compiler. docs/how-to/fmi.md describes its variables and how steps become samples.
 
     >>> import pathlib, tempfile
     >>> import rtamt

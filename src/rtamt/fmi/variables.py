@@ -62,8 +62,8 @@ def variables_of(program: Program, units: Mapping[str, str]) -> tuple[Variable, 
         add(name, "real", "input", 0.0, "a variable of the requirement", units.get(name, ""))
     for name, kind, start, unit, description in _BOUNDS if metadata.early else ():
         add(name, kind, "output", start, description, unit)
-    told = () if metadata.early else metadata.outputs
-    for output, lag in zip(told[::2], program.lags[: len(told) : 2], strict=True):
+    outputs = () if metadata.early else metadata.outputs
+    for output, lag in zip(outputs[::2], program.lags[: len(outputs) : 2], strict=True):
         requirement = output.removeprefix("robustness")
         for name, kind, unit, description in _outputs(format_duration(lag * program.period)):
             add(f"{name}{requirement}", kind, "output", 0.0, description, unit)

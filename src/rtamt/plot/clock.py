@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from rtamt.signals.arrays import FloatArray
     from rtamt.signals.domain_interface import DomainTrace
 
-#: Stamps that start later than this many seconds are told from their start on.
+#: Timestamps that start later than this many seconds are counted from their start.
 _FAR = 1e5
 
 
@@ -40,7 +40,7 @@ class Clock:
         return Clock(0.0 if abs(origin) <= _FAR else float(origin), recording)
 
     def positions(self, times: Any) -> FloatArray:
-        """Return times, as signals and explanations tell them, as positions."""
+        """Return times, of signals and explanations as positions."""
         return self.recording.seconds(times, elapsed=self._elapsed)
 
     def recorded(self, name: str) -> tuple[FloatArray, FloatArray]:
@@ -56,10 +56,10 @@ class Clock:
         """Return one time as a position."""
         return float(self.positions(np.asarray([time]))[0])
 
-    def told(self, position: float) -> str:
+    def text(self, position: float) -> str:
         """Return a position as text: a date and the seconds since the start, or seconds.
 
-        >>> Clock(np.datetime64("2026-03-01T12:00:00.000000000"), None).told(2.5)
+        >>> Clock(np.datetime64("2026-03-01T12:00:00.000000000"), None).text(2.5)
         '2026-03-01 12:00:02.5 (+2.5 s)'
         """
         if isinstance(self.origin, np.datetime64):

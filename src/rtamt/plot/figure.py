@@ -105,14 +105,14 @@ class _Drawing:
         axis.set_axisbelow(True)
 
     def _header(self, total: float) -> None:
-        told = self._scene.explanation
-        kind = style.HOLDS if told.satisfied else style.FAILS
+        explanation = self._scene.explanation
+        kind = style.HOLDS if explanation.satisfied else style.FAILS
         left, y = _LEFT / _WIDTH, total - 0.3
         name = f"{self._scene.title}: " if self._scene.title else ""
         self._figure.text(
             left,
             y / total,
-            f"{style.SIGNS[told.satisfied]} {name}{self._scene.verdict}",
+            f"{style.SIGNS[explanation.satisfied]} {name}{self._scene.verdict}",
             color=kind,
             fontsize=13,
             fontweight="bold",
@@ -166,12 +166,12 @@ class _Drawing:
     def _names(self, axis: Any, labels: Sequence[tuple[float, str, str]]) -> None:
         """Write each signal's name at its end, the names apart from each other."""
         low, high = axis.get_ylim()
-        told = [in_lines(name) for _, name, _ in labels]
+        names = [in_lines(name) for _, name, _ in labels]
         tall = axis.figure.get_size_inches()[1] * axis.get_position().height
-        space = room(told) / tall * (high - low)
+        space = room(names) / tall * (high - low)
         y = low - space
         places = []
-        for (value, _, color), name in sorted(zip(labels, told, strict=True)):
+        for (value, _, color), name in sorted(zip(labels, names, strict=True)):
             y = max(value, y + space)
             places.append((y, name, color))
         shift = max(places[-1][0] - high, 0.0)
@@ -230,13 +230,13 @@ class _Drawing:
         axis.set_ylabel("ρ", rotation=0, fontsize=9, color=style.QUIET, va="center")
         axis.yaxis.set_label_coords(-0.068, 0.5)
         self._instants(axis)
-        at = self._scene.told_at(number)
+        at = self._scene.shown_at(number)
         value, fails = node.line.at(at), node.fails_at(at)
-        told = f"at {self._scene.clock.told(at)}"
+        when = f"at {self._scene.clock.text(at)}"
         self._beside(
             axis,
             f"{style.SIGNS[not fails]} {style.number(value)}",
-            told,
+            when,
             style.FAILS if fails else style.HOLDS,
         )
         if (
@@ -308,8 +308,8 @@ class _Drawing:
         kind = style.HOLDS if self._scene.explanation.satisfied else style.FAILS
         if band.decided is not None and self._sees(band.decided):
             axis.axvline(self._place(band.decided), color=kind, linewidth=1.2)
-        told = "at the end" if band.decided is None else f"at {self._scene.clock.told(band.decided)}"
-        self._beside(axis, "decided", told, kind)
+        when = "at the end" if band.decided is None else f"at {self._scene.clock.text(band.decided)}"
+        self._beside(axis, "decided", when, kind)
 
     # ---- marks -------------------------------------------------------------------------------------
 

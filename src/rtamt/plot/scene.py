@@ -47,7 +47,7 @@ class Node:
     """A sub-formula down to predicates: its robustness over time, and where it fails.
 
     ``label`` is its own operator, with φ, ψ and χ for the operands; ``children`` are numbers of nodes, and
-    ``hidden`` tells that there are operands too far down to be shown.
+    ``hidden``: whether there are operands too far down to be shown.
     """
 
     formula: Formula
@@ -87,8 +87,12 @@ class Scene:
     @property
     def verdict(self) -> str:
         """The verdict, the robustness, and the first violation."""
-        told = self.explanation
-        return told.headline if told.first_violation is None else f"{told.headline}, {told.summary[1]}"
+        explanation = self.explanation
+        return (
+            explanation.headline
+            if explanation.first_violation is None
+            else f"{explanation.headline}, {explanation.summary[1]}"
+        )
 
     def window(self, start: Any = None, end: Any = None, zoom: str | None = None) -> tuple[float, float]:
         """Return the positions from one time to another; by default all, with ``zoom="violation"`` those around it.
@@ -106,9 +110,9 @@ class Scene:
         low = low if start is None else self.clock.position(start)
         high = high if end is None else self.clock.position(end)
         if low > high or high < self.clock.start or low > self.clock.end:
-            ends = f"{self.clock.told(self.clock.start)} to {self.clock.told(self.clock.end)}"
+            ends = f"{self.clock.text(self.clock.start)} to {self.clock.text(self.clock.end)}"
             raise UsageError(
-                f"there is nothing to plot from {self.clock.told(low)} to {self.clock.told(high)}; "
+                f"there is nothing to plot from {self.clock.text(low)} to {self.clock.text(high)}; "
                 f"the trace lasts from {ends}"
             )
         return max(low, self.clock.start), min(high, self.clock.end)
@@ -123,7 +127,7 @@ class Scene:
         margin = max(0.5 * (high - low), 0.02 * whole if self.dense else samples)
         return max(low - margin, self.clock.start), min(high + margin, self.clock.end)
 
-    def told_at(self, number: int) -> float:
+    def shown_at(self, number: int) -> float:
         """Return the position at which a node's value is shown: of parts of a violated formula its first violation."""
         violation = self.explanation.first_violation
         return self.at if number == 0 or violation is None else self.clock.position(violation)

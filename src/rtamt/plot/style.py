@@ -1,4 +1,4 @@
-"""Colours and signs that can be told apart by everybody, in print too."""
+"""Colours and signs that everybody can distinguish, in print too."""
 
 from __future__ import annotations
 

@@ -49,17 +49,17 @@ def draw_tree(scene: Scene, figure: Any) -> None:
     shift = (width - right) / 2
     axis.set_xlim(-shift, width - shift)
     axis.set_ylim(total, 0)
-    told = scene.explanation
+    explanation = scene.explanation
     axis.text(
         -shift + 0.25,
         0.3,
-        f"{style.SIGNS[told.satisfied]} {scene.verdict}",
+        f"{style.SIGNS[explanation.satisfied]} {scene.verdict}",
         fontsize=12,
         fontweight="bold",
         va="center",
-        color=style.HOLDS if told.satisfied else style.FAILS,
+        color=style.HOLDS if explanation.satisfied else style.FAILS,
     )
-    axis.text(-shift + 0.25, 0.58, told.summary[-2], fontsize=8, va="center", color=style.QUIET)
+    axis.text(-shift + 0.25, 0.58, explanation.summary[-2], fontsize=8, va="center", color=style.QUIET)
     _draw(root, axis, None if scene.critical is None else scene.nodes[scene.critical[0]])
 
 

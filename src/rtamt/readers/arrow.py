@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from rtamt.readers.source import Raw
 
 
-#: Rows that are looked at to tell dates from other texts.
+#: Rows that are examined to distinguish dates from other texts.
 _SAMPLE = 100
 
 
@@ -67,7 +67,7 @@ def open_arrow(path: str) -> Source:
 
 
 def _valid(batch: Any) -> Any:
-    """Return a batch whose texts and lists lie in its memory: pyarrow reads them wherever the file says."""
+    """Return a batch whose texts and lists lie in its memory: pyarrow reads them wherever the file points."""
     batch.validate(full=True)
     return batch
 
@@ -99,7 +99,7 @@ def _texts(schema: Any, arrow: Any) -> list[str]:
 
 
 def _dated(first: Any, texts: Sequence[str], arrow: Any) -> set[str]:
-    """Return which columns of texts hold dates, as the first text that is not missing tells."""
+    """Return which columns of texts hold dates, from the first text that is not missing."""
     if first is None or not texts:
         return set()
     head = first if isinstance(first, arrow.Table) else arrow.Table.from_batches([first]).flatten()

@@ -368,7 +368,7 @@ def _no_number(value: Any, field: Field, source: str, row: int) -> TraceError:
 
 
 def _one_kind(channels: dict[str, Channel], source: str) -> dict[str, Channel]:
-    """Return channels that all tell time in one way: nanoseconds where one of them needs them."""
+    """Return channels whose times all have one type: nanoseconds where one of them needs them."""
     kinds = {c.times.dtype.kind for c in channels.values() if c.times is not None}
     if len(kinds) < 2:
         return channels

@@ -102,7 +102,7 @@ def plain(block: list[str], header: Header, columns: Sequence[Column]) -> FloatA
     with suppress(ValueError):
         positions = [column.position for column in columns]
         values = np.loadtxt(block, delimiter=header.delimiter, usecols=positions, comments=None, ndmin=2)
-        # A number beyond the range of a double is infinite here; only its text tells it from infinity.
+        # A number beyond the range of a double is infinite here; only its text distinguishes it from infinity.
         skipped = [column.skip_nan for column in columns]
         if not np.isinf(values).any() and not np.isnan(values[:, np.logical_not(skipped)]).any():
             return np.ascontiguousarray(values.T)

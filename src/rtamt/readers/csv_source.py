@@ -33,10 +33,10 @@ if TYPE_CHECKING:
 
     from rtamt.readers.source import Raw
 
-#: Lines that are looked at to tell columns of numbers from columns of text.
+#: Lines that are examined to distinguish columns of numbers from columns of text.
 _SAMPLE = 100
 
-#: Bytes that are looked at to tell whether a header is UTF-8.
+#: Bytes that are examined to decide whether a header is UTF-8.
 _BEGINNING = 1 << 20
 
 

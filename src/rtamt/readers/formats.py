@@ -52,7 +52,7 @@ class Format:
         return guarded(source, guard)
 
 
-#: A bag has a table for each topic; a specification's annotations say which topics it reads. ROS 2 records
+#: A bag has a table for each topic; a specification's annotations select the topics. ROS 2 records
 #: folders: such files, or parts of them, and metadata.yaml.
 MCAP = ".mcap"
 BAG = Format("ROS bag", (".bag", ".db3", MCAP), "rosbag:open_bag", recovers=MCAP)
@@ -84,7 +84,7 @@ def is_bag(path: str) -> bool:
 
 
 def format_of(path: str) -> Format:
-    """Return the format that a file's name tells; raise :class:`TraceError` where it tells none."""
+    """Return the format that follows from a file's name; raise :class:`TraceError` where there is none."""
     if is_bag(path):
         return BAG
     stem, suffix = os.path.splitext(path.lower())

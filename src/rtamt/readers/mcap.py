@@ -159,7 +159,7 @@ def _whole_records(chunk: bytes) -> list[tuple[int, bytes]]:
 
 
 def _unpacked(data: bytes, compression: str) -> bytes:
-    """Return as much of compressed data as can be told without its end."""
+    """Return as much of compressed data as can be decoded without its end."""
     if not compression:
         return data
     if compression == "lz4":

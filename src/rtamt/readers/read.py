@@ -41,7 +41,7 @@ def read(
 ) -> Trace:
     r"""Read a recording; ``Specification.evaluate`` and ``update_many`` take what comes out.
 
-    ``source``: a file, whose suffix tells its format (CSV, Parquet, Arrow, Excel, PX4 ULog, MDF, ROS bag); the
+    ``source``: a file, whose extension selects the format (CSV, Parquet, Arrow, Excel, PX4 ULog, MDF, ROS bag); the
     address of a database (``sqlite:///log.db``, ``postgresql://user@host/name``), with a ``query`` whose
     rows are samples; a dict, a pandas, polars, xarray or arrow object, or a structured numpy array.
     ``columns``: the signals that are wanted (default: all that are numbers). ``names``: for signals that
@@ -49,8 +49,8 @@ def read(
     ``{"v": "battery_status[1].voltage_v"}``. ``time``: the column of timestamps, ``""`` for none; by
     default the one called time, t, timestamp, stamp or datetime, perhaps with a unit (``Time [ms]``,
     ``time_ms``), else the one column of dates. ``time_unit``: of stamps that are numbers (``"s"``, ``"ms"``,
-    ``"us"``, ``"ns"``); by default what their column says, else seconds; numbers that are too large
-    for seconds are an error. ``units``: from column to unit, where the source does not say it.
+    ``"us"``, ``"ns"``); by default that of their column, else seconds; numbers that are too large
+    for seconds are an error. ``units``: from column to unit, where the source does not have it.
     ``sheet``: of an Excel workbook that
     has several. ``recover``: read an MCAP file that was cut off or is damaged up to the damage, an
     error otherwise; flight logs are always read that far.
@@ -65,7 +65,7 @@ def read(
     What was guessed or left out is in ``Trace.notes``, and printed with it; what a
     verdict has to do without is in ``Trace.losses``, too.
 
-    Raises :class:`TraceError` where the data is wrong or columns cannot be told apart, and
+    Raises :class:`TraceError` where the data is wrong or columns are ambiguous, and
     :class:`UsageError` where a library is missing: ``pip install 'rtamt[data]'``.
 
     >>> import pathlib, tempfile
@@ -105,7 +105,7 @@ def scan(
     r"""Read a recording in chunks, in memory that does not grow with its length; arguments as for :func:`read`.
 
     For :func:`rtamt.check_stream` and ``update_many``. CSV, Parquet, Arrow and Excel files and SQL queries
-    can be read in chunks; what the first chunk tells of the timestamps holds for all. Give
+    can be read in chunks; what is inferred from the timestamps of the first chunk holds for all. Give
     ``columns=spec.input_names``, so that only what a formula reads is read.
 
     >>> import pathlib, tempfile

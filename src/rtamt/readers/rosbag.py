@@ -253,7 +253,7 @@ def _message(reader: Any, connection: Any, raw: Any) -> Any:
         return reader.deserialize(raw, connection.msgtype)
     except Exception as error:  # code that rosbags makes of the definition: whatever goes wrong first
         path = reader.paths[0]
-        # Only the folder says that each message is compressed.
+        # Only the metadata of the folder states that each message is compressed.
         part = path.is_file() and (path.parent / METADATA).is_file()
         hint = f"; the file is a part of a bag: give its folder, '{path.parent}'" if part else ""
         raise TraceError(

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from rtamt.readers.source import Raw
 
-#: Rows that are looked at to tell numbers, dates and texts apart.
+#: Rows that are examined to distinguish numbers, dates and texts.
 _SAMPLE = 100
 
 
@@ -45,7 +45,7 @@ def table_of_rows(columns: Sequence[str], rows: Iterable[Sequence[Any]]) -> Tabl
 
 
 def _kind(values: Sequence[Any]) -> str:
-    """Tell what a column holds by its first values; "" where they do not tell."""
+    """Return the kind of a column from its first values; "" where they do not determine it."""
     given = [value for value in values if value is not None]
     if not given:
         return ""

@@ -1,7 +1,7 @@
 """Which column holds the timestamps, in what unit, and what its values are as times.
 
-Files, frames, queries, chunks and streams all come here. What cannot be told from the name of the
-column is told by its first stamp, which every one of them has.
+Files, frames, queries, chunks and streams all come here. What does not follow from the name of the
+column follows from its first timestamp, which every one of them has.
 """
 
 from __future__ import annotations
@@ -68,7 +68,7 @@ def _unclear(candidates: Sequence[Field], source: str) -> TraceError:
 class Clock:
     """How the stamps of a column become times, a few at a time: the first one decides for all.
 
-    ``said``: the unit that the caller says. ``notes``: what was guessed.
+    ``said``: the unit that the caller gives. ``notes``: what was guessed.
     """
 
     def __init__(self, field: Field, said: str | None, guessed: bool, source: str) -> None:

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
     from rtamt.readers.source import Raw
 
-#: The field of every topic that says when it was logged: microseconds since the autopilot's start.
+#: The timestamp field of every topic: microseconds since the autopilot's start.
 _CLOCK = "timestamp"
 
 

@@ -91,7 +91,7 @@ class DefinedSamples:
         self._behind = behind(op, end)
         self._ahead = ahead
         self._first = 0  # the sample that the kept stretch begins with
-        self._told = 0
+        self._reported = 0
         self._kept: tuple[Array, ...] = (np.empty(0),) * max(len(op.operands), 1)
 
     def push(self, *blocks: Array) -> Array:
@@ -104,11 +104,11 @@ class DefinedSamples:
         return self._news(self._first + len(self._kept[0]))
 
     def _news(self, end: int) -> Array:
-        end = max(end, self._told)
+        end = max(end, self._reported)
         n = len(self._kept[0])
         values = values_of(self._node, self._kept, n, self._bounds, "sample")
-        news: Array = values[self._told - self._first : end - self._first].copy()
-        self._told = end
+        news: Array = values[self._reported - self._first : end - self._first].copy()
+        self._reported = end
         if self._behind is not None:
             drop = max(0, end - self._behind - self._first)
             self._kept = tuple(column[drop:] for column in self._kept)
@@ -128,7 +128,7 @@ class DefinedEvents:
         self._bounds = begin * QUARTERS, None if end is None else end * QUARTERS
         self._behind = behind(op, end)
         self._ahead = ahead
-        self._told: int | None = None  # up to when values were told
+        self._reported: int | None = None  # up to when values were reported
         self._kept: tuple[Steps, ...] = (Steps((), ()),) * max(len(op.operands), 1)
 
     def push(self, *events: Events, until: int) -> Events:
@@ -142,10 +142,10 @@ class DefinedEvents:
         news = [
             (t // QUARTERS, value)
             for t, value in zip(*result, strict=True)
-            if t <= due * QUARTERS and (self._told is None or t > self._told * QUARTERS)
+            if t <= due * QUARTERS and (self._reported is None or t > self._reported * QUARTERS)
         ]
         if due * QUARTERS >= self._kept[0].times[0]:
-            self._told = due
+            self._reported = due
             if self._behind is not None:
                 self._kept = tuple(_from(x, (due - self._behind) * QUARTERS) for x in self._kept)
         return np.array([t for t, _ in news], np.int64), np.array([value for _, value in news], float)

@@ -235,7 +235,7 @@ def _evaluate(formula: Formula, trace: _Trace, limits: Limits) -> Steps:
                 raise undefined(node, f"time {trace.seconds(time):.15g} s")
         return value
 
-    # Later than the limits NaN may meet any operator, and none of it is told.
+    # Later than the limits NaN may meet any operator, and none of it is reported.
     with np.errstate(all="ignore"):
         return fold(formula, step)
 

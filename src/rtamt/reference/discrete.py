@@ -119,7 +119,7 @@ class ReferenceMonitor:
         self._horizons = tuple(horizons)
         self.start = start
         self._exact = [_Exact(formula, period) for formula in self._formulas]
-        # Values still to be told lie up to a horizon back, and each reads `history` further.
+        # Values still to be reported lie up to a horizon back, and each reads `history` further.
         self._reach = None if history is None else history + max(self._horizons, default=0)
         # Sums are aligned to sample 0: what is dropped is a multiple of their windows.
         self._block = lcm(*(width for formula in self._formulas for width in _sum_widths(formula, period)))
@@ -247,7 +247,7 @@ def _evaluate(
             every[node] = value
         return value
 
-    # Beyond a stretch's exact ranges NaN may meet any operator, and none of it is told.
+    # Beyond a stretch's exact ranges NaN may meet any operator, and none of it is reported.
     with np.errstate(all="ignore"):
         return fold(formula, step)
 

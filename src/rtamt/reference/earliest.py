@@ -1,7 +1,7 @@
 """The definition of early verdicts: after each sample, what the samples so far decide for good.
 
 A formula is decided at an instant as soon as its lower bound is positive or its upper bound negative, with
-predicates that are worth +inf where they hold and -inf where they do not. It is decided for every
+predicates that are +inf where they hold and -inf where they do not. It is decided for every
 continuation of the trace. The verdict is reported once the instant itself is reached.
 """
 
@@ -47,7 +47,7 @@ def verdicts(formula: Formula, known: Knowledge, period: Fraction) -> list[list[
     """
     truth = boolean(formula)
     stages = [known.until(n) for n in range(1, known.n + 1)] + [known] * known.finished
-    told: dict[int, Decided] = {}
+    reported: dict[int, Decided] = {}
     pending: dict[int, Decided] = {}  # of instants that are not reached yet
     news = []
     for stage in stages:
@@ -56,10 +56,10 @@ def verdicts(formula: Formula, known: Knowledge, period: Fraction) -> list[list[
         for i in range(known.n):
             place = min(i, len(found.lower) - 1)
             verdict = _sign(float(found.lower[place]), float(found.upper[place]))
-            if verdict is not None and i not in told:
+            if verdict is not None and i not in reported:
                 pending.setdefault(i, Decided(i, verdict, last))
-        reached = {i: decided for i, decided in sorted(pending.items()) if i <= last and i not in told}
-        told |= reached
+        reached = {i: decided for i, decided in sorted(pending.items()) if i <= last and i not in reported}
+        reported |= reached
         news.append(list(reached.values()))
     return news
 
@@ -87,7 +87,7 @@ def dense_verdicts(
     if finished:
         stages.append(after(updates, names, ranges, finished=True))
     last = max((time for time, _ in updates), default=0)
-    told: dict[int, Decided] = {}
+    reported: dict[int, Decided] = {}
     pending: dict[int, Decided] = {}
     news: list[list[Decided]] = []
     for k, stage in enumerate(stages):
@@ -100,11 +100,11 @@ def dense_verdicts(
         now = last if k == len(updates) else came[-1][0]
         for t in range(start, last + 1):
             verdict = _sign(*found.at(t))
-            if verdict is not None and t not in told:
+            if verdict is not None and t not in reported:
                 pending.setdefault(t, Decided(t, verdict, now))
         newest = max(time for time, _ in came)
-        reached = {t: decided for t, decided in sorted(pending.items()) if t <= newest and t not in told}
-        told |= reached
+        reached = {t: decided for t, decided in sorted(pending.items()) if t <= newest and t not in reported}
+        reported |= reached
         news.append(list(reached.values()))
     return news
 

@@ -46,7 +46,7 @@ class Card {
         lines: this.panels[i], height: host.height, levels: panel.thresholds, fails: new Float64Array(), because: await intervalsOf(panel.because),
       }));
     }
-    this.body.append(node("h3", {}, `Robustness of the formula and its parts; values of the parts at ${data.told}`));
+    this.body.append(node("h3", {}, `Robustness of the formula and its parts; values of the parts at ${data.valuesAt}`));
     await this.tree();
     if (data.bounds) this.band(data.bounds);
     this.timeline.join(this);
@@ -127,13 +127,13 @@ class Card {
     for (const chart of this.charts) {
       if (chart.visible && chart.lines.every((line) => line.loaded || line.at)) chart.draw();
     }
-    this.tools.told();
+    this.tools.status();
   }
 
   point() {
     if (!this.section.open) return;
     for (const chart of this.charts) if (chart.visible) chart.point();
-    this.tools.told();
+    this.tools.status();
   }
 
   // Discrete time has values at samples only.

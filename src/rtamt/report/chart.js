@@ -311,12 +311,12 @@ class Chart {
 
   // For those who do not see it.
   summary() {
-    const told = this.lines.filter((line) => line.shown).map(({ name, data }) => (
+    const ranges = this.lines.filter((line) => line.shown).map(({ name, data }) => (
       data.low === null ? `${name}: no finite value` : `${name} from ${number(data.low)} to ${number(data.high)}`));
     const failing = [];
     for (let i = 0; i < this.fails.length && i < 10; i += 2) {
       failing.push(`${this.timeline.times.text(Math.max(this.fails[i], this.timeline.start))} to ${this.timeline.times.text(this.fails[i + 1])}`);
     }
-    return told.join("; ") + (failing.length ? `; does not hold from ${failing.join(", ")}` : "");
+    return ranges.join("; ") + (failing.length ? `; does not hold from ${failing.join(", ")}` : "");
   }
 }

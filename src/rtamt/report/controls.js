@@ -22,8 +22,8 @@ class Legend {
       });
       return { toggle, value };
     });
-    this.told = node("span", { class: "quiet" });
-    this.list.replaceChildren(...this.cells.flatMap(({ toggle, value }) => [toggle, value]), this.adder(), this.told);
+    this.remark = node("span", { class: "quiet" });
+    this.list.replaceChildren(...this.cells.flatMap(({ toggle, value }) => [toggle, value]), this.adder(), this.remark);
   }
 
   adder() {
@@ -55,23 +55,23 @@ class Legend {
     const { chart } = this, { timeline } = chart, dense = chart.card.data.dense;
     const [a, b] = timeline.marks;
     this.cells.forEach(({ value }, i) => {
-      const line = chart.lines[i], at = (position) => line.valueAt(position, dense), told = [];
-      if (timeline.cursor !== null) told.push(at(timeline.cursor));
-      if (a !== null) told.push(`A ${at(a)}`);
-      if (b !== null) told.push(`B ${at(b)}`);
+      const line = chart.lines[i], at = (position) => line.valueAt(position, dense), texts = [];
+      if (timeline.cursor !== null) texts.push(at(timeline.cursor));
+      if (a !== null) texts.push(`A ${at(a)}`);
+      if (b !== null) texts.push(`B ${at(b)}`);
       if (a !== null && b !== null && line.loaded) {
         const [from, to] = [a, b].map((position) => line.y[line.nearest(position, dense)]);
-        if (Number.isFinite(to - from)) told.push(`B−A ${number(to - from)}`);
+        if (Number.isFinite(to - from)) texts.push(`B−A ${number(to - from)}`);
       }
-      value.textContent = told.join("  ");
+      value.textContent = texts.join("  ");
     });
   }
 
-  // Whatever is seen is samples, unless this says otherwise.
+  // What is drawn if it is not every sample.
   note(seen) {
     const kinds = new Set(seen.map(({ kind }) => kind)), most = Math.max(...seen.map(({ per }) => per || 0));
     const bands = this.chart.lines.every(({ data }) => data.band);
-    this.told.textContent = bands ? "" : kinds.has("ranges") ? "boxes: range of the samples, which this file does not hold"
+    this.remark.textContent = bands ? "" : kinds.has("ranges") ? "boxes: range of the samples, which this file does not hold"
       : kinds.has("extremes") ? `${number(Math.round(most * devicePixelRatio))} samples a pixel: lowest and highest drawn` : "";
   }
 }
@@ -95,7 +95,7 @@ class Tools {
       ["clear", "remove the marks", () => { timeline.mark(0, null); timeline.mark(1, null); }],
       ["unfold", "unfold all parts of the formula", () => card.fold(true)],
       ["fold", "fold all parts of the formula", () => card.fold(false)],
-      ["PNG", "save the charts as a picture", () => this.picture()],
+      ["PNG", "save the charts as an image", () => this.picture()],
       ["CSV", "save the samples that are seen", () => this.table()],
       ["link", "copy the address of this view", () => this.address()],
     ];
@@ -149,14 +149,14 @@ class Tools {
   mark(which) { this.card.timeline.mark(which, this.card.timeline.cursor ?? this.card.data.at); }
 
   // The time that is seen or pointed at, and the time between the marks.
-  told() {
+  status() {
     const { timeline } = this.card, { times, cursor, marks: [a, b] } = timeline;
     const [low, high] = timeline.view;
-    const told = [cursor === null ? `${times.text(Math.max(low, timeline.start))} to ${times.text(Math.min(high, timeline.end))}` : times.text(cursor)];
-    if (a !== null) told.push(`A ${times.text(a)}`);
-    if (b !== null) told.push(`B ${times.text(b)}`);
-    if (a !== null && b !== null) told.push(`B−A ${number(b - a)} s`);
-    this.output.textContent = told.join(" · ");
+    const texts = [cursor === null ? `${times.text(Math.max(low, timeline.start))} to ${times.text(Math.min(high, timeline.end))}` : times.text(cursor)];
+    if (a !== null) texts.push(`A ${times.text(a)}`);
+    if (b !== null) texts.push(`B ${times.text(b)}`);
+    if (a !== null && b !== null) texts.push(`B−A ${number(b - a)} s`);
+    this.output.textContent = texts.join(" · ");
   }
 
   name(suffix) {

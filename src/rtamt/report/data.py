@@ -43,7 +43,7 @@ def data_of(scene: Scene, store: Store) -> dict[str, Any]:
         "critical": None if scene.critical is None else {"node": scene.critical[0], "x": scene.critical[1]},
         "panels": [_panel(panel, store, share) for panel in scene.panels],
         "nodes": [_node(number, scene, store, share) for number in range(len(scene.nodes))],
-        "told": scene.clock.told(scene.told_at(-1)),
+        "valuesAt": scene.clock.text(scene.shown_at(-1)),
         "open": list(scene.chosen(6)),
         "bounds": None if scene.band is None else _bounds(scene.band, scene, store),
     }
@@ -54,7 +54,7 @@ def _bounds(band: Band, scene: Scene, store: Store) -> dict[str, Any]:
     both = np.concatenate([band.lower, band.upper])
     finite = both[np.isfinite(both)]
     return {
-        "decided": None if band.decided is None else scene.clock.told(band.decided),
+        "decided": None if band.decided is None else scene.clock.text(band.decided),
         "robustness": _number(band.robustness),
         "line": {
             "name": "robustness at the start",
@@ -81,7 +81,7 @@ def _panel(panel: Panel, store: Store, share: float) -> dict[str, Any]:
 
 
 def _node(number: int, scene: Scene, store: Store, share: float) -> dict[str, Any]:
-    node, at = scene.nodes[number], scene.told_at(number)
+    node, at = scene.nodes[number], scene.shown_at(number)
     return {
         "text": node.text,
         "name": node.name,

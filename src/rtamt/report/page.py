@@ -124,11 +124,11 @@ class Page:
             filter(None, (row.requirement, description, row.trace, row.error or headline))
         )
         if scene is not None:
-            told = scene.explanation
-            card.summary, causes = _told(scene)
-            shown = told.shown()
+            explanation = scene.explanation
+            card.summary, causes = _sentences(scene)
+            shown = explanation.shown()
             card.causes = [causes[i] for i in shown]
-            rest = [i for i in told.ranking if i not in set(shown)]
+            rest = [i for i in explanation.ranking if i not in set(shown)]
             card.more = [causes[i] for i in sorted(rest[:_CAUSES])]
             card.hidden = len(rest)
             data = data_of(scene, self._store) | {"trace": row.trace}
@@ -217,23 +217,23 @@ def _anchor(row: Row) -> str:
     )
 
 
-def _told(scene: Scene) -> tuple[list[Line], list[Line]]:
+def _sentences(scene: Scene) -> tuple[list[Line], list[Line]]:
     """Return the sentences before the causes, and those of the causes."""
-    told, point = scene.explanation, scene.critical
+    explanation, point = scene.explanation, scene.critical
     first = None
-    if told.first_violation is not None:
-        position = scene.clock.position(told.first_violation)
+    if explanation.first_violation is not None:
+        position = scene.clock.position(explanation.first_violation)
         first = (0, position, position)
-    places: list[tuple[int, float, float] | None] = [None] * len(told.summary)
+    places: list[tuple[int, float, float] | None] = [None] * len(explanation.summary)
     if first is not None:
         places[1] = first
     if point is not None:
         places[-2] = (point[0], point[1], point[1])
     # The headline is above, and the formula is below.
-    summary = [Line(text, place) for text, place in zip(told.summary, places, strict=True)][1:]
+    summary = [Line(text, place) for text, place in zip(explanation.summary, places, strict=True)][1:]
     nodes = {node.formula: number for number, node in enumerate(scene.nodes)}
     causes = []
-    for text, stretch in zip(told.causes, told.implicant, strict=True):
+    for text, stretch in zip(explanation.causes, explanation.implicant, strict=True):
         number, place = nodes.get(stretch.formula), None
         if number is not None:
             start = scene.clock.position(stretch.start)

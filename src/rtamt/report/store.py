@@ -48,7 +48,7 @@ class Store:
         """Return the number of an array, equal ones being one.
 
         ``share``: the part of what room was left at the start that must remain; where there is no room, nothing is
-        stored, and the answer is None. Without ``share`` the array is stored in any case.
+        stored, and the result is None. Without ``share`` the array is stored in any case.
         """
         if share is not None and not self.has_room(share):
             return None

@@ -177,7 +177,7 @@ class RosMonitor:
                 self._repeat(topic)
                 return records
             self._begin_anew(f"the stamps on {topic} went back by {_seconds(last - stamp)}")
-        self._speaks(topic, now)
+        self._arrived(topic, now)
         self._stamps[topic] = stamp
         self._faults.pop(topic, None)
         self._repeated.discard(topic)
@@ -185,8 +185,8 @@ class RosMonitor:
         for watch in self._by_message:
             if topic not in watch.topics:
                 continue
-            if self._all_speak(watch):
-                records += self._tell(watch, stamp, values)
+            if self._all_arrive(watch):
+                records += self._feed(watch, stamp, values)
             else:
                 watch.hold(stamp, values)
         for group in self._sampled:
@@ -211,9 +211,9 @@ class RosMonitor:
     def _sample(self, watch: SampledWatch, until: int) -> list[Record]:
         """Take the samples due up to an instant, unless a topic is silent."""
         records: list[Record] = []
-        if self._all_speak(watch):
+        if self._all_arrive(watch):
             while (sample := watch.sample(until)) is not None:
-                records += self._tell(watch, *sample)
+                records += self._feed(watch, *sample)
         return records
 
     def _is_foreign(self, topic: str, stamp: int, now: int) -> bool:
@@ -233,13 +233,13 @@ class RosMonitor:
 
     def pause(self, now: int) -> float:
         """Return how many seconds a node may sleep before it calls :meth:`tick`, at most :data:`PAUSE`."""
-        due = [watch.due for watch in self._sampled if watch.due is not None and self._all_speak(watch)]
+        due = [watch.due for watch in self._sampled if watch.due is not None and self._all_arrive(watch)]
         return min(PAUSE, max(0.0, (min(due) - now) / 1e9)) if due else PAUSE
 
-    def _all_speak(self, watch: Watch) -> bool:
+    def _all_arrive(self, watch: Watch) -> bool:
         return watch.topics <= self._heard.keys() and not watch.topics & self._silent
 
-    def _tell(self, watch: Watch, stamp: int, values: Mapping[str, float]) -> list[Record]:
+    def _feed(self, watch: Watch, stamp: int, values: Mapping[str, float]) -> list[Record]:
         """Feed a sample to a group; a rejected sample leaves a gap, so that the group restarts."""
         try:
             records = watch.take(stamp, values, self.wanted)
@@ -316,7 +316,7 @@ class RosMonitor:
             if topic not in self._silent and now - heard > self._stale
         }
         for group in self._sampled:
-            if stale & group.topics and self._all_speak(group):
+            if stale & group.topics and self._all_arrive(group):
                 records += self._sample(
                     group, min(self._heard[topic] for topic in group.topics) + self._stale
                 )
@@ -328,10 +328,10 @@ class RosMonitor:
                     watch.drop(topic)
         return records
 
-    def _speaks(self, topic: str, now: int) -> None:
+    def _arrived(self, topic: str, now: int) -> None:
         if topic in self._silent:
             self._silent.discard(topic)
-            self._say(Level.OK, f"{topic} speaks again: the monitors that read it begin anew")
+            self._say(Level.OK, f"{topic} has messages again: the monitors that read it begin anew")
         self._heard[topic] = now
 
     def _say(self, level: Level, message: str) -> None:
@@ -348,12 +348,12 @@ class RosMonitor:
         """Return the condition of every output, for ``/diagnostics``."""
         for watch in self.watches:
             watch.look()
-        told = {
+        conditions = {
             standing.output.name: self._condition(watch, standing, now)
             for watch in self.watches
             for standing in watch.standings
         }
-        return [told[output.name] for output in self.binding.outputs]
+        return [conditions[output.name] for output in self.binding.outputs]
 
     def _condition(self, watch: Watch, standing: Standing | EarlyStanding, now: int) -> Condition:
         output = standing.output

@@ -195,9 +195,9 @@ class DenseWatch(MessageWatch):
             self._start = points[1][0][0]  # the first entry belongs to the result of update()
         records: list[Record] = []
         for standing, (robustness, truth) in zip(self.standings, self._places, strict=True):
-            output, told, truths = standing.output, points[robustness], points[truth]
+            output, robust, truths = standing.output, points[robustness], points[truth]
             if wanted is None or standing.topic in wanted:
-                records += [Robustness(output, at, value) for at, value in told]
+                records += [Robustness(output, at, value) for at, value in robust]
             heard = wanted is None or standing.verdicts in wanted
             if heard or standing.undecided:
                 verdicts = self._verdicts(standing, truths)

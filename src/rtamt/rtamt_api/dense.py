@@ -233,7 +233,9 @@ class StlDenseTimeOnlineSpecification(OnlineSpecification, DenseTimeSpecificatio
             times, _ = self._given.get(part.name, ((), ()))
             return list(self._scale.times(self._scale.ticks(times, part.name)))
         return (
-            [] if part is self._result or isinstance(part, Const) else [time for time, _ in self._told(part)]
+            []
+            if part is self._result or isinstance(part, Const)
+            else [time for time, _ in self._reported(part)]
         )
 
     def _updated(self, dataset: tuple[Any, ...]) -> list[list[float]]:
@@ -249,7 +251,7 @@ class StlDenseTimeOnlineSpecification(OnlineSpecification, DenseTimeSpecificatio
         if len(signal):
             self._publish(float(signal.values[-1]))
         self._given = columns
-        self._value_of = self._told
+        self._value_of = self._reported
         return _points(signal, self._whole)
 
     @raises_rtamt
@@ -273,7 +275,7 @@ class StlDenseTimeOnlineSpecification(OnlineSpecification, DenseTimeSpecificatio
         [[1, 0.0], [4, 0.0]]
         """
         before = copy(self)
-        told = self._updated(dataset)
+        points = self._updated(dataset)
         kept = self._kept_times()
         try:
             signal = self._require_monitor().finish()
@@ -283,9 +285,9 @@ class StlDenseTimeOnlineSpecification(OnlineSpecification, DenseTimeSpecificatio
         if len(signal):
             self._publish(float(signal.values[-1]))
         rest = _points(signal, self._whole)
-        if told and rest and told[-1][0] == rest[0][0]:
+        if points and rest and points[-1][0] == rest[0][0]:
             del rest[0]
-        points = told + rest
+        points = points + rest
         last = len(points) - 1
         # Nothing need have changed at the end of the update.
         changes = [point for i, point in enumerate(points) if i in {0, last} or point[1] != points[i - 1][1]]
@@ -301,12 +303,12 @@ class StlDenseTimeOnlineSpecification(OnlineSpecification, DenseTimeSpecificatio
         if self._monitor is not None:
             self._monitor.reset()
 
-    def _told(self, part: Formula) -> list[list[float]]:
+    def _reported(self, part: Formula) -> list[list[float]]:
         """Return what the latest update made known of a part, or the samples it gave of a variable (as RTAMT does)."""
         if isinstance(part, Var):
             times, values = self._given.get(part.name, ((), ()))
-            told = int if self._whole else float
-            return [[told(time), float(value)] for time, value in zip(times, values, strict=True)]
+            number = int if self._whole else float
+            return [[number(time), float(value)] for time, value in zip(times, values, strict=True)]
         if not any(part == node for node in postorder(*self._watched)):
             raise UsageError(
                 f"'{canonical(part, limit=EXCERPT)}' is no part of what is watched: the result, and past "

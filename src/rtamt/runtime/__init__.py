@@ -18,7 +18,7 @@ def library() -> Path:
 
 
 def header() -> Path:
-    """Return the C header that says what is in the library."""
+    """Return the C header of the library."""
     return _installed(("rtamt.h",))
 
 

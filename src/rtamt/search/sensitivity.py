@@ -107,7 +107,7 @@ def _axes(problem: Problem, grid: Mapping[str, int | Sequence[float]]) -> dict[s
     for name in problem.space:
         if name not in grid:
             raise UsageError(
-                f"the grid says nothing of the parameter '{name}': how many values shall it take?"
+                f"the grid does not contain the parameter '{name}': how many values shall it take?"
             )
     axes = {}
     for name, given in grid.items():  # in the given order, which determines the axes of the plot

@@ -100,7 +100,7 @@ class Binding:
 
 
 def union(bindings: Iterable[Binding]) -> Binding:
-    """Return what several bindings say, which do not contradict each other."""
+    """Combine several bindings, which do not contradict each other."""
     bindings = list(bindings)
     names, columns, units = (
         tuple(dict.fromkeys(each for binding in bindings for each in getattr(binding, part)))

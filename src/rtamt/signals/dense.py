@@ -175,7 +175,7 @@ class DenseTrace(DomainTrace):
         """See :class:`DomainTrace`."""
         return signal.times - self.start
 
-    def retold(self, signal: Signal) -> Signal:
+    def in_caller_times(self, signal: Signal) -> Signal:
         """See :class:`DomainTrace`."""
         return self.signal(signal.times, signal.values)
 

@@ -196,7 +196,7 @@ class DiscreteTrace(DomainTrace):
         """See :class:`DomainTrace`."""
         return np.arange(len(signal))
 
-    def retold(self, signal: Signal) -> Signal:
+    def in_caller_times(self, signal: Signal) -> Signal:
         """See :class:`DomainTrace`."""
         return signal
 

@@ -203,7 +203,7 @@ class DomainTrace(ABC):
         """Return the positions of the points of a signal over the recording :meth:`in_steps`."""
 
     @abstractmethod
-    def retold(self, signal: Signal) -> Signal:
+    def in_caller_times(self, signal: Signal) -> Signal:
         """Return a signal over the recording :meth:`in_steps` in the caller's times, up to the end."""
 
     @abstractmethod

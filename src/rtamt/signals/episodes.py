@@ -41,7 +41,7 @@ class Episode:
     worst: float
     at: Any
 
-    def retold(self, time: Callable[[Any], Any]) -> Episode:
+    def with_times(self, time: Callable[[Any], Any]) -> Episode:
         """Return the same with other times."""
         return Episode(time(self.begin), time(self.end), self.worst, time(self.at))
 
@@ -60,10 +60,10 @@ class Episodes:
         worst = min(episodes, key=lambda each: each.worst, default=None)
         return Episodes(len(episodes), worst, tuple(episodes[:_FIRST]))
 
-    def retold(self, time: Callable[[Any], Any]) -> Episodes:
+    def with_times(self, time: Callable[[Any], Any]) -> Episodes:
         """Return the same with other times."""
-        worst = None if self.worst is None else self.worst.retold(time)
-        return Episodes(self.count, worst, tuple(each.retold(time) for each in self.first))
+        worst = None if self.worst is None else self.worst.with_times(time)
+        return Episodes(self.count, worst, tuple(each.with_times(time) for each in self.first))
 
 
 class EpisodeTracker:

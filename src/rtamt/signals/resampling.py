@@ -70,7 +70,7 @@ class Sampler:
     ) -> tuple[Times, dict[str, FloatArray]] | None:
         """Return what a chunk makes known: instants and the values of all signals there; None if it is nothing.
 
-        The first time these are two instants at least, from which the period can be told.
+        The first time these are two instants at least, from which the period can be inferred.
         """
         for name, (times, values) in chunk.items():
             before = self._pending.get(name)

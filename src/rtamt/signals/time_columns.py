@@ -99,7 +99,7 @@ def check_frame(frame: Any, time: str, names: Collection[str]) -> None:
     if time in frame.columns:
         found = [column for column in others if is_stamps(split_unit(column)[0])]
     else:
-        found = [column for column in others if _may_tell_time(column, frame[column])]
+        found = [column for column in others if _may_hold_times(column, frame[column])]
         index = getattr(frame, "index", None)
         name = str(getattr(index, "name", None) or "index")
         if type(index).__name__ in ("DatetimeIndex", "TimedeltaIndex", "PeriodIndex") or is_stamps(name):
@@ -113,7 +113,7 @@ def check_frame(frame: Any, time: str, names: Collection[str]) -> None:
         )
 
 
-def _may_tell_time(column: str, values: Any) -> bool:
+def _may_hold_times(column: str, values: Any) -> bool:
     name, _ = split_unit(column)
     kind = str(getattr(values, "dtype", "")).lower()
     return is_stamps(name) or may_be_stamps(name) or kind.startswith(("date", "time", "duration", "period"))

@@ -101,12 +101,12 @@ def _dense_online_is_offline(case: Case, draw: Callable[[Any], Any]) -> None:
             times: list[int] = []
             values: list[float] = []
             try:
-                told = [monitor.update_many(_ticks(update)) for update in updates] + [monitor.finish()]
+                signals = [monitor.update_many(_ticks(update)) for update in updates] + [monitor.finish()]
             except EvaluationError as error:
                 check_own_code(error)
                 assume(False)
                 raise
-            for signal in told:
+            for signal in signals:
                 times += signal.times.astype(np.int64).tolist()
                 values += signal.values.tolist()
             if times != sorted(set(times)) or not _same_steps(case, _stepped(times, values), expected):

@@ -35,9 +35,9 @@ class StreamResult:
     ``robustness``: ρ at the first instant. ``satisfied``: whether the formula holds there (Boolean
     semantics). ``first_violation``: when it is first violated, see :func:`rtamt.first_violation`; None
     where it holds. ``minimum``: the smallest ρ at any instant; None where the future is unbounded and
-    chunks do not tell. ``samples``: rows in all chunks. ``period``: seconds from one sample to the
+    chunks do not have it. ``samples``: rows in all chunks. ``period``: seconds from one sample to the
     next; None in dense time. ``episodes``: how many episodes of violation there are, the worst and the first ones,
-    see ``Result.episodes``; None of several requirements, and where the future is unbounded and chunks do not tell.
+    see ``Result.episodes``; None of several requirements, and as for ``minimum``.
     ``requirements``: the same for each requirement, by name.
     """
 
@@ -137,7 +137,9 @@ class Requirement:
     def _summary(self, tracker: WindowTracker, time: Callable[[int], Any], last: int) -> Episodes:
         tracker.finish(last)
         found = tracker.summary()
-        return found.retold(time) if self._dense else found  # in discrete time it has the stamps of samples
+        return (
+            found.with_times(time) if self._dense else found
+        )  # in discrete time it has the stamps of samples
 
 
 class Output:

@@ -87,15 +87,15 @@ class DenseEarlyMonitor(EarlyMonitor):
 
     def _connect(self, backend: Any) -> None:
         super()._connect(backend)
-        self._told: TimeScale | None = None
-        self._tell()
+        self._scale_in_use: TimeScale | None = None
+        self._set_time_scale()
 
-    def _tell(self) -> None:
+    def _set_time_scale(self) -> None:
         """Set the time scale of the core, so that it reads plain times itself."""
         scale = self._scale
-        if scale is None or scale is self._told or not isinstance(self._session, GraphSession):
+        if scale is None or scale is self._scale_in_use or not isinstance(self._session, GraphSession):
             return
-        self._told = scale
+        self._scale_in_use = scale
         if scale.rate is not None and scale.ticks_in_1 is not None:
             self._backend.set_time_scale(VerdictRun, float(scale.rate))
 
@@ -229,7 +229,7 @@ class DenseEagerMonitor(DenseEarlyMonitor, EarlyMonitorBase):
             except self._undefined as error:
                 raise self._no_value(error) from None
             self._scale = scale
-            self._tell()
+            self._set_time_scale()
             return self._news(0)
 
     @exclusive

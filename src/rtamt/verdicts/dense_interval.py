@@ -76,7 +76,7 @@ class DenseIntervalMonitor(DenseEarlyMonitor, IntervalMonitor, EarlyMonitorBase)
             if isinstance(error, self._undefined):
                 raise self._no_value(error) from None
             raise
-        self._tell()
+        self._set_time_scale()
 
     def _check_open(self, tick: int, scale: TimeScale) -> None:
         """Raise the error for a sample of a time at which none can come any more."""

@@ -183,17 +183,17 @@ class DiscreteEarlyMonitor(EarlyMonitor):
             known = self._bounds_of(flat, after, stamp.seconds)
             self._check_order(stamp.seconds)
             try:
-                answer = self._backend.take(stamp.seconds, *self._row(known), after)
+                found = self._backend.take(stamp.seconds, *self._row(known), after)
                 self._remember(stamp)
-                return self._as_given(answer)
+                return self._as_given(found)
             except self._refused:
                 raise in_use() from None
             except self._undefined as error:
                 raise self._no_value(error) from None
 
-    def _as_given(self, answer: Any) -> Any:
-        """Return what the back end answers with its times in the form of the caller's."""
-        return answer
+    def _as_given(self, found: Any) -> Any:
+        """Return a result of the back end with times in the caller's format."""
+        return found
 
     def _no_value(self, error: Any) -> Exception:
         """Name the sub-formula and the instant of a value that does not exist."""

@@ -205,7 +205,7 @@ class EarlyMonitor(OnlineMonitor):
 
 
 def bounds_of(value: Any) -> tuple[float, float] | None:
-    """Return what a number, an :class:`Interval` or a pair of numbers says; None for anything else."""
+    """Return the bounds given by a number, an :class:`Interval` or a pair of numbers; None for anything else."""
     if isinstance(value, Interval):
         value = (value.lower, value.upper)
     if isinstance(value, tuple | list):

@@ -65,19 +65,19 @@ def judge_apart(
 
     That begins with the first requirement: at each instant it is the minimum over those that have started.
     """
-    # In steps, since instants that differ by a tick may be equal as the caller tells time.
+    # In steps, since instants that differ by a tick may be equal in the caller's times.
     found = judge(outputs, trace.in_steps(), evaluate)
     every = [(each.signal.times, each.signal.values) for each in found]
     ticks, values = changes(*minimum(every, [np.inf] * len(every)))
     judged = [
         Judged(
             trace_of([output.truth], trace),
-            trace.retold(each.signal),
+            trace.in_caller_times(each.signal),
             tuple(None if step is None else trace.time(step - trace.start) for step in each.violations),
         )
         for output, each in zip(outputs, found, strict=True)
     ]
-    return trace.retold(Signal(ticks, values)), judged
+    return trace.in_caller_times(Signal(ticks, values)), judged
 
 
 def first_violation(truth: Formula, trace: DomainTrace, evaluate: Evaluate) -> Any:
@@ -181,7 +181,7 @@ def _settled_signals(
         signals, leaves = _signals(formulas, (), in_steps, evaluate)
         for end, some in ends.items():
             leaves |= _signals((), some, in_steps.held_until(end), evaluate)[1]
-    return list(map(trace.retold, signals)), leaves
+    return list(map(trace.in_caller_times, signals)), leaves
 
 
 def end_of(leaf: Leaf, start: int, end: int, tick: Fraction) -> int:

@@ -1,4 +1,4 @@
-"""A requirement to a program that can leave Python: both outputs, parameters, and all that it says of itself."""
+"""Compile a requirement to a standalone program with robustness, verdict, parameters and metadata."""
 
 from __future__ import annotations
 
@@ -26,8 +26,8 @@ if TYPE_CHECKING:
 
     from rtamt.signals.domain_interface import TimeDomain
 
-#: What a standalone program tells, in this order: ρ, and +inf or -inf as the formula holds or not. Of several
-#: requirements it tells both of all together, then of each: ``robustness.R1``, ``verdict.R1``.
+#: The outputs of a standalone program, in this order: ρ, and +inf or -inf as the formula holds or not. Of several
+#: requirements, both of all together, then of each: ``robustness.R1``, ``verdict.R1``.
 OUTPUTS = ("robustness", "verdict")
 
 
@@ -43,7 +43,7 @@ def carried_program(
     """Compile a requirement for carriers: outputs :data:`OUTPUTS`, its parameters and named constants as parameters.
 
     ``domain``: with a known step. ``applied``: the formula whose robustness is
-    told, where a semantics says so; the verdict is that of ``formula`` all the same. ``parts``: by name the
+    reported, where a semantics replaces predicates; the verdict is that of ``formula``. ``parts``: by name the
     outputs of each of several requirements. ``text``: what errors point at. A
     constant that is also the bound of an interval decides how long windows are, and is no parameter.
 
@@ -63,8 +63,8 @@ def carried_program(
     values: dict[str, float] = {}
     pairs = {"": outputs_of(formula, applied)} | {f".{name}": pair for name, pair in (parts or {}).items()}
     judged = domain.ground(*(output for pair in pairs.values() for output in pair))
-    told = [_with_parameters(desugar(each), structural, values) for each in judged]
-    program = compile_program(told, domain.step, inputs, domain=type(domain), parameters=values)
+    outputs = [_with_parameters(desugar(each), structural, values) for each in judged]
+    program = compile_program(outputs, domain.step, inputs, domain=type(domain), parameters=values)
     places = {
         node.name: (i,)
         for i, node in enumerate(program.origins)
@@ -80,7 +80,7 @@ def carried_program(
     return replace(program, metadata=metadata)
 
 
-#: What a standalone program of bounds tells, in this order: bounds of the robustness at the start of the trace,
+#: The outputs of a standalone program of bounds, in this order: bounds of the robustness at the start of the trace,
 #: +inf or -inf once its verdict is decided, and the seconds from the first sample to the one that decided it.
 BOUNDS = ("lower", "upper", "verdict", "decided_since")
 
@@ -140,8 +140,8 @@ def bounds_program(
         ),
         early=b"".join(parts),
     )
-    told = (len(instructions) - 1,) * len(BOUNDS)
-    return Program(tuple(instructions), inputs, told, period, metadata=metadata)
+    places = (len(instructions) - 1,) * len(BOUNDS)
+    return Program(tuple(instructions), inputs, places, period, metadata=metadata)
 
 
 def check_code(program: Program, code: bytes) -> None:

@@ -30,12 +30,12 @@ def test_a_tree_in_dense_time_at_an_instant(tmp_path):
     [
         (
             ["-o", "picture.doc"],
-            "rtamt: 'picture.doc' is no kind of picture that can be written: choose from .",
+            "rtamt: 'picture.doc' is no image format that can be written: choose from .",
         ),
         (["-o", "no/such/x.png"], "rtamt: cannot write 'no/such/x.png': No such file or directory\n"),
         (["-o", "x.png", "--rows", "0"], "rtamt: --rows is 0; give a number of formulas, 1 or more\n"),
         (["-o", "x.png", "--at", "0.5"], f"rtamt: {TRACE}: "),
-        ([], "rtamt: there is no display to show the picture on: name a file, such as -o picture.png\n"),
+        ([], "rtamt: there is no display to show the plot on: name a file, such as -o plot.png\n"),
     ],
 )
 def test_what_is_wrong_is_one_sentence(arguments, message, capsys, monkeypatch):

@@ -74,7 +74,7 @@ def test_times_of_every_kind_have_positions(stamps, origin, told):
     result = rtamt.parse("always(x >= 3)").evaluate({"time": stamps, "x": [5, 1, 4]}, time="dense")
     seen = scene(result)
     assert seen.clock.origin == origin
-    assert seen.clock.told(seen.critical[1]) == told
+    assert seen.clock.text(seen.critical[1]) == told
     assert seen.nodes[1].fails == ((2.0, 5.0),)
 
 

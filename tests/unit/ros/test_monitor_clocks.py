@@ -23,7 +23,7 @@ def test_a_silent_topic_is_stale_and_the_monitor_begins_anew_when_it_speaks():
     assert said(watched) == []
     watched.message("/req", message(4), 5 * SECOND)
     assert numbers(watched.tick(6 * SECOND)) == [(6, 4)]  # what came before the silence is forgotten
-    assert said(watched) == ["/req speaks again: the monitors that read it begin anew"]
+    assert said(watched) == ["/req has messages again: the monitors that read it begin anew"]
 
 
 def test_stale_after_ten_periods_unless_said_and_never_with_0():

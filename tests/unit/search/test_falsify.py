@@ -284,7 +284,7 @@ def test_sensitivity_by_a_sequence_that_fills_the_space():
     ("how", "sentence"),
     [
         ({}, "give either grid= or samples="),
-        ({"grid": {"x": 2}}, "the grid says nothing of the parameter 'y': how many values shall it take?"),
+        ({"grid": {"x": 2}}, "the grid does not contain the parameter 'y': how many values shall it take?"),
         (
             {"grid": {"x": 2, "y": 1}},
             "the grid has 1 values of 'y'; give 2 or more, or the values themselves",

@@ -1,4 +1,4 @@
-"""What all reports say in the same words."""
+"""The texts that all reports share."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ def sentence(outcome: Outcome, requirement: Requirement) -> str:
         return outcome.error
     description = requirement.written.description
     name = f"{outcome.requirement} ({description})" if description else outcome.requirement
-    told = f"{name} is {outcome.verdict} by {outcome.trace}: robustness {outcome.robustness_text}"
-    told = f"{told}, first violated at {outcome.moment}" if outcome.moment else told
-    return "; ".join([told, *outcome.notes])
+    text = f"{name} is {outcome.verdict} by {outcome.trace}: robustness {outcome.robustness_text}"
+    text = f"{text}, first violated at {outcome.moment}" if outcome.moment else text
+    return "; ".join([text, *outcome.notes])
 
 
 def robustness_members(outcome: Outcome) -> dict[str, Any]:

@@ -50,7 +50,7 @@ class _Came:
 
 
 @dataclass(frozen=True, slots=True)
-class _Told:
+class _Report:
     """What was reported of an output: its bounds up to the newest sample, or what is decided of it."""
 
     runs: tuple[Run, ...] = ()
@@ -83,7 +83,7 @@ class PythonDenseEarlyMonitor:
         self._names = tuple(names)
         self._tick, self._lateness, self._decides = tick, lateness, verdicts
         self._came = _Came(({},) * len(self._names), (0,) * len(self._names))
-        self._told = (_Told(),) * (len(outputs) - hidden)
+        self._reports = (_Report(),) * (len(outputs) - hidden)
         self._found: list[StepBounds | None] | None = None  # of all formulas, for all that came
 
     # ---- samples ---------------------------------------------------------------------------------
@@ -114,9 +114,9 @@ class PythonDenseEarlyMonitor:
     def _take(self, came: _Came, now: int) -> None:
         """Go on with all that came; an operation without a value leaves everything as it was."""
         found = [self._bounds(formula, came) for formula in self._formulas]
-        self._told = tuple(
-            told if each is None else self._reported(told, each, came.newest, now)
-            for told, each in zip(self._told, found[self._hidden :], strict=True)
+        self._reports = tuple(
+            before if each is None else self._reported(before, each, came.newest, now)
+            for before, each in zip(self._reports, found[self._hidden :], strict=True)
         )
         self._came, self._found = came, found
 
@@ -144,9 +144,9 @@ class PythonDenseEarlyMonitor:
             self._found = [self._bounds(each, self._came) for each in self._formulas]
         return self._found[formula]
 
-    def _reported(self, told: _Told, found: StepBounds, newest: int, now: int) -> _Told:
+    def _reported(self, before: _Report, found: StepBounds, newest: int, now: int) -> _Report:
         """Return what is reported of an output from now on."""
-        return _verdicts(told, found, newest, now) if self._decides else _changes(told, found, newest)
+        return _verdicts(before, found, newest, now) if self._decides else _changes(before, found, newest)
 
     # ---- answers ---------------------------------------------------------------------------------
 
@@ -197,15 +197,15 @@ class PythonDenseEarlyMonitor:
 
     def verdicts(self, output: int) -> list[Decided]:
         """Runs (begin, end, satisfied, decided at) of an output that the last call decided or reached."""
-        return list(self._told[output].reached)
+        return list(self._reports[output].reached)
 
     def changes(self, output: int) -> list[Run]:
         """Runs (begin, end, lower, upper) of an output that the last call changed, up to the newest sample."""
-        return list(self._told[output].changed)
+        return list(self._reports[output].changed)
 
     def runs(self, output: int) -> list[Run]:
         """All runs of an output up to the newest sample that are held, as they are now."""
-        return list(self._told[output].runs)
+        return list(self._reports[output].runs)
 
     def bounds(self, output: int, tick: int) -> Pair | None:
         """The bounds of an output at a tick, None where the trace has not started or they are forgotten."""
@@ -247,11 +247,11 @@ class PythonDenseEarlyMonitor:
 
     def state(self) -> bytes:
         """The state after the samples so far."""
-        return pickle.dumps((self._came, self._told))
+        return pickle.dumps((self._came, self._reports))
 
     def restore(self, state: bytes) -> None:
         """Restore the state of a monitor that was made with the same arguments."""
-        self._came, self._told = pickle.loads(state)  # noqa: S301 - its own
+        self._came, self._reports = pickle.loads(state)  # noqa: S301 - its own
         self._found = None
 
 
@@ -260,18 +260,18 @@ def _runs(found: StepBounds) -> list[Run]:
     return list(zip(found.times, ends, found.lower, found.upper, strict=True))
 
 
-def _verdicts(told: _Told, found: StepBounds, newest: int, now: int) -> _Told:
+def _verdicts(before: _Report, found: StepBounds, newest: int, now: int) -> _Report:
     signs = [(begin, end, low > 0, now) for begin, end, low, high in _runs(found) if low > 0 or high < 0]
-    fresh = list(without(signs, told.decided))
+    fresh = list(without(signs, before.decided))
     reached = [
         *clipped(fresh, NEVER, newest + 1),
-        *clipped(told.decided, told.until + 1, newest + 1),
+        *clipped(before.decided, before.until + 1, newest + 1),
     ]
-    decided = merged(sorted([*told.decided, *fresh]))
-    return _Told(decided=decided, until=newest, reached=merged(sorted(reached)))
+    decided = merged(sorted([*before.decided, *fresh]))
+    return _Report(decided=decided, until=newest, reached=merged(sorted(reached)))
 
 
-def _changes(told: _Told, found: StepBounds, newest: int) -> _Told:
+def _changes(before: _Report, found: StepBounds, newest: int) -> _Report:
     runs = tuple(clipped(_runs(found), NEVER, newest + 1))
-    changed = ((begin, end, *now) for begin, end, was, now in compared(told.runs, runs) if was != now)
-    return _Told(runs=runs, until=newest, changed=merged(changed))
+    changed = ((begin, end, *now) for begin, end, was, now in compared(before.runs, runs) if was != now)
+    return _Report(runs=runs, until=newest, changed=merged(changed))

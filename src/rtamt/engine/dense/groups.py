@@ -141,7 +141,7 @@ class GroupSession(Session):
 class DenseGroups:
     """The back end; see ``_core.DenseMonitor`` for what each method means."""
 
-    _REMEMBERED = ("_counts", "_last", "_values", "_pending", "_until", "_minimum", "_told")
+    _REMEMBERED = ("_counts", "_last", "_values", "_pending", "_until", "_minimum", "_results")
 
     def __init__(
         self,
@@ -166,7 +166,7 @@ class DenseGroups:
         self._pending = [_NOTHING] * len(self._requirements)  # known beyond that
         self._until: int | None = None
         self._minimum = float("nan")  # the last value reported
-        self._told: list[Samples] = [_NOTHING] * (1 + len(self._watched))
+        self._results: list[Samples] = [_NOTHING] * (1 + len(self._watched))
 
     # ---- samples ---------------------------------------------------------------------------------
 
@@ -237,11 +237,11 @@ class DenseGroups:
 
     def _known(self, news: Sequence[Sequence[Samples]], until: int | None) -> Samples:
         """Take what became known of every output; return the minimum up to ``until``, as far as that is new."""
-        self._told = [_NOTHING, *(news[part][i] for part, i in self._watched)]
+        self._results = [_NOTHING, *(news[part][i] for part, i in self._watched)]
         for number, (part, i) in enumerate(self._requirements):
             self._pending[number] = _joined(self._pending[number], news[part][i])
         if until is None or (self._until is not None and until <= self._until):
-            return self._told[0]
+            return self._results[0]
         due = []
         for number, (ticks, values) in enumerate(self._pending):
             split = int(ticks.searchsorted(until, "right"))
@@ -252,13 +252,13 @@ class DenseGroups:
             float(own[-1]) if len(own) else before for (_, own), before in zip(due, self._values, strict=True)
         ]
         if self._until is None and not len(ticks):  # before all requirements
-            return self._told[0]
+            return self._results[0]
         self._until = until
         if not len(ticks) or ticks[-1] < until:
             ticks, values = _joined((ticks, values), (np.array([until]), np.array([min(self._values)])))
-        self._told[0] = changes(ticks, values, self._minimum)
+        self._results[0] = changes(ticks, values, self._minimum)
         self._minimum = float(values[-1])
-        return self._told[0]
+        return self._results[0]
 
     # ---- what is known ---------------------------------------------------------------------------
 
@@ -279,11 +279,11 @@ class DenseGroups:
 
     def last_output(self, output: int) -> Samples:
         """Return what the last update made known of an output."""
-        return self._told[output]
+        return self._results[output]
 
     def points(self) -> list[list[tuple[int, float]]]:
         """The same of every output: a list for each, of pairs of tick and value."""
-        return [list(zip(ticks.tolist(), values.tolist(), strict=True)) for ticks, values in self._told]
+        return [list(zip(ticks.tolist(), values.tolist(), strict=True)) for ticks, values in self._results]
 
     @exclusive
     def reset(self) -> None:

@@ -96,7 +96,7 @@ class DenseMonitor(DenseMonitorBase, OnlineMonitor):
         self._refused = self._session.refused
         self._undefined: Any = self._session.undefined
         if self._scale is not None:
-            self._tell(self._scale)
+            self._set_time_scale(self._scale)
 
     @property
     def horizon(self) -> float:
@@ -195,7 +195,7 @@ class DenseMonitor(DenseMonitorBase, OnlineMonitor):
         known = self._run(lambda: self._backend.push(samples), scale)
         if self._scale is not scale:
             self._scale = scale
-            self._tell(scale)
+            self._set_time_scale(scale)
         self._note(known)
         return known
 
@@ -230,7 +230,7 @@ class DenseMonitor(DenseMonitorBase, OnlineMonitor):
         scale = self._scale or self._given_scale
         return TimeScale.of(self._tick, times, self._unit) if scale is None else scale.widened(times)
 
-    def _tell(self, scale: TimeScale) -> None:
+    def _set_time_scale(self, scale: TimeScale) -> None:
         """Set the time scale of the back end, so that it reads plain times itself."""
         if scale.ticks_in_1 is not None:
             self._backend.set_time_scale(TickSignal, scale, float(scale.ticks_in_1), scale.kind == "whole")

@@ -35,7 +35,7 @@ class PythonDenseMonitor:
         self._usage = UsageGuard()
         self._last: list[int | None]
         self._until: list[int | None]  # up to when each output was reported
-        self._told: list[Samples]  # the results of the last update
+        self._results: list[Samples]  # the results of the last update
         self._latest: tuple[Mapping[str, Events], Sequence[Events]]  # the trace before it, and its chunk
         self._start_over()
 
@@ -72,29 +72,29 @@ class PythonDenseMonitor:
                 raise RefusedError("time")
         given = dict(zip(self._names, columns, strict=True))
         before = self._monitor.kept
-        self._told = self._closed(self._monitor.push(given))
+        self._results = self._closed(self._monitor.push(given))
         self._latest = before, columns
         for i, (ticks, _) in enumerate(columns):
             if len(ticks):
                 self._counts[i] += len(ticks)
                 self._last[i] = int(ticks[-1])
-        return self._told[0]
+        return self._results[0]
 
     @exclusive
     def finish(self) -> Samples:
         """End the trace; return the rest of the first output."""
-        self._told = self._closed(self._monitor.finish())
-        return self._told[0]
+        self._results = self._closed(self._monitor.finish())
+        return self._results[0]
 
     @exclusive
     def last_output(self, output: int) -> Samples:
         """Return what the last update made known of an output."""
-        return self._told[output]
+        return self._results[output]
 
     @exclusive
     def points(self) -> list[list[tuple[int, float]]]:
         """The same of every output: a list for each, of pairs of tick and value."""
-        return [list(zip(ticks.tolist(), values.tolist(), strict=True)) for ticks, values in self._told]
+        return [list(zip(ticks.tolist(), values.tolist(), strict=True)) for ticks, values in self._results]
 
     @exclusive
     def part(self, formula: Formula) -> Samples:
@@ -113,12 +113,12 @@ class PythonDenseMonitor:
     @exclusive
     def state(self) -> tuple[Any, ...]:
         """Return the state after the samples so far."""
-        mine = self._counts, self._last, self._until, self._values, self._told
+        mine = self._counts, self._last, self._until, self._values, self._results
         return tuple(list(items) for items in mine), self._latest, self._monitor.state()
 
     def restore(self, state: tuple[Any, ...]) -> None:
         """Restore the state of a monitor of the same program."""
-        (self._counts, self._last, self._until, self._values, self._told), self._latest, definition = state
+        (self._counts, self._last, self._until, self._values, self._results), self._latest, definition = state
         self._monitor.restore(definition)
 
     def _start_over(self) -> None:
@@ -127,7 +127,7 @@ class PythonDenseMonitor:
         self._until = [None] * self._outputs
         self._values = [float("nan")] * self._outputs  # the last values reported
         self._latest = ({}, [([], []) for _ in self._names])
-        self._told = [(np.empty(0, np.int64), np.empty(0))] * self._outputs
+        self._results = [(np.empty(0, np.int64), np.empty(0))] * self._outputs
 
     def _closed(self, known: Sequence[Known]) -> list[Samples]:
         """Return the new events of each output, and a point at the last instant that became known."""

@@ -49,7 +49,7 @@ class PythonEarlyMonitor:
         self._known: dict[int, dict[str, Pair]] = {}
         self._times: dict[int, float] = {}
         self.samples, self.newest, self.closed, self.finished = 0, -1, -1, False
-        self._told: list[dict[int, Any]] = [{} for _ in self._outputs]
+        self._reported: list[dict[int, Any]] = [{} for _ in self._outputs]
         # (first, last, satisfied, decided at) of samples that are not reached, in the order of decision.
         self._decided: list[list[tuple[int, float, bool, int]]] = [[] for _ in self._outputs]
         self._news: list[list[Any]] = [[] for _ in self._outputs]
@@ -114,7 +114,7 @@ class PythonEarlyMonitor:
         return float(found.lower[place]), float(found.upper[place])
 
     def _verdicts(self, output: int) -> list[Any]:
-        found, decided, told = self._found[output], self._decided[output], self._told[output]
+        found, decided, reported = self._found[output], self._decided[output], self._reported[output]
         last = len(found.lower) - 1
         for sample in range(last + 1):
             low, high = self._pair(found, sample)
@@ -125,20 +125,20 @@ class PythonEarlyMonitor:
         news = []
         for sample in range(self.newest + 1):
             verdicts = [each for each in decided if each[0] <= sample <= each[1]]
-            if verdicts and sample not in told:
-                told[sample] = verdicts[0][2:]
-                news.append((sample, *told[sample]))
+            if verdicts and sample not in reported:
+                reported[sample] = verdicts[0][2:]
+                news.append((sample, *reported[sample]))
         self._decided[output] = [each for each in decided if each[1] > self.newest]
         return news
 
     def _changes(self, output: int) -> list[Any]:
-        found, told = self._found[output], self._told[output]
+        found, reported = self._found[output], self._reported[output]
         news: list[Any] = []
         for sample in range(self.newest + 1):
             pair = self._pair(found, sample)
-            if told.get(sample) == pair:
+            if reported.get(sample) == pair:
                 continue
-            told[sample] = pair
+            reported[sample] = pair
             if news and news[-1][1] == sample - 1 and news[-1][2:] == pair:
                 news[-1] = (news[-1][0], sample, *pair)
             else:
@@ -252,7 +252,17 @@ class PythonEarlyMonitor:
 
     def state(self) -> bytes:
         """The state after the samples so far."""
-        kept = ("_known", "_times", "samples", "newest", "closed", "finished", "_told", "_decided", "_news")
+        kept = (
+            "_known",
+            "_times",
+            "samples",
+            "newest",
+            "closed",
+            "finished",
+            "_reported",
+            "_decided",
+            "_news",
+        )
         return pickle.dumps({name: getattr(self, name) for name in kept})
 
     def restore(self, state: bytes) -> None:

@@ -158,11 +158,13 @@ class Monitor(MonitorBase, OnlineMonitor):
     @exclusive
     def _take_alone(self, time: Any, values: dict[str, Any]) -> float | None:
         """Take a sample whose time or value is remembered here."""
-        robustness = self._take(time, values) if self._times.plain else self._take_told(time, values)
+        robustness = (
+            self._take(time, values) if self._times.plain else self._take_at_caller_time(time, values)
+        )
         self._note_sample(robustness)
         return robustness
 
-    def _take_told(self, time: Any, values: dict[str, Any]) -> float | None:
+    def _take_at_caller_time(self, time: Any, values: dict[str, Any]) -> float | None:
         """Take a sample whose time is not given in seconds."""
         stamp = self._times.read([time], self.samples)
         robustness = self._take(float(stamp.seconds[0]), values)
@@ -191,11 +193,11 @@ class Monitor(MonitorBase, OnlineMonitor):
 
     @exclusive
     def _take_row_alone(self, values: tuple[float, ...]) -> float | None:
-        robustness = self._take_row(values) if self._times.plain else self._take_row_told(values)
+        robustness = self._take_row(values) if self._times.plain else self._take_row_at_caller_time(values)
         self._note_sample(robustness)
         return robustness
 
-    def _take_row_told(self, values: tuple[float, ...]) -> float | None:
+    def _take_row_at_caller_time(self, values: tuple[float, ...]) -> float | None:
         """Take a sample after samples whose times are not in seconds."""
         later = self._times.later(1)
         robustness = self._take_row(values)

@@ -63,7 +63,7 @@ class Node:
             now = self._time()
             if now:  # simulated time is 0 until it is published
                 self._publish(self._monitor.tick(now))
-            self._tell(now)
+            self._report(now)
             self._participant.wait(self._monitor.pause(self._time()))
             self._take()
         self._participant.close()
@@ -88,18 +88,18 @@ class Node:
         for record in records:
             self._participant.publish(self._outbox.topic(record), self._outbox.message(record))
 
-    def _tell(self, now: int) -> None:
+    def _report(self, now: int) -> None:
         notices = self._monitor.notices()
         for notice in notices:
             print(escaped(f"[{notice.level.name}] {notice.message}"), file=sys.stderr, flush=True)
         if notices or time.monotonic() >= self._due:
             self._due = time.monotonic() + _DIAGNOSTICS_EVERY
-            self._tell_refused()
+            self._report_refused()
             conditions = self._monitor.conditions(now)
             array = self._outbox.diagnostics(conditions, self._participant.name, now)
             self._participant.publish(DIAGNOSTICS, array)
 
-    def _tell_refused(self) -> None:
+    def _report_refused(self) -> None:
         for topic, quality in self._participant.refused():
             sentence = (
                 f"[WARN] a publisher on {topic} is not heard, for its {quality} is less than is asked for: "

@@ -130,12 +130,12 @@ class Participant:
         self._wake.attach(condition)
         self._conditions.append(condition)
         self._readers[topic] = reader
-        self._tell()
+        self._announce()
 
     def advertise(self, topic: str, cls: Any) -> None:
         """Announce that messages will be published on a topic."""
         self._writers[topic] = self._writer(_on_wire(topic), cls, self._offered)
-        self._tell()
+        self._announce()
 
     def publish(self, topic: str, message: Any) -> None:
         """Publish a message on an announced topic."""
@@ -172,7 +172,7 @@ class Participant:
 
     # ---- the graph -------------------------------------------------------------------------------
 
-    def _tell(self) -> None:
+    def _announce(self) -> None:
         """Publish the entities of this node to the graph, for ``ros2 node list``."""
         gid = self._types.named("rmw_dds_common/msg/Gid")
         node = self._types.named("rmw_dds_common/msg/NodeEntitiesInfo")
