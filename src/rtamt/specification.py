@@ -301,20 +301,8 @@ class Specification(SpecificationText):
         )
         domain = self._domain_for(time, period, tolerance, resolution).online
         requirements = [self._watched(name, semantics).formula for name in self.requirements]
-        if mode.name != DELAYED:
-            return monitor_of(mode, domain)(
-                formula,
-                domain,
-                text=self.text,
-                backend=self.backend,
-                declared=self._declared,
-                watch=watched,
-                factory=factory,
-                unit=time_unit,
-                requirements=requirements,
-                **settings,
-            )
-        monitor = engine_of(domain).monitor(
+        make = engine_of(domain).monitor if mode.name == DELAYED else monitor_of(mode, domain)
+        monitor = make(
             formula,
             domain,
             text=self.text,
@@ -326,7 +314,8 @@ class Specification(SpecificationText):
             requirements=requirements,
             **settings,
         )
-        monitor.bind(self.binding)
+        if mode.name == DELAYED:
+            monitor.bind(self.binding)
         return monitor
 
     def compile(
