@@ -9,7 +9,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, TypeAlias, TypedDict
 
 from rtamt.engine.backend import BACKENDS
-from rtamt.engine.domains import engine_of
+from rtamt.engine.engine import engine_of
 from rtamt.errors import UsageError, choices, did_you_mean, shown
 from rtamt.language.formula import Formula, variables
 from rtamt.language.operators import Language

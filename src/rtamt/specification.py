@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any, Literal, overload
 
-from rtamt.engine.domains import engine_of
+from rtamt.engine.engine import engine_of
 from rtamt.engine.offline import Evaluators, Query
 from rtamt.errors import TraceError, UsageError
 from rtamt.language.imports import again

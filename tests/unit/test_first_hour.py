@@ -47,7 +47,7 @@ def test_a_quoted_name_works_wherever_a_name_does(name, declared, tmp_path, caps
     assert main(["check", "r.stl", "log.csv", "--name", f"{name}=v", "--quiet"]) == 0
 
 
-def test_declared_units_are_shown_and_those_of_the_data_come_first():
+def test_declared_units_are_shown_and_data_is_converted_to_them():
     spec = rtamt.parse(
         'input float "a.b[0]" [m/s]; float y [V]; const float limit = 2 [m/s]; "a.b[0]" >= limit + y'
     )
@@ -57,8 +57,8 @@ def test_declared_units_are_shown_and_those_of_the_data_come_first():
         ("limit", "m/s"),
     ]
     trace = rtamt.read({"time": [0, 1], "a.b[0]": [1, 2], "y [mV]": [0, 0]})
-    assert spec.evaluate(trace).trace.units == {"a.b[0]": "m/s", "y": "mV"}
-    assert rtamt.evaluate_all([spec], trace)[0].trace.units == {"a.b[0]": "m/s", "y": "mV"}
+    assert spec.evaluate(trace).trace.units == {"a.b[0]": "m/s", "y": "V"}
+    assert rtamt.evaluate_all([spec], trace)[0].trace.units == {"a.b[0]": "m/s", "y": "V"}
 
 
 def test_quoted_names_in_bounds_and_topics():
@@ -276,11 +276,16 @@ def test_what_the_environment_sets_for_ros_is_named_in_errors(tmp_path):
         assert done.returncode == 2
         return done.stderr
 
-    cause, sentence = answer(CYCLONEDDS_URI="no.xml").splitlines()  # of Cyclone DDS, and ours
-    assert cause.endswith("can't open configuration file no.xml")
+    assert answer(CYCLONEDDS_URI="file://no.xml") == (  # before Cyclone DDS prints a line of its own
+        "rtamt: the environment variable CYCLONEDDS_URI names the configuration file 'no.xml', which does not exist; "
+        "correct the path, or unset the variable\n"
+    )
+    (tmp_path / "bad.xml").write_text("<CycloneDDS><Domain><Generall/></Domain></CycloneDDS>")
+    cause, *_, sentence = answer(CYCLONEDDS_URI="bad.xml").splitlines()  # of Cyclone DDS, and ours
+    assert "Generall" in cause
     assert sentence == (
         "rtamt: cannot join DDS domain 0 (the lines above give the cause): check the environment variable "
-        "CYCLONEDDS_URI, which configures the network and is 'no.xml'"
+        "CYCLONEDDS_URI, which configures the network and is 'bad.xml'"
     )
     sentence = "unknown distribution 'jazy' of ROS 2 (from the environment variable ROS_DISTRO); did you mean 'jazzy'?"
     assert sentence in answer(ROS_DISTRO="jazy")

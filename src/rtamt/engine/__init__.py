@@ -3,7 +3,7 @@
 ==============  ============================================================================
 module          purpose
 ==============  ============================================================================
-domains         the engine of each time domain: its back ends and its monitor
+engine          what an engine has: back ends, a monitor, a timeline; the engine of a time domain
 discrete        the engine of discrete time
 dense           the engine of dense time
 backend         the interface of a back end, and what compiled back ends share

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from rtamt.engine.domains import engine_of
+from rtamt.engine.engine import engine_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

@@ -6,7 +6,7 @@ from itertools import islice
 from math import inf
 from typing import TYPE_CHECKING, Any
 
-from rtamt.engine.domains import engine_of
+from rtamt.engine.engine import engine_of
 from rtamt.engine.offline import Evaluators
 from rtamt.errors import EvaluationError
 from rtamt.explain.critical import Point, Walk

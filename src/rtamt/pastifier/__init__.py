@@ -1,4 +1,7 @@
-"""Provide RTAMT's module paths of pastification and horizons."""
+"""Provide RTAMT's module paths of pastification and horizons.
+
+These are computed in ``rewrite/pastify.py`` and ``rewrite/horizon.py``.
+"""
 
 from rtamt.rtamt_api.paths import provide
 from rtamt.rtamt_api.trees import LtlHorizon, LtlPastifier, StlHorizon, StlPastifier

@@ -10,6 +10,7 @@ ground     half-open bounds to closed ones, once the length of a period or tick 
 horizon    how far a formula looks ahead (the paper's Definition 3)
 pastify    bounded future to past (the paper's Definition 4)
 semantics  replace predicates according to a semantics; the table of semantics
+truth      formulas as conditions, +inf or -inf under every semantics
 structure  split a formula into predicates, minimum and maximum
 =========  ==========================================================================
 """

@@ -1,4 +1,7 @@
-"""Provide RTAMT's module paths of its enumerations and interpreters."""
+"""Provide RTAMT's module paths of its enumerations and interpreters.
+
+The semantics of predicates are in ``rewrite/semantics.py``.
+"""
 
 from rtamt.rtamt_api.options import Language, Semantics, StlComparisonOperator, StlIOType, TimeInterpretation
 from rtamt.rtamt_api.paths import provide

@@ -18,6 +18,8 @@ listing           a trace as text: its signals topic by topic
 arrays            data (lists, arrays, frames, objects) to float64 arrays
 coding            names of members to their codes; Booleans are 1 or 0
 recoding          codes that a recording has under other numbers: constants of messages
+binding           variables of a specification to recorded names and units
+unit_conversion   from the unit of a recording to the declared one
 dense_arrays      dense-time data to int64 ticks and float64 values
 regular           infer the sampling period; check order and distance of timestamps
 ticks             times to int64 ticks and back

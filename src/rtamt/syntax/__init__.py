@@ -1,4 +1,7 @@
-"""Provide RTAMT's module paths of its syntax trees."""
+"""Provide RTAMT's module paths of its syntax trees.
+
+Formulas are defined in ``language/formula.py``, their syntax in ``language/operators.py`` and ``language/parser.py``.
+"""
 
 from rtamt.rtamt_api.paths import provide
 from rtamt.rtamt_api.trees import LtlAst, StlAst

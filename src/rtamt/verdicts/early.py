@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 from rtamt.compiler.early import compile_graph
 from rtamt.engine.backend import Session
 from rtamt.engine.discrete.apart import Apart, inner_of
-from rtamt.engine.domains import engine_of
+from rtamt.engine.engine import engine_of
 from rtamt.engine.native import core
 from rtamt.engine.online import OnlineMonitor, Watched, grounded
 from rtamt.engine.usage_guard import exclusive

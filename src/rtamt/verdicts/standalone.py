@@ -11,7 +11,7 @@ from rtamt.compiler.early import compile_starts
 from rtamt.compiler.metadata import Metadata
 from rtamt.compiler.plan import compile_program
 from rtamt.compiler.program import Instruction, Program
-from rtamt.engine.domains import engine_of
+from rtamt.engine.engine import engine_of
 from rtamt.engine.native import core
 from rtamt.errors import UsageError
 from rtamt.language.formula import Apply, Const, Formula, Var, fold, variables

@@ -17,6 +17,6 @@ runs                  runs of ticks
 from rtamt.engine.dense.backends import BACKENDS
 from rtamt.engine.dense.monitor import DenseMonitor
 from rtamt.engine.dense.timeline import DenseTimeline
-from rtamt.engine.domains import Engine
+from rtamt.engine.engine import Engine
 
 ENGINE = Engine(BACKENDS, DenseMonitor, DenseTimeline)

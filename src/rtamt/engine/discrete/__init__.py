@@ -17,6 +17,6 @@ early_python_backend  the definition of bounds behind the interface of the core'
 from rtamt.engine.discrete.backends import BACKENDS
 from rtamt.engine.discrete.monitor import Monitor
 from rtamt.engine.discrete.timeline import DiscreteTimeline
-from rtamt.engine.domains import Engine
+from rtamt.engine.engine import Engine
 
 ENGINE = Engine(BACKENDS, Monitor, DiscreteTimeline)

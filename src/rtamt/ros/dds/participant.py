@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import UsageError, choices, shown
 from rtamt.extras import library
+from rtamt.files import nearest_file
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -75,6 +76,7 @@ class Participant:
         aborts the process.
         """
         domain = _domain()
+        _check_files(os.environ.get("CYCLONEDDS_URI", ""))
         enclave = self._user_data(self._cyclone["core"].Qos(), "enclave=/;")
         try:
             return self._cyclone["domain"].DomainParticipant(domain, enclave)
@@ -198,6 +200,23 @@ class Participant:
         self._readers.clear()
         self._writers.clear()
         del self._wake, self._graph, self._participant
+
+
+def _check_files(configuration: str) -> None:
+    """Raise :class:`UsageError` for a configuration file of Cyclone DDS that does not exist.
+
+    ``configuration``: paths, perhaps with ``file://``, separated by commas. Cyclone DDS also takes XML, and replaces
+    ``$NAME`` and ``${NAME}``; neither is checked here.
+    """
+    if "<" in configuration or "$" in configuration:
+        return
+    for part in configuration.split(","):
+        path = part.strip().removeprefix("file://")
+        if path and not os.path.exists(path):
+            raise UsageError(
+                f"the environment variable CYCLONEDDS_URI names the configuration file '{path}', which does not exist"
+                f"{nearest_file(path)}; correct the path, or unset the variable"
+            )
 
 
 def _domain() -> int:

@@ -2,7 +2,7 @@
 
 from rtamt.engine.backend import named
 from rtamt.engine.discrete.timeline import DiscreteTimeline
-from rtamt.engine.domains import Engine
+from rtamt.engine.engine import Engine
 from tests.unit.signals.third_domain.engine import Definition, TurnMonitor
 
 ENGINE = Engine(named(Definition(), Definition()), TurnMonitor, DiscreteTimeline)

@@ -30,6 +30,9 @@ class TurnMonitor:
         self._lag = int(horizon(formula, TURN))
         self._columns = {name: [] for name in self.input_names}
 
+    def bind(self, binding):
+        """Recordings have the names and units of the specification."""
+
     def update(self, **values):
         for name, column in self._columns.items():
             column.append(float(values[name]))
