@@ -17,6 +17,7 @@ outcome          what came of a requirement over a recording, as reports show it
 runner           every requirement on every recording, on all cores
 bag              check a bag, and write a copy with the results
 stdin_reader     JSON or CSV lines to samples
+json_lines       a line of JSON to numbers and timestamps
 early_feeds      verdicts and bounds before the horizon, as ``rtamt monitor`` prints them
 live_view        the live view of ``rtamt monitor``
 terminal         output, colours, tables, progress

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rtamt.cli.command import json_number, stamp_text
-from rtamt.cli.stdin_reader import STDIN
+from rtamt.cli.json_lines import STDIN
 from rtamt.cli.terminal import say
 from rtamt.errors import StlError, TraceError
 from rtamt.signals.outcomes import VerdictRun

@@ -22,9 +22,10 @@ from rtamt.cli.command import (
     stamp_text,
 )
 from rtamt.cli.early_feeds import CausationFeed, EagerFeed, IntervalFeed, StartFeed
+from rtamt.cli.json_lines import STDIN
 from rtamt.cli.live_view import Live
 from rtamt.cli.parser import ERROR, OK, complain
-from rtamt.cli.stdin_reader import STDIN, Samples, lines_of
+from rtamt.cli.stdin_reader import Samples, lines_of
 from rtamt.cli.terminal import printed, say
 from rtamt.errors import StlError, TraceError
 from rtamt.rewrite.check import unbounded_future

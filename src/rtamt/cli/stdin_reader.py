@@ -3,10 +3,19 @@
 from __future__ import annotations
 
 import csv
-import json
-from math import isinf
 from typing import TYPE_CHECKING, Any
 
+from rtamt.cli.json_lines import (
+    STDIN,
+    code_of,
+    flat,
+    given_in,
+    has_value,
+    line_error,
+    number_in,
+    object_in,
+    stamp_in,
+)
 from rtamt.errors import TraceError
 from rtamt.language.value_types import Enumeration
 from rtamt.readers.assemble import Choice, clock_of, select
@@ -21,12 +30,12 @@ from rtamt.readers.csv import (
     truth,
 )
 from rtamt.readers.csv_cells import Cells
-from rtamt.readers.dates import EXAMPLE, is_date
+from rtamt.readers.dates import is_date
 from rtamt.readers.frames import field_of
-from rtamt.readers.source import Source, Table, printable
+from rtamt.readers.source import Source, Table
 from rtamt.readers.timestamps import CHOICES
-from rtamt.signals.arrays import TIME, missing_sample, missing_variable
-from rtamt.signals.binding import Binding, missing
+from rtamt.signals.arrays import TIME, missing_sample
+from rtamt.signals.binding import Binding
 from rtamt.signals.coding import NO_TYPES
 from rtamt.signals.time_columns import is_stamps, may_be_stamps, split_unit
 from rtamt.signals.trace import in_seconds
@@ -35,19 +44,13 @@ from rtamt.signals.unit_conversion import conversion_of
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
-    from rtamt.language.value_types import ValueType
     from rtamt.readers.assemble import Selection
     from rtamt.readers.source import Field, Raw
     from rtamt.readers.timestamps import Clock
     from rtamt.signals.coding import Types
 
-#: What messages call the input.
-STDIN = "stdin"
-
 #: The time (None if there are no stamps) and the values.
 Sample = tuple[Any, dict[str, float]]
-
-_INFINITIES = ("inf", "-inf")
 
 
 class Samples:
@@ -89,7 +92,7 @@ class Samples:
         try:
             text = line.decode("utf-8-sig" if self._read is None else "utf-8").strip("\r\n")
         except UnicodeDecodeError:
-            raise _error(number, "not UTF-8 text") from None
+            raise line_error(number, "not UTF-8 text") from None
         if not text.strip() or text.startswith("#"):
             return None
         try:
@@ -107,7 +110,7 @@ class Samples:
         except TraceError as error:
             if str(error).startswith(STDIN):
                 raise
-            raise _error(number, str(error).replace(f" of {STDIN}", "", 1), error.variable) from None
+            raise line_error(number, str(error).replace(f" of {STDIN}", "", 1), error.variable) from None
         return None
 
     def _converted(self, rows: CsvSamples) -> Callable[[str, int], Sample]:
@@ -157,7 +160,7 @@ class _Stamps:
     def require(self, name: str, value: object, number: int) -> None:
         """Raise :class:`TraceError` where a sample of discrete time, in line ``number``, has no value."""
         if value is None or value == "":
-            raise _error(number, str(missing_sample(name, self._samples, None)), name)
+            raise line_error(number, str(missing_sample(name, self._samples, None)), name)
 
     def look(self, columns: Iterable[tuple[str, Any]], *, all_named: bool = True) -> Selection | None:
         """Look for the clock among columns and what they hold, None where that is not known yet.
@@ -235,17 +238,17 @@ class JsonSamples:
 
     def read(self, text: str, number: int) -> Sample:
         """Return the sample in one line."""
-        data = _object(text, number)
+        data = object_in(text, number)
         if self._stamps.clock is None:
-            self._stamps.look(_flat(data), all_named=False)
+            self._stamps.look(flat(data), all_named=False)
         clock = self._stamps.clock
         names = [name for name in self._names if clock is None or name != TIME]
         columns = self._columns
-        names = [name for name in names if not self._dense or _has(data, columns[name])]
+        names = [name for name in names if not self._dense or has_value(data, columns[name])]
         for name in names:
-            self._stamps.require(columns[name], _given(data, columns[name], number, name), number)
-        values = {name: _number(data, columns[name], number, self._types.get(name)) for name in names}
-        stamp = None if clock is None else _stamp(data, clock.field.column, number)
+            self._stamps.require(columns[name], given_in(data, columns[name], number, name), number)
+        values = {name: number_in(data, columns[name], number, self._types.get(name)) for name in names}
+        stamp = None if clock is None else stamp_in(data, clock.field.column, number)
         return self._stamps.sample(stamp, values, number)
 
 
@@ -270,7 +273,7 @@ class CsvSamples:
         known = {*names, *recorded.values()}
         if names and not any(is_stamps(c) or may_be_stamps(c) or c in known for c in columns):
             shown = text if len(text) <= 60 else f"{text[:60]}..."
-            raise _error(
+            raise line_error(
                 number,
                 f'expected a JSON object, such as {{"time": 0, "x": 1}}, or a row of CSV column names, '
                 f"got '{shown}'",
@@ -314,7 +317,7 @@ class CsvSamples:
         type_ = self._types.get(column.name)
         if not isinstance(type_, Enumeration) or (is_number(text) and type_.code(text) is None):
             return None
-        return _code(text, column.name, type_, number)
+        return code_of(text, column.name, type_, number)
 
     def _is_boolean(self, name: str, text: str) -> bool:
         """Return whether a column holds true and false, from its first cell, as in a file."""
@@ -322,127 +325,3 @@ class CsvSamples:
 
 
 # ---- JSON ----------------------------------------------------------------------------------------
-
-
-class _TooLarge(str):
-    """The text of a number beyond the range of a double."""
-
-    __slots__ = ()
-
-
-class _RepeatedKeyError(ValueError):
-    pass
-
-
-def _object(text: str, number: int) -> dict[str, Any]:
-    """Return the JSON object in a line."""
-    try:
-        data = json.loads(text, parse_float=_float, object_pairs_hook=_unique)
-    except json.JSONDecodeError as error:
-        raise _error(number, f"not JSON: {error.msg} at column {error.colno}") from None
-    except _RepeatedKeyError as error:
-        raise _error(number, f"the key {_shown(str(error))} is given twice; give it once") from None
-    except (ValueError, RecursionError):
-        raise _error(number, "not JSON to read: a number is too long, or nesting too deep") from None
-    if not isinstance(data, dict):
-        raise _error(number, f'expected a JSON object, such as {{"time": 0, "x": 1}}, got {_shown(data)}')
-    return data
-
-
-def _float(text: str) -> float | _TooLarge:
-    value = float(text)
-    return _TooLarge(text) if isinf(value) else value
-
-
-def _unique(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-    data = dict(pairs)
-    if len(data) < len(pairs):
-        keys = [key for key, _ in pairs]
-        raise _RepeatedKeyError(next(key for key in keys if keys.count(key) > 1))
-    return data
-
-
-def _flat(data: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
-    """Yield what an object holds; fields of nested objects under names with dots."""
-    stack = list(data.items())
-    while stack:
-        name, value = stack.pop(0)
-        if isinstance(value, dict):
-            stack += [(f"{name}.{key}", inner) for key, inner in value.items()]
-        else:
-            yield name, value
-
-
-def _stamp(data: dict[str, Any], name: str, number: int) -> str:
-    """Return a stamp as it would be written in a cell: a number, or a date."""
-    value = _given(data, name, number)
-    if isinstance(value, str) and not isinstance(value, _TooLarge) and value not in _INFINITIES:
-        if not is_date(value):
-            problem = f"expected a number, or a date such as {EXAMPLE}"
-            raise _error(number, f"'{name}' is {_shown(value)}, {problem}")
-        return value
-    seconds = _number(data, name, number)
-    return str(int(value)) if isinstance(value, int) else repr(seconds)  # an integer to its last digit
-
-
-def _number(data: dict[str, Any], name: str, number: int, type_: ValueType | None = None) -> float:
-    value = _given(data, name, number)
-    if isinstance(value, str) and isinstance(type_, Enumeration):
-        return _code(value, name, type_, number)
-    if isinstance(value, (bool, int, float)):
-        try:
-            return float(value)
-        except OverflowError:
-            value = _TooLarge(json.dumps(value))
-    if isinstance(value, _TooLarge):
-        text = value if len(value) <= 40 else f"{value[:40]}..."
-        raise _error(number, f"'{name}' is {text}, beyond the range of a double", name)
-    if value in _INFINITIES:
-        return float(value)
-    raise _error(number, f"'{name}' is {_shown(value)}, expected a number", name)
-
-
-def _code(text: str, name: str, type_: Enumeration, number: int) -> float:
-    """Return the code of a member, which is given by its name."""
-    code = type_.code(text)
-    if code is None:
-        raise _error(number, f"'{name}' is '{printable(text)}', which is {type_.stranger(text)}", name)
-    return float(code)
-
-
-def _given(data: dict[str, Any], name: str, number: int, variable: str = "") -> Any:
-    try:
-        return _member(data, name)
-    except KeyError:
-        known = list(data)
-        other = variable and variable != name
-        error = missing("the data", variable, name, known) if other else missing_variable(name, known)
-        raise _error(number, str(error), name) from None
-
-
-def _has(data: dict[str, Any], name: str) -> bool:
-    try:
-        return _member(data, name) is not None
-    except KeyError:
-        return False
-
-
-def _member(data: dict[str, Any], name: str) -> Any:
-    """Return what is called ``name``: a key, or fields of nested objects (``req.value``)."""
-    if name in data:
-        return data[name]
-    value: Any = data
-    for part in name.split("."):
-        if not isinstance(value, dict):
-            raise KeyError(name)
-        value = value[part]
-    return value
-
-
-def _shown(value: object) -> str:
-    text = json.dumps(value)
-    return text if len(text) <= 40 else f"{text[:40]}..."
-
-
-def _error(number: int, problem: str, variable: str | None = None) -> TraceError:
-    return TraceError(f"{STDIN}, line {number}: {problem}", variable=variable)

@@ -1,0 +1,155 @@
+"""A line of JSON to numbers and timestamps, with errors that name the line."""
+
+from __future__ import annotations
+
+import json
+from math import isinf
+from typing import TYPE_CHECKING, Any
+
+from rtamt.errors import TraceError
+from rtamt.language.value_types import Enumeration
+from rtamt.readers.dates import EXAMPLE, is_date
+from rtamt.readers.source import printable
+from rtamt.signals.arrays import missing_variable
+from rtamt.signals.binding import missing
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    from rtamt.language.value_types import ValueType
+
+#: What messages call the input.
+STDIN = "stdin"
+
+_INFINITIES = ("inf", "-inf")
+
+
+class _TooLarge(str):
+    """The text of a number beyond the range of a double."""
+
+    __slots__ = ()
+
+
+class _RepeatedKeyError(ValueError):
+    pass
+
+
+def object_in(text: str, number: int) -> dict[str, Any]:
+    """Return the JSON object in a line."""
+    try:
+        data = json.loads(text, parse_float=_float, object_pairs_hook=_unique)
+    except json.JSONDecodeError as error:
+        raise line_error(number, f"not JSON: {error.msg} at column {error.colno}") from None
+    except _RepeatedKeyError as error:
+        raise line_error(number, f"the key {shown_value(str(error))} is given twice; give it once") from None
+    except (ValueError, RecursionError):
+        raise line_error(number, "not JSON to read: a number is too long, or nesting too deep") from None
+    if not isinstance(data, dict):
+        raise line_error(
+            number, f'expected a JSON object, such as {{"time": 0, "x": 1}}, got {shown_value(data)}'
+        )
+    return data
+
+
+def _float(text: str) -> float | _TooLarge:
+    value = float(text)
+    return _TooLarge(text) if isinf(value) else value
+
+
+def _unique(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    data = dict(pairs)
+    if len(data) < len(pairs):
+        keys = [key for key, _ in pairs]
+        raise _RepeatedKeyError(next(key for key in keys if keys.count(key) > 1))
+    return data
+
+
+def flat(data: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
+    """Yield what an object holds; fields of nested objects under names with dots."""
+    stack = list(data.items())
+    while stack:
+        name, value = stack.pop(0)
+        if isinstance(value, dict):
+            stack += [(f"{name}.{key}", inner) for key, inner in value.items()]
+        else:
+            yield name, value
+
+
+def stamp_in(data: dict[str, Any], name: str, number: int) -> str:
+    """Return a stamp as it would be written in a cell: a number, or a date."""
+    value = given_in(data, name, number)
+    if isinstance(value, str) and not isinstance(value, _TooLarge) and value not in _INFINITIES:
+        if not is_date(value):
+            problem = f"expected a number, or a date such as {EXAMPLE}"
+            raise line_error(number, f"'{name}' is {shown_value(value)}, {problem}")
+        return value
+    seconds = number_in(data, name, number)
+    return str(int(value)) if isinstance(value, int) else repr(seconds)  # an integer to its last digit
+
+
+def number_in(data: dict[str, Any], name: str, number: int, type_: ValueType | None = None) -> float:
+    """Return a number of the object, or the code of a member that is given by its name."""
+    value = given_in(data, name, number)
+    if isinstance(value, str) and isinstance(type_, Enumeration):
+        return code_of(value, name, type_, number)
+    if isinstance(value, (bool, int, float)):
+        try:
+            return float(value)
+        except OverflowError:
+            value = _TooLarge(json.dumps(value))
+    if isinstance(value, _TooLarge):
+        text = value if len(value) <= 40 else f"{value[:40]}..."
+        raise line_error(number, f"'{name}' is {text}, beyond the range of a double", name)
+    if value in _INFINITIES:
+        return float(value)
+    raise line_error(number, f"'{name}' is {shown_value(value)}, expected a number", name)
+
+
+def code_of(text: str, name: str, type_: Enumeration, number: int) -> float:
+    """Return the code of a member, which is given by its name."""
+    code = type_.code(text)
+    if code is None:
+        raise line_error(number, f"'{name}' is '{printable(text)}', which is {type_.stranger(text)}", name)
+    return float(code)
+
+
+def given_in(data: dict[str, Any], name: str, number: int, variable: str = "") -> Any:
+    """Return the value that the object has under a name; raise :class:`TraceError` where it has none."""
+    try:
+        return _member(data, name)
+    except KeyError:
+        known = list(data)
+        other = variable and variable != name
+        error = missing("the data", variable, name, known) if other else missing_variable(name, known)
+        raise line_error(number, str(error), name) from None
+
+
+def has_value(data: dict[str, Any], name: str) -> bool:
+    """Return whether the object has a value under a name."""
+    try:
+        return _member(data, name) is not None
+    except KeyError:
+        return False
+
+
+def _member(data: dict[str, Any], name: str) -> Any:
+    """Return what is called ``name``: a key, or fields of nested objects (``req.value``)."""
+    if name in data:
+        return data[name]
+    value: Any = data
+    for part in name.split("."):
+        if not isinstance(value, dict):
+            raise KeyError(name)
+        value = value[part]
+    return value
+
+
+def shown_value(value: object) -> str:
+    """Return a value as a message shows it."""
+    text = json.dumps(value)
+    return text if len(text) <= 40 else f"{text[:40]}..."
+
+
+def line_error(number: int, problem: str, variable: str | None = None) -> TraceError:
+    """Return the error for a line of stdin."""
+    return TraceError(f"{STDIN}, line {number}: {problem}", variable=variable)
