@@ -153,7 +153,11 @@ def evaluate_all(
             queries.append(spec._query(tolerance=tolerance, **reading))
     # One program serves all queries that read the recording in the same way.
     alike: dict[Hashable, list[tuple[list[int], dict[str, tuple[str, str]]]]] = {}
+    results: dict[int, Result] = {}
     for number, (spec, query) in enumerate(zip(specs, queries, strict=True)):
+        if spec.sampling is not None and spec.sampling.hold and not query.domain.continuous:
+            results[number] = spec.evaluate(data, tolerance=tolerance, **reading)  # it has samples of its own
+            continue
         groups = alike.setdefault((query.domain, query.unit, spec.backend), [])
         places = spec.binding.places()
         fitting = next(
@@ -164,7 +168,6 @@ def evaluate_all(
             groups.append(fitting)
         fitting[0].append(number)
         fitting[1].update(places)
-    results: dict[int, Result] = {}
     for numbers, _ in chain.from_iterable(alike.values()):
         asked = {number: (specs[number], queries[number]) for number in numbers}
         results.update(_evaluate_alike(asked, data))
@@ -177,7 +180,9 @@ def evaluate_requirements(spec: Specification, data: Any) -> Mapping[str, Result
     ``data`` and errors as for :meth:`Specification.evaluate`, which computes verdicts when they are asked for.
     """
     query = spec._query()
-    recording = spec._with_units(query.record(spec.binding.applied(data), spec.input_names, spec.types))
+    recording = spec._with_units(
+        query.record(spec._sampled(query, spec.binding.applied(data)), spec.input_names, spec.types)
+    )
     spec._check(query, recording)
     outputs = [one._outputs() for one in spec.requirements.values()]
     return requirements_of(spec, judge(outputs, recording, spec._signals_of), query.semantics)

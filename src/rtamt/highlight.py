@@ -37,6 +37,7 @@ DECLARING = (
     "require",
     "severity",
     "def",
+    "sample",
 )
 
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal, overload
 
 from rtamt.engine.engine import engine_of
 from rtamt.engine.offline import Evaluators, Query
+from rtamt.engine.online import OnlineMonitor
 from rtamt.errors import TraceError, UsageError
 from rtamt.language.imports import again
 from rtamt.language.printer import to_text
@@ -16,6 +17,7 @@ from rtamt.language.units import check_unit
 from rtamt.results import Result, requirements_of
 from rtamt.settings import watched_of
 from rtamt.signals.inexact import Uncertainty, fill_gaps
+from rtamt.signals.sampling import sampled
 from rtamt.specification_text import SpecificationText
 from rtamt.verdicts.modes import DELAYED, mode_of, monitor_of, semantics_in
 from rtamt.verdicts.offline import by_start, judge_apart
@@ -29,7 +31,6 @@ if TYPE_CHECKING:
     from rtamt.compiler.program import Program
     from rtamt.engine.dense.monitor import DenseMonitor
     from rtamt.engine.discrete.monitor import Monitor
-    from rtamt.engine.online import OnlineMonitor
     from rtamt.language.formula import Formula
     from rtamt.language.imports import Library
     from rtamt.language.units import Duration
@@ -103,10 +104,17 @@ class Specification(SpecificationText):
         Interval(lower=-3.0, upper=1.5)
         """
         query = self._query(time, period, tolerance, resolution, semantics, time_unit)
-        data = self.binding.applied(data)
+        data = self._sampled(query, self.binding.applied(data))
         recording = self._with_units(self._recorded(query, data, uncertainty, ranges))
         self._check(query, recording)
         return self._result(query, recording)
+
+    def _sampled(self, query: Query, data: Any) -> Any:
+        """Return data with the samples that the sampling rule takes of it."""
+        rule = self.sampling
+        if rule is None or not rule.hold or query.domain.continuous:
+            return data
+        return sampled(data, self.input_names, query.domain.period or rule.period, rule.limit, query.unit)
 
     def _result(self, query: Query, recording: DomainTrace) -> Result:
         """Return the result on a normalised recording; the formula must have been checked."""
@@ -314,7 +322,7 @@ class Specification(SpecificationText):
             requirements=requirements,
             **settings,
         )
-        if mode.name == DELAYED:
+        if isinstance(monitor, OnlineMonitor):
             monitor.bind(self.binding)
         return monitor
 
@@ -382,7 +390,7 @@ class Specification(SpecificationText):
 
     def __reduce__(self) -> tuple[Any, ...]:
         # The text is sufficient, and is parsed without recursion at any length.
-        names = ("domain", "period", "resolution", "unit", "backend", "language", "semantics")
+        names = ("domain", "period", "resolution", "unit", "backend", "language", "semantics", "sampling")
         settings = {name: getattr(self, name) for name in names}
         replaced = self.document.replaced
         formula = to_text(self.formula, self.language, parameters=True) if replaced else None

@@ -38,6 +38,7 @@ if TYPE_CHECKING:
     from typing_extensions import Self
 
     from rtamt.language.document import Document
+    from rtamt.language.sampling import Sampling
     from rtamt.language.units import Duration
     from rtamt.language.value_types import ValueType
     from rtamt.rewrite.semantics import PredicateSemantics
@@ -62,6 +63,8 @@ class SpecificationText:
     roles: Mapping[str, str] = field(default_factory=dict)
     #: The recorded names of variables that replace those the text declares.
     columns: Mapping[str, str] = field(default_factory=dict)
+    #: How recordings are sampled in discrete time: the sampling rule of the text, unless others replace it.
+    sampling: Sampling | None = None
 
     def __repr__(self) -> str:
         return f"<specification {f'{self.name}: ' if self.name else ''}{self.formula}>"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -78,17 +79,22 @@ def parse(
     check_constants({} if constants is None else constants)
     library = Library(None if folder is None else _folder(folder))
     document = parse_document(text, language=language, unit=unit, constants=constants, library=library)
+    rule = document.sampling
+    if rule is not None and isinstance(time, str):
+        period = rule.period if period is None else period
     domain = time_domain(time, period, None, resolution)
+    exact = domain.period if period is None else positive_period(period)
     spec = Specification(
         document,
         domain,
-        domain.period if period is None else positive_period(period),
+        exact,
         domain.resolution if resolution is None else positive_period(resolution, "resolution"),
         unit,
         backend,
         language,
         semantics_of(semantics),
         roles_of(document, {} if roles is None else roles),
+        sampling=None if rule is None else replace(rule, period=exact or rule.period),
     )
     spec._check_bounds()
     return spec

@@ -19,6 +19,7 @@ bag              check a bag, and write a copy with the results
 stdin_reader     JSON or CSV lines to samples
 json_lines       a line of JSON to numbers and timestamps
 early_feeds      verdicts and bounds before the horizon, as ``rtamt monitor`` prints them
+held_feed        streams whose variables come at any time, sampled by ``sample ... hold``
 live_view        the live view of ``rtamt monitor``
 terminal         output, colours, tables, progress
 compiled         ``rtamt info`` for compiled programs

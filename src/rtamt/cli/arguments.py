@@ -11,6 +11,7 @@ from rtamt.cli.outcome import Requirement
 from rtamt.cli.parser import complain
 from rtamt.cli.reading_options import names_of, reading_of
 from rtamt.cli.runner import evaluate
+from rtamt.language.units import positive_period
 from rtamt.readers.sql import shown
 
 if TYPE_CHECKING:
@@ -34,7 +35,10 @@ def requirements_and_traces(args: Namespace, command: str) -> tuple[list[Require
     A requirement is called by its ID (what stands after ``require``) where no other one has it.
     """
     given, traces = _split(args)
-    specs = [_renamed(spec, names_of(args.name)) for spec in read_specifications(args, args.time, given)]
+    specs = [
+        _resampled(_renamed(spec, names_of(args.name)), args)
+        for spec in read_specifications(args, args.time, given)
+    ]
     if not traces:
         raise CommandError(
             f"there is no trace to {command}: name a file, or --sql URL; see 'rtamt {command} --help'"
@@ -56,6 +60,29 @@ def _renamed(spec: Specification, names: Mapping[str, str]) -> Specification:
         if known != column:
             complain(f"--name {name}={column} replaces '{known}', the recorded name in the specification")
     return replace(spec, columns=names) if names else spec
+
+
+def _resampled(spec: Specification, args: Namespace) -> Specification:
+    """Return a specification that is sampled as the command line says, which replaces its own sampling rule."""
+    rule = spec.sampling
+    if rule is None or spec.domain.continuous:
+        return spec
+    if args.resample is not None:
+        period = positive_period(args.resample)
+        if period != rule.period or not rule.hold:
+            complain(f"--resample {args.resample} replaces '{rule}' in the specification")
+        domain = spec.domain if args.period is not None else spec._domain_for(period=period)
+        spec = replace(spec, domain=domain, period=domain.period, sampling=None)
+        spec._check_bounds()
+        return spec
+    if args.how != "hold" and rule.hold:
+        complain(f"--how {args.how} replaces 'hold' of '{rule}' in the specification")
+    if args.hold_for is not None and rule.hold:
+        limit = positive_period(args.hold_for, "longest time for which a value is held")
+        if rule.limit not in {None, limit}:
+            complain(f"--hold-for {args.hold_for} replaces the limit of '{rule}' in the specification")
+        return replace(spec, sampling=replace(rule, limit=limit))
+    return spec
 
 
 def _rows(spec: Specification, text: str, label: str, taken: Counter[str]) -> Requirement:

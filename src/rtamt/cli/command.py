@@ -158,6 +158,10 @@ def read_specification(args: argparse.Namespace, time: str) -> Specification:
 def read_specifications(args: argparse.Namespace, time: str, given: Sequence[str]) -> list[Specification]:
     """Read several files or texts; what is set must be a parameter of one of them."""
     specs = [_read(args, time, spec) for spec in given]
+    for spec in specs:
+        rule = spec.document.sampling
+        if args.period is not None and rule is not None and spec.period != rule.period:
+            complain(f"--period {args.period} replaces that of '{rule}' in the specification")
     try:
         return assigned(specs, args.set)
     except BoundError as error:

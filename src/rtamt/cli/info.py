@@ -262,6 +262,15 @@ def _ending(facts: Facts) -> str | None:
     return None if found is None else found.op.name
 
 
+def _about_step(spec: Specification) -> str:
+    """Return what the period or tick is, and where it comes from."""
+    if spec.domain.continuous:
+        return ", the tick in which time is counted"
+    if spec.sampling is not None:
+        return f" ({spec.sampling})"
+    return " (the default; --period sets it)" if spec.domain.step is None else ""
+
+
 def _lines(facts: Facts) -> Iterator[str]:
     spec = facts.spec
     if spec.name:
@@ -293,10 +302,7 @@ def _lines(facts: Facts) -> Iterator[str]:
             f"  (by default {parameter['default']:g})" if parameter["value"] != parameter["default"] else ""
         )
         yield f"{'' if i else 'parameters':<11}{parameter['name']} = {parameter['value']:g}{unit}{default}"
-    detail = ", the tick in which time is counted" if spec.domain.continuous else ""
-    if spec.domain.step is None:
-        detail = " (the default; --period sets it)"
-    yield f"{spec.domain.setting:<11}{format_duration(facts.step)}{detail}"
+    yield f"{spec.domain.setting:<11}{format_duration(facts.step)}{_about_step(spec)}"
     if facts.horizon is not None:
         ahead = format_duration(facts.horizon)
         yield f"horizon    {ahead}: the value at t is known at t + {ahead}"

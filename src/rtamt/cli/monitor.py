@@ -22,6 +22,7 @@ from rtamt.cli.command import (
     stamp_text,
 )
 from rtamt.cli.early_feeds import CausationFeed, EagerFeed, IntervalFeed, StartFeed
+from rtamt.cli.held_feed import HeldFeed
 from rtamt.cli.json_lines import STDIN
 from rtamt.cli.live_view import Live
 from rtamt.cli.parser import ERROR, OK, complain
@@ -30,6 +31,7 @@ from rtamt.cli.terminal import printed, say
 from rtamt.errors import StlError, TraceError
 from rtamt.rewrite.check import unbounded_future
 from rtamt.signals.regular import TOLERANCE
+from rtamt.signals.sampling import HeldSampler
 from rtamt.signals.signal import Signal
 from rtamt.signals.trace import in_seconds
 from rtamt.verdicts.at_start import StartMonitor
@@ -138,10 +140,15 @@ def run(args: argparse.Namespace) -> int:
         watched = EventFeed(monitor, output, names)
     else:
         watched = _watched(spec, args.tolerance, output, names)
+    rule = spec.sampling
+    held = rule is not None and rule.hold and not dense
+    if rule is not None and held:
+        sampler = HeldSampler(watched.monitor.input_names, spec.period or rule.period, rule.limit)
+        watched = HeldFeed(watched, sampler)
     samples = Samples(
         watched.monitor.input_names,
         args.time_column,
-        dense=dense,
+        dense=dense or held,
         unit=args.time_unit,
         binding=spec.binding,
         types=spec.types,
@@ -174,9 +181,14 @@ def _follow(watched: Feed, samples: Samples, live: Live | None, *, keep_going: b
             code = ERROR
             if not keep_going:
                 return code
-    if not watched.monitor.samples:
+    problem = watched.finish() if isinstance(watched, HeldFeed) else ""
+    if not watched.monitor.samples and not problem:
         raise CommandError(f"{STDIN} has no samples: give one JSON object a line, or CSV with a header row")
-    watched.finish()
+    if problem:
+        complain(problem)
+        return ERROR
+    if not isinstance(watched, HeldFeed):
+        watched.finish()
     return code
 
 
@@ -346,4 +358,4 @@ class EventFeed:
 
 #: What takes the samples, and prints what becomes known.
 EarlyFeed: TypeAlias = EagerFeed | IntervalFeed | StartFeed | CausationFeed
-Feed: TypeAlias = SampleFeed | EventFeed | EarlyFeed
+Feed: TypeAlias = SampleFeed | EventFeed | EarlyFeed | HeldFeed

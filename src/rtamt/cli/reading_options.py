@@ -183,10 +183,15 @@ def choice_for(specs: Sequence[Specification], trace: str, reading: Reading) -> 
             names.update(columns_of(spec))
     for spec in specs:
         names.update(spec.recorded)
+    # A value that is held in samples of a sampling rule is too old by that rule, wherever it is missing.
+    ruled = any(spec.sampling is not None and spec.sampling.hold for spec in specs)
+    hold_for = (
+        None if ruled and reading.resample is None and not specs[0].domain.continuous else reading.hold_for
+    )
     skipped = [name for name in reading.skip_nan if name in columns]
     types = {name: type_ for spec in specs for name, type_ in spec.types.items()}
     return replace(
-        choice(reading.time, columns or None, names, None, skipped, reading.hold_for, reading.unit, types),
+        choice(reading.time, columns or None, names, None, skipped, hold_for, reading.unit, types),
         gaps=gaps,
     )
 
@@ -202,12 +207,13 @@ def _check_places(specs: Sequence[Specification]) -> None:
 
 def has_own_clocks(spec: Specification, trace: str, reading: Reading) -> bool:
     """Return whether each signal has a clock of its own, so that signals may begin at different times."""
-    return spec.domain.continuous or is_bag(trace) or reading.resample is not None
+    return spec.domain.continuous or is_bag(trace) or is_resampled(spec, trace, reading)
 
 
 def is_resampled(spec: Specification, trace: str, reading: Reading) -> bool:
     """Return whether each requirement is sampled anew, from when all variables that it reads have started."""
-    return reading.resample is not None or (not spec.domain.continuous and is_bag(trace))
+    held = spec.sampling is not None and spec.sampling.hold
+    return reading.resample is not None or (not spec.domain.continuous and (held or is_bag(trace)))
 
 
 def on_clock(data: Trace, spec: Specification, trace: str, reading: Reading) -> Trace:
@@ -217,12 +223,15 @@ def on_clock(data: Trace, spec: Specification, trace: str, reading: Reading) -> 
     samples topics, the latest message every period; without a period only where the messages are samples.
     """
     bag = not spec.domain.continuous and is_bag(trace)
-    period = spec.period if bag and reading.resample is None else reading.resample
+    rule = None if spec.domain.continuous or reading.resample is not None else spec.sampling
+    held = rule is not None and rule.hold
+    period = spec.period if (bag or held) and reading.resample is None else reading.resample
     if period is None and not bag:
         return data
     mine = data.select(set(spec.input_names) & set(data.names)) if spec.input_names else data
     if period is not None:
-        return mine.resample(period, reading.how)
+        limit = rule.limit if rule is not None and reading.how == "hold" else None
+        return mine.resample(period, reading.how, limit)
     try:
         times = stamps(mine.on_one_clock(mine.names)[TIME]).seconds
         check_regular(times, infer_period(times))

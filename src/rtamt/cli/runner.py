@@ -117,7 +117,8 @@ def _all_of(requirements: Sequence[Requirement], trace: str, reading: Reading) -
     """Check requirements over one whole recording."""
     if not requirements:
         return []
-    if _is_large(trace, reading):
+    sampled_anew = any(is_resampled(requirement.spec, trace, reading) for requirement in requirements)
+    if _is_large(trace, reading) and not sampled_anew:
         return [o for requirement in requirements for o in _in_chunks(requirement, trace, reading)]
     whole: Trace | None
     try:
@@ -201,7 +202,7 @@ def _stop(row: Requirement, rows: Sequence[Requirement]) -> str:
 
 
 def _is_large(trace: str, reading: Reading) -> bool:
-    if reading.whole or reading.resample is not None:
+    if reading.whole:
         return False
     return is_url(trace) or (os.path.isfile(trace) and os.path.getsize(trace) >= LARGE)
 

@@ -26,6 +26,7 @@ typed_parser         members of enumerations and ``x in {...}`` in formulas
 scope                names in a formula: constants, named formulas, declared variables
 templates            ``def name(parameters) = formula``, and its uses
 imports              files that others import: where they may be, and what is taken from them
+sampling             the sampling rule: ``sample 100ms hold``
 declarations         what stands before the formulas of a file: imports, declarations, annotations
 enumerations         ``enum Mode { MANUAL, AUTO = 4 }``
 specfile             specification files (``.stl``) to a document, and their grammar

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 
     from rtamt.language.formula import Formula, Span
     from rtamt.language.records import Operator
+    from rtamt.language.sampling import Sampling
     from rtamt.language.templates import Template
     from rtamt.language.value_types import Enumeration, ValueType
 
@@ -108,6 +109,8 @@ class Document:
     )
     #: The tables that formulas may use, by name.
     tables: Mapping[str, Operator] = field(default_factory=lambda: MappingProxyType({}))
+    #: The sampling rule; None if there is none.
+    sampling: Sampling | None = None
     #: The name of the assertion or requirement selected by :meth:`select`.
     selected: str | None = None
     #: The document it was selected from, with every requirement; None if nothing was selected.

@@ -3,7 +3,8 @@
 ::
 
     document    = [ "specification" , word ] , { import } ,
-                  { declaration | annotation | enumeration, see enumerations.py | table, see tables.py } ,
+                  { declaration | annotation | enumeration, see enumerations.py | table, see tables.py |
+                  sampling, see sampling.py } ,
                   statement , { separator , statement } , [ ";" ]
     separator   = ";" | after a named assertion, a requirement or a template, as in RTAMT's files: the end of the line
     statement   = assertion | requirement | template, see templates.py
@@ -40,6 +41,7 @@ from rtamt.language.enumerations import begins_enumeration
 from rtamt.language.formula import Formula, Span, Var, postorder
 from rtamt.language.imports import Library
 from rtamt.language.operators import STL, Language
+from rtamt.language.sampling import begins_sampling, parse_sampling
 from rtamt.language.scope import Scope
 from rtamt.language.tables import begins_table
 from rtamt.language.templates import begins_template, parse_template, templates_to_come
@@ -49,6 +51,7 @@ if TYPE_CHECKING:
 
     from rtamt.errors import SpecificationError
     from rtamt.language.lexer import Token
+    from rtamt.language.sampling import Sampling
 
 
 def parse_document(
@@ -91,8 +94,15 @@ class _DocumentParser(DeclarationParser):
         name = self._header()
         while self._import():
             pass
-        while self._enumeration() or self._table() or self._declaration() or self._annotation():
-            pass
+        sampling: Sampling | None = None
+        while True:
+            if begins_sampling(self):
+                word = self.token
+                if sampling is not None:
+                    raise self.error("the sampling rule is given twice", word.span)
+                sampling = parse_sampling(self)
+            elif not (self._enumeration() or self._table() or self._declaration() or self._annotation()):
+                break
         declared = tuple(d.name for d in self._declarations.values() if d.kind == "var")
         variables = tuple(dict.fromkeys((*self._given, *declared)))
         assertions = self._assertions(variables)
@@ -117,6 +127,7 @@ class _DocumentParser(DeclarationParser):
             frozenset(self.used),
             imported=MappingProxyType(self.library.found),
             tables=MappingProxyType(self._tables),
+            sampling=sampling,
         )
 
     # ---- the formulas ----------------------------------------------------------------------------
@@ -133,6 +144,7 @@ class _DocumentParser(DeclarationParser):
                 raise self.error("imports stand at the beginning, before declarations", self.token.span)
             declares = self.token.text == "@" or self._declares()
             declares = declares or begins_enumeration(self) or begins_table(self)
+            declares = declares or begins_sampling(self)
             if (found or self._templates) and not required and declares:
                 raise self.error(
                     "declarations and annotations stand before the first formula", self.token.span

@@ -339,6 +339,10 @@ class RosMonitor:
 
     # ---- notices and conditions ---------------------------------------------------------------------
 
+    def note(self, message: str) -> None:
+        """Add a warning to the notices."""
+        self._say(Level.WARN, message)
+
     def notices(self) -> list[Notice]:
         """Return the events since the last call; each is reported once."""
         said, self._notices = self._notices, []

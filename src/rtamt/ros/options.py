@@ -48,16 +48,24 @@ class Options:
         dense = time_domain(self.time).continuous
         if dense and self.period:
             raise UsageError("dense time has no sampling period: leave out --period, or --time dense")
-        if not dense and not self.period:
+        period = self._duration(self.period) if self.period else None
+        values = assignments(self.set.split(",")) if self.set else {}
+        spec = load(self.spec, time=self.time, period=period).with_parameters(**values)
+        if not dense and spec.period is None:
             raise UsageError(
                 "discrete time samples the topics once a period: give it, such as --period 100ms (the parameter "
                 "period), or use --time dense, which reads every message at its own time"
             )
-        period = self._duration(self.period) if self.period else None
-        values = assignments(self.set.split(",")) if self.set else {}
-        spec = load(self.spec, time=self.time, period=period).with_parameters(**values)
-        stale = self._duration(self.stale) if self.stale else None
-        return RosMonitor(bind(spec, self.verdict or None), period=period, time=self.time, stale=stale)
+        rule = None if dense else spec.sampling
+        stale = self._duration(self.stale) if self.stale else None if rule is None else rule.limit
+        sampled = None if dense else spec.period
+        monitor = RosMonitor(bind(spec, self.verdict or None), period=sampled, time=self.time, stale=stale)
+        written = None if dense else spec.document.sampling
+        if written is not None and written.period != spec.period:
+            monitor.note(f"the period {self.period} replaces that of '{written}' in the specification")
+        if written is not None and written.limit is not None and self.stale:
+            monitor.note(f"stale after {self.stale} replaces the limit of '{written}' in the specification")
+        return monitor
 
     def _duration(self, text: str) -> str:
         """Return a duration with its unit: ``--unit`` is that of a plain number, as in the paper's listing 5.
@@ -95,7 +103,8 @@ def add_options(made: argparse.ArgumentParser) -> None:
     made.add_argument(
         "--period",
         metavar="DURATION",
-        help="from sample to sample: a number, or with a unit: 100ms; required in discrete time",
+        help="from sample to sample: a number, or with a unit: 100ms; required in discrete time, unless the "
+        "specification says it: sample 100ms hold",
     )
     made.add_argument(
         "--unit", help=f"of --period and --stale where they are numbers: {', '.join(UNITS)} (default: s)"

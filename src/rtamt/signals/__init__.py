@@ -13,6 +13,9 @@ instants          sets of times as intervals, and step functions of them
 outcomes          bounds and verdicts that are known before the whole trace is
 episodes          the maximal runs of violation
 trace             ``Trace``: named signals, each with its own time base; resampling
+binding           variables under their recorded names, in their declared units
+unit_conversion   from the unit of a recording to the declared one
+sampling          the latest values of variables as samples one period apart
 resampling        signals at other instants: a regular grid, or those of other signals
 listing           a trace as text: its signals topic by topic
 arrays            data (lists, arrays, frames, objects) to float64 arrays

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rtamt.errors import TraceError, UsageError, choices
-from rtamt.language.units import duration
+from rtamt.language.units import duration, format_duration
+from rtamt.signals.listing import show_time
 from rtamt.signals.regular import merged
 
 if TYPE_CHECKING:
@@ -31,18 +32,23 @@ def grid_of(timed: Sequence[Times], period: str | float | Fraction, how: str) ->
     step = duration(period)
     if step <= 0:
         raise UsageError(f"the sampling period is {period!r}; it must be positive")
-    start = max(_exact(times[0]) for times in timed)
-    last = (max if how == "hold" else min)(_exact(times[-1]) for times in timed)
+    start = max(exact_time(times[0]) for times in timed)
+    last = (max if how == "hold" else min)(exact_time(times[-1]) for times in timed)
     if last < start:
         raise TraceError("the signals have no instant in common")
     return _grid(start, step, int((last - start) / step) + 1, timed[0].dtype)
 
 
 def resampled(
-    name: str, times: Times, values: FloatArray, grid: Times, how: str
+    name: str, times: Times, values: FloatArray, grid: Times, how: str, hold_for: Fraction | None = None
 ) -> tuple[FloatArray, list[str]]:
-    """Return the values of a signal at the instants of a grid, and a note on samples that they leave out."""
+    """Return the values of a signal at the instants of a grid, and a note on samples that they leave out.
+
+    ``hold_for``: raise :class:`TraceError` where the last value is older (seconds).
+    """
     places = np.searchsorted(times, grid, side="right") - 1
+    if how == "hold" and hold_for is not None:
+        _check_ages(name, times[places], grid, hold_for)
     if how == "hold":
         return values[places], _passed_over(name, places, len(times))
     # Differences first: timestamps of 10^18 ns do not fit into a double, their differences do.
@@ -110,7 +116,24 @@ def _passed_over(name: str, places: NDArray[np.intp], count: int) -> list[str]:
     ]
 
 
-def _exact(time: Any) -> Fraction:
+def _check_ages(name: str, times: Times, grid: Times, hold_for: Fraction) -> None:
+    ages = _plain(grid - times) / (1e9 if grid.dtype.kind in "mM" else 1.0)
+    near = float(hold_for) - 1e-6  # times of doubles are no more exact
+    for i in np.flatnonzero(ages > near).tolist():
+        check_age(name, times[i], grid[i], hold_for)
+
+
+def check_age(name: str, time: Any, now: Any, hold_for: Fraction) -> None:
+    """Raise :class:`TraceError` if the value that a variable has had since ``time`` is too old now."""
+    if exact_time(now) - exact_time(time) > hold_for:
+        raise TraceError(
+            f"'{name}' has no sample from {show_time(time)} to {show_time(now)}, longer than the "
+            f"{format_duration(hold_for)} for which a value is held: fill the gap, or hold it for longer",
+            variable=name,
+        )
+
+
+def exact_time(time: Any) -> Fraction:
     """Return a time in seconds: a float means the shortest decimal that prints it."""
     if isinstance(time, np.datetime64 | np.timedelta64):
         return Fraction(int(time.astype(np.int64)), 10**9)

@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, Any, overload
 import numpy as np
 
 from rtamt.errors import TraceError, UsageError, choices, shown
+from rtamt.language.units import positive_period
 from rtamt.signals.arrays import TIME, Clocked, missing_sample, stamps
 from rtamt.signals.listing import extent, html, listing
 from rtamt.signals.regular import merged
@@ -290,20 +291,31 @@ class Trace(Clocked):
 
     # ---- one clock, chosen openly ----------------------------------------------------------------
 
-    def resample(self, period: str | float | Fraction, how: str = "hold") -> Trace:
+    def resample(
+        self,
+        period: str | float | Fraction,
+        how: str = "hold",
+        hold_for: str | float | Fraction | None = None,
+    ) -> Trace:
         """Return all signals on one time base: a sample every ``period`` from the first instant at which all have one.
 
         ``how``: ``"hold"``, the last value before or at an instant (what dense time means; up to the
         latest last sample), or ``"linear"``, on the line between the two samples around it (up to the
         earliest last sample). ``period``: seconds, or text such as ``"10ms"``. Samples in between are
-        left out and listed in :attr:`losses`.
+        left out and listed in :attr:`losses`. ``hold_for``: how old a value that is held may be; an older one is an
+        error.
 
         >>> import rtamt
         >>> trace = rtamt.read({"x": ([0.0, 1.0], [0, 10]), "y": ([0.0, 0.6, 1.0], [1, 2, 3])})
         >>> trace.resample("500ms")["x"].values, trace.resample("500ms", how="linear")["x"].values
         (array([ 0.,  0., 10.]), array([ 0.,  5., 10.]))
         """
-        return self._at(grid_of(self._all_timed(), period, how), how)
+        limit = (
+            None if hold_for is None else positive_period(hold_for, "longest time for which a value is held")
+        )
+        if limit is not None and how != "hold":
+            raise UsageError(f"hold_for= is for how='hold', got how='{how}'")
+        return self._at(grid_of(self._all_timed(), period, how), how, limit)
 
     def hold(self) -> Trace:
         """Return all signals at the timestamps of each, holding last values, from the latest first timestamp on.
@@ -317,12 +329,12 @@ class Trace(Clocked):
         grid = merged(timed)
         return self._at(grid[grid >= max(times[0] for times in timed)], "hold")
 
-    def _at(self, grid: Times, how: str) -> Trace:
+    def _at(self, grid: Times, how: str, hold_for: Fraction | None = None) -> Trace:
         channels: dict[str, Channel] = {}
         losses: list[str] = []
         for name, channel in self._channels.items():
             assert channel.times is not None
-            values, left_out = resampled(name, channel.times, channel.values, grid, how)
+            values, left_out = resampled(name, channel.times, channel.values, grid, how, hold_for)
             losses += left_out
             channels[name] = replace(channel, times=grid, values=values, first_gap=None)
         return self._with(channels, losses)

@@ -1,0 +1,52 @@
+"""A stream whose variables come at any time, sampled as ``sample 100ms hold`` in the specification says."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from rtamt.cli.json_lines import STDIN
+from rtamt.errors import TraceError
+
+if TYPE_CHECKING:
+    from rtamt.cli.early_feeds import CausationFeed, EagerFeed, IntervalFeed, StartFeed
+    from rtamt.cli.monitor import EventFeed, SampleFeed
+    from rtamt.signals.sampling import HeldSampler
+
+
+class HeldFeed:
+    """Gives another feed the samples that a sampler takes of the stream."""
+
+    def __init__(
+        self,
+        feed: SampleFeed | EventFeed | EagerFeed | IntervalFeed | StartFeed | CausationFeed,
+        sampler: HeldSampler,
+    ) -> None:
+        self.monitor = feed.monitor
+        self._feed = feed
+        self._sampler = sampler
+
+    def take(self, time: Any, values: dict[str, float], line: int) -> str:
+        """Take values of some variables; return what is wrong with them, if anything is."""
+        if time is None:
+            return f"{STDIN}, line {line}: values that are held need their time"
+        try:
+            for stamp, sample in self._sampler.take(time, values):
+                problem = self._feed.take(stamp, sample, line)
+                if problem:
+                    return problem
+        except TraceError as error:
+            return f"{STDIN}, line {line}: {error}"
+        return ""
+
+    def finish(self) -> str:
+        """End the trace; return what is wrong with the last samples, if anything is."""
+        try:
+            for stamp, sample in self._sampler.finish():
+                problem = self._feed.take(stamp, sample, 0)
+                if problem:
+                    return problem
+        except TraceError as error:
+            return f"{STDIN}: {error}"
+        if self._feed.monitor.samples:
+            self._feed.finish()
+        return ""

@@ -1,0 +1,141 @@
+"""Samples of discrete time from signals whose samples come at any time: each variable has its latest value.
+
+Of a whole recording with :func:`sampled`, of a stream with :class:`HeldSampler`: the same samples.
+"""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rtamt.errors import TraceError, UsageError
+from rtamt.signals import arrays, dense_arrays
+from rtamt.signals.listing import show_time
+from rtamt.signals.regular import check_increasing
+from rtamt.signals.resampling import check_age, exact_time
+from rtamt.signals.trace import Channel, Trace
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping, Sequence
+
+
+def sampled(
+    data: Any,
+    names: Sequence[str],
+    period: Fraction,
+    hold_for: Fraction | None = None,
+    unit: str | None = None,
+) -> Any:
+    """Return what a formula reads of a recording, a sample every ``period`` from when all variables have one.
+
+    ``hold_for``: the oldest value that is held (seconds). Data without times is returned as it is: its samples are one
+    period apart. Raises :class:`TraceError` for wrong data and values that are too old.
+    """
+    if isinstance(data, Trace):
+        known = [name for name in names if name in data.names]
+        if len(known) < len(names) or any(data.channel(name).times is None for name in known):
+            return data  # the evaluation reports what is missing
+        return data.select(known).resample(period, "hold", hold_for) if known else data
+    if unit is not None:
+        raise UsageError(
+            "time_unit= and a specification with 'sample ... hold': read the data with rtamt.read(data, time_unit=...)"
+        )
+    if not names or not (arrays.is_mapping(data) or arrays.is_frame(data)):
+        return data
+    keys = list(data) if arrays.is_mapping(data) else list(data.columns)
+    if arrays.TIME not in keys and not all(_has_times(data[key]) for key in keys if key in names):
+        return data
+    columns = dense_arrays.columns_of(data, names)
+    if len(columns) < len(names):
+        return data
+    channels = {name: _channel(name, *columns[name]) for name in names}
+    return Trace(channels, source="the data").resample(period, "hold", hold_for)
+
+
+def _has_times(samples: Any) -> bool:
+    """Return whether samples have times of their own: a pair of sequences, or [time, value] pairs."""
+    if isinstance(samples, tuple):
+        return len(samples) == 2 and all(np.ndim(part) == 1 for part in samples)
+    return np.ndim(samples) == 2
+
+
+def _channel(name: str, times: Any, values: Any) -> Channel:
+    """Return the samples of a variable that are there."""
+    raw = arrays.as_array(values)
+    absent = (
+        np.ma.getmaskarray(values) if isinstance(values, np.ma.MaskedArray) else np.zeros(raw.shape, bool)
+    )
+    if raw.dtype.kind == "O":
+        absent = absent | np.array([value is None for value in raw], dtype=bool)
+    seconds, original = arrays.stamps(times)
+    if len(seconds) != len(raw):
+        raise TraceError(
+            f"'{name}' has {len(seconds)} times but {len(raw)} values: give one of each for every sample",
+            variable=name,
+        )
+    check_increasing(seconds)
+    return Channel(original[~absent], raw[~absent])
+
+
+class HeldSampler:
+    """Samples a stream: each is known once a later time has come, since other values may come at the same time.
+
+    ``names``: the variables; ``period`` and ``hold_for`` in seconds.
+    """
+
+    def __init__(self, names: Sequence[str], period: Fraction, hold_for: Fraction | None = None) -> None:
+        self._names = tuple(names)
+        self._period = period
+        self._hold_for = hold_for
+        #: Of each variable the time of its last sample, and its value.
+        self._last: dict[str, tuple[Any, Any]] = {}
+        self._start: Any = None
+        self._next = Fraction(0)
+        self._now: Any = None
+
+    def take(self, time: Any, values: Mapping[str, Any]) -> Iterator[tuple[Any, dict[str, Any]]]:
+        """Take values of some variables at one time; yield the samples before it.
+
+        Raises :class:`TraceError` for times that decrease, and where a value is too old: the sample is then left out.
+        """
+        if self._now is not None and time < self._now:
+            raise TraceError(
+                f"time does not increase: {show_time(time)} comes after {show_time(self._now)}; sort the samples",
+                variable=arrays.TIME,
+            )
+        for name in values:
+            if name in self._last and self._last[name][0] == time:
+                raise TraceError(
+                    f"'{name}' has two samples at {show_time(time)}: keep one of them", variable=name
+                )
+        end = exact_time(time)
+        try:
+            yield from self._until(end, closed=False)
+        finally:  # also where a value was too old
+            self._next = max(self._next, self._next + -((self._next - end) // self._period) * self._period)
+            self._now = time
+            self._last.update({name: (time, value) for name, value in values.items()})
+            if self._start is None and len(self._last) == len(self._names):
+                self._start, self._next = time, end
+
+    def finish(self) -> Iterator[tuple[Any, dict[str, Any]]]:
+        """Yield the samples up to the last time."""
+        if self._start is not None:
+            yield from self._until(exact_time(self._now), closed=True)
+
+    def _until(self, end: Fraction, *, closed: bool) -> Iterator[tuple[Any, dict[str, Any]]]:
+        while self._start is not None and (self._next < end or (closed and self._next == end)):
+            now = self._stamp(self._next)
+            self._next += self._period
+            if self._hold_for is not None:
+                for name in self._names:
+                    check_age(name, self._last[name][0], now, self._hold_for)
+            yield now, {name: self._last[name][1] for name in self._names}
+
+    def _stamp(self, seconds: Fraction) -> Any:
+        """Return a time as the stream has times."""
+        if isinstance(self._start, np.datetime64 | np.timedelta64):
+            return type(self._start)(int(seconds * 10**9), "ns")
+        return float(seconds)

@@ -1,0 +1,91 @@
+"""``sample 100ms hold`` on the command line: files, streams, and options that replace it."""
+
+import json
+
+import pytest
+
+SPEC = """\
+input float x
+input float y
+sample 100ms hold for 500ms
+require R: historically(x <= 3 -> once[0:100ms](y >= 1))
+"""
+LOG = "time,x,y\n0,1,0\n0.05,,1\n0.12,2,\n0.33,4,0\n0.6,1,1\n"
+VALUES = [-1.0, -1.0, -1.0, -1.0, -1.0, -1.0, -1.0]
+
+
+@pytest.fixture(autouse=True)
+def _files(write):
+    write("spec.stl", SPEC)
+    write("log.csv", LOG)
+
+
+def rows(answer):
+    return [json.loads(line) for line in answer.out.splitlines()]
+
+
+def test_a_file_and_a_stream_have_the_same_samples(run):
+    answer = run("check", "spec.stl", "log.csv", "--json", "-o", "out.csv")
+    assert (answer.code, answer.err) == (1, "")
+    (row,) = rows(answer)
+    assert (row["samples"], row["period"], row["robustness"]) == (7, 0.1, -1.0)
+    with open("out.csv", encoding="utf-8") as file:
+        lines = [tuple(map(float, line.split(","))) for line in file.read().splitlines()[1:]]
+    csv = rows(run("monitor", "spec.stl", stdin=LOG))
+    assert [(row["time"], row["robustness"]) for row in csv] == lines
+    objects = "".join(
+        json.dumps({k: v for k, v in {"time": t, "x": x, "y": y}.items() if v is not None}) + "\n"
+        for t, x, y in [(0, 1, 0), (0.05, None, 1), (0.12, 2, None), (0.33, 4, 0), (0.6, 1, 1)]
+    )
+    assert rows(run("monitor", "spec.stl", stdin=objects)) == csv
+    bounds = rows(run("monitor", "spec.stl", "--verdict", "eager", stdin=LOG))
+    assert [row["satisfied"] for row in bounds] == [value > 0 for _, value in lines]
+
+
+def test_several_requirements_and_reports(run, write):
+    write("two.stl", SPEC + "require S: always(x <= 3)\n")
+    answer = run("check", "two.stl", "log.csv", "--json", "--early", "--junit", "junit.xml")
+    assert [(row["requirement"], row["robustness"]) for row in rows(answer)] == [("R", -1.0), ("S", -1.0)]
+    assert run("report", "two.stl", "log.csv", "-o", "page.html").code == 1
+    assert "sample 100ms hold for 500ms" in run("info", "two.stl").out
+
+
+@pytest.mark.parametrize(
+    ("options", "code", "samples", "message"),
+    [
+        (["--period", "50ms"], 1, 13, "--period 50ms replaces that of 'sample 100ms hold for 500ms'"),
+        (["--resample", "50ms"], 1, 13, "--resample 50ms replaces 'sample 100ms hold for 500ms'"),
+        (["--hold-for", "1s"], 1, 7, "--hold-for 1s replaces the limit of 'sample 100ms hold for 500ms'"),
+        (
+            ["--hold-for", "100ms"],
+            2,
+            None,
+            "--hold-for 100ms replaces the limit of 'sample 100ms hold for 500ms'",
+        ),
+        (["--how", "linear"], 1, 7, "--how linear replaces 'hold' of 'sample 100ms hold for 500ms'"),
+        (["--period", "100ms", "--hold-for", "500ms"], 1, 7, ""),
+    ],
+)
+def test_options_replace_the_rule_and_say_so(run, options, code, samples, message):
+    answer = run("check", "spec.stl", "log.csv", "--json", *options)
+    assert answer.code == code
+    assert (f"rtamt: {message} in the specification\n" if message else "") in answer.err
+    assert answer.err.count("replaces") == bool(message)
+    if samples is not None:
+        assert rows(answer)[0]["samples"] == samples
+
+
+def test_a_value_that_is_too_old(run, write):
+    write("spec.stl", SPEC.replace("500ms", "200ms"))
+    sentence = "'y' has no sample from 0.05 s to 0.3 s, longer than the 200 ms for which a value is held"
+    assert f"log.csv: {sentence}" in run("check", "spec.stl", "log.csv").err
+    stream = run("monitor", "spec.stl", stdin=LOG)
+    assert (stream.code, len(rows(stream))) == (2, 3)
+    assert f"stdin, line 5: {sentence}" in stream.err
+
+
+def test_wrong_streams(run):
+    assert "values that are held need their time" in run("monitor", "spec.stl", stdin="x,y\n1,2\n").err
+    late = run("monitor", "spec.stl", stdin="time,x,y\n1,1,1\n0.5,1,1\n")
+    assert "stdin, line 3: time does not increase: 0.5 s comes after 1 s; sort the samples" in late.err
+    assert "has no samples" in run("monitor", "spec.stl", stdin="time,x,y\n").err
