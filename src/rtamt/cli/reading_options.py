@@ -20,6 +20,7 @@ from rtamt.signals.regular import check_regular, infer_period
 if TYPE_CHECKING:
     import argparse
     from collections.abc import Collection, Sequence
+    from fractions import Fraction
 
     from rtamt.readers.assemble import Choice
     from rtamt.results import Result
@@ -216,6 +217,12 @@ def is_resampled(spec: Specification, trace: str, reading: Reading) -> bool:
     return reading.resample is not None or (not spec.domain.continuous and (held or is_bag(trace)))
 
 
+def oldest_held(spec: Specification, reading: Reading) -> Fraction | None:
+    """Return how old a value may be that is held in the samples of a requirement; None: however old."""
+    ruled = spec.sampling is not None and reading.resample is None and reading.how == "hold"
+    return spec.sampling.limit if ruled and spec.sampling is not None else None
+
+
 def on_clock(data: Trace, spec: Specification, trace: str, reading: Reading) -> Trace:
     """Return what a requirement reads of a recording, on the clock that the options choose.
 
@@ -230,8 +237,7 @@ def on_clock(data: Trace, spec: Specification, trace: str, reading: Reading) -> 
         return data
     mine = data.select(set(spec.input_names) & set(data.names)) if spec.input_names else data
     if period is not None:
-        limit = rule.limit if rule is not None and reading.how == "hold" else None
-        return mine.resample(period, reading.how, limit)
+        return mine.resample(period, reading.how, oldest_held(spec, reading))
     try:
         times = stamps(mine.on_one_clock(mine.names)[TIME]).seconds
         check_regular(times, infer_period(times))

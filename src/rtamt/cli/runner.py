@@ -14,7 +14,14 @@ from typing import TYPE_CHECKING, Any
 from rtamt.batch import evaluate_requirements
 from rtamt.cli.command import NO_STAMPS
 from rtamt.cli.outcome import Outcome, episodes_of, failed, moment_of, plain_time
-from rtamt.cli.reading_options import choice_for, how_to_mend, is_resampled, on_clock, read_for
+from rtamt.cli.reading_options import (
+    choice_for,
+    how_to_mend,
+    is_resampled,
+    oldest_held,
+    on_clock,
+    read_for,
+)
 from rtamt.errors import BoundError, StlError, TraceError
 from rtamt.readers.assemble import chunks_of
 from rtamt.readers.read import opened
@@ -152,9 +159,8 @@ def _early(requirement: Requirement, trace: str, reading: Reading) -> list[Outco
                 requirement.spec, chunks_of(source, choice_for([requirement.spec], trace, reading))
             )
             check = (DenseEarlyCheck if requirement.spec.domain.continuous else DiscreteEarlyCheck)(specs)
-            if not any(
-                map(check.take, _sampled(chunks, specs[0], period, reading.how) if resampled else chunks)
-            ):
+            taken = _sampled(chunks, specs[0], period, reading) if resampled else chunks
+            if not any(map(check.take, taken)):
                 return None
     except StlError:  # the check of the whole recording reports what is wrong
         return None
@@ -183,11 +189,11 @@ def _early(requirement: Requirement, trace: str, reading: Reading) -> list[Outco
 
 
 def _sampled(
-    chunks: Iterable[Trace], spec: Specification, period: str | Fraction | None, how: str
+    chunks: Iterable[Trace], spec: Specification, period: str | Fraction | None, reading: Reading
 ) -> Iterator[Mapping[str, Any]]:
     """Yield chunks on a clock of their own: the values of all signals every ``period``."""
     assert period is not None
-    sampler = Sampler(spec.input_names, period, how)
+    sampler = Sampler(spec.input_names, period, reading.how, oldest_held(spec, reading))
     for chunk in chunks:
         channels = {name: chunk.channel(name) for name in chunk}
         known = sampler.take(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from fractions import Fraction
+from math import ceil, floor
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -62,10 +63,17 @@ class Sampler:
     """Takes signals in chunks, each with its own samples, and gives their values at the instants of a grid.
 
     The grid is that of :func:`grid_of`; an instant comes once every signal has a sample there, or later.
+    ``hold_for``: as for :func:`resampled`.
     """
 
-    def __init__(self, names: Sequence[str], period: str | float | Fraction, how: str) -> None:
-        self._step, self._how = duration(period), how
+    def __init__(
+        self,
+        names: Sequence[str],
+        period: str | float | Fraction,
+        how: str,
+        hold_for: Fraction | None = None,
+    ) -> None:
+        self._step, self._how, self._hold_for = duration(period), how, hold_for
         self._pending: dict[str, tuple[Times, FloatArray]] = {}
         self._names = names
         self._start: Fraction | None = None
@@ -78,6 +86,28 @@ class Sampler:
 
         The first time these are two instants at least, from which the period can be inferred.
         """
+        timed = self._add(chunk)
+        if not timed:
+            return None
+        last = min(exact_time(times[-1]) for times in timed)
+        return self._up_to(last, 1 if self._count else 2)
+
+    def take_at(
+        self, now: Any, chunk: Mapping[str, tuple[Times, FloatArray]]
+    ) -> tuple[Times, dict[str, FloatArray]] | None:
+        """Return what is known before ``now``, when no sample with an earlier time is still to come.
+
+        Raises :class:`TraceError` where a value is too old; instants up to ``now`` are then left out.
+        """
+        return self._up_to(exact_time(now), 1, closed=False) if self._add(chunk) else None
+
+    def finish(self) -> tuple[Times, dict[str, FloatArray]] | None:
+        """Return the rest, up to the last sample of any signal; the last values hold."""
+        timed = self._add({})
+        return self._up_to(max(exact_time(times[-1]) for times in timed), 1) if timed else None
+
+    def _add(self, chunk: Mapping[str, tuple[Times, FloatArray]]) -> list[Times]:
+        """Take samples; return the times of all signals that are still needed, none if a signal has no sample yet."""
         for name, (times, values) in chunk.items():
             before = self._pending.get(name)
             self._pending[name] = (
@@ -86,22 +116,30 @@ class Sampler:
                 else (np.concatenate((before[0], times)), np.concatenate((before[1], values)))
             )
         if any(name not in self._pending for name in self._names):
-            return None
+            return []
         timed = [times for times, _ in self._pending.values()]
         if self._start is None:
-            self._start = max(_exact(times[0]) for times in timed)
-        last = min(_exact(times[-1]) for times in timed)
-        until = max(0, int((last - self._start) / self._step) + 1) if last >= self._start else 0
-        count = until - self._count
-        if count < (1 if self._count else 2):
+            self._start = max(exact_time(times[0]) for times in timed)
+        return timed
+
+    def _up_to(
+        self, end: Fraction, least: int, *, closed: bool = True
+    ) -> tuple[Times, dict[str, FloatArray]] | None:
+        """Return the instants up to ``end`` and the values there; None if there are fewer than ``least``."""
+        assert self._start is not None
+        steps = (end - self._start) / self._step
+        until = max(self._count, floor(steps) + 1 if closed else ceil(steps))
+        count, first = until - self._count, self._count
+        if count < least:
             return None
-        grid = _grid(self._start + self._count * self._step, self._step, count, timed[0].dtype)
+        self._count = until
+        dtype = next(iter(self._pending.values()))[0].dtype
+        grid = _grid(self._start + first * self._step, self._step, count, dtype)
         found = {}
         for name, (times, values) in self._pending.items():
-            found[name], _ = resampled(name, times, values, grid, self._how)
-            first = int(np.searchsorted(times, grid[-1], side="right")) - 1
-            self._pending[name] = times[first:], values[first:]
-        self._count = until
+            found[name], _ = resampled(name, times, values, grid, self._how, self._hold_for)
+            place = int(np.searchsorted(times, grid[-1], side="right")) - 1
+            self._pending[name] = times[place:], values[place:]
         return grid, found
 
 
@@ -120,17 +158,12 @@ def _check_ages(name: str, times: Times, grid: Times, hold_for: Fraction) -> Non
     ages = _plain(grid - times) / (1e9 if grid.dtype.kind in "mM" else 1.0)
     near = float(hold_for) - 1e-6  # times of doubles are no more exact
     for i in np.flatnonzero(ages > near).tolist():
-        check_age(name, times[i], grid[i], hold_for)
-
-
-def check_age(name: str, time: Any, now: Any, hold_for: Fraction) -> None:
-    """Raise :class:`TraceError` if the value that a variable has had since ``time`` is too old now."""
-    if exact_time(now) - exact_time(time) > hold_for:
-        raise TraceError(
-            f"'{name}' has no sample from {show_time(time)} to {show_time(now)}, longer than the "
-            f"{format_duration(hold_for)} for which a value is held: fill the gap, or hold it for longer",
-            variable=name,
-        )
+        if exact_time(grid[i]) - exact_time(times[i]) > hold_for:
+            raise TraceError(
+                f"'{name}' has no sample from {show_time(times[i])} to {show_time(grid[i])}, longer than the "
+                f"{format_duration(hold_for)} for which a value is held: fill the gap, or hold it for longer",
+                variable=name,
+            )
 
 
 def exact_time(time: Any) -> Fraction:

@@ -5,7 +5,6 @@ Of a whole recording with :func:`sampled`, of a stream with :class:`HeldSampler`
 
 from __future__ import annotations
 
-from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -14,11 +13,12 @@ from rtamt.errors import TraceError, UsageError
 from rtamt.signals import arrays, dense_arrays
 from rtamt.signals.listing import show_time
 from rtamt.signals.regular import check_increasing
-from rtamt.signals.resampling import check_age, exact_time
+from rtamt.signals.resampling import Sampler
 from rtamt.signals.trace import Channel, Trace
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
+    from collections.abc import Mapping, Sequence
+    from fractions import Fraction
 
 
 def sampled(
@@ -86,19 +86,14 @@ class HeldSampler:
     """
 
     def __init__(self, names: Sequence[str], period: Fraction, hold_for: Fraction | None = None) -> None:
-        self._names = tuple(names)
-        self._period = period
-        self._hold_for = hold_for
-        #: Of each variable the time of its last sample, and its value.
-        self._last: dict[str, tuple[Any, Any]] = {}
-        self._start: Any = None
-        self._next = Fraction(0)
+        self._sampler = Sampler(names, period, "hold", hold_for)
+        self._last: dict[str, Any] = {}
         self._now: Any = None
 
-    def take(self, time: Any, values: Mapping[str, Any]) -> Iterator[tuple[Any, dict[str, Any]]]:
-        """Take values of some variables at one time; yield the samples before it.
+    def take(self, time: Any, values: Mapping[str, float]) -> list[tuple[Any, dict[str, float]]]:
+        """Take values of some variables at one time; return the samples before it.
 
-        Raises :class:`TraceError` for times that decrease, and where a value is too old: the sample is then left out.
+        Raises :class:`TraceError` for times that decrease, and where a value is too old: the samples are then left out.
         """
         if self._now is not None and time < self._now:
             raise TraceError(
@@ -106,36 +101,24 @@ class HeldSampler:
                 variable=arrays.TIME,
             )
         for name in values:
-            if name in self._last and self._last[name][0] == time:
+            if self._last.get(name) == time:
                 raise TraceError(
                     f"'{name}' has two samples at {show_time(time)}: keep one of them", variable=name
                 )
-        end = exact_time(time)
-        try:
-            yield from self._until(end, closed=False)
-        finally:  # also where a value was too old
-            self._next = max(self._next, self._next + -((self._next - end) // self._period) * self._period)
-            self._now = time
-            self._last.update({name: (time, value) for name, value in values.items()})
-            if self._start is None and len(self._last) == len(self._names):
-                self._start, self._next = time, end
+        self._now = time
+        self._last.update(dict.fromkeys(values, time))
+        at = np.array([time])
+        return _rows(self._sampler.take_at(time, {n: (at, np.array([value])) for n, value in values.items()}))
 
-    def finish(self) -> Iterator[tuple[Any, dict[str, Any]]]:
-        """Yield the samples up to the last time."""
-        if self._start is not None:
-            yield from self._until(exact_time(self._now), closed=True)
+    def finish(self) -> list[tuple[Any, dict[str, float]]]:
+        """Return the samples up to the last time."""
+        return _rows(self._sampler.finish())
 
-    def _until(self, end: Fraction, *, closed: bool) -> Iterator[tuple[Any, dict[str, Any]]]:
-        while self._start is not None and (self._next < end or (closed and self._next == end)):
-            now = self._stamp(self._next)
-            self._next += self._period
-            if self._hold_for is not None:
-                for name in self._names:
-                    check_age(name, self._last[name][0], now, self._hold_for)
-            yield now, {name: self._last[name][1] for name in self._names}
 
-    def _stamp(self, seconds: Fraction) -> Any:
-        """Return a time as the stream has times."""
-        if isinstance(self._start, np.datetime64 | np.timedelta64):
-            return type(self._start)(int(seconds * 10**9), "ns")
-        return float(seconds)
+def _rows(known: tuple[Any, dict[str, Any]] | None) -> list[tuple[Any, dict[str, float]]]:
+    if known is None:
+        return []
+    grid, columns = known
+    times = grid.tolist() if grid.dtype.kind == "f" else list(grid)
+    rows = zip(*(column.tolist() for column in columns.values()), strict=True)
+    return [(time, dict(zip(columns, row, strict=True))) for time, row in zip(times, rows, strict=True)]

@@ -45,7 +45,9 @@ def test_a_file_and_a_stream_have_the_same_samples(run):
 def test_several_requirements_and_reports(run, write):
     write("two.stl", SPEC + "require S: always(x <= 3)\n")
     answer = run("check", "two.stl", "log.csv", "--json", "--early", "--junit", "junit.xml")
-    assert [(row["requirement"], row["robustness"]) for row in rows(answer)] == [("R", -1.0), ("S", -1.0)]
+    assert [(row["requirement"], row["satisfied"]) for row in rows(answer)] == [("R", False), ("S", False)]
+    whole = run("check", "two.stl", "log.csv", "--json", "--junit", "junit.xml")
+    assert [(row["requirement"], row["robustness"]) for row in rows(whole)] == [("R", -1.0), ("S", -1.0)]
     assert run("report", "two.stl", "log.csv", "-o", "page.html").code == 1
     assert "sample 100ms hold for 500ms" in run("info", "two.stl").out
 
@@ -80,7 +82,7 @@ def test_a_value_that_is_too_old(run, write):
     sentence = "'y' has no sample from 0.05 s to 0.3 s, longer than the 200 ms for which a value is held"
     assert f"log.csv: {sentence}" in run("check", "spec.stl", "log.csv").err
     stream = run("monitor", "spec.stl", stdin=LOG)
-    assert (stream.code, len(rows(stream))) == (2, 3)
+    assert (stream.code, len(rows(stream))) == (2, 2)
     assert f"stdin, line 5: {sentence}" in stream.err
 
 
