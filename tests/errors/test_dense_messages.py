@@ -175,6 +175,11 @@ def test_operators_that_dense_time_does_not_have() -> None:
             "integral",
             "of a step signal is a line, not a step, and dense time has steps only; use atleast with a duration",
         ),
+        (
+            "duration",
+            "of a step signal is a line, not a step, and dense time has steps only; use atleast with a duration",
+        ),
+        ("count", "counts samples at which a formula begins to hold; use rise or atleast"),
     ],
 )
 def test_sums_that_dense_time_does_not_have(name: str, why: str) -> None:

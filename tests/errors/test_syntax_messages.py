@@ -65,14 +65,14 @@ FORMULAS = [
         "^^^^^^",
         ParseError,
         "'zigzag' is not a function; functions: abs, sqrt, exp, pow, log, ln, min, max, sin, cos, tan, asin, acos, "
-        "atan, atan2, hypot and 19 more",
+        "atan, atan2, hypot and 21 more",
     ),
     (
         "abz(x)",
         "^^^",
         ParseError,
         "'abz' is not a function; did you mean 'abs'? (functions: abs, sqrt, exp, pow, log, ln, min, max, sin, cos, "
-        "tan, asin, acos, atan, atan2, hypot and 19 more)",
+        "tan, asin, acos, atan, atan2, hypot and 21 more)",
     ),
     (
         "wrap(x, 0, y > 3) > 1",
@@ -120,7 +120,7 @@ FORMULAS = [
         "         ^^^^^^",
         ParseError,
         "'sum' takes a number, and 'x >= 3' is a formula, true or false; write a signal or arithmetic, "
-        "such as (if x >= 3 then 1 else 0)",
+        "such as (if x >= 3 then 1 else 0) or count(x >= 3)",
     ),
     ("min(x)", "^^^^^^", ParseError, "'min' takes 2 or more operands, got 1"),
     ("abs(x, y)", "^^^^^^^^^", ParseError, "'abs' takes 1 operand, got 2"),

@@ -194,7 +194,7 @@ def _node(graph: Graph, formula: Formula) -> int:
     if isinstance(kernel, Window):
         return _window(graph, formula, kernel, args[0])
     if isinstance(kernel, Sum):
-        return _sum(graph, formula, kernel, args[0])
+        return _sum(graph, formula, args[0])
     if isinstance(kernel, Shift):
         step = -1 if formula.op.tense is Tense.PAST else 1
         return _over(graph, "least" if kernel.fill > 0 else "greatest", args[0], step, step)
@@ -282,7 +282,7 @@ def _window(graph: Graph, formula: Apply, kernel: Window, operand: int) -> int:
     return _over(graph, kind, operand, begin, end)
 
 
-def _sum(graph: Graph, formula: Apply, kernel: Sum, operand: int) -> int:
+def _sum(graph: Graph, formula: Apply, operand: int) -> int:
     begin, end = interval_in_steps(graph, formula)
     depth = graph.horizon(operand)
     value = operand
@@ -293,7 +293,7 @@ def _sum(graph: Graph, formula: Apply, kernel: Sum, operand: int) -> int:
             Node(KINDS.index("sum"), operand, low=-end, high=-begin, horizon=depth, steps=steps),
             (formula,),
         )
-    for opcode, factor in seconds_per_step(graph.period) if kernel.seconds else ():
+    for opcode, factor in seconds_per_step(graph.period) if formula.op.timed else ():
         factors = (Step(OPCODES.index("const"), x=factor),)
         number = _add(graph, Node(KINDS.index("atom"), steps=factors), (formula,))
         steps = (Step(OPCODES.index(opcode)),)

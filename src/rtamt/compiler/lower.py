@@ -98,7 +98,7 @@ class Lowering(ABC):
         if isinstance(kernel, Window):
             return self.window(node, kernel.reduce, args[0])
         if isinstance(kernel, Sum):
-            return self.sum(node, kernel, args[0])
+            return self.sum(node, args[0])
         if isinstance(kernel, Shift):
             return self.shift_by_one(node, kernel, args[0])
         if isinstance(kernel, Since):
@@ -204,10 +204,10 @@ class Lowering(ABC):
             return x
         return self.emit(Instruction(f"slide_{reduce}", x, n=width, lag=lag), origin)
 
-    def sum(self, node: Apply, kernel: Sum, x: int) -> int:
+    def sum(self, node: Apply, x: int) -> int:
         """Lower the sum over a window of the past."""
         x = self.window(node, "sum", x)
-        for opcode, factor in seconds_per_step(self.period) if kernel.seconds else ():
+        for opcode, factor in seconds_per_step(self.period) if node.op.timed else ():
             x = self.emit(
                 Instruction(opcode, x, self.emit(Instruction("const", x=factor), node), lag=self.lag(x)), node
             )

@@ -23,7 +23,7 @@ from __future__ import annotations
 
 import math
 from fractions import Fraction
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
@@ -303,11 +303,15 @@ def sum_(x: Array, a: int, b: int | None) -> Array:
     return np.array([_sum(xs, _behind(t, a, b), width) if t >= a else 0.0 for t in range(len(xs))], float)
 
 
-def mean(x: Array, a: int, b: int | None) -> Array:
-    """``mean[a,b](x)``: the mean of x over [t-b, t-a] ∩ T; x at the first sample where that is empty."""
+def mean(x: Array, *rest: Any) -> Array:
+    """``mean[a,b](x, init)``: the mean of x over [t-b, t-a] ∩ T; init where that is empty.
+
+    It is called with x, init if there is one, a and b; by default, init is x at the first sample.
+    """
+    *init, a, b = rest
     counts = np.array([len(_behind(t, a, b)) for t in range(len(x))])
     with np.errstate(all="ignore"):
-        return np.where(counts > 0, sum_(x, a, b) / np.maximum(counts, 1), x[:1])
+        return np.where(counts > 0, sum_(x, a, b) / np.maximum(counts, 1), *(init or (x[:1],)))
 
 
 def integral(x: Array, a: int, b: int | None, period: Fraction = Fraction(1)) -> Array:
@@ -316,6 +320,16 @@ def integral(x: Array, a: int, b: int | None, period: Fraction = Fraction(1)) ->
     if Fraction(float(period)) == period:
         return mul(sums, np.array(float(period)))
     return div(mul(sums, np.array(float(period.numerator))), np.array(float(period.denominator)))
+
+
+def duration(truth: Array, a: int, b: int | None, period: Fraction = Fraction(1)) -> Array:
+    """``duration[a,b](φ)``: how many samples of [t-b, t-a] ∩ T φ holds at, times the period; ``truth`` is ±inf."""
+    return integral(np.where(truth > 0, 1.0, 0.0), a, b, period)
+
+
+def count(truth: Array, a: int, b: int | None) -> Array:
+    """``count[a,b](φ)``: how many samples of [t-b, t-a] ∩ T φ begins to hold at; ``truth`` is ±inf."""
+    return sum_(np.where(rise(truth) > 0, 1.0, 0.0), a, b)
 
 
 # ---- one sample away ----------------------------------------------------------------------------

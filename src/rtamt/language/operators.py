@@ -225,19 +225,30 @@ def _wrap(x: Formula, lo: Formula, hi: Formula, _i: Interval | None) -> Formula:
 
 def _first(x: Formula) -> Formula:
     """Return the number that is the first value of ``x`` for ever."""
-    zero = Const(0.0)
-    return STL["sum"](choice(STL["prev"](STL["false"]()), x, zero))
+    return STL["sum"](STL["if"](STL["prev"](STL["false"]()), x, Const(0.0)))
 
 
-def _mean(x: Formula, i: Interval | None) -> Formula:
+def _mean(x: Formula, *rest: Any) -> Formula:
+    *init, i = rest
     total, count = (STL["sum"](each, interval=i) for each in (x, Const(1.0)))
-    if i is None or i.begin == 0:
+    begin = Fraction(0) if i is None else i.begin
+    if begin == 0 and not init:
         return STL["div"](total, count)
-    begun = STL["once"](STL["true"](), interval=Interval(i.begin, i.begin))
-    return choice(begun, STL["div"](total, STL["max"](count, Const(1.0))), _first(x))
+    begun = STL["once"](STL["true"](), interval=Interval(begin, begin))
+    mean = STL["div"](total, STL["max"](count, Const(1.0)))
+    return STL["if"](begun, mean, *(init or (_first(x),)))
+
+
+def _duration(condition: Formula, i: Interval | None) -> Formula:
+    return STL["integral"](STL["if"](condition, Const(1.0), Const(0.0)), interval=i)
+
+
+def _count(condition: Formula, i: Interval | None) -> Formula:
+    return STL["sum"](STL["if"](STL["rise"](condition), Const(1.0), Const(0.0)), interval=i)
 
 
 _SAMPLES = "adds samples, which dense time does not have; use minimum or maximum"
+_COUNT = "counts samples at which a formula begins to hold; use rise or atleast"
 _LINE = "of a step signal is a line, not a step, and dense time has steps only; use atleast with a duration"
 
 
@@ -372,14 +383,22 @@ STL: Language = Language.of((
               definition=d.once, dense=dense.once, kernel=Window("max"), guards=("and",), strict=True),
     _function("sum", 1, "The sum of the samples in the window behind; 0 where there is none.", "sum[0:5](x) <= 3",
               latex=r"\mathrm{{sum}}_{I}({0})", tense=Tense.PAST, bounds=Bounds.OPTIONAL, discrete_only=True,
-              why_discrete=_SAMPLES, definition=d.sum_, kernel=Sum(), guards=("zero",), strict=True),
-    _function("mean", 1, "The mean of the samples in the window behind; the first sample where there is none.",
-              "mean[0:5](x) <= 3", latex=r"\mathrm{{mean}}_{I}({0})", tense=Tense.PAST, bounds=Bounds.OPTIONAL,
-              discrete_only=True, why_discrete=_LINE, definition=d.mean, expansion=_mean, strict=True),
+              why_discrete=_SAMPLES, instead="count", definition=d.sum_, kernel=Sum(), guards=("zero",), strict=True),
+    _function("mean", 2, "The mean of the samples in the window behind; the second operand where there is none, by default "
+              "the first operand at the first sample.", "mean[0:5](x) <= 3", latex="", optional=1, tense=Tense.PAST,
+              bounds=Bounds.OPTIONAL, discrete_only=True, why_discrete=_LINE, instead="duration", definition=d.mean,
+              expansion=_mean, strict=True),
     _function("integral", 1, "The sum over the window behind times the sampling period in seconds.",
               "integral[0:5](x) <= 3", latex=r"\mathrm{{integral}}_{I}({0})", tense=Tense.PAST,
-              bounds=Bounds.OPTIONAL, discrete_only=True, why_discrete=_LINE, definition=d.integral, kernel=Sum(seconds=True),
+              bounds=Bounds.OPTIONAL, discrete_only=True, why_discrete=_LINE, instead="duration", definition=d.integral, kernel=Sum(), timed=True,
               guards=("zero",), strict=True),
+    _function("duration", 1, "For how many seconds of the window behind a formula holds: samples times the period.",
+              "duration[0:60](x >= 3) <= 10", operands=(C,), latex=r"\mathrm{{duration}}_{I}({0})", tense=Tense.PAST,
+              bounds=Bounds.OPTIONAL, discrete_only=True, why_discrete=_LINE, timed=True, definition=d.duration,
+              expansion=_duration, guards=("and",)),
+    _function("count", 1, "How often a formula begins to hold in the window behind.", "count[0:60](x >= 3) <= 10",
+              operands=(C,), latex=r"\mathrm{{count}}_{I}({0})", tense=Tense.PAST, bounds=Bounds.OPTIONAL,
+              discrete_only=True, why_discrete=_COUNT, definition=d.count, expansion=_count, guards=("and",)),
     # ---- one sample away ---------------------------------------------------------------------
     _prefix("prev", "prev Y previous", 70, "One sample ago; holds where there is none.", "prev(x >= 3)",
             latex=r"\mathbf{{Y}} {0}", tense=Tense.PAST, reach=1, discrete_only=True,

@@ -207,9 +207,10 @@ class FormulaParser(TypedParser):
         if op.strict and sort is Sort.NUMBER and not is_number(operand):
             end = self.tokens[self.index - 1].end
             written = self.text[start:end]
+            instead = f" or {op.instead}({written})" if op.instead else ""
             raise self.error(
                 f"'{op.spellings[0]}' takes a number, and '{written}' is a formula, true or false; "
-                f"write a signal or arithmetic, such as (if {written} then 1 else 0)",
+                f"write a signal or arithmetic, such as (if {written} then 1 else 0){instead}",
                 Span(start, end),
             )
         return operand

@@ -72,9 +72,7 @@ class Window:
 
 @dataclass(frozen=True, slots=True)
 class Sum:
-    """Sum of the values in a window of the past, undefined (NaN) for inf - inf; ``seconds``: times the period."""
-
-    seconds: bool = False
+    """Sum of the values in a window of the past, of a ``timed`` operator times the period; inf - inf is NaN."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -156,9 +154,11 @@ class Operator:
     expansion: Expansion | None = None
     dense: Callable[..., float] | None = None
     discrete_only: bool = False
+    timed: bool = False  # its value is in seconds: the definition takes the sampling period after the bounds
     one_tick: bool = (
         False  # in dense time its interval is the tick behind, in discrete time the sample behind
     )
+    instead: str = ""  # of a strict function: the one that a formula may be an operand of
     why_discrete: str = (
         ""  # completes the message in dense time; by default that it reads a neighbouring sample
     )

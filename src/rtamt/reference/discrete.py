@@ -264,7 +264,7 @@ def _apply(node: Formula, below: tuple[Array, ...], stretch: _Stretch) -> Array:
     window: tuple[int | Fraction | None, ...] = ()
     if node.op.bounds is not Bounds.NONE:
         window = _window(node, stretch.period)
-    if isinstance(node.op.kernel, Sum) and node.op.kernel.seconds:
+    if node.op.timed:
         window = (*window, stretch.period)
     return values_of(node, below, n, window, "sample")
 

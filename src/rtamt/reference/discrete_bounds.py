@@ -124,7 +124,7 @@ def _apply(node: Formula, below: tuple[Enclosure, ...], known: Knowledge, period
     window = () if node.op.bounds is Bounds.NONE else _window(node, period)
     if isinstance(node.op.kernel, Sum):
         sums = summed(below[0], *_window(node, period), known)
-        return _timed(sums, period) if node.op.kernel.seconds else sums
+        return _timed(sums, period) if node.op.timed else sums
     componentwise(node)
     if known.finished:
         return _by_bound(node, below, window)

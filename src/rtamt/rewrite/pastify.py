@@ -63,7 +63,8 @@ def expand_future_shorthand(formula: Formula) -> Formula:
         args = tuple(arg for arg, _ in below)
         future = node.op.tense is Tense.FUTURE or any(ahead for _, ahead in below)
         defined = node.op.definition is not None
-        if node.op.expansion is not None and (not defined or (future and node.op.tense is not Tense.NONE)):
+        derived = future and node.op.tense is not Tense.NONE and not node.op.guards
+        if node.op.expansion is not None and (not defined or derived):
             expanded = expand_future_shorthand(node.op.expansion(*args, node.interval))
             if future or has_future(expanded):
                 return expanded, True
