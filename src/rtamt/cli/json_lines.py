@@ -10,8 +10,8 @@ from rtamt.errors import TraceError
 from rtamt.language.value_types import Enumeration
 from rtamt.readers.dates import EXAMPLE, is_date
 from rtamt.readers.source import printable
-from rtamt.signals.arrays import missing_variable
 from rtamt.signals.binding import missing
+from rtamt.signals.data_errors import missing_variable
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping

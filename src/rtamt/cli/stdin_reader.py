@@ -34,9 +34,10 @@ from rtamt.readers.dates import is_date
 from rtamt.readers.frames import field_of
 from rtamt.readers.source import Source, Table
 from rtamt.readers.timestamps import CHOICES
-from rtamt.signals.arrays import TIME, missing_sample
+from rtamt.signals.arrays import TIME
 from rtamt.signals.binding import Binding
 from rtamt.signals.coding import NO_TYPES
+from rtamt.signals.data_errors import missing_sample
 from rtamt.signals.time_columns import is_stamps, may_be_stamps, split_unit
 from rtamt.signals.trace import in_seconds
 from rtamt.signals.unit_conversion import conversion_of

@@ -14,8 +14,9 @@ from rtamt.errors import TraceError, choices, did_you_mean, shown
 from rtamt.language.value_types import Enumeration
 from rtamt.readers.gaps import Gaps
 from rtamt.readers.timestamps import Clock, guess_field
-from rtamt.signals.arrays import TIME, is_number, missing_sample
+from rtamt.signals.arrays import TIME, is_number
 from rtamt.signals.coding import encoded_value
+from rtamt.signals.data_errors import missing_sample
 from rtamt.signals.ticks import NANOSECOND, TimeScale
 from rtamt.signals.trace import Channel, Trace, in_seconds
 

@@ -13,6 +13,7 @@ online           pastification and the result, shared by the online classes
 discrete         discrete time: sampling period, the offline class
 discrete_online  the online class, and the combined one
 dense            dense time: the offline, online and combined classes
+dense_points     signals of dense time as lists of [time, value]
 interface_aware  the classes for IA-STL: the same with another semantics
 explained        explanations, shared by the offline classes
 backends         select the compiled core, or the definition if the core is not built

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from bisect import bisect_right
 from copy import copy
 from functools import partial
 from typing import TYPE_CHECKING, Any
@@ -10,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from rtamt.engine.dense.monitor import DenseMonitor, part_of
 from rtamt.engine.online import Watched
 from rtamt.engine.usage_guard import exclusive
-from rtamt.errors import NameInFormulaError, StlError, TraceError, UsageError, shown
+from rtamt.errors import NameInFormulaError, StlError, UsageError
 from rtamt.language.formula import Apply, Const, Var, folds, outermost, postorder, variables
 from rtamt.language.operators import Tense
 from rtamt.language.printer import EXCERPT, canonical
@@ -18,6 +17,7 @@ from rtamt.language.units import UNITS
 from rtamt.rewrite.check import TICKS, check_bounds, check_dense, has_future
 from rtamt.rtamt_api.backends import backend, check_language, signal
 from rtamt.rtamt_api.declarations import head_of
+from rtamt.rtamt_api.dense_points import points_of, samples_by_name, with_points_at
 from rtamt.rtamt_api.explained import ExplainedSpecification
 from rtamt.rtamt_api.failures import raises_rtamt
 from rtamt.rtamt_api.formulas import Formulas
@@ -25,6 +25,7 @@ from rtamt.rtamt_api.online import OnlineSpecification, require_past
 from rtamt.rtamt_api.options import Language, Semantics, sampling
 from rtamt.signals import arrays
 from rtamt.signals.counting import all_integers
+from rtamt.signals.data_errors import missing_variable, unknown_variable
 from rtamt.signals.dense import record_dense
 from rtamt.signals.regular import TOLERANCE
 from rtamt.signals.ticks import NANOSECOND, TimeScale
@@ -34,10 +35,8 @@ if TYPE_CHECKING:
     from fractions import Fraction
 
     from rtamt.language.formula import Formula
+    from rtamt.rtamt_api.dense_points import Samples
     from rtamt.signals.dense import DenseTrace
-    from rtamt.signals.signal import Signal
-
-    Samples = tuple[list[Any], list[Any]]  # times and values, as given
 
 
 class DenseTimeSpecification(Formulas):
@@ -94,29 +93,6 @@ def _is_watchable(node: Formula, reads: Collection[str]) -> bool:
     return not isinstance(node, Var) or node.name in reads
 
 
-def _points(signal: Signal, whole: bool) -> list[list[float]]:
-    """Return [time, value] pairs; times are floats, or ints where they can be if those given were (``whole``)."""
-    times = signal.times.tolist()
-    if not whole:
-        times = map(float, times)
-    return [list(point) for point in zip(times, signal.values.tolist(), strict=True)]
-
-
-def _with_points_at(
-    points: list[list[float]], times: Sequence[float], before: Sequence[list[float]]
-) -> list[list[float]]:
-    """Return a step function with further points, where it has none at one of ``times``.
-
-    ``before``: its last point so far, or nothing.
-    """
-    if not points:
-        return points
-    steps = [*before, *points]
-    known = [time for time, _ in steps]
-    more = {time for time in times if known[0] < time < known[-1]}.difference(known)
-    return sorted([*points, *([time, steps[bisect_right(known, time) - 1][1]] for time in more)])
-
-
 class StlDenseTimeOfflineSpecification(ExplainedSpecification, DenseTimeSpecification):
     """Evaluates complete signals, each on its own time base.
 
@@ -141,12 +117,12 @@ class StlDenseTimeOfflineSpecification(ExplainedSpecification, DenseTimeSpecific
         :class:`RTAMTException` for wrong data.
         """
         formula = self._result
-        given = _by_name(dataset)
+        given = samples_by_name(dataset)
         # Only the variables of the result: those of other assertions would move the start and the end.
         names = variables(formula)
         for name in names:
             if name not in given and head_of(name) not in given:
-                raise arrays.missing_variable(name, tuple(given))
+                raise missing_variable(name, tuple(given))
         columns, scale = self._columns(given, self._inputs), self._scale
         recording, robustness = self._evaluation(formula, columns, scale)
         self._value_of = partial(self._points_over, columns, scale)
@@ -170,7 +146,7 @@ class StlDenseTimeOfflineSpecification(ExplainedSpecification, DenseTimeSpecific
             return None, []
         recording = record_dense(held, read, NANOSECOND, scale=scale)
         whole = all(all_integers(times) for times, _ in held.values())
-        return recording, _points(signal(self._worth(part), recording), whole)
+        return recording, points_of(signal(self._worth(part), recording), whole)
 
 
 class StlDenseTimeOnlineSpecification(OnlineSpecification, DenseTimeSpecification):
@@ -220,7 +196,7 @@ class StlDenseTimeOnlineSpecification(OnlineSpecification, DenseTimeSpecificatio
         :class:`RTAMTException` for wrong data; the monitor is then unchanged.
         """
         changes = self._updated(dataset)
-        points = _with_points_at(changes, self._kept_times(), self._last)
+        points = with_points_at(changes, self._kept_times(), self._last)
         self._last = points[-1:] or self._last
         return points
 
@@ -240,10 +216,10 @@ class StlDenseTimeOnlineSpecification(OnlineSpecification, DenseTimeSpecificatio
 
     def _updated(self, dataset: tuple[Any, ...]) -> list[list[float]]:
         monitor = self._require_monitor()
-        given = _by_name(dataset)
+        given = samples_by_name(dataset)
         for name in given:
             if name not in self._reads and name not in self._types and name not in self._inputs:
-                raise arrays.unknown_variable(name, tuple(self._reads))
+                raise unknown_variable(name, tuple(self._reads))
         columns = self._columns(given, monitor.input_names)
         signal = monitor.update_many(columns)
         self._whole = self._whole and all(all_integers(times) for times, _ in columns.values())
@@ -252,7 +228,7 @@ class StlDenseTimeOnlineSpecification(OnlineSpecification, DenseTimeSpecificatio
             self._publish(float(signal.values[-1]))
         self._given = columns
         self._value_of = self._reported
-        return _points(signal, self._whole)
+        return points_of(signal, self._whole)
 
     @raises_rtamt
     @exclusive
@@ -284,14 +260,14 @@ class StlDenseTimeOnlineSpecification(OnlineSpecification, DenseTimeSpecificatio
             raise
         if len(signal):
             self._publish(float(signal.values[-1]))
-        rest = _points(signal, self._whole)
+        rest = points_of(signal, self._whole)
         if points and rest and points[-1][0] == rest[0][0]:
             del rest[0]
         points = points + rest
         last = len(points) - 1
         # Nothing need have changed at the end of the update.
         changes = [point for i, point in enumerate(points) if i in {0, last} or point[1] != points[i - 1][1]]
-        return _with_points_at(changes, [*kept, *self._kept_times()], self._last)
+        return with_points_at(changes, [*kept, *self._kept_times()], self._last)
 
     @raises_rtamt
     @exclusive
@@ -314,7 +290,7 @@ class StlDenseTimeOnlineSpecification(OnlineSpecification, DenseTimeSpecificatio
                 f"'{canonical(part, limit=EXCERPT)}' is no part of what is watched: the result, and past "
                 f"assertions that read no other variables; evaluate the finished signals offline"
             )
-        return _points(part_of(self._require_monitor(), self._worth(part)), self._whole)
+        return points_of(part_of(self._require_monitor(), self._worth(part)), self._whole)
 
     def _start_over(self, formulas: dict[str, Formula]) -> None:
         super()._start_over(formulas)
@@ -372,32 +348,6 @@ class StlDenseTimeSpecification(StlDenseTimeOfflineSpecification, StlDenseTimeOn
         super().__init__()
         check_language(language)
         self.semantics = semantics
-
-
-def _by_name(dataset: tuple[Any, ...]) -> dict[str, Samples]:
-    """Return the times and the values of each variable by its name."""
-    given: dict[str, Samples] = {}
-    for entry in dataset:
-        if not (isinstance(entry, (list, tuple)) and len(entry) == 2 and isinstance(entry[0], str)):
-            raise TraceError(
-                f"expected a name and samples for each variable, such as ['x', [[0.0, 5.0], [2.5, 1.0]]], "
-                f"got {shown(entry)}"
-            )
-        if entry[0] in given:
-            raise TraceError(f"'{entry[0]}' is given twice: give all its samples at once", variable=entry[0])
-        given[entry[0]] = _split(entry[1], entry[0])
-    return given
-
-
-def _split(samples: Any, name: str) -> Samples:
-    try:
-        pairs = [(time, value) for time, value in samples]
-    except (TypeError, ValueError):
-        raise TraceError(
-            f"'{name}' is no dense signal: give a list of [time, value] pairs, such as [[0.0, 5.0], [2.5, 1.0]]",
-            variable=name,
-        ) from None
-    return [time for time, _ in pairs], [value for _, value in pairs]
 
 
 #: Spellings of older programs and of the paper's ROS code.

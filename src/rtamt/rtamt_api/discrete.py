@@ -20,6 +20,7 @@ from rtamt.rtamt_api.formulas import Formulas
 from rtamt.rtamt_api.options import sampling
 from rtamt.signals import arrays
 from rtamt.signals.arrays import TIME
+from rtamt.signals.data_errors import missing_variable
 from rtamt.signals.discrete import DiscreteTrace, record_discrete
 from rtamt.signals.regular import TOLERANCE
 
@@ -134,5 +135,5 @@ class StlDiscreteTimeOfflineSpecification(ExplainedSpecification, DiscreteTimeSp
         unit = "s" if columns else None  # given by the specification, so that large numbers are valid seconds
         trace = record_discrete(columns or dataset, self._inputs, self._period, inf, unit)
         if stamps is None:
-            raise arrays.missing_variable(TIME, tuple(columns))
+            raise missing_variable(TIME, tuple(columns))
         return stamps, trace

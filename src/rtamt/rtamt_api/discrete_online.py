@@ -17,6 +17,7 @@ from rtamt.rtamt_api.failures import raises_rtamt
 from rtamt.rtamt_api.online import OnlineSpecification, require_past
 from rtamt.rtamt_api.options import Language, Semantics
 from rtamt.signals import arrays
+from rtamt.signals.data_errors import unknown_variable
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping
@@ -160,7 +161,7 @@ class StlDiscreteTimeOnlineSpecification(OnlineSpecification, DiscreteTimeSpecif
         """Return the numbers of sample ``index``, by the names that the formulas read."""
         for name in given:
             if name not in self._reads and name not in self._types and name not in self._inputs:
-                raise arrays.unknown_variable(name, tuple(self._reads))
+                raise unknown_variable(name, tuple(self._reads))
         numbers: dict[str, Any] = {}
         for head, names in self._reads.items():
             if head in given:

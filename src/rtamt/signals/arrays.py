@@ -13,11 +13,12 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from rtamt.errors import TraceError, UsageError, choices, shown, with_article
+from rtamt.errors import TraceError, UsageError, shown, with_article
 from rtamt.language.units import UNITS, check_unit, in_seconds
 from rtamt.signals import counting
 from rtamt.signals.coding import NO_TYPES, encoded, require_truths
 from rtamt.signals.counting import all_integers, integers, quotients, refuse_implausible
+from rtamt.signals.data_errors import missing_variable, nan_error, unknown_variable
 from rtamt.signals.datetimes import has_length, in_nanoseconds, nanoseconds_of, no_length, out_of_reach
 from rtamt.signals.time_columns import check_frame
 
@@ -271,47 +272,6 @@ def check_numbers(
         raise nan_error(name, first + i, float(times[i]))
     if type_ is not None:
         require_truths(name, type_, column, lambda i: f"sample {first + i}, time {times[i]:.15g} s", first)
-
-
-def nan_error(name: str, index: int, time: float) -> TraceError:
-    """Return the error for a NaN in the data."""
-    return TraceError(
-        f"'{name}' is NaN at sample {index}, time {time:.15g} s: fill the gap or leave the sample out",
-        variable=name,
-        index=index,
-        time=time,
-    )
-
-
-def unknown_variable(name: str, names: Collection[str]) -> TraceError:
-    """Return the error for a variable that the formula does not read."""
-    return TraceError(
-        f"the formula has no variable '{name}'{choices(name, names, 'variables')}", variable=name
-    )
-
-
-def missing_sample(name: str, index: int, source: str | None) -> TraceError:
-    """Return the error for a variable without a value at a sample of discrete time: every reader raises this one.
-
-    ``source``: where the samples are from; None for a stream, whose samples can be resampled by nobody.
-    """
-    where = f"sample {index}" if source is None else f"sample {index} of {source}"
-    mend = (
-        "fill the gap, or use dense time (--time dense)"
-        if source is None
-        else "fill the gap, hold the value before it (--hold-for DURATION), use dense time (--time dense), or put "
-        "all on one clock (--resample PERIOD)"
-    )
-    return TraceError(
-        f"'{name}' is missing at {where}, but discrete time needs a value at every sample: {mend}",
-        variable=name,
-        index=index,
-    )
-
-
-def missing_variable(name: str, keys: Collection[str]) -> TraceError:
-    """Return the error for a variable that the formula reads and the data lacks."""
-    return TraceError(f"the data has no '{name}'{choices(name, keys, 'signals')}", variable=name)
 
 
 def field(value: Any, path: Sequence[str]) -> Any:

@@ -12,6 +12,7 @@ from rtamt.language.units import positive_period
 from rtamt.rewrite.check import TICKS, check_bounds, check_dense
 from rtamt.signals import arrays, dense_arrays
 from rtamt.signals.coding import NO_TYPES
+from rtamt.signals.data_errors import missing_variable
 from rtamt.signals.domain_interface import DomainTrace, TimeDomain
 from rtamt.signals.regular import merged
 from rtamt.signals.signal import Signal
@@ -265,7 +266,7 @@ def record_dense(
     columns = dense_arrays.columns_of(data, names)
     for name in names:
         if name not in columns:
-            raise arrays.missing_variable(name, [str(key) for key in getattr(data, "columns", data)])
+            raise missing_variable(name, [str(key) for key in getattr(data, "columns", data)])
         if not len(columns[name][0]):
             raise TraceError(f"'{name}' has no samples: give at least one", variable=name)
     scale = scale or TimeScale.of(tick, [columns[name][0] for name in names], unit)

@@ -19,7 +19,8 @@ import numpy as np
 
 from rtamt.errors import TraceError, UsageError, choices, shown
 from rtamt.language.units import positive_period
-from rtamt.signals.arrays import TIME, Clocked, missing_sample, stamps
+from rtamt.signals.arrays import TIME, Clocked, stamps
+from rtamt.signals.data_errors import missing_sample
 from rtamt.signals.listing import extent, html, listing
 from rtamt.signals.regular import merged
 from rtamt.signals.resampling import grid_of, resampled

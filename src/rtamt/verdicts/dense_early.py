@@ -16,6 +16,7 @@ from rtamt.language.undefined_value import undefined
 from rtamt.language.units import check_unit
 from rtamt.rewrite.desugar import written
 from rtamt.signals import arrays, dense_arrays
+from rtamt.signals.data_errors import unknown_variable
 from rtamt.signals.outcomes import VerdictRun
 from rtamt.signals.ticks import TimeScale
 from rtamt.verdicts.early import DefinitionSession, EarlyMonitor, GraphSession
@@ -141,7 +142,7 @@ class DenseEarlyMonitor(EarlyMonitor):
             raise self._is_finished()
         for name in flat:
             if name not in self.input_names:
-                raise arrays.unknown_variable(name, self.input_names)
+                raise unknown_variable(name, self.input_names)
         counts = dict(zip(self.input_names, self._backend.counts, strict=True))
         scale = self._scale_of(time)
         named = next(iter(flat), arrays.TIME)

@@ -14,7 +14,7 @@ from rtamt.errors import TraceError
 from rtamt.language.undefined_value import at_sample, undefined
 from rtamt.language.units import check_unit
 from rtamt.rewrite.desugar import written
-from rtamt.signals import arrays
+from rtamt.signals.data_errors import missing_variable, unknown_variable
 from rtamt.signals.outcomes import Causation
 from rtamt.signals.regular import irregular, not_increasing
 from rtamt.verdicts.caller_clock import CallerClock, Stamp
@@ -145,11 +145,11 @@ class DiscreteEarlyMonitor(EarlyMonitor):
         read: dict[str, tuple[float, float] | None] = {}
         for name in values:
             if name not in self.input_names:
-                raise arrays.unknown_variable(name, self.input_names)
+                raise unknown_variable(name, self.input_names)
         for name in self.input_names:
             if name not in values:
                 if self._late is None:
-                    raise arrays.missing_variable(name, tuple(values))
+                    raise missing_variable(name, tuple(values))
                 continue
             read[name] = self._known_of(name, values[name], index, f"time {time:.15g} s")
         return read

@@ -17,6 +17,7 @@ from rtamt.language.undefined_value import undefined
 from rtamt.language.units import check_unit
 from rtamt.rewrite.check import check_online
 from rtamt.signals import arrays, dense_arrays
+from rtamt.signals.data_errors import unknown_variable
 from rtamt.signals.dense import DENSE, Dense
 from rtamt.signals.dense_arrays import TickSignal
 from rtamt.signals.episodes import Episode, plain_times
@@ -123,7 +124,7 @@ class DenseMonitor(DenseMonitorBase, OnlineMonitor):
         flat = self._read_by_formula(values)
         for name in flat:
             if name not in self.input_names:
-                raise arrays.unknown_variable(name, self.input_names)
+                raise unknown_variable(name, self.input_names)
         if not flat:
             self._scale_of([[time]]).ticks([time], arrays.TIME)
         return self._take({name: ([time], [value]) for name, value in flat.items()})

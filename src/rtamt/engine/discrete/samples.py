@@ -10,6 +10,7 @@ from rtamt.language.value_types import BOOLEAN
 from rtamt.signals import arrays
 from rtamt.signals.coding import NO_TYPES, encoded_value, no_truth
 from rtamt.signals.counting import implausible, is_implausible
+from rtamt.signals.data_errors import missing_variable, nan_error, unknown_variable
 from rtamt.signals.regular import not_increasing
 
 if TYPE_CHECKING:
@@ -47,11 +48,11 @@ def read_values(
     """Return a sample's values in the order of the names, each read once; raise :class:`TraceError`."""
     for name in values:
         if name not in names:
-            raise arrays.unknown_variable(name, names)
+            raise unknown_variable(name, names)
     numbers = {}
     for name in names:
         if name not in values:
-            raise arrays.missing_variable(name, tuple(values))
+            raise missing_variable(name, tuple(values))
         type_ = types.get(name)
         where = "" if type_ is None else f"sample {index}, time {time:.15g} s"
         number = arrays.number_of(encoded_value(values[name], name, type_, where, index))
@@ -62,7 +63,7 @@ def read_values(
                 index=index,
             )
         if isnan(number):
-            raise arrays.nan_error(name, index, time)
+            raise nan_error(name, index, time)
         if type_ is BOOLEAN and number not in (0.0, 1.0):
             raise no_truth(name, number, where, index)
         numbers[name] = number
