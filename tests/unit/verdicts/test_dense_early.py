@@ -254,19 +254,6 @@ def test_sample_before_the_watermark_is_rejected_with_one_sentence():
     )
 
 
-def test_contradiction_is_rejected_with_one_sentence():
-    monitor = interval(lateness=2)
-    for t in range(4):
-        monitor.update(t, x=(4, 5))
-    monitor.update(2, x=4.5)
-    with pytest.raises(rtamt.TraceError) as error:
-        monitor.update(3, x=6)
-    assert str(error.value) == (
-        "'x' is 6 at time 3 s, which contradicts what was known of it, [4, 5]: correct it, "
-        "or make the monitor with on_correction='replay'"
-    )
-
-
 def test_end_without_a_sample_of_a_variable_is_an_error_that_names_it():
     monitor = interval("x >= 3 or y >= 3")
     monitor.update(0, x=4)
@@ -274,11 +261,6 @@ def test_end_without_a_sample_of_a_variable_is_an_error_that_names_it():
         monitor.finish()
     monitor.update(0, y=4)
     monitor.finish()
-
-
-def test_unbounded_future_at_every_instant_is_an_error_that_points_at_it():
-    with pytest.raises(rtamt.BoundError, match="ask for the start of the trace with at='start'"):
-        interval("always x", at="every")
 
 
 def test_watched_formulas_report_their_own_changes():

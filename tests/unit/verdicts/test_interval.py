@@ -154,24 +154,6 @@ def test_sample_later_than_the_lateness_is_rejected_with_one_sentence():
     )
 
 
-def test_contradiction_is_rejected_with_one_sentence():
-    monitor = interval(lateness=2)
-    for t in range(4):
-        monitor.update(t, x=(4, 5))
-    monitor.update(2, x=4.5)
-    with pytest.raises(rtamt.TraceError) as error:
-        monitor.update(3, x=6)
-    assert str(error.value) == (
-        "'x' is 6 at time 3 s, which contradicts what was known of it, [4, 5]: correct it, "
-        "or make the monitor with on_correction='replay'"
-    )
-
-
-def test_unbounded_future_at_every_sample_is_an_error_that_points_at_it():
-    with pytest.raises(rtamt.BoundError, match="ask for the start of the trace with at='start'"):
-        interval("always x", at="every")
-
-
 def test_bounds_of_every_sample_are_reported_when_old_ones_are_dropped():
     # Every 64th sample was reported as open, because it had been dropped with those before it.
     monitor = interval("x >= 3", at="every")
