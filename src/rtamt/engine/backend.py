@@ -6,7 +6,10 @@ from abc import ABC, abstractmethod
 from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
 from rtamt.engine.native import core, culprit
+from rtamt.engine.user_operators import is_built_in
 from rtamt.errors import UsageError
+from rtamt.language.formula import postorder
+from rtamt.rewrite.desugar import desugar
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Mapping, Sequence
@@ -114,9 +117,26 @@ D = TypeVar("D", bound=Backend)
 
 
 class Compiled(Backend):
-    """A back end that is the compiled core."""
+    """A back end that is the compiled core; ``definition`` serves what the core can only call."""
 
     compiled = True
+
+    def __init__(self, definition: Defined) -> None:
+        self._definition = definition
+
+    def bounds(
+        self, formulas: tuple[Formula, ...], step: Fraction, inputs: tuple[str, ...]
+    ) -> Callable[[Any], list[BoundedSignal]]:
+        """See :class:`Backend`."""
+        if all(map(is_built_in, postorder(*map(desugar, formulas)))):
+            return self.core_bounds(formulas, step, inputs)
+        return self._definition.bounds(formulas, step, inputs)
+
+    @abstractmethod
+    def core_bounds(
+        self, formulas: tuple[Formula, ...], step: Fraction, inputs: tuple[str, ...]
+    ) -> Callable[[Any], list[BoundedSignal]]:
+        """Return the bounds of formulas of built-in operators, see :meth:`bounds`."""
 
     def require(self) -> None:
         """See :class:`Backend`."""
@@ -133,6 +153,19 @@ class Defined(Backend):
 
     def memory(self, program: Program) -> None:
         """See :class:`Backend`: its monitors keep samples."""
+
+    def bounds(
+        self,
+        formulas: tuple[Formula, ...],
+        step: Fraction,  # noqa: ARG002 - that of the trace
+        inputs: tuple[str, ...],  # noqa: ARG002
+    ) -> Callable[[Any], list[BoundedSignal]]:
+        """See :class:`Backend`."""
+        return lambda trace: [self.bounds_of(formula, trace) for formula in formulas]
+
+    @abstractmethod
+    def bounds_of(self, formula: Formula, trace: Any) -> BoundedSignal:
+        """Return the bounds of a formula over a recording that is known in part."""
 
 
 class CompiledSession(Session):

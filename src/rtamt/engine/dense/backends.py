@@ -11,8 +11,7 @@ from rtamt.engine.backend import Compiled, CompiledSession, Defined, Session, na
 from rtamt.engine.dense.evaluate import BoundsEvaluator, Evaluator
 from rtamt.engine.dense.python_backend import PythonDenseMonitor
 from rtamt.engine.native import core, not_made
-from rtamt.engine.user_operators import EventDriver, calls_of, is_built_in
-from rtamt.language.formula import postorder
+from rtamt.engine.user_operators import EventDriver, calls_of
 from rtamt.reference import dense as reference
 from rtamt.rewrite.desugar import desugar
 from rtamt.signals.dense import Dense
@@ -35,15 +34,10 @@ class CompiledDense(Compiled):
         """See :class:`Backend`."""
         return Evaluator(formulas, step, inputs)
 
-    def bounds(
-        self,
-        formulas: tuple[Formula, ...],
-        step: Fraction,
-        inputs: tuple[str, ...],
+    def core_bounds(
+        self, formulas: tuple[Formula, ...], step: Fraction, inputs: tuple[str, ...]
     ) -> Callable[[DenseTrace], list[BoundedSignal]]:
-        """See :class:`Backend`. What the core can only call is left to the definition."""
-        if not all(map(is_built_in, postorder(*map(desugar, formulas)))):
-            return BACKENDS["python"].bounds(formulas, step, inputs)
+        """See :class:`Compiled`."""
         return BoundsEvaluator(formulas, step, inputs).of_bounds
 
     def memory(self, program: Program) -> None:
@@ -79,14 +73,9 @@ class DefinedDense(Defined):
 
         return evaluated
 
-    def bounds(
-        self,
-        formulas: tuple[Formula, ...],
-        step: Fraction,
-        inputs: tuple[str, ...],
-    ) -> Callable[[DenseTrace], list[BoundedSignal]]:
-        """See :class:`Backend`."""
-        return lambda trace: [offline_bounds.dense(formula, trace) for formula in formulas]
+    def bounds_of(self, formula: Formula, trace: DenseTrace) -> BoundedSignal:
+        """See :class:`Defined`."""
+        return offline_bounds.dense(formula, trace)
 
     def session(
         self,
@@ -149,5 +138,7 @@ class EventDefinition(Session):
         return monitor.part(formula)
 
 
+_DEFINED = DefinedDense()
+
 #: By name.
-BACKENDS = named(CompiledDense(), DefinedDense())
+BACKENDS = named(CompiledDense(_DEFINED), _DEFINED)

@@ -11,8 +11,7 @@ from rtamt.engine.backend import Compiled, CompiledSession, Defined, Session, na
 from rtamt.engine.discrete.evaluate import BoundsEvaluator, Evaluator
 from rtamt.engine.discrete.python_backend import PythonMonitor
 from rtamt.engine.native import core, core_monitor
-from rtamt.engine.user_operators import SampleDriver, calls_of, is_built_in
-from rtamt.language.formula import postorder
+from rtamt.engine.user_operators import SampleDriver, calls_of
 from rtamt.reference import discrete as reference
 from rtamt.rewrite.desugar import desugar
 from rtamt.signals.outcomes import BoundedSignal
@@ -35,15 +34,10 @@ class CompiledDiscrete(Compiled):
         """See :class:`Backend`."""
         return Evaluator(formulas, step)
 
-    def bounds(
-        self,
-        formulas: tuple[Formula, ...],
-        step: Fraction,
-        inputs: tuple[str, ...],
+    def core_bounds(
+        self, formulas: tuple[Formula, ...], step: Fraction, inputs: tuple[str, ...]
     ) -> Callable[[DiscreteTrace], list[BoundedSignal]]:
-        """See :class:`Backend`. What the core can only call is left to the definition."""
-        if not all(map(is_built_in, postorder(*map(desugar, formulas)))):
-            return lambda trace: [offline_bounds.discrete(formula, trace) for formula in formulas]
+        """See :class:`Compiled`."""
         evaluator = BoundsEvaluator(formulas, step)
         return lambda trace: [BoundedSignal(trace.stamps, *ends) for ends in evaluator.of_bounds(trace)]
 
@@ -82,14 +76,9 @@ class DefinedDiscrete(Defined):
 
         return evaluated
 
-    def bounds(
-        self,
-        formulas: tuple[Formula, ...],
-        step: Fraction,
-        inputs: tuple[str, ...],
-    ) -> Callable[[DiscreteTrace], list[BoundedSignal]]:
-        """See :class:`Backend`."""
-        return lambda trace: [offline_bounds.discrete(formula, trace) for formula in formulas]
+    def bounds_of(self, formula: Formula, trace: DiscreteTrace) -> BoundedSignal:
+        """See :class:`Defined`."""
+        return offline_bounds.discrete(formula, trace)
 
     def session(
         self,
@@ -159,5 +148,7 @@ class SampleDefinition(Session):
         return monitor.last(formula)
 
 
+_DEFINED = DefinedDiscrete()
+
 #: By name.
-BACKENDS = named(CompiledDiscrete(), DefinedDiscrete())
+BACKENDS = named(CompiledDiscrete(_DEFINED), _DEFINED)

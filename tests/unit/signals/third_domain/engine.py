@@ -13,7 +13,7 @@ class Definition(Defined):
     def evaluator(self, formulas, step, inputs):  # noqa: ARG002
         return lambda trace: [evaluate(f, trace.columns, len(trace), step) for f in formulas]
 
-    def bounds(self, formulas, step, inputs):
+    def bounds_of(self, formula, trace):
         raise NotImplementedError
 
     def session(self, formulas, inputs, domain, ignored=()):
