@@ -201,6 +201,7 @@ class Specification(SpecificationText):
         time: Literal["discrete"] | Discrete | None = None,
         verdict: Literal["eager"],
         ranges: Mapping[str, Any] | None = None,
+        explain: bool = False,
         **settings: Unpack[DiscreteSettings],
     ) -> EagerMonitor: ...
 
@@ -211,6 +212,7 @@ class Specification(SpecificationText):
         time: Literal["dense"] | Dense,
         verdict: Literal["eager"],
         ranges: Mapping[str, Any] | None = None,
+        explain: bool = False,
         **settings: Unpack[DenseSettings],
     ) -> DenseEagerMonitor: ...
 
@@ -248,6 +250,7 @@ class Specification(SpecificationText):
         lateness: Duration | None = None,
         on_correction: str | None = None,
         episodes: bool = False,
+        explain: bool = False,
     ) -> OnlineMonitor:
         """Return an online monitor; for dense time if selected here or in :func:`parse`.
 
@@ -272,7 +275,8 @@ class Specification(SpecificationText):
         (``"eager"``, ``"interval"``). ``lateness``: by how much a sample may come late (``"interval"``); without it,
         each variable of dense time has its samples in order. ``on_correction``: whether to ``"reject"`` or
         ``"replay"`` a sample that contradicts an earlier one (``"interval"``). ``episodes``: whether the monitor
-        remembers runs of violation, which ``monitor.episodes()`` returns (``"delayed"``).
+        remembers runs of violation, which ``monitor.episodes()`` returns (``"delayed"``). ``explain``: whether it
+        remembers samples, so that ``monitor.explain(verdict)`` returns those that decided a verdict (``"eager"``).
 
         >>> import rtamt
         >>> monitor = rtamt.parse("always[0:200ms](x >= 3)").monitor(period="100ms")
@@ -287,7 +291,7 @@ class Specification(SpecificationText):
         None 2.0 -3.0
         """
         given = {"at": at, "ranges": ranges, "lateness": lateness, "on_correction": on_correction}
-        given["episodes"] = episodes or None
+        given |= {"episodes": episodes or None, "explain": explain or None}
         settings: dict[str, Any] = {name: setting for name, setting in given.items() if setting is not None}
         mode = mode_of(verdict, settings)
         asked, semantics = semantics, semantics_in(mode, self._semantics(semantics))

@@ -196,7 +196,7 @@ TASKS: dict[str, tuple[str, tuple[str, ...]]] = {
         (
             "rtamt.verdicts.eager.EagerMonitor", "Verdict", "rtamt.verdicts.dense_early.DenseEagerMonitor",
             "VerdictRun", "rtamt.verdicts.interval.IntervalMonitor", "rtamt.verdicts.interval.Change", "Interval",
-            "rtamt.verdicts.causation.CausationMonitor", "Causation", "calibrate",
+            "rtamt.verdicts.causation.CausationMonitor", "Causation", "Cause", "calibrate",
         ),
     ),
     "Explain": ("", ("Result.explain", "rtamt.explain.report.Explanation")),

@@ -30,10 +30,11 @@ if TYPE_CHECKING:
 
 
 class EagerFeed:
-    """Prints each verdict once it is settled."""
+    """Prints each verdict once it is settled; ``explain``: with the samples that decided it."""
 
-    def __init__(self, monitor: EagerMonitor | DenseEagerMonitor) -> None:
+    def __init__(self, monitor: EagerMonitor | DenseEagerMonitor, *, explain: bool = False) -> None:
         self.monitor = monitor
+        self._explain = explain
 
     def take(self, stamp: Any, values: dict[str, float], line: int) -> str:
         """Take a sample and print what it settles; return what is wrong with it, if anything is."""
@@ -54,7 +55,17 @@ class EagerFeed:
             else:
                 time = _json(verdict.time)
             satisfied, decided = json.dumps(verdict.satisfied), _json(verdict.decided_at)
-            say(f'{{"time": {time}, "satisfied": {satisfied}, "decided_at": {decided}}}', flush=True)
+            causes = self._causes(verdict) if self._explain else ""
+            say(f'{{"time": {time}, "satisfied": {satisfied}, "decided_at": {decided}{causes}}}', flush=True)
+
+    def _causes(self, verdict: Any) -> str:
+        """Return a member of a JSON object."""
+        causes = (
+            f'{{"variable": {json.dumps(each.variable)}, "time": {_json(each.time)}, '
+            f'"value": {json.dumps(json_number(each.value))}}}'
+            for each in self.monitor.explain(verdict)
+        )
+        return f', "causes": [{", ".join(causes)}]'
 
 
 class StartFeed:

@@ -74,7 +74,8 @@ and in the input. With --semantics boolean a line has the verdict too: {"time": 
 "satisfied": true}.
 
 --verdict eager prints {"time": 0.0, "satisfied": false, "decided_at": 2.0} as soon as no later sample can
-change whether the formula holds; --verdict interval prints bounds of the robustness whenever they change:
+change whether the formula holds, with --explain also "causes": [{"variable": "x", "time": 2.0, "value": -1.0}], the
+samples that decide it alone. --verdict interval prints bounds of the robustness whenever they change:
 {"time": 0.0, "lower": -1.0, "upper": "inf", "final": false}. With "until" an object is about all samples up to that
 one, in dense time all instants before it. --verdict causation prints by how much each sample alone violates and
 satisfies the formula at the start of the trace: {"time": 0.0, "violation": -1.0, "satisfaction": "-inf"}, or
@@ -115,6 +116,11 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--verdict",
         choices=tuple(MODES),
         help="; ".join(f"{mode.name}: {mode.doc}" for mode in MODES.values()) + f" (default: {DELAYED})",
+    )
+    parser.add_argument(
+        "--explain",
+        action="store_true",
+        help="with --verdict eager, print which samples decided each verdict",
     )
     parser.add_argument(
         "--live", action="store_true", help="draw verdict, robustness and values on the terminal"
@@ -195,6 +201,8 @@ def _follow(watched: Feed, samples: Samples, live: Live | None, *, keep_going: b
 def _early(spec: Specification, args: argparse.Namespace, live: Live | None) -> EarlyFeed | None:
     """Return what prints before the horizon, if that is asked for, or if there is no horizon."""
     verdict = args.verdict
+    if args.explain and verdict != "eager":
+        raise CommandError("--explain explains verdicts before the horizon: use it with --verdict eager")
     at_start = verdict in {None, "interval"} and unbounded_future(spec.formula) is not None
     if not at_start and verdict in {None, DELAYED}:
         return None
@@ -202,10 +210,15 @@ def _early(spec: Specification, args: argparse.Namespace, live: Live | None) -> 
         return StartFeed(StartMonitor(spec, tolerance=args.tolerance), live)
     if args.live:
         raise CommandError(f"--live draws the robustness; leave it out, or use --verdict {DELAYED}")
-    monitor = spec.monitor(verdict=verdict, tolerance=args.tolerance)
+    settings: dict[str, Any] = {"explain": True} if args.explain else {}
+    monitor = spec.monitor(verdict=verdict, tolerance=args.tolerance, **settings)
     if isinstance(monitor, CausationMonitor):
         return CausationFeed(monitor)
-    return IntervalFeed(monitor) if isinstance(monitor, IntervalMonitor) else EagerFeed(monitor)
+    return (
+        IntervalFeed(monitor)
+        if isinstance(monitor, IntervalMonitor)
+        else EagerFeed(monitor, explain=args.explain)
+    )
 
 
 def _watched(

@@ -64,6 +64,20 @@ class VerdictRun:
 
 
 @dataclass(frozen=True, slots=True)
+class Cause:
+    """A value of one variable that is needed to decide a verdict, see ``EagerMonitor.explain``.
+
+    >>> from rtamt import Cause
+    >>> Cause("x", 2.0, -1.0)
+    Cause(variable='x', time=2.0, value=-1.0)
+    """
+
+    variable: str
+    time: Any
+    value: Any
+
+
+@dataclass(frozen=True, slots=True)
 class Causation:
     """By how much the newest sample alone violates and satisfies a formula (CAV 2023).
 

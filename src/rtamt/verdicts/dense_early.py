@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from rtamt.engine.dense.early_python_backend import Output
     from rtamt.language.formula import Formula
     from rtamt.signals.domain_interface import TimeDomain
+    from rtamt.signals.outcomes import Cause
 
 
 class DenseEarlyMonitor(EarlyMonitor):
@@ -45,7 +46,7 @@ class DenseEarlyMonitor(EarlyMonitor):
     ) -> None:
         # ``requirements``: the conjuncts of the formula, each with its own trace.
         self._unit = None if unit is None else check_unit(unit)
-        self._requirements = tuple(requirements) or (formula,)
+        self._requirements = domain.ground(*(requirements or (formula,)))
         super().__init__(formula, domain, **settings)
         domain.check_inputs(self.input_names)
 
@@ -124,6 +125,9 @@ class DenseEarlyMonitor(EarlyMonitor):
             return TimeScale.of(self._step, [[time]], self._unit)
         return self._scale.widened([[time]])
 
+    def _steps(self, time: Any) -> float:
+        return int(self._scale_of(time).ticks([time], arrays.TIME)[0])
+
     def _shown(self, tick: int) -> str:
         scale = self._scale or TimeScale.of(self._step, [], self._unit)
         return scale.show(tick)
@@ -197,7 +201,7 @@ class DenseEagerMonitor(DenseEarlyMonitor, EarlyMonitorBase):
     ([], [VerdictRun(begin=0.5, end=1.500000001, satisfied=False, decided_at=1.5)])
     """
 
-    _remembered: ClassVar[tuple[str, ...]] = ("_finished", "_scale")
+    _remembered: ClassVar[tuple[str, ...]] = ("_finished", "_scale", "_evidence")
     _verdict = VerdictRun
 
     def __init__(self, formula: Formula, domain: TimeDomain, **settings: Any) -> None:
@@ -231,7 +235,21 @@ class DenseEagerMonitor(DenseEarlyMonitor, EarlyMonitorBase):
                 raise self._no_value(error) from None
             self._scale = scale
             self._set_time_scale()
+            if self._evidence is not None:
+                self._evidence.take(tick, time, self._read_by_formula(values))
             return self._news(0)
+
+    def explain(self, verdict: VerdictRun) -> list[Cause]:
+        """Return the values that decide a run of verdicts, as :meth:`EagerMonitor.explain`: all instants of it.
+
+        >>> import rtamt
+        >>> spec = rtamt.parse("always[0:9](x >= 3)")
+        >>> monitor = spec.monitor(verdict="eager", explain=True, time="dense")
+        >>> found = [monitor.update(t, x=x) for t, x in [(0.5, 4), (1.5, 2)]]
+        >>> monitor.explain(found[1][0])
+        [Cause(variable='x', time=1.5, value=2)]
+        """
+        return self._explain(verdict)
 
     @exclusive
     def finish(self) -> list[VerdictRun]:

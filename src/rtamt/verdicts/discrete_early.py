@@ -36,7 +36,7 @@ class DiscreteEarlyMonitor(EarlyMonitor):
     #: What each sample causes is reported, too.
     _causes: Causes | None = None
 
-    _remembered: ClassVar[tuple[str, ...]] = ("_finished", "_clock")
+    _remembered: ClassVar[tuple[str, ...]] = ("_finished", "_clock", "_evidence")
     _base = EarlyMonitorBase
 
     def __init__(
@@ -123,6 +123,9 @@ class DiscreteEarlyMonitor(EarlyMonitor):
                 f"time is {stamp.seconds} at sample {self.samples}: give a finite number of seconds"
             )
         return stamp
+
+    def _steps(self, time: Any) -> float:
+        return self._seconds(time) / float(self._step)
 
     def _seconds(self, time: Any) -> float:
         return self._stamp(time).seconds

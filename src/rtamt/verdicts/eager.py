@@ -13,6 +13,7 @@ from rtamt.verdicts.discrete_early import DiscreteEarlyMonitor
 if TYPE_CHECKING:
     from rtamt.language.formula import Formula
     from rtamt.signals.domain_interface import TimeDomain
+    from rtamt.signals.outcomes import Cause
 
 
 class EagerMonitor(DiscreteEarlyMonitor, EarlyMonitorBase):
@@ -47,7 +48,28 @@ class EagerMonitor(DiscreteEarlyMonitor, EarlyMonitorBase):
 
     def _update_carefully(self, *given: Any, **values: Any) -> list[Verdict]:
         """Take a sample that the core rejected, or report what is wrong with it."""
-        return self._take_in_order(time_of(given), values)  # type: ignore[no-any-return]
+        found: list[Verdict] = self._take_in_order(time_of(given), values)
+        if self._evidence is not None:
+            time = time_of(given)
+            self._evidence.take(self._steps(time), time, self._read_by_formula(values))
+        return found
+
+    def explain(self, verdict: Verdict) -> list[Cause]:
+        """Return the values that decide a verdict of the formula, and none that could be left out.
+
+        They decide it whatever all other values are, and the last of them came at ``verdict.decided_at``. For monitors
+        made with ``explain=True``, which remember samples, and take each some microseconds slower. A verdict
+        is explained as long as its samples are remembered: until the next one is reported, or for ever if
+        the formula has an operator without an upper bound.
+
+        >>> import rtamt
+        >>> spec = rtamt.parse("always[0:9](x >= 3 or y >= 1)")
+        >>> monitor = spec.monitor(verdict="eager", explain=True)
+        >>> found = [monitor.update(t, x=x, y=0) for t, x in enumerate([4, 5, 2])]
+        >>> monitor.explain(found[2][0])
+        [Cause(variable='x', time=2, value=2), Cause(variable='y', time=2, value=0)]
+        """
+        return self._explain(verdict)
 
     @exclusive
     def finish(self) -> list[Verdict]:

@@ -6,6 +6,7 @@ All run the same graph (``compiler/early.py``) in the core.
 from __future__ import annotations
 
 from abc import abstractmethod
+from functools import partial
 from math import inf, isnan
 from typing import TYPE_CHECKING, Any
 
@@ -22,6 +23,7 @@ from rtamt.rewrite.desugar import desugar
 from rtamt.signals import arrays
 from rtamt.signals.coding import encoded_value, no_truth
 from rtamt.signals.outcomes import Interval
+from rtamt.verdicts.evidence import Evidence, span_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Mapping, Sequence
@@ -29,6 +31,7 @@ if TYPE_CHECKING:
     from rtamt.compiler.early import Graph
     from rtamt.language.formula import Formula
     from rtamt.signals.domain_interface import TimeDomain
+    from rtamt.signals.outcomes import Cause, Verdict, VerdictRun
 
 
 class GraphSession(Session):
@@ -88,6 +91,7 @@ class EarlyMonitor(OnlineMonitor):
         ranges: Mapping[str, Any] | None = None,
         start: bool = False,
         every: bool = True,
+        explain: bool = False,
     ) -> None:
         formula, watch = grounded(domain, formula, text, watch)
         step = domain.step
@@ -95,6 +99,7 @@ class EarlyMonitor(OnlineMonitor):
         OnlineMonitor.__init__(self, formula, watch, declared, factory)
         self._chosen = engine_of(domain).backends[backend]
         self._step = step
+        self._explained, self._continuous = explain, domain.continuous
         self._ranges = self._read_ranges(ranges or {})
         cores = [desugar(each) for each in self._formulas]
         self._graph = compile_graph(cores, step, self.input_names, type(domain), start=start)
@@ -106,6 +111,8 @@ class EarlyMonitor(OnlineMonitor):
     _late: int | None = None
     #: Whether samples may correct earlier ones.
     _replays = False
+    #: The samples that may decide a verdict; None if nobody asks for them.
+    _evidence: Evidence | None = None
 
     def _read_ranges(self, ranges: Mapping[str, Any]) -> dict[str, tuple[float, float]]:
         read = {}
@@ -130,18 +137,41 @@ class EarlyMonitor(OnlineMonitor):
         """How many samples the monitor has taken since the start or the last reset."""
         return int(self._backend.samples)
 
+    def _explain(self, verdict: Verdict | VerdictRun) -> list[Cause]:
+        """Return the samples that decide a verdict."""
+        if self._evidence is None:
+            raise UsageError(
+                "the monitor does not remember its samples; make it with monitor(verdict='eager', explain=True)"
+            )
+        assert self._factory is not None
+        monitor = partial(self._factory, explain=False)
+        decided = self._steps(verdict.decided_at)
+        return self._evidence.causes(verdict, decided, monitor, ended=self._finished)
+
+    @abstractmethod
+    def _steps(self, time: Any) -> float:
+        """Return a time in steps."""
+
+    def _resume(self, state: tuple[Any, ...]) -> None:
+        super()._resume(state)
+        if self._evidence is not None:
+            self._evidence = self._evidence.copied()
+
     @abstractmethod
     def _prepare(self) -> None:
         """Open the first monitor of the back end."""
 
     def _connect(self, backend: Any) -> None:
-        self._backend = Apart(inner_of(backend)) if self._checked else backend
+        self._backend = Apart(inner_of(backend)) if self._checked or self._explained else backend
         self._refused = self._session.refused
         self._undefined: Any = self._session.undefined
 
     def _forget(self) -> None:
         """Forget all that came, apart from what the back end remembers."""
         self._finished = False
+        if self._explained:
+            span = span_of(self._formulas[0], self._step)
+            self._evidence = Evidence(span, continuous=self._continuous)
 
     @exclusive
     def reset(self, /, **parameters: float) -> None:

@@ -40,7 +40,7 @@ MODES: Mapping[str, Mode] = MappingProxyType(
             Mode(
                 "eager",
                 "whether the formula holds at each sample, as soon as no later sample can change it",
-                settings=("ranges",),
+                settings=("ranges", "explain"),
                 boolean=True,
             ),
             Mode(
