@@ -246,9 +246,13 @@ def test_a_thousand_requirements_are_no_deep_recursion() -> None:
 CORPUS = sorted({case.formula for name in FILES for case in read(name)})
 
 
-@pytest.mark.parametrize("word", ["require", "severity"])
-def test_the_corpus_with_a_word_of_requirements_as_a_variable_means_what_it_meant(word: str) -> None:
-    for text in CORPUS:
+#: The words that files have gained; the corpus has none of them as an operator.
+WORDS = ("require", "severity", "def", "import", "sample", "hold", "parameter", "table", "enum")
+
+
+@pytest.mark.parametrize("word", WORDS)
+def test_the_corpus_with_a_word_of_files_as_a_variable_means_what_it_meant(word: str) -> None:
+    for text in CORPUS[WORDS.index(word) % 3 :: 3]:
         renamed = re.sub(r"\bx\b", word, text)
         before = parse_document(text).formula
         assert parse_document(renamed).formula == fold(

@@ -2,7 +2,10 @@
 
 import json
 
+import numpy as np
 import pytest
+
+from tests.unit.readers.bags import Bag
 
 SPEC = """\
 input float z [m] = "setpoint.position[2]"
@@ -90,3 +93,33 @@ def test_streams(run, write):
         "stdin, line 1: 'v' is recorded in kg, which cannot be converted to m/s, its declared unit"
         in wrong.err
     )
+
+
+def test_formats_that_know_their_units(run, tmp_path, write):
+    pa, parquet = pytest.importorskip("pyarrow"), pytest.importorskip("pyarrow.parquet")
+    asammdf = pytest.importorskip("asammdf")
+    height = pa.field("setpoint.position[2]", pa.float64(), metadata={"unit": "ft"})
+    schema = pa.schema([pa.field("time", pa.float64()), height])
+    parquet.write_table(
+        pa.table({"time": [0.0, 1.0], height.name: [1.0, 10.0]}, schema=schema), tmp_path / "log.parquet"
+    )
+    with asammdf.MDF(version="4.10") as file:
+        file.append(
+            [asammdf.Signal(np.array([1.0, 10.0]), np.array([0.0, 1.0]), unit="ft", name=height.name)]
+        )
+        file.save(tmp_path / "log.mf4")
+    write("spec.stl", SPEC.replace(" and v <= 10", ""))
+    for name in ("log.parquet", "log.mf4"):
+        answer = run("check", "spec.stl", name, "--json")
+        row = json.loads(answer.out)
+        assert row["robustness"] == pytest.approx(3 - 3.048, rel=1e-12), name
+        assert row["notes"] == ["z was converted from ft to m"]
+
+
+def test_a_number_in_messages_of_a_bag(run, tmp_path, write):
+    with Bag(tmp_path, "mcap") as bag:
+        for at, value in ((0.0, 1.0), (1.0, 2.0), (2.0, 5.0)):
+            bag.plain("/height", at, value)
+    write("spec.stl", 'input float z [m] = "/height.data"\nrequire R: always(z <= 3)')
+    row = json.loads(run("check", "spec.stl", str(bag.path.relative_to(tmp_path)), "--json").out)
+    assert (row["robustness"], row["first_violation"]) == (-2.0, pytest.approx(2.0))
