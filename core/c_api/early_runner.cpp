@@ -111,6 +111,20 @@ EarlyGraph EarlyGraph::parse(const std::string& bytes, std::uint32_t inputs) {
     return parsed;
 }
 
+void EarlyGraph::take_constants(const Program& program) {
+    std::size_t place = program.inputs;
+    for (early::Node& node : graph.nodes) {
+        for (early::Step& step : node.steps) {
+            GraphReader::require(place < program.instructions.size());
+            const Instruction& instruction = program.instructions[place++];
+            if (step.opcode != Opcode::constant) continue;
+            GraphReader::require(instruction.opcode == Opcode::constant);
+            step.x = instruction.x;
+        }
+    }
+    GraphReader::require(place == program.instructions.size());
+}
+
 EarlyRunner::EarlyRunner(Program program, double period, EarlyGraph graph)
     : program_(std::move(program)), period_(period), graph_(std::move(graph)),
       engine_(graph_.graph, {}, false), robustness_(graph_.robustness, engine_),

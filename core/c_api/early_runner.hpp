@@ -11,7 +11,7 @@
 //                     of each step u32 opcode, u32 a, u32 b, f64 x
 //     items           u32 kind, u32 negated, u32 a, u32 b, u32 c, i64 tick
 //
-// Step k has the meaning of instruction `inputs` + k.
+// Step k has the meaning of instruction `inputs` + k, and a constant has its value.
 #pragma once
 
 #include "../early/engine.hpp"
@@ -33,6 +33,10 @@ struct EarlyGraph {
 
     // Throws std::invalid_argument with one sentence.
     [[nodiscard]] static EarlyGraph parse(const std::string& bytes, std::uint32_t inputs);
+
+    // Gives constants the values of their instructions, which a parameter may have changed; throws
+    // as parse does.
+    void take_constants(const Program& program);
 };
 
 class EarlyRunner final : public SampledRunner {

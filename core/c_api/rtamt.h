@@ -116,7 +116,7 @@ RTAMT_API const char* rtamt_parameter(const rtamt_monitor* monitor, uint32_t par
  * such output. */
 RTAMT_API int64_t rtamt_lag(const rtamt_monitor* monitor, uint32_t output);
 
-/* ---- parameters: the parameters and named constants of the specification ---------------------- */
+/* ---- parameters, and named constants of the specification ------------------------------------ */
 
 RTAMT_API rtamt_status rtamt_parameter_value(const rtamt_monitor* monitor, uint32_t parameter,
                                              double* value);

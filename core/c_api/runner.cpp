@@ -147,6 +147,7 @@ void DenseRunner::reset() noexcept {
 std::unique_ptr<Runner> make_runner(Program program, const Metadata& metadata) {
     if (!metadata.early.empty()) {
         EarlyGraph graph = EarlyGraph::parse(metadata.early, program.inputs);
+        graph.take_constants(program);
         return std::make_unique<EarlyRunner>(std::move(program), metadata.seconds(),
                                              std::move(graph));
     }

@@ -348,7 +348,7 @@ class Specification(SpecificationText):
 
         With ``verdict="interval"`` its outputs are bounds at the start of the trace, whatever is still to come:
         ``lower``, ``upper``, ``verdict``, and ``decided_since``, the seconds from the first sample to the one that
-        decided the verdict. The future may then be unbounded; time is discrete, and there are no parameters.
+        decided the verdict. The future may then be unbounded; time is discrete.
 
         >>> import rtamt
         >>> program = rtamt.parse("always[0:200ms](x >= 3)").compile(period="100ms")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from fractions import Fraction
 
 import pytest
@@ -11,6 +12,7 @@ from hypothesis import strategies as st
 import rtamt
 from rtamt.compiler.program import Program
 from rtamt.errors import EvaluationError
+from rtamt.language.formula import Apply, Const, Var, fold, variables
 from rtamt.language.printer import to_text
 from rtamt.verdicts.at_start import StartMonitor
 from tests import c_api
@@ -58,6 +60,57 @@ def test_a_program_of_bounds_gives_the_bits_of_the_monitor(formula, columns, dat
     assert [there.told(k)[1].tolist() for k in (0, 1)] == [[at_end.lower], [at_end.upper]]
     expected = {None: [], True: [float("inf")], False: [-float("inf")]}[here.satisfied]
     assert there.told(2)[1].tolist() == expected
+
+
+@settings(max_examples=30)
+@given(formulas(unbounded_future=True), traces(max_size=8), st.data())
+def test_a_parameter_of_a_program_of_bounds_has_the_value_that_is_set(formula, columns, data):
+    values = {}
+
+    def named(node, args):
+        if isinstance(node, Const):
+            name = f"p{len(values)}"
+            values[name] = node.value
+            return Var(name)
+        return Apply(node.op, args, node.interval) if isinstance(node, Apply) else node
+
+    text = to_text(fold(formula, named))
+    names = variables(formula)
+    assume(values and names)
+    # All have one value at first: two parameters are two, also where their values are equal.
+    declared = "".join(f"parameter float {name} = 1 " for name in values) + "".join(
+        f"float {n} " for n in names
+    )
+    program = rtamt.parse(declared + text, period=1).compile(verdict="interval")
+    there = c_api.Monitor(program.to_bytes())
+    for index, name in enumerate(program.metadata.parameters):
+        there.set_parameter(index, values[name])
+    here = c_api.Monitor(rtamt.parse(to_text(formula), period=1).compile(verdict="interval").to_bytes())
+    if data.draw(st.booleans()):
+        there = _continued(there, program.to_bytes(), True)
+    for i in range(len(columns[names[0]])):
+        row = [float(columns[name][i]) for name in names]
+        told = [_stepped(monitor, row) for monitor in (here, there)]
+        assert told[0] == told[1]
+        if not isinstance(told[0], list):
+            return
+
+
+def _stepped(monitor, row):
+    try:
+        return monitor.step(row, 4)
+    except c_api.RefusedError as error:
+        return error.args[0]
+
+
+def test_a_graph_that_does_not_fit_its_instructions_is_refused():
+    program = rtamt.parse("always(x > 3)").compile(verdict="interval")
+    for instructions in (program.instructions[:-1], (*program.instructions, program.instructions[-1])):
+        last = (len(instructions) - 1,) * len(program.outputs)
+        metadata = replace(program.metadata, meanings={})
+        code = replace(program, instructions=instructions, outputs=last, metadata=metadata).to_bytes()
+        with pytest.raises(c_api.RefusedError, match="its graph is damaged"):
+            c_api.Monitor(code)
 
 
 def test_a_reset_begins_a_new_trace():

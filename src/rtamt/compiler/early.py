@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from rtamt.compiler.lower import seconds_per_step
 from rtamt.compiler.program import NO_OPERAND, OPCODES
 from rtamt.errors import UsageError
-from rtamt.language.formula import Apply, Const, Formula, Var, postorder
+from rtamt.language.formula import Apply, Const, Formula, Parameter, Var, postorder
 from rtamt.language.operators import Pointwise, Shift, Since, Sum, Tense, Until, Window
 from rtamt.rewrite.check import reads_unbounded_future
 from rtamt.rewrite.horizon import horizons
@@ -86,7 +86,8 @@ class Graph:
     #: What each item is the value of; None for a part that is no formula.
     starts: list[Formula | None] = field(default_factory=list)
     origins: list[Formula] = field(default_factory=list)
-    _index: dict[Node, int] = field(default_factory=dict)
+    #: By node, and by its parameters, which differ even if their values are equal.
+    _index: dict[tuple[Node, tuple[tuple[int, str], ...]], int] = field(default_factory=dict)
     _refs: dict[Formula, int] = field(default_factory=dict)
     _local: dict[Formula, bool] = field(default_factory=dict)
     _depths: dict[int, Fraction | None] = field(default_factory=dict)
@@ -210,9 +211,10 @@ def _node(graph: Graph, formula: Formula) -> int:
 
 def _add(graph: Graph, node: Node, origins: Sequence[Formula] = ()) -> int:
     """Return the reference of a node, which is added unless there is an equal one."""
-    found = graph._index.get(node)
+    key = node, tuple((i, each.name) for i, each in enumerate(origins) if isinstance(each, Parameter))
+    found = graph._index.get(key)
     if found is None:
-        found = graph._index[node] = len(graph.nodes)
+        found = graph._index[key] = len(graph.nodes)
         graph.nodes.append(node)
         graph.origins.extend(origins)
     return 2 * found

@@ -18,7 +18,8 @@ from rtamt.language.formula import Apply, Const, Formula, Parameter, Var, postor
 from rtamt.language.operators import Bounds, Pointwise, Shift, Since, Sum, Tense, Until, Window
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Sequence
+    from fractions import Fraction
 
     from rtamt.signals.domain_interface import TimeDomain
 
@@ -47,13 +48,11 @@ class Lowering(ABC):
         period: Fraction,
         inputs: tuple[str, ...],
         clip: int | None,
-        parameters: Mapping[str, float],
     ) -> None:
         self.domain = domain
         self.period = period
         self.inputs = inputs
         self.clip = clip
-        self.parameters = parameters
         self.instructions: list[Instruction] = []
         self.origins: list[Formula | None] = []
         self.index_of: dict[Instruction, int] = {}
@@ -86,8 +85,6 @@ class Lowering(ABC):
             return self.append(Instruction("const", x=node.value), node)
         if isinstance(node, Const):
             return self.emit(Instruction("const", x=node.value), node)
-        if isinstance(node, Var) and node.name in self.parameters:
-            return self.append(Instruction("const", x=self.parameters[node.name]), node)
         if isinstance(node, Var):
             return self.emit(Instruction("input", n=self.inputs.index(node.name)), node)
         assert isinstance(node, Apply)

@@ -19,7 +19,7 @@ from rtamt.rewrite.horizon import horizon
 from rtamt.signals.discrete import Discrete
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Sequence
 
     from rtamt.compiler.program import Program
     from rtamt.signals.domain_interface import TimeDomain
@@ -75,15 +75,13 @@ def compile_program(
     inputs: tuple[str, ...] | None = None,
     clip: int | None = None,
     domain: type[TimeDomain] = Discrete,
-    parameters: Mapping[str, float] | None = None,
 ) -> Program:
     """Compile core formulas (see ``desugar``) with bounded future to one program.
 
     ``period`` is the sampling period, in dense time the length of a tick (seconds). ``inputs`` fixes
     the order of the inputs; by default the variables in order of appearance. ``clip`` is the number
     of samples of a finished trace: longer bounds are clipped to it, which
-    changes no value and saves memory. ``parameters``: variables that become adjustable constants, never
-    merged with others, and their initial values.
+    changes no value and saves memory.
 
     >>> from fractions import Fraction
     >>> from rtamt.language.parser import parse_formula
@@ -94,7 +92,7 @@ def compile_program(
     """
     if inputs is None:
         inputs = _read_by(outputs)
-    lowering = lowering_of(domain)(domain, period, inputs, clip, parameters or {})
+    lowering = lowering_of(domain)(domain, period, inputs, clip)
     indices = lowering.lower(outputs)
     if clip is None:  # online: each output is known at its horizon, even if it could be known earlier
         depths = (horizon(formula, period) for formula in outputs)

@@ -14,15 +14,16 @@ from rtamt.compiler.program import Instruction, Program
 from rtamt.engine.engine import engine_of
 from rtamt.engine.native import core
 from rtamt.errors import UsageError
-from rtamt.language.formula import Apply, Const, Formula, Var, fold, variables
+from rtamt.language.formula import Apply, Const, Formula, Parameter, fold, variables
 from rtamt.language.parameters import bounds_of
-from rtamt.language.printer import PAGE, excerpt, to_text
+from rtamt.language.printer import EXCERPT, PAGE, to_text
+from rtamt.language.value_types import Enumeration
 from rtamt.rewrite.check import check_online
 from rtamt.rewrite.desugar import as_written, desugar, written
 from rtamt.verdicts.robustness_and_truth import Outputs, outputs_of
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Iterable, Mapping, Sequence
 
     from rtamt.signals.domain_interface import TimeDomain
 
@@ -60,22 +61,16 @@ def carried_program(
     inputs = variables(formula)
     domain.check_inputs(inputs)
     structural = bounds_of(formula)
-    values: dict[str, float] = {}
     pairs = {"": outputs_of(formula, applied)} | {f".{name}": pair for name, pair in (parts or {}).items()}
     judged = domain.ground(*(output for pair in pairs.values() for output in pair))
-    outputs = [_with_parameters(desugar(each), structural, values) for each in judged]
-    program = compile_program(outputs, domain.step, inputs, domain=type(domain), parameters=values)
-    places = {
-        node.name: (i,)
-        for i, node in enumerate(program.origins)
-        if isinstance(node, Var) and node.name in values
-    }
+    cores = [_with_parameters(desugar(each), structural) for each in judged]
+    program = compile_program(cores, domain.step, inputs, domain=type(domain))
     metadata = Metadata(
         name or "",
         to_text(formula, limit=PAGE),
         tuple(f"{output}{suffix}" for suffix in pairs for output in OUTPUTS),
-        MappingProxyType(places),
-        MappingProxyType(_meanings(program, [_with_parameters(each, structural, values) for each in judged])),
+        _places(program.origins, 0),
+        MappingProxyType(_meanings(program, [_with_parameters(each, structural) for each in judged])),
     )
     return replace(program, metadata=metadata)
 
@@ -95,7 +90,7 @@ def bounds_program(
     text: str | None = None,
     name: str | None = None,
 ) -> Program:
-    """Compile a requirement for carriers that report outputs :data:`BOUNDS`, in discrete time; it has no parameters.
+    """Compile a requirement for carriers that report outputs :data:`BOUNDS`, in discrete time.
 
     Arguments as for :func:`carried_program`. The future may be unbounded.
 
@@ -115,7 +110,9 @@ def bounds_program(
     inputs = variables(formula)
     domain.check_inputs(inputs)
     outputs = domain.ground(*outputs_of(formula, applied))
-    graph, (first, _) = compile_starts([desugar(each) for each in outputs], period, inputs)
+    structural = bounds_of(formula)
+    cores = [_with_parameters(desugar(each), structural) for each in outputs]
+    graph, (first, _) = compile_starts(cores, period, inputs)
     parts = [struct.pack("<III", len(graph.nodes), len(graph.items), first)]
     for node in graph.nodes:
         parts.append(
@@ -127,21 +124,23 @@ def bounds_program(
     steps = [step for node in graph.nodes for step in node.steps]
     instructions = [Instruction("input", n=i) for i in range(len(inputs))]
     instructions += [Instruction("const", x=step.x) for step in steps]
+    given = [_with_parameters(each, structural) for each in outputs]
     metadata = Metadata(
         name or "",
         to_text(formula, limit=PAGE),
         BOUNDS,
-        meanings=MappingProxyType(
+        _places(graph.origins, len(inputs)),
+        MappingProxyType(
             {
-                len(inputs) + i: excerpt(written(origin, outputs))
+                len(inputs) + i: _label(written(origin, given))
                 for i, origin in enumerate(graph.origins)
                 if isinstance(origin, Apply)
             }
         ),
         early=b"".join(parts),
     )
-    places = (len(instructions) - 1,) * len(BOUNDS)
-    return Program(tuple(instructions), inputs, places, period, metadata=metadata)
+    last = (len(instructions) - 1,) * len(BOUNDS)
+    return Program(tuple(instructions), inputs, last, period, metadata=metadata)
 
 
 def check_code(program: Program, code: bytes) -> None:
@@ -160,25 +159,39 @@ def state_bytes(program: Program, domain: TimeDomain, backend: str) -> int | Non
     return engine_of(domain).backends[backend].memory(program)
 
 
-def _with_parameters(formula: Formula, structural: frozenset[str], values: dict[str, float]) -> Formula:
-    """Return the formula with a variable for every parameter and named constant; their values go to ``values``."""
+def _with_parameters(formula: Formula, structural: frozenset[str]) -> Formula:
+    """Return the formula with named constants as parameters, and those that bound an interval as constants."""
 
     def step(node: Formula, args: tuple[Formula, ...]) -> Formula:
         if isinstance(node, Apply):
             return replace(node, args=args)
-        if isinstance(node, Const) and node.name is not None and node.name not in structural:
-            values[node.name] = node.value
-            return Var(node.name, node.span)
+        if isinstance(node, Const) and node.name is not None and not isinstance(node.type, Enumeration):
+            kind = Const if node.name in structural else Parameter
+            return kind(node.value, node.span, node.name, node.type)
         return node
 
     return fold(formula, step)
+
+
+def _places(origins: Sequence[Formula | None], first: int) -> Mapping[str, tuple[int, ...]]:
+    """Return the instructions of each parameter; ``first``: that of the first of ``origins``."""
+    places: dict[str, tuple[int, ...]] = {}
+    for place, origin in enumerate(origins, first):
+        if isinstance(origin, Parameter):
+            places[origin.name] = (*places.get(origin.name, ()), place)
+    return MappingProxyType(places)
+
+
+def _label(formula: Formula) -> str:
+    """Return the text of a formula for a message, with the names of parameters: their values may change."""
+    return to_text(formula, limit=EXCERPT, parameters=True)
 
 
 def _meanings(program: Program, formulas: Iterable[Formula]) -> dict[int, str]:
     """Return what each instruction computes, as it is written in ``formulas`` and as far as a message shows it."""
     written = as_written(formulas)
     return {
-        i: excerpt(written.get(formula, formula))
+        i: _label(written.get(formula, formula))
         for i, formula in enumerate(program.origins)
         if isinstance(formula, Apply) and program.value_of[formula] == i
     }
