@@ -19,7 +19,6 @@ from rtamt.language.operators import Bounds, Pointwise, Shift, Since, Sum, Tense
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
-    from fractions import Fraction
 
     from rtamt.signals.domain_interface import TimeDomain
 
