@@ -8,7 +8,8 @@ likewise. Negation is no node: a reference to a node is twice its index, plus on
 from __future__ import annotations
 
 import zlib
-from dataclasses import dataclass, field
+from copy import copy
+from dataclasses import dataclass, field, fields, replace
 from typing import TYPE_CHECKING, NamedTuple
 
 from rtamt.compiler.lower import seconds_per_step
@@ -21,7 +22,7 @@ from rtamt.rewrite.horizon import horizons
 from rtamt.signals.discrete import Discrete
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
     from fractions import Fraction
 
     from rtamt.signals.domain_interface import TimeDomain
@@ -73,6 +74,10 @@ class Item(NamedTuple):
     tick: int = 0
 
 
+#: What a graph is for; the rest is what it contains.
+_FIXED = ("period", "inputs", "domain")
+
+
 @dataclass
 class Graph:
     """The graph of several formulas, ``outputs`` being references; ``origins`` names the formula of each step."""
@@ -112,6 +117,24 @@ class Graph:
     def horizon(self, ref: int) -> int:
         """Return how many steps after an instant the value of a reference is final at the latest."""
         return self.nodes[ref // 2].horizon
+
+    def copied(self) -> Graph:
+        """Return the same graph, to which more can be added."""
+        own = {each.name: copy(getattr(self, each.name)) for each in fields(self) if each.name not in _FIXED}
+        return replace(self, **own)
+
+    def with_parameters(self, values: Mapping[str, float]) -> Graph:
+        """Return the graph with values of parameters; ``ref`` and ``origins`` have others."""
+        if not values:
+            return self
+        origins, nodes = iter(self.origins), []
+        for node in self.nodes:
+            steps = [
+                step._replace(x=values[origin.name]) if isinstance(origin, Parameter) else step
+                for step, origin in zip(node.steps, origins, strict=False)
+            ]
+            nodes.append(node._replace(steps=tuple(steps)))
+        return replace(self, nodes=nodes)
 
     def fingerprint(self) -> bytes:
         """Return what distinguishes this graph from others."""

@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
+from rtamt.compiler.early import Graph, compile_graph
 from rtamt.compiler.plan import Plan, compile_plan, compile_program
 from rtamt.language.formula import Formula, Parameter, postorder
 from rtamt.language.parameters import with_values
@@ -82,6 +83,19 @@ class Shape:
         stages = [replace(stage, program=stage.program.with_parameters(self.values)) for stage in plan.stages]
         return Plan(tuple(stages), plan.program.with_parameters(self.values))
 
+    def graph(
+        self,
+        period: Fraction,
+        inputs: tuple[str, ...],
+        domain: type[TimeDomain] = Discrete,
+        *,
+        start: bool = False,
+    ) -> Graph:
+        """Compile the formulas for early verdicts, without their ``values``; arguments as for :func:`compile_graph`."""
+        if not self.values:
+            return compile_graph(self.expanded(), period, inputs, domain, start=start)
+        return _graph(self.formulas, period, inputs, domain, start).copied()
+
 
 def _expanded(formulas: tuple[Formula, ...]) -> tuple[Formula, ...]:
     return tuple([desugar(formula) for formula in formulas])
@@ -106,3 +120,14 @@ def _plan(
     inputs: tuple[str, ...],
 ) -> Plan:
     return compile_plan(_kept(formulas), period, clip, domain, inputs)
+
+
+@lru_cache(_KEPT)
+def _graph(
+    formulas: tuple[Formula, ...],
+    period: Fraction,
+    inputs: tuple[str, ...],
+    domain: type[TimeDomain],
+    start: bool,
+) -> Graph:
+    return compile_graph(_kept(formulas), period, inputs, domain, start=start)

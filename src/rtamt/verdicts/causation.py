@@ -11,14 +11,14 @@ from rtamt.engine.usage_guard import exclusive
 from rtamt.errors import SpecificationError, TraceError, UsageError, shown
 from rtamt.language.printer import excerpt
 from rtamt.rewrite.check import unbounded_future
-from rtamt.rewrite.desugar import desugar
 from rtamt.rewrite.early import causeless
 from rtamt.signals.outcomes import Causation
 from rtamt.verdicts.discrete_early import DiscreteEarlyMonitor
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
+    from rtamt.compiler.early import Graph
     from rtamt.language.formula import Formula
     from rtamt.signals.domain_interface import TimeDomain
 
@@ -52,10 +52,11 @@ class CausationMonitor(DiscreteEarlyMonitor, EarlyMonitorBase):
                 )
         self._bounded = unbounded_future(formula) is None
         super().__init__(formula, domain, start=True, every=self._bounded, **settings)
-        hidden = self._formulas[self._hidden :]
-        self._causes = compile_causes(self._graph, [desugar(each) for each in hidden])
         self._forget()
         self._prepare()
+
+    def _extend(self, graph: Graph, outputs: Sequence[Formula]) -> None:
+        self._causes = compile_causes(graph, outputs)
 
     if TYPE_CHECKING:  # by the base
 

@@ -114,7 +114,7 @@ class DenseEarlyMonitor(EarlyMonitor):
 
     def _no_value(self, error: Any) -> Exception:
         """Name the sub-formula and the instant of a value that does not exist."""
-        formula = written(self._graph.origins[error.args[0]], self._formulas)
+        formula = written(self._origin(error.args[0]), self._formulas)
         return undefined(formula, f"time {self._shown(error.args[1])}")
 
     # ---- times -----------------------------------------------------------------------------------

@@ -200,5 +200,5 @@ class DiscreteEarlyMonitor(EarlyMonitor):
 
     def _no_value(self, error: Any) -> Exception:
         """Name the sub-formula and the instant of a value that does not exist."""
-        formula = written(self._graph.origins[error.args[0]], self._formulas)
+        formula = written(self._origin(error.args[0]), self._formulas)
         return undefined(formula, at_sample(error.args[1], error.time))

@@ -10,7 +10,7 @@ from functools import partial
 from math import inf, isnan
 from typing import TYPE_CHECKING, Any
 
-from rtamt.compiler.early import compile_graph
+from rtamt.compiler.shared import Shape
 from rtamt.engine.backend import Session
 from rtamt.engine.discrete.apart import Apart, inner_of
 from rtamt.engine.engine import engine_of
@@ -18,8 +18,8 @@ from rtamt.engine.native import core
 from rtamt.engine.online import OnlineMonitor, Watched, grounded
 from rtamt.engine.usage_guard import exclusive
 from rtamt.errors import TraceError, UsageError, did_you_mean, shown
+from rtamt.language.parameters import with_values
 from rtamt.language.value_types import BOOLEAN
-from rtamt.rewrite.desugar import desugar
 from rtamt.signals import arrays
 from rtamt.signals.coding import encoded_value, no_truth
 from rtamt.signals.outcomes import Interval
@@ -101,11 +101,21 @@ class EarlyMonitor(OnlineMonitor):
         self._step = step
         self._explained, self._continuous = explain, domain.continuous
         self._ranges = self._read_ranges(ranges or {})
-        cores = [desugar(each) for each in self._formulas]
-        self._graph = compile_graph(cores, step, self.input_names, type(domain), start=start)
         # A formula that is asked for at the start alone is no output.
         self._hidden = 0 if every else 1
+        shape = Shape.of(self._formulas)
+        graph = shape.graph(step, self.input_names, type(domain), start=start)
+        self._extend(graph, shape.expanded()[self._hidden :])
+        self._graph = graph.with_parameters(shape.values)
         self._outputs = self._graph.outputs[self._hidden :]
+
+    def _origin(self, step: int) -> Formula:
+        """Return the core formula that a step of the graph computes."""
+        values = Shape.of(self._formulas).values
+        return with_values([self._graph.origins[step]], values)[0]
+
+    def _extend(self, graph: Graph, outputs: Sequence[Formula]) -> None:
+        """Add what a monitor needs besides the core formulas of its outputs."""
 
     #: By how many steps at most a sample may be late; None where all come in order.
     _late: int | None = None
