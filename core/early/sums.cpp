@@ -17,7 +17,7 @@ void Engine::lift(State& state, Tick l, Tick r, const Bounds& now) {
 
 std::optional<Engine::Failure> Engine::add_up(std::uint32_t index, bool first) {
     const Node& own = node(index);
-    State& state = nodes_[index];
+    const State& state = nodes_[index];
     if (state.from >= forever) return std::nullopt; // nobody wants it
     spans_.clear();
     if (first) {

@@ -11,14 +11,32 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from rtamt.errors import EvaluationError
-from rtamt.language.formula import Apply, Formula
-from rtamt.language.operators import STL
+from rtamt.language.formula import Apply, Formula, postorder
+from rtamt.language.operators import STL, Sort
 from rtamt.language.parser import parse_formula
 from rtamt.rewrite.check import has_future
 from rtamt.rewrite.horizon import horizon
 from rtamt.rewrite.pastify import pastify
 from tests.laws.test_engine_laws import by_definition, by_engine
 from tests.strategies import formulas, traces
+
+SUMS = {"sum", "mean", "integral"}
+
+#: Operators whose numbers are multiples of a power of two where those of their operands are.
+DYADIC = {
+    "abs", "min", "max", "neg", "add", "sub", "mul", "floor", "ceil", "round", "sign", "clip", "if", "sum", "integral",
+    "minimum", "maximum", "duration", "count", "delay", "ahead", "diff", "held",
+}  # fmt: skip
+
+
+def sums_round(node: Formula) -> bool:
+    """Return whether a node adds numbers whose sum depends on the order of additions."""
+    if not isinstance(node, Apply) or node.op.name not in SUMS:
+        return False
+    return any(
+        isinstance(part, Apply) and part.op.result is Sort.NUMBER and part.op.name not in DYADIC
+        for part in postorder(node.args[0])
+    )
 
 
 @pytest.mark.parametrize("evaluate", [by_definition, by_engine])
@@ -28,6 +46,7 @@ def test_the_pastified_formula_says_the_same_one_horizon_later(
 ) -> None:
     formula = data.draw(formulas(period=period))
     columns = data.draw(traces())
+    assume(not any(map(sums_round, postorder(formula))))  # pastified, blocks begin at other samples
     depth = horizon(formula, period)
     assert depth is not None
     delay = int(depth / period)

@@ -398,7 +398,7 @@ STL: Language = Language.of((
               expansion=_duration, guards=("and",)),
     _function("count", 1, "How often a formula begins to hold in the window behind.", "count[0:60](x >= 3) <= 10",
               operands=(C,), latex=r"\mathrm{{count}}_{I}({0})", tense=Tense.PAST, bounds=Bounds.OPTIONAL,
-              discrete_only=True, why_discrete=_COUNT, definition=d.count, expansion=_count, guards=("and",)),
+              before=1, discrete_only=True, why_discrete=_COUNT, definition=d.count, expansion=_count, guards=("and",)),
     # ---- one sample away ---------------------------------------------------------------------
     _prefix("prev", "prev Y previous", 70, "One sample ago; holds where there is none.", "prev(x >= 3)",
             latex=r"\mathbf{{Y}} {0}", tense=Tense.PAST, reach=1, discrete_only=True,

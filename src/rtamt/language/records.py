@@ -154,6 +154,7 @@ class Operator:
     expansion: Expansion | None = None
     dense: Callable[..., float] | None = None
     discrete_only: bool = False
+    before: int = 0  # how many samples before its window of the past it reads, too
     timed: bool = False  # its value is in seconds: the definition takes the sampling period after the bounds
     one_tick: bool = (
         False  # in dense time its interval is the tick behind, in discrete time the sample behind

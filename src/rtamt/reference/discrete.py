@@ -294,6 +294,8 @@ def _reaches(formula: Formula, period: Fraction, tense: Tense) -> dict[int, int 
         own: int | None = 0
         if isinstance(node, Apply) and node.op.tense is tense:
             own = node.op.reach if node.op.bounds is Bounds.NONE else _window(node, period)[1]
+            if own is not None:
+                own += node.op.before
         deepest = None if None in below else max((b for b in below if b is not None), default=0)
         reaches[id(node)] = None if own is None or deepest is None else own + deepest
         return reaches[id(node)]

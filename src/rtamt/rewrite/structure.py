@@ -209,4 +209,4 @@ def _reach(node: Apply, period: Fraction) -> int:
         return 0
     if node.op.bounds is Bounds.NONE:
         return NEVER if node.op.reach is None else node.op.reach
-    return window_of(node, period)[1]
+    return window_of(node, period)[1] + node.op.before

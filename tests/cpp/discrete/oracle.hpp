@@ -123,8 +123,9 @@ inline double sum(const Slots& a, std::int64_t slot, std::int64_t width) {
     double beginning = 0;
     for (std::size_t i = block; i <= last; ++i)
         beginning += samples[i];
-    for (std::size_t i = block; i-- > 0 && i + wide > last;)
-        ending += samples[i];
+    const std::size_t first = last + 1 > wide ? last + 1 - wide : 0;
+    for (std::size_t i = block; i > first; --i)
+        ending += samples[i - 1];
     return ending + beginning;
 }
 

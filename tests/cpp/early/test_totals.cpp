@@ -21,8 +21,8 @@ Bounds total(const std::vector<Bounds>& x, Tick end, Tick width) {
         const Bounds& each = x[static_cast<std::size_t>(t)];
         beginning = {beginning.lower + each.lower, beginning.upper + each.upper};
     }
-    for (Tick t = block; t-- > 0 && t + width > end;) {
-        const Bounds& each = x[static_cast<std::size_t>(t)];
+    for (Tick t = block; t > std::max<Tick>(end + 1 - width, 0); --t) {
+        const Bounds& each = x[static_cast<std::size_t>(t - 1)];
         ending = {ending.lower + each.lower, ending.upper + each.upper};
     }
     return {ending.lower + beginning.lower, ending.upper + beginning.upper};
