@@ -19,7 +19,7 @@ from rtamt.signals.dense import DenseTrace
 from rtamt.signals.discrete import DiscreteTrace
 from rtamt.signals.ticks import TimeScale
 from tests.laws.early.cases import dense_case, formula, value
-from tests.laws.early.monitors import PERIOD, TICK
+from tests.laws.early.definition import PERIOD, TICK
 
 
 def drawn(seed: int):

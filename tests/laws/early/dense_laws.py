@@ -20,15 +20,16 @@ from rtamt.reference import earliest
 from rtamt.rewrite.early import loose
 from rtamt.rewrite.ground import ground
 from rtamt.rewrite.semantics import boolean
+from tests.laws.early.definition import DEFINITION, TICK
 from tests.laws.early.laws import NothingToCheck, given, whole_horizon
-from tests.laws.early.monitors import DEFINITION, PYTHON, TICK
+from tests.laws.early.monitors import PYTHON
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from rtamt.language.formula import Formula
     from tests.laws.early.cases import Arrivals, DenseCase
-    from tests.laws.early.monitors import Implementation
+    from tests.laws.early.definition import Implementation
 
 
 def _span(case: DenseCase) -> tuple[int, int]:

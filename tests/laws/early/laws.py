@@ -20,7 +20,7 @@ from rtamt.reference.discrete_bounds import ANYTHING
 from rtamt.rewrite.early import causeless, ends_differently, loose
 from rtamt.rewrite.horizon import horizon
 from rtamt.rewrite.semantics import boolean
-from tests.laws.early.monitors import DEFINITION, PERIOD
+from tests.laws.early.definition import DEFINITION, PERIOD
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from rtamt.language.formula import Formula
     from rtamt.signals.outcomes import Causation
     from tests.laws.early.cases import Case
-    from tests.laws.early.monitors import Implementation
+    from tests.laws.early.definition import Implementation
 
 
 class NothingToCheck(Exception):  # noqa: N818 - no error

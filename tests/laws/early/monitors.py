@@ -6,21 +6,10 @@ An implementation is four functions, which make a monitor of a formula: to add t
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from rtamt import Interval, Verdict, VerdictRun
-from rtamt.compiler.early import FOREVER
-from rtamt.language.enclosures import Enclosure
-from rtamt.language.formula import variables
-from rtamt.reference import causation, dense_bounds, discrete_bounds, earliest
-from rtamt.reference.dense_bounds import DenseKnowledge
-from rtamt.reference.discrete_bounds import ANYTHING, Knowledge
 from rtamt.rewrite.semantics import boolean
-from rtamt.signals.dense import Dense
 from rtamt.signals.discrete import DISCRETE
 from rtamt.verdicts.causation import CausationMonitor
 from rtamt.verdicts.dense_early import DenseEagerMonitor
@@ -29,215 +18,13 @@ from rtamt.verdicts.discrete_interval import DiscreteIntervalMonitor
 from rtamt.verdicts.eager import EagerMonitor
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Mapping
 
-    from rtamt import Causation
     from rtamt.language.formula import Formula
-    from rtamt.reference.dense_bounds import StepBounds
     from rtamt.verdicts.interval import Change
     from tests.laws.early.cases import Range
 
-PERIOD = TICK = Fraction(1)
-SECONDS = Dense(TICK)
-
-
-@dataclass(frozen=True)
-class Implementation:
-    """How monitors are made: of a formula, its variables, declared ranges, and in discrete time the lateness.
-
-    Times are whole seconds: the period and the tick are 1 s. A monitor of bounds has ``update(t, x=…)``, which
-    takes a number, bounds or None (missing), ``interval(t)`` and ``finish()``; one of verdicts has
-    ``update`` and ``finish``, which return lists of ``Verdict``, in dense time of ``VerdictRun``; one of causation
-    has ``update``, which returns what a sample causes at the start, and ``causation(t)``.
-    """
-
-    name: str
-    interval: Callable[[Formula, tuple[str, ...], Mapping[str, Range], int], Any]
-    eager: Callable[[Formula, tuple[str, ...], Mapping[str, Range]], Any]
-    causation: Callable[[Formula], Any]
-    #: Also with a lateness and whether to replay corrections.
-    dense_interval: Callable[..., Any]
-    dense_eager: Callable[[Formula, tuple[str, ...], Mapping[str, Range]], Any]
-    #: The back end of specifications, if it is one.
-    backend: str | None = None
-
-
-def _bounds(value: Any, limits: Range) -> Range:
-    if value is None:
-        return limits
-    return value if isinstance(value, tuple) else (value, value)
-
-
-class _Discrete:
-    """What all monitors of the definition share in discrete time: the samples so far."""
-
-    def __init__(
-        self, formula: Formula, names: tuple[str, ...], ranges: Mapping[str, Range], _lateness: int = 0
-    ) -> None:
-        self._formula, self._names, self._ranges = formula, names, ranges
-        self._rows: dict[int, dict[str, Range]] = {}
-        self._finished = False
-
-    def _take(self, t: int, values: Mapping[str, Any]) -> None:
-        self._rows[t] = {name: _bounds(v, self._limits(name)) for name, v in values.items()}
-
-    def _limits(self, name: str) -> Range:
-        return self._ranges.get(name, ANYTHING)
-
-    @property
-    def known(self) -> Knowledge:
-        n = max(self._rows, default=-1) + 1
-        columns = {}
-        for name in self._names:
-            ends = [self._rows[i][name] if i in self._rows else self._limits(name) for i in range(n)]
-            columns[name] = Enclosure(*(np.array([each[k] for each in ends], float) for k in (0, 1)))
-        return Knowledge(columns, n, self._ranges, self._finished)
-
-
-class _Intervals(_Discrete):
-    def update(self, t: int, **values: Any) -> None:
-        self._take(t, values)
-
-    def interval(self, t: int = 0) -> Interval:
-        found = discrete_bounds.bounds(self._formula, self.known, PERIOD)
-        i = min(t, len(found.lower) - 1)
-        return Interval(float(found.lower[i]), float(found.upper[i]))
-
-    def finish(self) -> None:
-        self._finished = True
-
-
-class _Eager(_Discrete):
-    def update(self, t: int, **values: Any) -> list[Verdict]:
-        self._take(t, values)
-        return self._told()
-
-    def finish(self) -> list[Verdict]:
-        self._finished = True
-        return self._told()
-
-    def _told(self) -> list[Verdict]:
-        return [Verdict(*each) for each in earliest.verdicts(self._formula, self.known, PERIOD)[-1]]
-
-
-class _Causes(_Discrete):
-    def __init__(self, formula: Formula) -> None:
-        super().__init__(formula, variables(formula), {})
-
-    def update(self, t: int, **values: Any) -> Causation:
-        self._take(t, values)
-        return self.causation(0)
-
-    def causation(self, t: int) -> Causation:
-        return causation.causation(self._formula, self.known, PERIOD, t + 1)[t]
-
-
-class _Dense:
-    """The same in dense time."""
-
-    def __init__(self, formula: Formula, names: tuple[str, ...], ranges: Mapping[str, Range]) -> None:
-        self._formula, self._names, self._ranges = formula, names, ranges
-        self._updates: list[tuple[int, dict[str, Range]]] = []
-        self._finished = False
-
-    def _take(self, t: int, values: Mapping[str, Any]) -> None:
-        row = {name: _bounds(v, self._ranges.get(name, ANYTHING)) for name, v in values.items()}
-        self._updates.append((t, row))
-
-
-class _DenseIntervals(_Dense):
-    """Bounds; with a lateness, from what each tick by itself is known to be."""
-
-    def __init__(
-        self,
-        formula: Formula,
-        names: tuple[str, ...],
-        ranges: Mapping[str, Range],
-        lateness: int | None = None,
-        *,
-        replay: bool = False,
-    ) -> None:
-        super().__init__(formula, names, ranges)
-        self._lateness = 0 if replay and lateness is None else lateness
-        self._mark: int | None = None
-        self._found: StepBounds | None = None
-
-    def update(self, t: int, **values: Any) -> None:
-        self._take(t, values)
-        self._found = None
-
-    def watermark(self, t: int) -> None:
-        self._mark = t if self._mark is None else max(t, self._mark)
-        self._found = None
-
-    def finish(self) -> None:
-        self._finished = True
-        self._found = None
-
-    @property
-    def known(self) -> DenseKnowledge:
-        if self._lateness is None and self._mark is None:
-            return earliest.after(self._updates, self._names, self._ranges, finished=self._finished)
-        samples: dict[str, dict[int, Range]] = {name: {} for name in self._names}
-        for t, row in self._updates:
-            for name, bounds in row.items():
-                samples[name][t] = bounds
-        newest = max((t for t, _ in self._updates), default=-FOREVER)
-        late = -FOREVER if self._lateness is None else newest - self._lateness - 1
-        closed = max(late, -FOREVER if self._mark is None else self._mark)
-        columns: dict[str, Any] = {}
-        for name, own in samples.items():
-            known = max([closed, *(own if self._lateness is None else ())])
-            if not own or (min(own) > known and not self._finished):
-                columns[name] = (), (), ()
-                continue
-            ticks = range(min(own), max(newest, known, *own) + 2)
-            ends = [self._at(own, name, t, known) for t in ticks]
-            columns[name] = ticks, [low for low, _ in ends], [high for _, high in ends]
-        every = dict.fromkeys(self._names, FOREVER)
-        return DenseKnowledge(columns, self._ranges, self._finished, every)
-
-    def _at(self, samples: Mapping[int, Range], name: str, t: int, known: int) -> Range:
-        if t in samples:
-            return samples[t]
-        if t > known and not self._finished:
-            return self._ranges.get(name, ANYTHING)
-        return samples[max(each for each in samples if each < t)]
-
-    @property
-    def _steps(self) -> StepBounds:
-        if self._found is None:
-            self._found = dense_bounds.bounds(self._formula, self.known, TICK)
-        return self._found
-
-    @property
-    def started(self) -> bool:
-        return self.known.start is not None
-
-    def start(self) -> Interval:
-        return Interval(*self._steps.at(self._steps.times[0]))
-
-    def interval(self, t: int) -> Interval:
-        return Interval(*self._steps.at(t))
-
-
-class _DenseEager(_Dense):
-    def update(self, t: int, **values: Any) -> list[VerdictRun]:
-        self._take(t, values)
-        return self._told()
-
-    def finish(self) -> list[VerdictRun]:
-        self._finished = True
-        return self._told()
-
-    def _told(self) -> list[VerdictRun]:
-        told = earliest.dense_verdicts(
-            self._formula, self._updates, self._names, TICK, self._ranges, finished=self._finished
-        )
-        return [VerdictRun(*run) for run in earliest.runs(told[-1])]
-
-
-DEFINITION = Implementation("definition", _Intervals, _Eager, _Causes, _DenseIntervals, _DenseEager)
+from tests.laws.early.definition import DEFINITION, SECONDS, Implementation
 
 
 class _Kept:

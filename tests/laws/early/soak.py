@@ -12,12 +12,13 @@ from typing import TYPE_CHECKING
 
 from tests.laws.early import dense_laws, laws, specifications
 from tests.laws.early.cases import ANYTHING, arrivals, case, dense_case, value
-from tests.laws.early.monitors import DEFINITION, IMPLEMENTATIONS, PYTHON
+from tests.laws.early.definition import DEFINITION
+from tests.laws.early.monitors import IMPLEMENTATIONS, PYTHON
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from tests.laws.early.monitors import Implementation
+    from tests.laws.early.definition import Implementation
 
     Law = Callable[[Random, Implementation], None]
 
