@@ -79,11 +79,13 @@ def parse(
     check_constants({} if constants is None else constants)
     library = Library(None if folder is None else _folder(folder))
     document = parse_document(text, language=language, unit=unit, constants=constants, library=library)
-    rule = document.sampling
-    if rule is not None and isinstance(time, str):
-        period = rule.period if period is None else period
     domain = time_domain(time, period, None, resolution)
     exact = domain.period if period is None else positive_period(period)
+    rule = document.sampling
+    if rule is not None and exact is None:
+        exact = rule.period
+        if not domain.continuous:
+            domain = type(domain).of(exact, domain.tolerance, domain.resolution)
     spec = Specification(
         document,
         domain,

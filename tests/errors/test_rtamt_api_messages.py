@@ -276,3 +276,19 @@ def test_unbounded_future_cannot_be_pastified(operator):
         f"Cannot pastify an unbounded {operator}. Give it an upper bound, such as {operator}[0:10]\n"
         f"  line 1, column 1:\n    {operator}(x)\n    {'^' * (len(operator) + 3)}"
     )
+
+
+def test_a_sampling_rule_of_the_text_is_not_ignored():
+    spec = rtamt.StlDiscreteTimeSpecification()
+    spec.declare_var("x", "float")
+    spec.spec = "sample 100ms hold; out = x >= 3"
+    with pytest.raises(rtamt.RTAMTException) as caught:
+        spec.parse()
+    assert str(caught.value) == (
+        "RTAMT Exception: 'sample 100ms hold' is read by rtamt.load and rtamt.parse; here the period is set with "
+        "set_sampling_period(), and data are samples as they are"
+    )
+    spec.spec = "sample 100ms; out = x >= 3"
+    spec.set_sampling_period(100, "ms", 0.1)
+    spec.parse()
+    assert spec.update(0, [("x", 5.0)]) == 2.0

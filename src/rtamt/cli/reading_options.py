@@ -59,7 +59,8 @@ def add_reading_options(parser: argparse.ArgumentParser) -> None:
         metavar="NAME=COLUMN",
         action="append",
         default=[],
-        help="the column of a variable that is called otherwise; may be given again",
+        help="the column of a variable that is called otherwise, instead of its recorded name in SPEC; may be "
+        "given again",
     )
     group.add_argument("--sheet", metavar="NAME", help="of an Excel workbook with several")
     group.add_argument("--sql", metavar="URL", help="read a database, such as sqlite:///log.db")

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rtamt.errors import StlError
+from rtamt.errors import StlError, UsageError
 from rtamt.language.units import UNITS
 from rtamt.rewrite.check import check_bounds
 from rtamt.rtamt_api.backends import signal
@@ -81,6 +81,12 @@ class DiscreteTimeSpecification(Formulas):
     # ---- reading ---------------------------------------------------------------------------------
 
     def _parsed(self, document: Document) -> None:
+        rule = document.sampling
+        if rule is not None and (rule.hold or rule.period != self._period):
+            raise UsageError(
+                f"'{rule}' is read by rtamt.load and rtamt.parse; here the period is set with "
+                f"set_sampling_period(), and data are samples as they are"
+            )
         super()._parsed(document)
         self._violations = 0
 

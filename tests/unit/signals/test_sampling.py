@@ -103,6 +103,21 @@ def test_dense_time_and_data_without_times_are_not_sampled():
     assert spec.evaluate(frame).trace.columns["x"].tolist() == [1, 1, 2, 3]
 
 
+@pytest.mark.parametrize(
+    ("settings", "period"),
+    [
+        ({}, 0.1),
+        ({"time": rtamt.Discrete()}, 0.1),
+        ({"time": rtamt.Discrete(period="50ms")}, 0.05),
+        ({"period": 0.05}, 0.05),
+    ],
+)
+def test_a_period_that_is_given_replaces_that_of_the_rule(settings, period):
+    spec = rtamt.parse("sample 100ms hold; x <= 3", **settings)
+    assert (float(spec.monitor().period), float(spec.sampling.period)) == (period, period)
+    assert len(spec.evaluate({"x": X}).signal) == 1 + round(0.6 / period)
+
+
 def test_what_a_rule_does_not_do():
     spec = rtamt.parse(TEXT)
     with pytest.raises(UsageError, match="read the data with rtamt"):
