@@ -4,7 +4,7 @@
     rosrun rtamt4ros ros_stl_monitor.py spec.stl --period 1 --unit s
 
 What it subscribes and publishes is in the specification (the paper's listing 8). Arguments may be private
-parameters as well: ~spec, ~period, ~unit, ~time, ~stale, ~verdict, ~set.
+parameters as well: ~spec, ~period, ~unit, ~time, ~stale, ~verdict, ~at, ~set.
 """
 
 import contextlib

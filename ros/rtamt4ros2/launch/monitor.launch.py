@@ -14,6 +14,7 @@ ARGUMENTS = {
     "time": "discrete",
     "stale": "",
     "verdict": "",
+    "at": "",
     "set": "",
     "reliability": "reliable",
     "durability": "volatile",

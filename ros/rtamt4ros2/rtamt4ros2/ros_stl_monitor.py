@@ -3,7 +3,7 @@
     ros2 run rtamt4ros2 ros_stl_monitor spec.stl --period 1 --unit s
 
 What it subscribes and publishes is in the specification. Arguments may be parameters as well: spec, period,
-unit, time, stale, verdict, set; and quality of service: reliability, durability, depth.
+unit, time, stale, verdict, at, set; and quality of service: reliability, durability, depth.
 """
 
 import sys

@@ -40,7 +40,9 @@ class MessageType:
 
 
 #: What may be published of an output; see :func:`bind`.
-DELAYED, INTERVAL = VERDICTS = ("delayed", "interval")
+DELAYED, EAGER, INTERVAL = VERDICTS = ("delayed", "eager", "interval")
+#: Of which instants bounds are published: of the start of the trace, or of all.
+START, EVERY = INSTANTS = ("start", "every")
 
 #: The default message type of a requirement.
 NUMBER = MessageType("rtamt_msgs.msg", "FloatStamped")
@@ -67,8 +69,9 @@ class Output:
     type: MessageType
     #: The requirement as a specification of its own.
     specification: Specification
-    #: Whether bounds and verdict at the start of the trace are published, and not the robustness of every sample.
-    early: bool = False
+    #: What is published, if it is not the robustness of every sample: bounds and verdict at the start of the trace
+    #: (:data:`START`), bounds of every instant (:data:`EVERY`), or verdicts once they are decided (:data:`EAGER`).
+    early: str = ""
 
     @property
     def variable(self) -> str:
@@ -87,7 +90,7 @@ class Output:
 
     @property
     def bounds(self) -> str:
-        """The topic on which bounds and verdict at the start of the trace are published."""
+        """The topic on which bounds and early verdicts are published."""
         return f"{self.topic}/bounds"
 
 
@@ -117,11 +120,13 @@ class Binding:
         return classes
 
 
-def bind(spec: Specification, verdict: str | None = None) -> Binding:
+def bind(spec: Specification, verdict: str | None = None, at: str | None = None) -> Binding:
     """Return the topics, types and fields that a specification names.
 
-    ``verdict``: what is published of every output: ``"delayed"``, its robustness and verdict of every sample; or
-    ``"interval"``, bounds and verdict at the start of the trace. By default the latter for unbounded future.
+    ``verdict``: what is published of every output: ``"delayed"``, its robustness and verdict of every sample;
+    ``"eager"``, the verdict of every instant once no later sample can change it; or ``"interval"``, bounds and
+    verdict at the start of the trace, with ``at="every"`` bounds of every instant whenever they change. By default
+    bounds at the start for unbounded future.
 
     Every assertion whose name is a field of a declared variable is published on that variable's topic. A
     variable without an annotation uses the topic ``rtamt/<name>``; so does a requirement with any other name, as
@@ -142,9 +147,12 @@ def bind(spec: Specification, verdict: str | None = None) -> Binding:
     types = _types(document)
     if verdict not in {None, *VERDICTS}:
         raise UsageError(f"the verdict is {shown(verdict)}; choose from {', '.join(VERDICTS)}")
+    if at not in {None, *INSTANTS}:
+        raise UsageError(f"at is {shown(at)}; choose from {', '.join(INSTANTS)}")
+    if at is not None and verdict != INTERVAL:
+        raise UsageError(f"at='{at}' belongs to verdict='{INTERVAL}'")
     outputs = tuple(
-        replace(output, early=verdict == INTERVAL or (verdict is None and _is_open(output)))
-        for output in _outputs(spec, types)
+        replace(output, early=_early(output, verdict, at or START)) for output in _outputs(spec, types)
     )
     if not outputs:
         raise UsageError(
@@ -157,8 +165,16 @@ def bind(spec: Specification, verdict: str | None = None) -> Binding:
     return Binding(document.name or "rtamt", inputs, outputs, types_of(*formulas))
 
 
-def _is_open(output: Output) -> bool:
-    return unbounded_future(output.specification.formula) is not None
+def _early(output: Output, verdict: str | None, at: str) -> str:
+    """Return what is published of an output before the horizon; "" if nothing is."""
+    unbounded = unbounded_future(output.specification.formula) is not None
+    if verdict is None:
+        return START if unbounded else ""
+    if verdict == INTERVAL and at == EVERY and unbounded:
+        raise UsageError(
+            f"'{output.name}' has unbounded future, so that its bounds are those of the start; leave out at='every'"
+        )
+    return {DELAYED: "", EAGER: EAGER, INTERVAL: at}[verdict]
 
 
 def _types(document: Document) -> dict[str, MessageType]:

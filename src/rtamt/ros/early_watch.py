@@ -1,11 +1,15 @@
-"""An output that is monitored before its horizon: bounds and verdict at the start of the trace."""
+"""Outputs that are monitored before their horizon: bounds and verdicts, at the start of the trace or everywhere."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from abc import ABC, abstractmethod
+from math import inf
+from typing import TYPE_CHECKING, Any, NamedTuple
 
+from rtamt.ros.binding import EAGER, EVERY
 from rtamt.ros.watch import MessageWatch, SampledWatch, Watch
-from rtamt.verdicts.at_start import StartMonitor
+from rtamt.signals.outcomes import VerdictRun
+from rtamt.verdicts.at_start import OPEN, SATISFIED, VIOLATED, StartMonitor
 
 if TYPE_CHECKING:
     from collections.abc import Container, Mapping
@@ -16,10 +20,10 @@ if TYPE_CHECKING:
 
 
 class Bounds(NamedTuple):
-    """Bounds of an output's robustness at the start of the trace, and its verdict there, as known at ``stamp``.
+    """Bounds of an output's robustness from ``begin`` to ``end``, and its verdict there, as known at ``stamp``.
 
-    ``satisfied`` is None while the verdict is open, and ``decided_at`` the stamp of the sample that decided it.
-    Times: nanoseconds.
+    ``satisfied`` is None while the verdict is open, and ``decided_at`` the stamp of the sample that decided it, None
+    if that is not known. ``end``: the last sample, in dense time the instant after the last one. Times: nanoseconds.
     """
 
     output: Output
@@ -28,29 +32,80 @@ class Bounds(NamedTuple):
     upper: float
     satisfied: bool | None
     decided_at: int | None
+    begin: int
+    end: int
 
 
-class EarlyStanding:
-    """One output, and how it stood at the last sample."""
+class Reports(ABC):
+    """One output and its monitor: samples in, records out. ``satisfied``: the last verdict; None: open."""
 
-    def __init__(self, output: Output, monitor: StartMonitor) -> None:
+    def __init__(self, output: Output) -> None:
         self.output = output
         self.topic = output.topic
-        self._monitor = monitor
+        self.satisfied: bool | None = None
+
+    @abstractmethod
+    def take(self, stamp: int, values: Mapping[str, float]) -> list[Bounds]:
+        """Take numbers of one instant; return the records."""
+
+    @abstractmethod
+    def reset(self) -> None:
+        """Forget all samples."""
 
     @property
-    def satisfied(self) -> bool | None:
-        """Whether the formula holds at the start of the trace; None while that is open."""
-        return self._monitor.satisfied
+    @abstractmethod
+    def samples(self) -> int:
+        """The number of samples since the beginning or the last reset."""
 
     @property
     def text(self) -> str:
         """What is known of the verdict."""
-        return self._monitor.status if self._monitor.samples else "no verdict yet"
+        if not self.samples:
+            return "no verdict yet"
+        return OPEN if self.satisfied is None else SATISFIED if self.satisfied else VIOLATED
 
     @property
     def facts(self) -> tuple[tuple[str, str], ...]:
         """What diagnostics show of the output."""
+        return ()
+
+
+#: What a node shows of an output.
+EarlyStanding = Reports
+
+
+class _AtStart(Reports):
+    """Bounds and verdict at the start of the trace, with every sample."""
+
+    def __init__(self, output: Output, domain: TimeDomain) -> None:
+        super().__init__(output)
+        self._monitor = StartMonitor(output.specification, time=domain, time_unit="ns")
+        self._firsts: dict[str, int] = {}
+
+    def take(self, stamp: int, values: Mapping[str, float]) -> list[Bounds]:
+        self._monitor.update(stamp, **values)
+        for name in values:
+            self._firsts.setdefault(name, stamp)
+        self.satisfied = self._monitor.satisfied
+        known, start = self._monitor.interval(), max(self._firsts.values())
+        decided = self._monitor.decided_at
+        return [Bounds(self.output, stamp, known.lower, known.upper, self.satisfied, decided, start, start)]
+
+    def reset(self) -> None:
+        self._monitor.reset()
+        self._firsts.clear()
+        self.satisfied = None
+
+    @property
+    def samples(self) -> int:
+        return self._monitor.samples
+
+    @property
+    def text(self) -> str:
+        return self._monitor.status if self.samples else super().text
+
+    @property
+    def facts(self) -> tuple[tuple[str, str], ...]:
         known = self._monitor.interval()
         decided = self._monitor.decided_at
         return (
@@ -60,53 +115,110 @@ class EarlyStanding:
         )
 
 
-class _AtStart(Watch):
-    """One output whose bounds are reported whenever a sample is taken."""
+class _Decided(Reports):
+    """Verdicts of every instant, each once it is decided; its sign bounds the robustness."""
 
-    def __init__(self, output: Output, monitor: StartMonitor) -> None:
-        self._start = monitor
-        self.standings: tuple[EarlyStanding, ...] = (EarlyStanding(output, monitor),)
+    def __init__(self, output: Output, domain: TimeDomain) -> None:
+        super().__init__(output)
+        settings: dict[str, Any] = {"verdict": "eager", "time": domain, "time_unit": "ns"}
+        self._monitor: Any = output.specification.monitor(**settings)
+
+    def take(self, stamp: int, values: Mapping[str, float]) -> list[Bounds]:
+        records = []
+        for verdict in self._monitor.update(stamp, **values):
+            run = isinstance(verdict, VerdictRun)
+            begin, end = (verdict.begin, verdict.end) if run else (verdict.time, verdict.time)
+            lower, upper = (0.0, inf) if verdict.satisfied else (-inf, 0.0)
+            times = int(verdict.decided_at), int(begin), int(end)
+            records.append(Bounds(self.output, stamp, lower, upper, verdict.satisfied, *times))
+            self.satisfied = verdict.satisfied
+        return records
+
+    def reset(self) -> None:
+        self._monitor.reset()
+        self.satisfied = None
+
+    @property
+    def samples(self) -> int:
+        return int(self._monitor.samples)
+
+
+class _Changes(Reports):
+    """Bounds of every instant, whenever they change; their sign is the verdict."""
+
+    def __init__(self, output: Output, domain: TimeDomain) -> None:
+        super().__init__(output)
+        self._monitor = output.specification.monitor(
+            verdict="interval", at="every", time=domain, time_unit="ns"
+        )
+
+    def take(self, stamp: int, values: Mapping[str, float]) -> list[Bounds]:
+        self._monitor.update(stamp, **values)
+        records = []
+        for change in self._monitor.changes():
+            lower, upper = change.interval.lower, change.interval.upper
+            satisfied = True if lower > 0 else False if upper < 0 else None
+            times = int(change.begin), int(change.end)
+            records.append(Bounds(self.output, stamp, lower, upper, satisfied, None, *times))
+            self.satisfied = satisfied
+        return records
+
+    def reset(self) -> None:
+        self._monitor.reset()
+        self.satisfied = None
+
+    @property
+    def samples(self) -> int:
+        return self._monitor.samples
+
+
+def reports_of(output: Output, domain: TimeDomain) -> Reports:
+    """Return what is reported of an output, as :func:`~rtamt.ros.binding.bind` chose."""
+    return {EAGER: _Decided, EVERY: _Changes}.get(output.early, _AtStart)(output, domain)
+
+
+class _Reporting(Watch):
+    """One output whose records come with samples."""
+
+    def __init__(self, reports: Reports) -> None:
+        self._reports = reports
+        self.standings: tuple[EarlyStanding, ...] = (reports,)
 
     @property
     def samples(self) -> int:
         """The number of samples since the beginning or the last reset."""
-        return self._start.samples
+        return self._reports.samples
 
     def take(
         self, stamp: int, values: Mapping[str, float], wanted: Container[str] | None = None
     ) -> list[Record]:
-        """Take numbers of one instant, return the record of the output if its topic is wanted (None: all are)."""
-        self._start.update(stamp, **{name: values[name] for name in self.names if name in values})
-        (standing,) = self.standings
-        if wanted is not None and standing.output.bounds not in wanted:
-            return []
-        known = self._start.interval()
-        decided = self._start.decided_at
-        return [Bounds(standing.output, stamp, known.lower, known.upper, self._start.satisfied, decided)]
+        """Take numbers of one instant, return the records of the output if its topic is wanted (None: all are)."""
+        records = self._reports.take(stamp, {name: values[name] for name in self.names if name in values})
+        return [] if wanted is not None and self._reports.output.bounds not in wanted else list(records)
 
     def look(self) -> None:
         """Bring the standings up to date: they always are."""
 
     def reset(self) -> None:
         """Forget all samples."""
-        self._start.reset()
+        self._reports.reset()
 
 
-class EarlyWatch(_AtStart, SampledWatch):
+class EarlyWatch(_Reporting, SampledWatch):
     """Samples one period apart."""
 
-    def __init__(self, output: Output, topic_of: Mapping[str, str], domain: TimeDomain) -> None:
+    def __init__(self, reports: Reports, topic_of: Mapping[str, str], domain: TimeDomain) -> None:
         assert domain.period is not None
-        SampledWatch.__init__(self, [output], topic_of, domain.period)
-        _AtStart.__init__(self, output, StartMonitor(output.specification, time=domain, time_unit="ns"))
+        SampledWatch.__init__(self, [reports.output], topic_of, domain.period)
+        _Reporting.__init__(self, reports)
 
 
-class EarlyDenseWatch(_AtStart, MessageWatch):
+class EarlyDenseWatch(_Reporting, MessageWatch):
     """Samples at the times in the messages' headers, each topic on its own time base."""
 
-    def __init__(self, output: Output, topic_of: Mapping[str, str], domain: TimeDomain) -> None:
-        MessageWatch.__init__(self, [output], topic_of)
-        _AtStart.__init__(self, output, StartMonitor(output.specification, time=domain, time_unit="ns"))
+    def __init__(self, reports: Reports, topic_of: Mapping[str, str]) -> None:
+        MessageWatch.__init__(self, [reports.output], topic_of)
+        _Reporting.__init__(self, reports)
 
     def take(
         self, stamp: int, values: Mapping[str, float], wanted: Container[str] | None = None

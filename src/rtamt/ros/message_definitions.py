@@ -31,7 +31,7 @@ uint8 verdict
 float64 horizon    # seconds
 """,
         BOUNDS: """\
-# What is known at header.stamp of a requirement at the start of the trace: its robustness and its verdict.
+# What is known at header.stamp of a requirement from begin to end: its robustness and its verdict.
 uint8 OPEN=0
 uint8 SATISFIED=1
 uint8 VIOLATED=2
@@ -42,6 +42,8 @@ float64 lower      # bounds of the robustness, whatever is still to come
 float64 upper
 uint8 verdict
 int64 decided_at   # nanoseconds, as header.stamp: the sample that decided the verdict; 0 while it is open
+int64 begin        # nanoseconds: the first instant; of the start of the trace, that alone
+int64 end          # nanoseconds: the last sample; in dense time up to, and without, this instant
 """,
     }
 )

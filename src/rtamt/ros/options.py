@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 
 from rtamt.errors import UsageError
 from rtamt.language.units import UNITS
-from rtamt.ros.binding import VERDICTS, bind
+from rtamt.ros.binding import INSTANTS, VERDICTS, bind
 from rtamt.ros.monitor import RosMonitor
 from rtamt.settings import assignments
 from rtamt.signals.domains import DEFAULT, DOMAINS, time_domain
@@ -25,6 +25,7 @@ DEFAULTS: Mapping[str, str] = {
     "time": DEFAULT,
     "stale": "",
     "verdict": "",
+    "at": "",
     "set": "",
 }
 
@@ -39,6 +40,7 @@ class Options:
     time: str
     stale: str
     verdict: str
+    at: str
     set: str
 
     def monitor(self) -> RosMonitor:
@@ -59,7 +61,9 @@ class Options:
         rule = None if dense else spec.sampling
         stale = self._duration(self.stale) if self.stale else None if rule is None else rule.limit
         sampled = None if dense else spec.period
-        monitor = RosMonitor(bind(spec, self.verdict or None), period=sampled, time=self.time, stale=stale)
+        monitor = RosMonitor(
+            bind(spec, self.verdict or None, self.at or None), period=sampled, time=self.time, stale=stale
+        )
         written = None if dense else spec.document.sampling
         if written is not None and written.period != spec.period:
             monitor.note(f"the period {self.period} replaces that of '{written}' in the specification")
@@ -122,8 +126,15 @@ def add_options(made: argparse.ArgumentParser) -> None:
     made.add_argument(
         "--verdict",
         metavar=f"{{{','.join(VERDICTS)}}}",
-        help="delayed: robustness and verdict of every sample, one horizon later; interval: bounds and verdict at "
-        "the start of the trace, whatever is still to come (default: interval for unbounded future, else delayed)",
+        help="delayed: robustness and verdict of every sample, one horizon later; eager: the verdict of every "
+        "instant, once no later sample can change it; interval: bounds and verdict at the start of the trace, "
+        "whatever is still to come (default: interval for unbounded future, else delayed)",
+    )
+    made.add_argument(
+        "--at",
+        metavar=f"{{{','.join(INSTANTS)}}}",
+        help="with --verdict interval: bounds at the start of the trace, or of every instant whenever they change "
+        "(default: start)",
     )
     made.add_argument(
         "--set",

@@ -72,6 +72,7 @@ class Publisher:
             message.name, message.lower, message.upper = record.output.name, record.lower, record.upper
             message.verdict = _VERDICTS[record.satisfied]
             message.decided_at = record.decided_at or 0
+            message.begin, message.end = record.begin, record.end
         else:
             message = self._verdict()
             message.name, message.horizon = record.output.name, record.horizon

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rtamt.ros.early_watch import EarlyDenseWatch, EarlyWatch
+from rtamt.ros.early_watch import EarlyDenseWatch, EarlyWatch, reports_of
 from rtamt.ros.output_group import DenseWatch, DiscreteWatch, group_outputs
 
 if TYPE_CHECKING:
@@ -19,10 +19,12 @@ if TYPE_CHECKING:
 def sampled(outputs: Sequence[Output], topic_of: Mapping[str, str], domain: Discrete) -> list[SampledWatch]:
     """Return watches that sample the latest messages once a period."""
     groups = [DiscreteWatch(group, topic_of, domain) for group in group_outputs(outputs)]
-    return [*groups, *(EarlyWatch(output, topic_of, domain) for output in outputs if output.early)]
+    early = (output for output in outputs if output.early)
+    return [*groups, *(EarlyWatch(reports_of(output, domain), topic_of, domain) for output in early)]
 
 
 def of_messages(outputs: Sequence[Output], topic_of: Mapping[str, str], domain: Dense) -> list[MessageWatch]:
     """Return watches that take every message at its own time."""
     groups = [DenseWatch(group, topic_of, domain) for group in group_outputs(outputs)]
-    return [*groups, *(EarlyDenseWatch(output, topic_of, domain) for output in outputs if output.early)]
+    early = (output for output in outputs if output.early)
+    return [*groups, *(EarlyDenseWatch(reports_of(output, domain), topic_of) for output in early)]

@@ -25,10 +25,10 @@ def message(value, at=None):
     return SimpleNamespace(header=SimpleNamespace(stamp=SimpleNamespace(secs=secs, nsecs=nsecs)), value=value)
 
 
-def monitor(formula, verdict=None, **settings):
+def monitor(formula, verdict=None, at=None, **settings):
     if settings.get("time") != "dense":
         settings = {"period": 1, **settings}
-    return RosMonitor(bind(rtamt.parse(HEAD + formula), verdict), **settings)
+    return RosMonitor(bind(rtamt.parse(HEAD + formula), verdict, at), **settings)
 
 
 def numbers(records):

@@ -93,9 +93,11 @@ def test_bounds_are_messages_on_a_topic_of_their_own():
     outbox = Publisher(watched.binding, load, lambda stamp: stamp)
     assert list(outbox.topics) == ["rtamt/rob/bounds"]
     sent = [outbox.message(record) for record in follow(watched, [4, -1])]
-    assert [(m.header.stamp, m.name, m.lower, m.upper, m.verdict, m.decided_at) for m in sent] == [
-        (SECOND, "rob.value", -inf, 4.0, UNKNOWN, 0),
-        (2 * SECOND, "rob.value", -inf, -1.0, VIOLATED, 2 * SECOND),
+    assert [
+        (m.header.stamp, m.name, m.lower, m.upper, m.verdict, m.decided_at, m.begin, m.end) for m in sent
+    ] == [
+        (SECOND, "rob.value", -inf, 4.0, UNKNOWN, 0, SECOND, SECOND),
+        (2 * SECOND, "rob.value", -inf, -1.0, VIOLATED, 2 * SECOND, SECOND, SECOND),
     ]
     assert SATISFIED != VIOLATED
 
@@ -116,5 +118,69 @@ def test_dense_time_has_a_record_for_every_message():
 
 
 def test_unknown_verdict_is_refused():
-    with pytest.raises(UsageError, match="the verdict is 'soon'; choose from delayed, interval"):
+    with pytest.raises(UsageError, match="the verdict is 'soon'; choose from delayed, eager, interval"):
         bind(rtamt.parse(HEAD + "rob.value = req.value >= 0"), "soon")
+
+
+def test_bounds_of_every_instant_are_those_of_bounded_future():
+    spec = rtamt.parse(HEAD + "rob.value = always(req.value >= 0)")
+    with pytest.raises(UsageError) as error:
+        bind(spec, "interval", "every")
+    assert str(error.value) == (
+        "'rob.value' has unbounded future, so that its bounds are those of the start; leave out at='every'"
+    )
+    with pytest.raises(UsageError, match=r"^at is 'end'; choose from start, every$"):
+        bind(spec, "interval", "end")
+    with pytest.raises(UsageError, match=r"^at='every' belongs to verdict='interval'$"):
+        bind(spec, "eager", "every")
+
+
+EPOCH = 1_700_000_000
+VALUES = (4, -1, -2, 5, 0, 3)
+
+
+def feed(verdict, at, time):
+    """Return the records of a node that has a message each second, and how it stands."""
+    watched = monitor("rob.value = eventually[0,2](req.value >= 3)", verdict=verdict, at=at, time=time)
+    records = []
+    for i, value in enumerate(VALUES):
+        stamp = EPOCH + i
+        records += watched.message("/req", message(value, at=stamp), stamp * SECOND)
+    return records, watched.conditions((EPOCH + len(VALUES)) * SECOND)[0]
+
+
+def alone(time, **settings):
+    """Return the monitor of the same requirement, and what each sample makes known."""
+    period = "1s" if time == "discrete" else None
+    made = rtamt.parse("eventually[0,2](x >= 3)", period=period, time=time).monitor(
+        time_unit="ns", **settings
+    )
+    for i, value in enumerate(VALUES):
+        found = made.update((EPOCH + i) * SECOND, x=value)
+        yield (EPOCH + i) * SECOND, found if found is not None else made.changes()
+
+
+@pytest.mark.parametrize("time", ["discrete", "dense"])
+def test_a_node_publishes_each_verdict_once_it_is_decided(time):
+    records, condition = feed("eager", None, time)
+    expected = []
+    for stamp, verdicts in alone(time, verdict="eager"):
+        for each in verdicts:
+            span = (each.time, each.time) if time == "discrete" else (each.begin, each.end)
+            bounds = (0.0, inf) if each.satisfied else (-inf, 0.0)
+            expected.append((stamp, *bounds, each.satisfied, each.decided_at, *span))
+    assert [tuple(record[1:]) for record in records] == expected
+    assert expected
+    assert (condition.level, condition.message) == (Level.OK, "satisfied")
+
+
+@pytest.mark.parametrize("time", ["discrete", "dense"])
+def test_a_node_publishes_the_bounds_of_every_instant_when_they_change(time):
+    records, _ = feed("interval", "every", time)
+    expected = [
+        (stamp, each.interval.lower, each.interval.upper, each.begin, each.end)
+        for stamp, changes in alone(time, verdict="interval", at="every")
+        for each in changes
+    ]
+    assert [(r.stamp, r.lower, r.upper, r.begin, r.end) for r in records] == expected
+    assert all(r.satisfied == (True if r.lower > 0 else False if r.upper < 0 else None) for r in records)
