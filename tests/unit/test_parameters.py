@@ -132,15 +132,17 @@ def test_other_values_are_neither_parsed_nor_compiled_again(spec, monkeypatch):
         raise AssertionError("parsed or compiled again")
 
     dense = {"x": ([0, 1, 2, 3], DATA["x"])}
-    spec.evaluate(DATA), spec.evaluate(dense, time="dense"), spec.monitor(), spec.monitor(time="dense")
+    modes = ("delayed", "eager", "interval", "causation")
+    spec.evaluate(DATA), spec.evaluate(dense, time="dense"), spec.monitor(time="dense")
+    monitors = [spec.monitor(verdict=mode) for mode in modes]
     for place in ("rtamt.compiler.shared", "rtamt.specification", "rtamt.specification_text"):
-        for name in ("compile_program", "compile_plan", "parse_document"):
+        for name in ("compile_program", "compile_plan", "compile_graph", "parse_document"):
             monkeypatch.setattr(f"{place}.{name}", again, raising=False)
     new = spec.with_parameters(limit=1)
     assert new.evaluate(DATA).robustness == new.evaluate(dense, time="dense").robustness == -2.0
-    monitor = spec.monitor()
-    monitor.reset(limit=1)
-    assert [monitor.update(t, x=x) for t, x in enumerate(DATA["x"])][-1] == -2.0
+    for monitor in monitors:
+        monitor.reset(limit=1)
+    assert [monitors[0].update(t, x=x) for t, x in enumerate(DATA["x"])][-1] == -2.0
     new.monitor(time="dense")
     with pytest.raises(AssertionError, match="again"):
         spec.with_parameters(**{"reaction time": 3})

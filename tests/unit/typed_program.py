@@ -32,6 +32,8 @@ def specifications() -> None:
     assert_type(spec.horizon, float)
     assert_type(spec.requirements, Mapping[str, rtamt.Specification])
     assert_type(spec.select("A"), rtamt.Specification)
+    assert_type(spec.with_parameters(), rtamt.Specification)
+    assert_type(spec.parameters, Mapping[str, float])
     assert_type(spec.compile(), Program)
     assert_type(rtamt.robustness("x >= 3", DATA), float)
 
