@@ -136,7 +136,7 @@ def test_the_command_says_what_is_wrong(problem, capsys):
     assert main(["falsify", str(problem), "--optimizer", "magic"]) == 2
     assert capsys.readouterr().err.startswith("rtamt: there is no optimizer 'magic'; optimizers: cma, ")
     assert main(["falsify", str(problem), "--plot", str(Path("no") / "where.png")]) == 2
-    assert "cannot write the picture 'no/where.png'" in capsys.readouterr().err
+    assert "cannot write the plot 'no/where.png'" in capsys.readouterr().err
 
 
 def test_parameters_of_the_requirement_are_set(problem, capsys):
