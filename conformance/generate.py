@@ -48,7 +48,9 @@ class Drawing:
         operators = [op for op in STL if not (self.dense and op.discrete_only)]
         self.formulas = [op for op in operators if op.result is Sort.FORMULA]
         self.numbers = [op for op in operators if op.result is Sort.NUMBER]
-        self.comparisons = [op for op in self.formulas if op.operands and Sort.FORMULA not in op.operands]
+        self.comparisons = [
+            op for op in self.formulas if op.operands and Sort.FORMULA not in op.operands and not op.presence
+        ]
         self.connectives = [op for op in self.formulas if Sort.FORMULA in op.operands]
 
     def chance(self, one_in: int) -> bool:
@@ -99,7 +101,8 @@ class Drawing:
                     given.append(Var("x"))
             made = op(*given, interval=self.interval(op))
             return made if op in self.comparisons else STL["ge"](made, Const(self.half()))
-        made = op(*(self.plain() for _ in op.operands), interval=self.interval(op))
+        operands = (Var("x") if op.presence else self.plain() for _ in op.operands)
+        made = op(*operands, interval=self.interval(op))
         return made if op.operands else STL["or"](made, self.plain())
 
     def nested(self, depth: int) -> Formula:

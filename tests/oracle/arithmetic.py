@@ -118,11 +118,13 @@ NUMBERS: dict[str, Callable[..., float]] = {
 }
 
 # Of each comparison its robustness and its truth.
-COMPARISONS: dict[str, tuple[Callable[[float, float], float], Callable[[float, float], bool]]] = {
+COMPARISONS: dict[str, tuple[Callable[..., float], Callable[..., bool]]] = {
     "ge": (lambda x, y: x - y, lambda x, y: x >= y),
     "gt": (lambda x, y: x - y, lambda x, y: x > y),
     "le": (lambda x, y: y - x, lambda x, y: x <= y),
     "lt": (lambda x, y: y - x, lambda x, y: x < y),
     "eq": (lambda x, y: -abs(x - y), lambda x, y: x == y),
     "ne": (lambda x, y: abs(x - y), lambda x, y: x != y),
+    # Where no sample is missing.
+    "valid": (lambda _x: math.inf, lambda _x: True),
 }

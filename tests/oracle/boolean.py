@@ -23,13 +23,14 @@ if TYPE_CHECKING:
 
     Truth = list[bool]
 
-COMPARISONS: dict[str, Callable[[float, float], bool]] = {
+COMPARISONS: dict[str, Callable[..., bool]] = {
     "gt": operator.gt,
     "ge": operator.ge,
     "lt": operator.lt,
     "le": operator.le,
     "eq": operator.eq,
     "ne": operator.ne,
+    "valid": lambda _: True,
 }
 
 POINTWISE: dict[str, Callable[..., bool]] = {
@@ -109,8 +110,8 @@ def satisfied(
             return [bool(v > 0) for v in evaluate(node, columns, n, period)]
         name = node.op.name
         if name in COMPARISONS:
-            left, right = (evaluate(operand, columns, n, period).tolist() for operand in node.args)
-            return [COMPARISONS[name](a, b) for a, b in zip(left, right, strict=True)]
+            operands = (evaluate(operand, columns, n, period).tolist() for operand in node.args)
+            return [COMPARISONS[name](*values) for values in zip(*operands, strict=True)]
         if name in POINTWISE:
             return [POINTWISE[name](*values) for values in zip(*below, strict=True)]
         if name in ATOMS:

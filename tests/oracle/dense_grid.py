@@ -126,8 +126,8 @@ def on_grid(
             return [v > 0 for v in numbers[id(node)]]
         name = node.op.name
         if name in COMPARISONS:
-            pairs = zip(*(numbers[id(operand)] for operand in node.args), strict=True)
-            return [COMPARISONS[name](a, b) for a, b in pairs]
+            operands = zip(*(numbers[id(operand)] for operand in node.args), strict=True)
+            return [COMPARISONS[name](*values) for values in operands]
         if name in POINTWISE:
             return [POINTWISE[name](*values) for values in zip(*below, strict=True)]
         if name in ATOMS:

@@ -76,8 +76,8 @@ def _predicate(node: Formula, which: str, columns: Mapping[str, Any], n: int, pe
     if which == "ordinary":
         return evaluate(node, columns, n, period)
     if isinstance(node, Apply) and node.op.name in COMPARISONS:
-        left, right = (evaluate(operand, columns, n, period).tolist() for operand in node.args)
-        holds = [COMPARISONS[node.op.name](a, b) for a, b in zip(left, right, strict=True)]
+        operands = (evaluate(operand, columns, n, period).tolist() for operand in node.args)
+        holds = [COMPARISONS[node.op.name](*values) for values in zip(*operands, strict=True)]
     else:
         holds = [value > 0 for value in evaluate(node, columns, n, period)]
     return np.where(holds, inf, -inf)

@@ -331,7 +331,7 @@ def _judged(
     if semantics == "standard":
         return _defined(node, number)
     if isinstance(node, Apply) and node.op.name in COMPARISONS:
-        truth = [COMPARISONS[node.op.name][1](x, y) for x, y in zip(*operands, strict=True)]
+        truth = [COMPARISONS[node.op.name][1](*values) for values in zip(*operands, strict=True)]
     else:
         truth = [v > 0 for v in number]
     if semantics == "boolean":

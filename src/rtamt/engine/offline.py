@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from rtamt.engine.engine import engine_of
+from rtamt.rewrite.presence import channel_of, presences, tracked
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -50,6 +51,9 @@ class Evaluators:
 
     def __call__(self, formulas: tuple[Formula, ...], recording: DomainTrace) -> list[Signal]:
         """Return the robustness signal of each formula over a recording, all from one program."""
+        if recording.bounds and (asked := presences(*formulas)):
+            formulas = tuple(map(tracked, formulas))
+            recording = recording.with_presence({name: channel_of(name) for name in asked})
         step, inputs = recording.step, tuple(recording.columns)
         if recording.bounds:
             backend = engine_of(recording.domain).backends[self._backend]

@@ -177,6 +177,11 @@ def true_where(x: Array) -> Array:
     return np.where(x > 0, inf, -inf)
 
 
+def valid(x: Array) -> Array:
+    """``valid(x)``: +inf, since x has all samples here; see ``rewrite/presence.py`` for missing ones."""
+    return np.full(len(x), inf)
+
+
 def holds_gt(x: Array, y: Array) -> Array:
     """+inf where x > y, else -inf."""
     return np.where(x > y, inf, -inf)

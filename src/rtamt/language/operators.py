@@ -178,7 +178,7 @@ _TRUTHS = (_GT, _GE, _EQ, _LE, _LT, _NE, TRUTH)
 
 def is_truth(op: Operator) -> bool:
     """Return whether an operator by itself is +inf or -inf."""
-    return any(op is each for each in _TRUTHS)
+    return op.presence or any(op is each for each in _TRUTHS)
 
 
 def holds(number: Formula) -> Formula:
@@ -317,7 +317,7 @@ STL: Language = Language.of((
     Operator("if", ("if",), Fixity.CONDITIONAL, 100, (C, N, N), N,
              "The number after 'then' where the condition holds, else the number after 'else'.",
              "(if x >= 3 then x else y) <= 5", r"\mathbf{{if}}\ {0}\ \mathbf{{then}}\ {1}\ \mathbf{{else}}\ {2}",
-             d.if_, expansion=lambda condition, a, b, _i: choice(condition, a, b), strict=True),
+             d.if_, expansion=lambda condition, a, b, _i: choice(condition, a, b), strict=True, keeps=(1, 2)),
     _prefix("neg", "-", 120, "Minus.", "-x >= 2", operands=(N,), result=N, latex="-{0}",
             definition=d.neg, kernel=Pointwise("neg"), extension=e.neg, slopes=e.slopes(-1)),
     _infix("mul", "*", 110, "Product.", "2 * x <= 3", operands=(N, N), result=N, latex=r"{0} \cdot {1}",
@@ -343,6 +343,8 @@ STL: Language = Language.of((
     _infix("ne", "!= !==", 90, "Different: |a - b|.", "x != 3", operands=(N, N), latex=r"{0} \neq {1}", dual="eq",
            equates=True, definition=d.ne, expansion=lambda a, b, _i: STL["abs"](STL["sub"](a, b)),
            truth=lambda a, b, _i: _NE(a, b)),
+    _function("valid", 1, "The variable has a sample here; everywhere if none is missing.", "valid(x)", result=F,
+              definition=d.valid, expansion=lambda a, _i: _GE(a, a), presence=True),
     # ---- Boolean -----------------------------------------------------------------------------
     _prefix("not", "not !", 80, "Negation: minus.", "not (x >= 3)", latex=r"\neg {0}",
             definition=d.neg, expansion=lambda a, _i: STL["neg"](a)),

@@ -172,6 +172,7 @@ class Operator:
     folds: bool = False  # a function that accepts more operands: f(a, b, c) is f(f(a, b), c)
     keeps: tuple[int, ...] = ()  # the operands, Boolean or of an enumeration too, whose type the result has
     equates: bool = False  # a comparison that members of an enumeration have, too
+    presence: bool = False  # the operand is a variable of any type; only whether it has a sample counts
     truth: Expansion | None = None  # of a predicate: the formula that is +inf where it holds, else -inf
     # Interval extension of a pointwise operator (enclosures.py): the bounds of the result from those of
     # the operands, and the monotonicity of the result in each operand.

@@ -73,7 +73,7 @@ def typed(op: Operator, args: Sequence[Formula], texts: Texts) -> tuple[Operator
     operand, and compared by truth.
     """
     types = [type_of(operand) for operand in args]
-    if not any(types) or UNKNOWN in types:  # a template is checked where it is used
+    if not any(types) or UNKNOWN in types or op.presence:  # a template is checked where it is used
         return op, tuple(args)
     enumerated = [k for k, each in enumerate(types) if isinstance(each, Enumeration | Ambiguous)]
     if not enumerated:

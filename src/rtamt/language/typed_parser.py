@@ -6,7 +6,7 @@ from functools import reduce
 from typing import TYPE_CHECKING
 
 from rtamt.errors import NameInFormulaError, did_you_mean
-from rtamt.language.formula import Apply, Const, Formula, Span
+from rtamt.language.formula import Apply, Const, Formula, Span, Var
 from rtamt.language.grammar import is_number
 from rtamt.language.names import NameParser
 from rtamt.language.type_rules import MistypedError, ambiguous, as_formula, no_formula, type_of, typed
@@ -36,6 +36,12 @@ class TypedParser(NameParser):
     ) -> Apply:
         """Apply an operator to operands as their types demand. ``places``: where the operands are written."""
         # What a template is applied to may have a type that the file of the template does not know.
+        if op.presence and not isinstance(args[0], Var):
+            raise self.error(
+                f"'{op.spellings[0]}' takes a variable, whose samples may be missing; "
+                f"'{self._written(places[0])}' is none",
+                places[0],
+            )
         if self.scope.types or self.scope.enumerations or self.scope.arguments:
             try:
                 op, args = typed(op, args, lambda k: self._written(places[k]))

@@ -17,6 +17,7 @@ from rtamt.language.enclosures import Enclosure, extended
 from rtamt.language.formula import Apply, Const, Formula, Var, children, fold, postorder, variables
 from rtamt.language.operators import Bounds, Pointwise, Shift, Since, Sum, Tense, Until, Window
 from rtamt.rewrite.desugar import desugar, written
+from rtamt.rewrite.presence import tracked
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -58,7 +59,7 @@ def loose(formula: Formula, period: Fraction | None) -> str | None:
     >>> [loose(parse_formula(text), Fraction(1)) for text in formulas]
     [None, 'x', None]
     """
-    core = desugar(formula)
+    core = desugar(tracked(formula))
     if any(map(_sums_all, postorder(core))):  # beyond the newest sample such a sum has no best bounds
         return next(iter(variables(core)), None)
     constants = _constants(core)
@@ -227,7 +228,7 @@ def causeless(formula: Formula) -> Formula | None:
     <formula (once x) + 1>
     """
     in_time: dict[int, bool] = {}
-    core = desugar(formula)
+    core = desugar(tracked(formula))
     for node in postorder(core):
         below = any(in_time[id(operand)] for operand in children(node))
         if below and not connects(node):

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from rtamt.language.units import Duration
     from rtamt.signals.coding import Types
     from rtamt.signals.dense_arrays import Samples
-    from rtamt.signals.domain_interface import Bounds
+    from rtamt.signals.domain_interface import Bounds, Mask
     from rtamt.signals.ticks import TickArray
 
 
@@ -109,6 +109,8 @@ class DenseTrace(DomainTrace):
     units: Mapping[str, str] = field(default_factory=dict)
     #: Lower and upper bounds of the samples of each variable; empty where all are known exactly.
     bounds: Mapping[str, Bounds] = field(default_factory=dict)
+    #: Which samples of a variable are missing.
+    missing: Mapping[str, Mask] = field(default_factory=dict)
 
     @property
     def start(self) -> int:
@@ -148,9 +150,19 @@ class DenseTrace(DomainTrace):
         """See :class:`DomainTrace`."""
         return replace(self, columns={name: self.columns[name] for name in names})
 
-    def bounded(self, bounds: Mapping[str, Bounds]) -> DenseTrace:
+    def bounded(self, bounds: Mapping[str, Bounds], missing: Mapping[str, Mask]) -> DenseTrace:
         """See :class:`DomainTrace`."""
-        return replace(self, bounds=bounds)
+        return replace(self, bounds=bounds, missing=missing)
+
+    def with_presence(self, channels: Mapping[str, str]) -> DenseTrace:
+        """See :class:`DomainTrace`: a variable is missing from a sample that is, until its next one."""
+        made = {}
+        for name, channel in channels.items():
+            ticks, _ = self.columns[name]
+            gaps = self.missing.get(name, np.zeros(len(ticks), bool))
+            made[channel] = ticks, np.where(np.pad(gaps, (0, len(ticks) - len(gaps)), "edge"), 0.0, 1.0)
+        exact = {channel: (values, values) for channel, (_, values) in made.items()}
+        return replace(self, columns={**self.columns, **made}, bounds={**self.bounds, **exact})
 
     def with_units(self, units: Mapping[str, str]) -> DenseTrace:
         """See :class:`DomainTrace`."""

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from rtamt.language.units import Duration
     from rtamt.signals.arrays import FloatArray
     from rtamt.signals.coding import Types
-    from rtamt.signals.domain_interface import Bounds
+    from rtamt.signals.domain_interface import Bounds, Mask
 
 
 @dataclass(frozen=True, init=False)
@@ -121,6 +121,8 @@ class DiscreteTrace(DomainTrace):
     units: Mapping[str, str] = dataclasses.field(default_factory=dict)
     #: Lower and upper bounds of the samples of each variable; empty where all are known exactly.
     bounds: Mapping[str, Bounds] = dataclasses.field(default_factory=dict)
+    #: Which samples of a variable are missing.
+    missing: Mapping[str, Mask] = dataclasses.field(default_factory=dict)
 
     def __len__(self) -> int:
         return len(self.times)
@@ -172,9 +174,18 @@ class DiscreteTrace(DomainTrace):
         """See :class:`DomainTrace`."""
         return dataclasses.replace(self, columns={name: self.columns[name] for name in names})
 
-    def bounded(self, bounds: Mapping[str, Bounds]) -> DiscreteTrace:
+    def bounded(self, bounds: Mapping[str, Bounds], missing: Mapping[str, Mask]) -> DiscreteTrace:
         """See :class:`DomainTrace`."""
-        return dataclasses.replace(self, bounds=bounds)
+        return dataclasses.replace(self, bounds=bounds, missing=missing)
+
+    def with_presence(self, channels: Mapping[str, str]) -> DiscreteTrace:
+        """See :class:`DomainTrace`."""
+        none = np.zeros(len(self), bool)
+        made = {
+            channel: np.where(self.missing.get(name, none), 0.0, 1.0) for name, channel in channels.items()
+        }
+        exact = {channel: (values, values) for channel, values in made.items()}
+        return dataclasses.replace(self, columns={**self.columns, **made}, bounds={**self.bounds, **exact})
 
     def with_units(self, units: Mapping[str, str]) -> DiscreteTrace:
         """See :class:`DomainTrace`."""

@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from rtamt.signals.signal import Signal
 
     Bounds = tuple[FloatArray, FloatArray]
+    Mask = NDArray[np.bool_]
 
 
 class TimeDomain(ABC):
@@ -129,6 +130,8 @@ class DomainTrace(ABC):
     units: Mapping[str, str]
     #: By variable: lower and upper bounds of its samples; empty where all are known exactly.
     bounds: Mapping[str, Bounds]
+    #: By variable: which of its samples are missing; only of those that lack some.
+    missing: Mapping[str, Mask]
 
     @property
     @abstractmethod
@@ -179,8 +182,15 @@ class DomainTrace(ABC):
         """Return the recording of these variables alone."""
 
     @abstractmethod
-    def bounded(self, bounds: Mapping[str, Bounds]) -> Self:
-        """Return the recording with bounds of the samples of each variable."""
+    def bounded(self, bounds: Mapping[str, Bounds], missing: Mapping[str, Mask]) -> Self:
+        """Return the recording with bounds of the samples of each variable, and where they are missing."""
+
+    @abstractmethod
+    def with_presence(self, channels: Mapping[str, str]) -> Self:
+        """Return the recording with a column for each channel that is 1 where its variable has a sample, else 0.
+
+        ``channels``: from a variable to the name of the channel.
+        """
 
     @abstractmethod
     def with_units(self, units: Mapping[str, str]) -> Self:

@@ -87,7 +87,7 @@ class Uncertainty:
             bounds[name] = lower, upper
         if not missing and not any(self.errors.get(name) for name in recording.columns):
             return recording
-        return recording.bounded(bounds)
+        return recording.bounded(bounds, missing)
 
 
 def range_of(name: str, value: Any) -> tuple[float, float]:

@@ -73,6 +73,7 @@ def formulas(
         op
         for op in language
         if select(op)
+        and not op.presence  # on complete data it is true
         and (past or op.tense is not Tense.PAST)
         and (future or op.tense is not Tense.FUTURE)
         and (discrete or not op.discrete_only)

@@ -15,6 +15,7 @@ from rtamt.errors import TraceError
 from rtamt.language.undefined_value import undefined
 from rtamt.language.units import check_unit
 from rtamt.rewrite.desugar import written
+from rtamt.rewrite.presence import tracked
 from rtamt.signals import arrays, dense_arrays
 from rtamt.signals.data_errors import unknown_variable
 from rtamt.signals.outcomes import VerdictRun
@@ -46,13 +47,18 @@ class DenseEarlyMonitor(EarlyMonitor):
     ) -> None:
         # ``requirements``: the conjuncts of the formula, each with its own trace.
         self._unit = None if unit is None else check_unit(unit)
-        self._requirements = domain.ground(*(requirements or (formula,)))
+        self._requirements = tuple(map(tracked, domain.ground(*(requirements or (formula,)))))
         super().__init__(formula, domain, **settings)
-        domain.check_inputs(self.input_names)
+        domain.check_inputs(self._inputs)
+
+    @property
+    def _settled(self) -> bool:
+        """See :class:`EarlyMonitor`: a variable is missing from its sample on, until its next one."""
+        return True
 
     def _prepare(self) -> None:
         """Open the first monitor of the back end."""
-        traces = {frozenset(own_variables(each, self.input_names)) for each in self._requirements}
+        traces = {frozenset(own_variables(each, self._inputs)) for each in self._requirements}
         if len(traces) == 1:
             self._session = self._compiled() if self._chosen.compiled else self._defined()
         else:  # requirements whose traces start at different instants are left to the definition
@@ -67,7 +73,7 @@ class DenseEarlyMonitor(EarlyMonitor):
             self._outputs,
             self._graph.items,
             self._known_ranges(),
-            list(self.input_names),
+            list(self._inputs),
             self._unread,
             self._late,
             self._verdict is not None,
@@ -81,7 +87,7 @@ class DenseEarlyMonitor(EarlyMonitor):
             [self._output_with_names(formula) for formula in self._formulas],
             self._hidden,
             self._known_ranges(),
-            self.input_names,
+            self._inputs,
             self._step,
             self._late,
             self._verdict is not None,
@@ -104,9 +110,9 @@ class DenseEarlyMonitor(EarlyMonitor):
     def _output_with_names(self, formula: Formula) -> Output:
         """Return a formula with the variables of its trace; the result as its requirements, each with its own."""
         if formula is self._formulas[0]:
-            return [(each, own_variables(each, self.input_names)) for each in self._requirements]
-        names = own_variables(formula, ()) if formula in self._requirements else self.input_names
-        return [(formula, names or self.input_names)]
+            return [(each, own_variables(each, self._inputs)) for each in self._requirements]
+        names = own_variables(formula, ()) if formula in self._requirements else self._inputs
+        return [(formula, names or self._inputs)]
 
     def _forget(self) -> None:
         super()._forget()
@@ -145,9 +151,9 @@ class DenseEarlyMonitor(EarlyMonitor):
         if self._finished:
             raise self._is_finished()
         for name in flat:
-            if name not in self.input_names:
+            if name not in self._inputs:
                 raise unknown_variable(name, self.input_names)
-        counts = dict(zip(self.input_names, self._backend.counts, strict=True))
+        counts = dict(zip(self._inputs, self._backend.counts, strict=True))
         scale = self._scale_of(time)
         named = next(iter(flat), arrays.TIME)
         tick = int(scale.ticks([time], named, counts.get(named, 0))[0])
@@ -158,19 +164,19 @@ class DenseEarlyMonitor(EarlyMonitor):
         """Raise the error for a sample that is not later than the last one of its variable."""
         counts, lasts = self._backend.counts, self._backend.last_times
         for name in names:
-            number = self.input_names.index(name)
+            number = self._inputs.index(name)
             if lasts[number] is not None and tick <= lasts[number]:
                 raise dense_arrays.not_increasing(name, counts[number], tick, lasts[number], scale)
 
     def _require_samples(self) -> None:
-        for name, count in zip(self.input_names, self._backend.counts, strict=True):
+        for name, count in zip(self._inputs, self._backend.counts, strict=True):
             if not count:
                 raise TraceError(f"'{name}' has no samples; provide one before finish()", variable=name)
 
     def _row_of(self, known: Mapping[str, Any]) -> list[tuple[int, float, float]]:
         """Return samples in the form of the back end; of a missing one the range is known."""
         ranges = self._known_ranges()
-        numbers = {name: self.input_names.index(name) for name in known}
+        numbers = {name: self._inputs.index(name) for name in known}
         return [(i, *(known[name] or ranges[i])) for name, i in numbers.items()]
 
 

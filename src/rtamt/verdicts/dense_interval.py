@@ -62,7 +62,7 @@ class DenseIntervalMonitor(DenseEarlyMonitor, IntervalMonitor, EarlyMonitorBase)
         if self._late is None:
             self._check_in_order(tick, scale, known)
         self._check_open(tick, scale)
-        ranges = dict(zip(self.input_names, self._known_ranges(), strict=True))
+        ranges = dict(zip(self._inputs, self._known_ranges(), strict=True))
         before, self._scale = self._scale, scale
         try:
             if self._late is None:
@@ -158,7 +158,7 @@ class DenseIntervalMonitor(DenseEarlyMonitor, IntervalMonitor, EarlyMonitorBase)
             )
         return later_steps(
             prediction,
-            self.input_names,
+            self._inputs,
             self._known_ranges(),
             lambda times, name: dense_arrays.samples_of((times, [0.0] * len(times)), name, scale, 0, None)[
                 0

@@ -64,7 +64,7 @@ class DiscreteEarlyMonitor(EarlyMonitor):
             self._formulas,
             self._hidden,
             self._known_ranges(),
-            self.input_names,
+            self._inputs,
             self._step,
             self._tolerance,
             self._late,
@@ -80,7 +80,7 @@ class DiscreteEarlyMonitor(EarlyMonitor):
             self._outputs,
             self._graph.items,
             self._known_ranges(),
-            list(self.input_names),
+            list(self._inputs),
             self._unread,
             float(self._step),
             self._tolerance,
@@ -147,9 +147,9 @@ class DiscreteEarlyMonitor(EarlyMonitor):
         """Return what a sample makes known, None where it is missing; raise :class:`TraceError` for wrong data."""
         read: dict[str, tuple[float, float] | None] = {}
         for name in values:
-            if name not in self.input_names:
+            if name not in self._inputs:
                 raise unknown_variable(name, self.input_names)
-        for name in self.input_names:
+        for name in self._inputs:
             if name not in values:
                 if self._late is None:
                     raise missing_variable(name, tuple(values))
@@ -159,7 +159,7 @@ class DiscreteEarlyMonitor(EarlyMonitor):
 
     def _row(self, known: Mapping[str, tuple[float, float] | None]) -> tuple[list[float], list[float]]:
         """Return the lower and the upper bounds of every variable at a sample."""
-        ranges = zip(self.input_names, self._known_ranges(), strict=True)
+        ranges = zip(self._inputs, self._known_ranges(), strict=True)
         row = [known.get(name) or bounds for name, bounds in ranges]
         return [low for low, _ in row], [high for _, high in row]
 

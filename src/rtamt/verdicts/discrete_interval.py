@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from fractions import Fraction
+from math import floor
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from rtamt.compiler.early import FOREVER
@@ -35,10 +36,16 @@ class DiscreteIntervalMonitor(DiscreteEarlyMonitor, IntervalMonitor, EarlyMonito
         "_snapshots",
         "_retracted",
         "_mark",
+        "_filled",
+        "_noted",
     )
 
     def _forget(self) -> None:
         super()._forget()
+        # How often the back end took what is no sample: that there is none.
+        self._filled = 0
+        #: What that changed of each output, since the last sample or watermark.
+        self._noted: dict[int, tuple[Any, ...]] = {}
         self._rest: tuple[Any, ...] = ()
         #: Of each output the samples whose bounds were open when the trace ended.
         self._open_at_end: tuple[tuple[int, ...], ...] = ()
@@ -47,6 +54,35 @@ class DiscreteIntervalMonitor(DiscreteEarlyMonitor, IntervalMonitor, EarlyMonito
         self._at_end: Interval | None = None
 
     # ---- samples ---------------------------------------------------------------------------------
+
+    @property
+    def samples(self) -> int:
+        """See :class:`EarlyMonitor`."""
+        return super().samples - self._filled
+
+    def _settle_presence(self, place: int) -> None:
+        self._noted = {}
+        if self._late is not None:
+            self._fill(max(self._backend.newest, place) - self._late - 1)
+
+    def _fill(self, last: int) -> None:
+        """Note where variables have no sample, up to an instant that becomes final."""
+        numbers = [self._inputs.index(channel) for channel in self._channels.values()]
+        backend = self._backend
+        for place in range(backend.closed + 1, last + 1) if numbers else ():
+            open_here = [k for k in numbers if len(set(backend.known(k, place))) > 1]
+            if not open_here:
+                continue
+            ahead = max(place - backend.newest, 0)
+            time = backend.time(place - ahead) + ahead * float(self._step)
+            lessons = tuple((k, 0.0, 0.0) for k in open_here)
+            backend.learn(time, list(lessons), backend.samples)
+            self._filled += 1
+            for output in range(len(self._outputs)):
+                changed = (*self._noted.get(output, ()), *backend.changes(output))
+                self._noted = {**self._noted, output: changed}
+            if self._replays:
+                self._events = (*self._events, (time, place, lessons))
 
     @property
     def _count(self) -> int:
@@ -140,6 +176,11 @@ class DiscreteIntervalMonitor(DiscreteEarlyMonitor, IntervalMonitor, EarlyMonito
     def _watermark(self, time: float) -> None:
         if self._early and time >= min(then for then, _ in self._early):
             self._start()
+        backend = self._backend
+        self._noted = {}
+        if self._late is not None and backend.newest >= 0:
+            ahead = floor((time - backend.time(backend.newest)) / float(self._step) + self._tolerance)
+            self._fill(backend.newest + min(ahead, 0))
         super()._watermark(time)
 
     # ---- answers ---------------------------------------------------------------------------------
@@ -177,7 +218,7 @@ class DiscreteIntervalMonitor(DiscreteEarlyMonitor, IntervalMonitor, EarlyMonito
             raise UsageError(
                 "the trace has not started: it does when no earlier sample can come, and predictions follow the newest"
             )
-        return later_samples(prediction, self.input_names, self._known_ranges())
+        return later_samples(prediction, self._inputs, self._known_ranges())
 
     def _supposed(self, output: int | None, sample: int, later: list[Later]) -> Any:
         try:
@@ -189,7 +230,10 @@ class DiscreteIntervalMonitor(DiscreteEarlyMonitor, IntervalMonitor, EarlyMonito
         if self._rest:
             first, values = self._rest[output]
             return [self._change(t, t, *values[t - first], output=output) for t in self._open_at_end[output]]
-        return super()._changes(output)
+        noted, now = self._noted.get(output, ()), super()._changes(output)
+        last = {change.begin for change in now}
+        before = [self._change(*run, output=output) for run in noted]
+        return [*(change for change in before if change.begin not in last), *now]
 
     def _change(
         self, first: int, last: int, lower: float, upper: float, *, output: int = 0, retracted: bool = False
@@ -211,6 +255,8 @@ class DiscreteIntervalMonitor(DiscreteEarlyMonitor, IntervalMonitor, EarlyMonito
                 {t: backend.bounds(output, t) for t in range(backend.held(output), backend.newest + 1)}
                 for output in range(len(self._outputs))
             ]
+            if self._late is not None:
+                self._fill(backend.newest)
             rest, at_end = backend.finish()
             self._at_end = None if at_end is None else Interval(*at_end)
             self._rest = tuple(rest)

@@ -20,6 +20,7 @@ from rtamt.engine.usage_guard import exclusive
 from rtamt.errors import TraceError, UsageError, did_you_mean, shown
 from rtamt.language.parameters import with_values
 from rtamt.language.value_types import BOOLEAN
+from rtamt.rewrite.presence import channel_of, presences, tracked
 from rtamt.signals import arrays
 from rtamt.signals.coding import encoded_value, no_truth
 from rtamt.signals.outcomes import Interval
@@ -101,10 +102,16 @@ class EarlyMonitor(OnlineMonitor):
         self._step = step
         self._explained, self._continuous = explain, domain.continuous
         self._ranges = self._read_ranges(ranges or {})
+        asked = presences(*self._formulas)
+        self._channels = {name: channel_of(name) for name in asked}
+        self._ranges |= dict.fromkeys(self._channels.values(), (0.0, 1.0))
+        self._formulas = tuple(map(tracked, self._formulas))
+        #: The variables and the channels of their presence, which is what the back end reads.
+        self._inputs = (*self.input_names, *self._channels.values())
         # A formula that is asked for at the start alone is no output.
         self._hidden = 0 if every else 1
         shape = Shape.of(self._formulas)
-        graph = shape.graph(step, self.input_names, type(domain), start=start)
+        graph = shape.graph(step, self._inputs, type(domain), start=start)
         self._extend(graph, shape.expanded()[self._hidden :])
         self._graph = graph.with_parameters(shape.values)
         self._outputs = self._graph.outputs[self._hidden :]
@@ -140,7 +147,11 @@ class EarlyMonitor(OnlineMonitor):
         return read
 
     def _known_ranges(self) -> list[tuple[float, float]]:
-        return [self._ranges.get(name, (-inf, inf)) for name in self.input_names]
+        return [self._ranges.get(name, (-inf, inf)) for name in self._inputs]
+
+    @property
+    def _checked(self) -> bool:
+        return bool(self._types or self._channels)
 
     @property
     def samples(self) -> int:
@@ -194,6 +205,18 @@ class EarlyMonitor(OnlineMonitor):
         self._connect(self._session.open())
 
     # ---- samples ---------------------------------------------------------------------------------
+
+    def _read_by_formula(self, values: Mapping[str, Any]) -> dict[str, Any]:
+        flat = super()._read_by_formula(values)
+        for name, channel in self._channels.items():
+            if name in flat and (flat[name] is not None or self._settled):
+                flat[channel] = float(flat[name] is not None)
+        return flat
+
+    @property
+    def _settled(self) -> bool:
+        """Whether a sample that is missing now will not come later."""
+        return self._late is None
 
     def _known_of(self, name: str, given: Any, index: int, moment: str) -> tuple[float, float] | None:
         """Return the bounds of a value, None where it is missing; raise :class:`TraceError` for wrong data."""

@@ -138,7 +138,7 @@ class IntervalMonitor(EarlyMonitor):
         for name, bounds in known.items():
             if bounds is None:
                 continue
-            number = self.input_names.index(name)
+            number = self._inputs.index(name)
             low, high = self._backend.known(number, place)
             if low <= bounds[0] and bounds[1] <= high:
                 lessons.append((number, *bounds))
@@ -153,15 +153,19 @@ class IntervalMonitor(EarlyMonitor):
                         variable=name,
                         index=self.samples,
                     )
+        self._settle_presence(place)
         if wrong:
             self._replay(time, place, [*lessons, *wrong])
             return
         if self._replays:
             self._keep_snapshot()
-        self._backend.learn(time, lessons, self.samples)
+        self._backend.learn(time, lessons, self._backend.samples)
         self._retracted = None
         if self._replays:
             self._events = (*self._events, (time, place, tuple(lessons)))
+
+    def _settle_presence(self, place: int) -> None:
+        """Before a sample makes others final: variables without a sample there have none."""
 
     def _keep_snapshot(self) -> None:
         """Keep a state from time to time, of which one is before every sample that may be corrected."""

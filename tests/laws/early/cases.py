@@ -35,6 +35,7 @@ def formula(
     def allowed(op: Operator) -> bool:
         return (
             not (dense and op.discrete_only)
+            and not op.presence  # what is missing in a case has a value all the same
             and (kinds.get("odd", True) or op.name not in ODD)
             and (kinds.get("past", True) or op.tense is not Tense.PAST)
             and (kinds.get("arithmetic", True) or op.result is Sort.FORMULA)

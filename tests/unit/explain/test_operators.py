@@ -63,6 +63,7 @@ DISCRETE = [
     ("x >= 3", 3, ("x >= 3", 3, -1, -inf, inf), [("x >= 3", False, 3, 3)]),
     ("x + y > 3", 3, ("x + y > 3", 3, 3, -inf, inf), [("x + y > 3", True, 3, 3)]),
     ("min(x, y)", 3, ("min(x, y)", 3, 2, -inf, inf), [("min(x, y)", True, 3, 3)]),
+    ("valid(x)", 0, ("valid(x)", 0, inf, -inf, inf), [("valid(x)", True, 0, 0)]),
     ("x >= 3 and true", 0, ("x >= 3", 0, 2, -inf, inf), [("x >= 3", True, 0, 0)]),
     ("x >= 3 or false", 0, ("x >= 3", 0, 2, -inf, inf), [("x >= 3", True, 0, 0)]),
 ]

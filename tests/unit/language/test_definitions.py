@@ -97,6 +97,7 @@ CASES = [
     ("eventually", [X], (5, 9), [-inf] * 5),
     ("historically", [X], (0, 1), [1, 1, 2, -3, -3]),
     ("historically", [X], (1, 2), [inf, 1, 1, 2, -3]),
+    ("valid", [X], (), [inf] * 5),
     ("historically", [X], (0, None), [1, 1, 1, -3, -3]),
     ("historically", [X], (5, 9), [inf] * 5),
     ("once", [X], (0, 1), [1, 4, 4, 2, 0]),
