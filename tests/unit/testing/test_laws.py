@@ -11,7 +11,7 @@ import pytest
 import rtamt
 from rtamt.extend import STL, Blocks, Operator
 from rtamt.testing import check_operator
-from tests.unit.test_extend import BETWEEN, FLIPS, MEAN, TOTAL
+from tests.unit.test_extend import AVG, BETWEEN, FLIPS, TOTAL
 
 
 def by_definition_alone(name: str) -> Operator:
@@ -28,7 +28,7 @@ def test_a_definition_alone_obeys_the_laws_in_every_mode(name: str) -> None:
     check_operator(by_definition_alone(name), examples=6)
 
 
-@pytest.mark.parametrize("op", [MEAN, FLIPS, BETWEEN, STL["once"]], ids=lambda op: op.name)
+@pytest.mark.parametrize("op", [AVG, FLIPS, BETWEEN, STL["once"]], ids=lambda op: op.name)
 def test_these_obey_the_laws(op: Operator) -> None:
     check_operator(op, infinite=False, examples=6)
 
@@ -109,7 +109,7 @@ def test_a_kernel_that_is_not_its_definition_is_found() -> None:
 
 
 def test_an_interval_that_says_less_than_is_read_is_found() -> None:
-    greedy = replace(MEAN, definition=lambda x, _a, _b: np.cumsum(x))
+    greedy = replace(AVG, definition=lambda x, _a, _b: np.cumsum(x))
     with pytest.raises(AssertionError, match="breaks the law"):
         check_operator(greedy, infinite=False, examples=20)
 
