@@ -114,7 +114,7 @@ class Specification(SpecificationText):
         rule = self.sampling
         if rule is None or not rule.hold or query.domain.continuous:
             return data
-        return sampled(data, self.input_names, query.domain.period or rule.period, rule.limit, query.unit)
+        return sampled(data, self.input_names, rule, query.domain.period or rule.period, query.unit)
 
     def _result(self, query: Query, recording: DomainTrace) -> Result:
         """Return the result on a normalised recording; the formula must have been checked."""

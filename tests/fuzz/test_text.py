@@ -27,7 +27,7 @@ WORDS += [
     "output",
     "const",
     "def",
-    "sample 100ms hold for 1s",
+    "sample 100ms hold for 1s skip nan",
     "hold",
     "input float z [m] =",
     '"setpoint[2]"',

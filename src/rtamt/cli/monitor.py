@@ -149,7 +149,7 @@ def run(args: argparse.Namespace) -> int:
     rule = spec.sampling
     held = rule is not None and rule.hold and not dense
     if rule is not None and held:
-        sampler = HeldSampler(watched.monitor.input_names, spec.period or rule.period, rule.limit)
+        sampler = HeldSampler(watched.monitor.input_names, rule, spec.period or rule.period)
         watched = HeldFeed(watched, sampler)
     samples = Samples(
         watched.monitor.input_names,
@@ -158,6 +158,7 @@ def run(args: argparse.Namespace) -> int:
         unit=args.time_unit,
         binding=spec.binding,
         types=spec.types,
+        skip_nan=held and rule is not None and rule.skip_nan,
     )
     if sys.stdin is None:
         raise CommandError(f"{STDIN} is closed: give one JSON object a line, or CSV with a header row")

@@ -190,7 +190,11 @@ def choice_for(specs: Sequence[Specification], trace: str, reading: Reading) -> 
     hold_for = (
         None if ruled and reading.resample is None and not specs[0].domain.continuous else reading.hold_for
     )
-    skipped = [name for name in reading.skip_nan if name in columns]
+    skips = {spec.sampling is not None and spec.sampling.skip_nan for spec in specs}
+    if len(skips) > 1:  # each then reads the recording alone
+        raise TraceError("NaN is left out by some of the specifications alone")
+    discrete = not specs[0].domain.continuous
+    skipped = [name for name in columns if name in reading.skip_nan or (discrete and skips == {True})]
     types = {name: type_ for spec in specs for name, type_ in spec.types.items()}
     return replace(
         choice(reading.time, columns or None, names, None, skipped, hold_for, reading.unit, types),

@@ -60,7 +60,7 @@ class Samples:
     A stamp is seconds; ``dense``: or what else a file of the same columns is read as, and a sample may
     hold some of the values only. ``time_name``: the column of stamps, "" for none, by default the one
     that :func:`rtamt.read` would take. ``unit``: of stamps that are numbers. ``binding``: under which names the
-    variables are recorded, and in which units they are declared.
+    variables are recorded, and in which units they are declared. ``skip_nan``: whether a value may be NaN.
     """
 
     def __init__(
@@ -72,8 +72,10 @@ class Samples:
         unit: str | None = None,
         binding: Binding | None = None,
         types: Types = NO_TYPES,
+        skip_nan: bool = False,
     ) -> None:
         self._types = types
+        self._skip_nan = skip_nan
         self._names = tuple(names)
         self._binding = Binding(self._names) if binding is None else binding
         units = {} if unit is None else {TIME: unit}
@@ -105,7 +107,16 @@ class Samples:
                 sample = reader.read(text, number)
                 self._read = reader.read
                 return sample
-            rows = CsvSamples(self._names, stamps, self._dense, text, number, self._choice.names, self._types)
+            rows = CsvSamples(
+                self._names,
+                stamps,
+                self._dense,
+                text,
+                number,
+                self._choice.names,
+                self._types,
+                skip_nan=self._skip_nan,
+            )
             self.units = rows.units
             self._read = self._converted(rows)
         except TraceError as error:
@@ -265,6 +276,8 @@ class CsvSamples:
         number: int,
         recorded: Mapping[str, str],
         types: Types,
+        *,
+        skip_nan: bool,
     ) -> None:
         self._types = types
         self._dense = dense
@@ -281,7 +294,9 @@ class CsvSamples:
             )
         selection = stamps.look((column, None) for column in self._header.names)
         assert selection is not None
-        self._columns = [Column(name, self._header.names.index(f.column)) for name, f in selection.signals]
+        self._columns = [
+            Column(name, self._header.names.index(f.column), skip_nan) for name, f in selection.signals
+        ]
         self.units = {name: field.unit for name, field in selection.signals if field.unit}
         self._boolean: dict[str, bool] = {}
 

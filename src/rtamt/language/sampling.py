@@ -2,11 +2,11 @@
 
 ::
 
-    sampling = "sample" , duration , [ "hold" , [ "for" , duration ] ] , [ ";" ]
+    sampling = "sample" , duration , [ "hold" , [ "for" , duration ] , [ "skip" , "nan" ] ] , [ ";" ]
     duration = number , [ "/" , number ] , [ unit of time ]
 
 It holds in discrete time: the sampling period and, with ``hold``, that each variable has its latest value at each
-instant, whenever its samples came.
+instant, whenever its samples came; with ``skip nan`` samples that are NaN are left out.
 """
 
 from __future__ import annotations
@@ -29,15 +29,18 @@ class Sampling:
     """A sampling rule; times in seconds.
 
     ``hold``: whether each variable has its latest value at each instant, and ``limit``: how old that value may be.
+    ``skip_nan``: whether samples that are NaN are left out.
     """
 
     period: Fraction
     hold: bool = False
     limit: Fraction | None = None
+    skip_nan: bool = False
 
     def __str__(self) -> str:
         limit = "" if self.limit is None else f" for {_written(self.limit)}"
-        return f"sample {_written(self.period)}{' hold' * self.hold}{limit}"
+        skip = " skip nan" if self.skip_nan else ""
+        return f"sample {_written(self.period)}{' hold' * self.hold}{limit}{skip}"
 
 
 def _written(seconds: Fraction) -> str:
@@ -51,14 +54,17 @@ def begins_sampling(parser: RequirementParser) -> bool:
 
 
 def parse_sampling(parser: RequirementParser) -> Sampling:
-    """``sampling = "sample" , duration , [ "hold" , [ "for" , duration ] ] , [ ";" ]``."""
+    """``sampling = "sample" , duration , [ "hold" , [ "for" , duration ] , [ "skip" , "nan" ] ] , [ ";" ]``."""
     parser.next()
     period, limit = _duration(parser, "sampling period"), None
     hold = _keyword(parser, "hold")
     if hold and _keyword(parser, "for"):
         limit = _duration(parser, "longest time for which a value is held")
+    skip = hold and _keyword(parser, "skip")
+    if skip and not _keyword(parser, "nan"):
+        raise parser.error(f"expected 'nan' after 'skip', got {parser.token}", parser.token.span)
     parser.accept(";")
-    return Sampling(period, hold, limit)
+    return Sampling(period, hold, limit, skip)
 
 
 def _keyword(parser: RequirementParser, *words: str) -> bool:

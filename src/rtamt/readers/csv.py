@@ -145,7 +145,10 @@ def check_width(row: list[str], header: Header, line: int) -> None:
 def numbers(row: list[str], header: Header, line: int, columns: Collection[Column]) -> list[float]:
     """Return the numbers of one row, those of ``columns``."""
     check_width(row, header, line)
-    return [number(row[column.position], header.names[column.position], header, line) for column in columns]
+    return [
+        number(row[column.position], header.names[column.position], header, line, nan=column.skip_nan)
+        for column in columns
+    ]
 
 
 def number(text: str, name: str, header: Header, line: int, *, nan: bool = False) -> float:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from fractions import Fraction
+from math import isnan
 from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import StlError, UsageError
@@ -41,8 +42,9 @@ class RosMonitor:
     ``binding``: from :func:`~rtamt.ros.binding.bind`. ``time``: ``"discrete"``, where the latest message
     of each topic is sampled every ``period`` (seconds, or text such as ``"100ms"``), or ``"dense"``, where
     every message is a sample, each topic on its own time base. ``stale``: the time without a message after
-    which a topic is stale; 0 for never, by default ten periods, in dense time 5 s. All times are integer
-    nanoseconds; 0 means a simulated clock that is not set yet.
+    which a topic is stale; 0 for never, by default ten periods, in dense time 5 s. ``skip_nan``: whether messages
+    with NaN in what is read of them are ignored. All times are integer nanoseconds; 0 means a simulated clock that is
+    not set yet.
 
     The time of a message is the timestamp in its header, or else its arrival. In discrete time, the first sample
     is taken when the last of an output's topics has its first message. A sample is taken as
@@ -84,8 +86,10 @@ class RosMonitor:
         period: Duration | None = None,
         time: str = DEFAULT,
         stale: Duration | None = None,
+        skip_nan: bool = False,
     ) -> None:
         self.binding = binding
+        self._skip_nan = skip_nan
         self._domain = time_domain(time)
         self.time = self._domain.name
         self.period = self._period(period)
@@ -168,6 +172,8 @@ class RosMonitor:
             values = {name: read(message) for name, read in self._readers[topic]}
         except StlError as error:
             self._broken(topic, str(error))
+            return records
+        if self._skip_nan and any(map(isnan, values.values())):
             return records
         stamp = stamp_of(message) or now
         last = self._stamps.get(topic)

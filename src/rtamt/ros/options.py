@@ -62,7 +62,11 @@ class Options:
         stale = self._duration(self.stale) if self.stale else None if rule is None else rule.limit
         sampled = None if dense else spec.period
         monitor = RosMonitor(
-            bind(spec, self.verdict or None, self.at or None), period=sampled, time=self.time, stale=stale
+            bind(spec, self.verdict or None, self.at or None),
+            period=sampled,
+            time=self.time,
+            stale=stale,
+            skip_nan=rule is not None and rule.skip_nan,
         )
         written = None if dense else spec.document.sampling
         if written is not None and written.period != spec.period:

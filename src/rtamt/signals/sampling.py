@@ -5,6 +5,7 @@ Of a whole recording with :func:`sampled`, of a stream with :class:`HeldSampler`
 
 from __future__ import annotations
 
+from math import isnan
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -20,24 +21,22 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
     from fractions import Fraction
 
+    from rtamt.language.sampling import Sampling
+
 
 def sampled(
-    data: Any,
-    names: Sequence[str],
-    period: Fraction,
-    hold_for: Fraction | None = None,
-    unit: str | None = None,
+    data: Any, names: Sequence[str], rule: Sampling, period: Fraction, unit: str | None = None
 ) -> Any:
     """Return what a formula reads of a recording, a sample every ``period`` from when all variables have one.
 
-    ``hold_for``: the oldest value that is held (seconds). Data without times is returned as it is: its samples are one
-    period apart. Raises :class:`TraceError` for wrong data and values that are too old.
+    ``rule``: how old values may be that are held, and whether NaN is left out. Data without times is returned as it
+    is: its samples are one period apart. Raises :class:`TraceError` for wrong data and values that are too old.
     """
     if isinstance(data, Trace):
         known = [name for name in names if name in data.names]
         if len(known) < len(names) or any(data.channel(name).times is None for name in known):
             return data  # the evaluation reports what is missing
-        return data.select(known).resample(period, "hold", hold_for) if known else data
+        return _held(data.select(known), rule, period) if known else data
     if unit is not None:
         raise UsageError(
             "time_unit= and a specification with 'sample ... hold': read the data with rtamt.read(data, time_unit=...)"
@@ -51,7 +50,13 @@ def sampled(
     if len(columns) < len(names):
         return data
     channels = {name: _channel(name, *columns[name]) for name in names}
-    return Trace(channels, source="the data").resample(period, "hold", hold_for)
+    return _held(Trace(channels, source="the data"), rule, period)
+
+
+def _held(trace: Trace, rule: Sampling, period: Fraction) -> Trace:
+    if rule.skip_nan:
+        trace = trace.without_nan()
+    return trace.resample(period, "hold", rule.limit)
 
 
 def _has_times(samples: Any) -> bool:
@@ -82,11 +87,12 @@ def _channel(name: str, times: Any, values: Any) -> Channel:
 class HeldSampler:
     """Samples a stream: each is known once a later time has come, since other values may come at the same time.
 
-    ``names``: the variables; ``period`` and ``hold_for`` in seconds.
+    ``names``: the variables; ``period``: in seconds; ``rule``: as for :func:`sampled`.
     """
 
-    def __init__(self, names: Sequence[str], period: Fraction, hold_for: Fraction | None = None) -> None:
-        self._sampler = Sampler(names, period, "hold", hold_for)
+    def __init__(self, names: Sequence[str], rule: Sampling, period: Fraction) -> None:
+        self._sampler = Sampler(names, period, "hold", rule.limit)
+        self._skip_nan = rule.skip_nan
         self._last: dict[str, Any] = {}
         self._now: Any = None
 
@@ -105,6 +111,8 @@ class HeldSampler:
                 raise TraceError(
                     f"'{name}' has two samples at {show_time(time)}: keep one of them", variable=name
                 )
+        if self._skip_nan:
+            values = {name: value for name, value in values.items() if not isnan(value)}
         self._now = time
         self._last.update(dict.fromkeys(values, time))
         at = np.array([time])

@@ -21,7 +21,7 @@ from rtamt.errors import TraceError, UsageError, choices, shown
 from rtamt.language.units import positive_period
 from rtamt.signals.arrays import TIME, Clocked, stamps
 from rtamt.signals.data_errors import missing_sample
-from rtamt.signals.listing import extent, html, listing
+from rtamt.signals.listing import extent, html, listing, show_time
 from rtamt.signals.regular import merged
 from rtamt.signals.resampling import grid_of, resampled
 from rtamt.signals.signal import Signal
@@ -317,6 +317,28 @@ class Trace(Clocked):
         if limit is not None and how != "hold":
             raise UsageError(f"hold_for= is for how='hold', got how='{how}'")
         return self._at(grid_of(self._all_timed(), period, how), how, limit)
+
+    def without_nan(self) -> Trace:
+        """Return the trace without the samples that are NaN; :attr:`losses` lists them.
+
+        >>> import rtamt
+        >>> rtamt.read({"time": [0, 1, 2], "x": [1.0, float("nan"), 3.0]}, skip_nan=["x"]).without_nan()["x"].values
+        array([1., 3.])
+        """
+        channels, losses = {}, []
+        for name, channel in self._channels.items():
+            bad = np.isnan(channel.values) if channel.values.dtype.kind == "f" else np.zeros(0, bool)
+            if bad.any() and channel.times is not None:
+                first, count = int(bad.argmax()), int(bad.sum())
+                at = show_time(channel.times[first])
+                losses.append(
+                    f"left out, NaN: {count:,} sample{'s' * (count != 1)} of {name}, the first at {at}"
+                )
+                kept = replace(channel, times=channel.times[~bad], values=channel.values[~bad])
+                channels[name] = replace(kept, first_gap=channel.first_gap or first)
+            else:
+                channels[name] = channel
+        return self._with(channels, losses)
 
     def hold(self) -> Trace:
         """Return all signals at the timestamps of each, holding last values, from the latest first timestamp on.

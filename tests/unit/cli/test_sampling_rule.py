@@ -91,3 +91,17 @@ def test_wrong_streams(run):
     late = run("monitor", "spec.stl", stdin="time,x,y\n1,1,1\n0.5,1,1\n")
     assert "stdin, line 3: time does not increase: 0.5 s comes after 1 s; sort the samples" in late.err
     assert "has no samples" in run("monitor", "spec.stl", stdin="time,x,y\n").err
+
+
+def test_samples_that_are_nan_are_skipped(run, write):
+    write("spec.stl", SPEC.replace("500ms", "500ms skip nan"))
+    write("log.csv", LOG.replace("0.33,4,0", "0.33,4,nan"))
+    (row,) = rows(run("check", "spec.stl", "log.csv", "--json"))
+    assert (row["robustness"], row["notes"]) == (-1.0, ["left out, NaN: 1 sample of y, the first at 0.33 s"])
+    stream = rows(run("monitor", "spec.stl", stdin=LOG.replace("0.33,4,0", "0.33,4,nan")))
+    assert len(stream) == row["samples"] == 7
+    write("spec.stl", SPEC)
+    assert "'y' is NaN" in run("check", "spec.stl", "log.csv").err
+    write("other.stl", "input float y  sample 100ms hold skip nan  always(y <= 3)")
+    both = rows(run("check", "spec.stl", "other.stl", "log.csv", "--json"))
+    assert ["error" in each for each in both] == [True, False]

@@ -69,13 +69,15 @@ def test_parameters_of_the_specification_are_set(tmp_path):
 
 def test_a_node_samples_as_the_specification_says_and_an_argument_replaces_it(tmp_path):
     spec = tmp_path / "spec.stl"
-    spec.write_text(LISTING_8.read_text().replace("input", "sample 200ms hold for 1s\ninput", 1))
+    spec.write_text(LISTING_8.read_text().replace("input", "sample 200ms hold for 1s skip nan\ninput", 1))
     watched = monitor(spec)
     assert (watched.period, watched._stale, watched.notices()) == (Fraction(1, 5), 10**9, [])
+    assert watched._skip_nan
+    assert not monitor(LISTING_8, "--period", 1)._skip_nan
     watched = monitor(spec, "--period", "100ms", "--stale", "3s")
     assert (watched.period, watched._stale) == (Fraction(1, 10), 3 * 10**9)
     assert [notice.message for notice in watched.notices()] == [
-        "the period 100ms replaces that of 'sample 200ms hold for 1s' in the specification",
-        "stale after 3s replaces the limit of 'sample 200ms hold for 1s' in the specification",
+        "the period 100ms replaces that of 'sample 200ms hold for 1s skip nan' in the specification",
+        "stale after 3s replaces the limit of 'sample 200ms hold for 1s skip nan' in the specification",
     ]
     assert monitor(spec, "--time", "dense").period is None

@@ -25,6 +25,12 @@ Y = ([0.0, 0.05, 0.6], [0, 1, 1])
         ("sample 1/3s hold x > 3", Sampling(Fraction(1, 3), hold=True)),
         ("sample 2 hold for 1min\nx > 3", Sampling(Fraction(2), hold=True, limit=Fraction(60))),
         ("input float x sample 100 ms hold require R: x > 3", Sampling(Fraction(1, 10), hold=True)),
+        ("sample 1s hold skip nan x > 3", Sampling(Fraction(1), hold=True, skip_nan=True)),
+        (
+            "sample 1s hold for 2s skip nan;x > 3",
+            Sampling(Fraction(1), hold=True, limit=Fraction(2), skip_nan=True),
+        ),
+        ("sample 1s hold\nskip > 3", Sampling(Fraction(1), hold=True)),
         ("sample 1s\nhold > 3", Sampling(Fraction(1))),
         ("sample 1s hold = 3; x > hold", Sampling(Fraction(1))),
         ("sample > 3", None),
@@ -46,6 +52,7 @@ def test_what_a_rule_says(text, rule):
         ("sample 1sec x > 3", ParseError, "'sec' is not a unit of time; units: h, min, s, ms, us, ns"),
         ("sample 1s hold for ever; x > 3", ParseError,
          "expected the longest time for which a value is held, such as 100ms, got 'ever'"),
+        ("sample 1s hold skip x > 3", ParseError, "expected 'nan' after 'skip', got 'x'"),
         ("x > 3; sample 1s", ParseError, "declarations and annotations stand before the first formula"),
         ("sample 100ms; always[0:150ms](x > 3)", BoundError, "The operator bound must be a multiple of the sampling "
          "period: 150 ms is not a whole number of periods of 100 ms; change the bound or the period"),
@@ -149,7 +156,9 @@ def test_a_stream_and_its_recording_have_the_same_samples(first, second, period,
     trace = rtamt.read(channels)
 
     def stream():
-        sampler = HeldSampler(("x", "y"), Fraction(period), hold_for)
+        sampler = HeldSampler(
+            ("x", "y"), Sampling(Fraction(period), hold=True, limit=hold_for), Fraction(period)
+        )
         for k in sorted({*first, *second}):
             values = {"x": float(k)} if k in first else {}
             yield from sampler.take(moment(k), values | ({"y": -float(k)} if k in second else {}))
@@ -170,7 +179,7 @@ def test_a_stream_and_its_recording_have_the_same_samples(first, second, period,
 
 
 def test_wrong_streams():
-    sampler = HeldSampler(("x", "y"), Fraction(1))
+    sampler = HeldSampler(("x", "y"), Sampling(Fraction(1), hold=True), Fraction(1))
     (sampler.take(1.0, {"x": 1}))
     with pytest.raises(TraceError, match=r"time does not increase: 0.5 s comes after 1 s; sort the samples"):
         (sampler.take(0.5, {"y": 1}))
@@ -181,9 +190,26 @@ def test_wrong_streams():
 
 
 def test_after_a_value_that_was_too_old_a_stream_goes_on():
-    sampler = HeldSampler(("x",), Fraction(1), Fraction(2))
+    sampler = HeldSampler(("x",), Sampling(Fraction(1), hold=True, limit=Fraction(2)), Fraction(1))
     (sampler.take(0.0, {"x": 1}))
     with pytest.raises(TraceError, match=r"'x' has no sample from 0 s to 3 s"):
         (sampler.take(5.5, {"x": 2}))
     assert (sampler.take(7.0, {"x": 3})) == [(6.0, {"x": 2})]
     assert sampler.finish() == [(7.0, {"x": 3})]
+
+
+def test_samples_that_are_nan_are_skipped():
+    spec = rtamt.parse("sample 1s hold for 2s skip nan; always(x <= 3)")
+    assert str(spec.sampling) == "sample 1s hold for 2s skip nan"
+    for x in ([1, np.nan, np.nan, 2], np.array([1, np.nan, np.nan, 2])):
+        data = {"time": [0, 1, 2, 3], "x": x}
+        for each in (data, rtamt.read(data, skip_nan=()), {"x": (data["time"], x)}):
+            if isinstance(each, dict) or np.isnan(each["x"].values).any():
+                assert spec.evaluate(each).trace.columns["x"].tolist() == [1, 1, 1, 2]
+    with pytest.raises(TraceError, match="'x' has no sample from 0 s to 3 s"):
+        spec.evaluate({"time": [0, 1, 2, 3, 4], "x": [1, np.nan, np.nan, np.nan, 2]})
+    with pytest.raises(TraceError, match="'x' is NaN at sample 1"):
+        rtamt.parse("sample 1s hold; always(x <= 3)").evaluate({"time": [0, 1, 2], "x": [1, np.nan, 2]})
+    trace = rtamt.read({"x": (np.array([0.0, 1.0]), np.array([np.nan, 2.0]))})
+    if np.isnan(trace["x"].values).any():
+        assert trace.without_nan().losses == ("left out, NaN: 1 sample of x, the first at 0 s",)
