@@ -66,7 +66,7 @@ def test_what_no_slice_can_be():
         rtamt.UsageError, match=r"^'noon' cannot begin or end a slice of this trace; give a number"
     ):
         trace["noon":]  # type: ignore[misc]
-    with pytest.raises(rtamt.UsageError, match=r"takes two times; put it on another clock with resample"):
+    with pytest.raises(rtamt.UsageError, match=r"takes two times; put it on another time base with resample"):
         trace[0:1:2]
     with pytest.raises(rtamt.TraceError, match="'x' has no timestamps"):
         rtamt.read({"x": [1]})[0:1]

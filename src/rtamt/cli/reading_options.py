@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Reading:
-    """How recordings are read: the options of ``rtamt.read``, and a clock chosen for all signals."""
+    """How recordings are read: the options of ``rtamt.read``, and a common time base."""
 
     time: str | None = None
     unit: str | None = None
@@ -78,7 +78,7 @@ def add_reading_options(parser: argparse.ArgumentParser) -> None:
         help="how long a value takes the place of samples that are left out; longer gaps are errors",
     )
     group.add_argument(
-        "--resample", metavar="DURATION", help="put all signals on one clock, a sample every so often"
+        "--resample", metavar="DURATION", help="put all signals on one time base, a sample every so often"
     )
     group.add_argument(
         "--how",
@@ -175,7 +175,7 @@ def choice_for(specs: Sequence[Specification], trace: str, reading: Reading) -> 
     """Return which columns of a recording some requirements read, and how."""
     columns = dict.fromkeys(name for spec in specs for name in spec.input_names)
     _check_places(specs)
-    # In discrete time a gap is an error, unless each signal has a clock of its own, or is resampled.
+    # In discrete time a gap is an error, unless each signal has its own time base, or is resampled.
     gaps = has_own_clocks(specs[0], trace, reading)
     names: dict[str, str] = {}
     if is_bag(trace):
@@ -212,7 +212,7 @@ def _check_places(specs: Sequence[Specification]) -> None:
 
 
 def has_own_clocks(spec: Specification, trace: str, reading: Reading) -> bool:
-    """Return whether each signal has a clock of its own, so that signals may begin at different times."""
+    """Return whether each signal has its own time base, so that signals may begin at different times."""
     return spec.domain.continuous or is_bag(trace) or is_resampled(spec, trace, reading)
 
 

@@ -191,7 +191,7 @@ def _early(requirement: Requirement, trace: str, reading: Reading) -> list[Outco
 def _sampled(
     chunks: Iterable[Trace], spec: Specification, period: str | Fraction | None, reading: Reading
 ) -> Iterator[Mapping[str, Any]]:
-    """Yield chunks on a clock of their own: the values of all signals every ``period``."""
+    """Yield chunks on their own time base: the values of all signals every ``period``."""
     assert period is not None
     sampler = Sampler(spec.input_names, period, reading.how, oldest_held(spec, reading))
     for chunk in chunks:

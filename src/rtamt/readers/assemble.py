@@ -317,7 +317,7 @@ def _channels(
             if times is None:
                 raise TraceError(
                     f"'{name}' is missing at sample {row} of {source.name}: fill the gap, or name the "
-                    f"column of timestamps, so that each signal has a clock of its own",
+                    f"column of timestamps, so that each signal has its own time base",
                     variable=name,
                     index=row,
                 )

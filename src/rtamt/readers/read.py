@@ -55,8 +55,8 @@ def read(
     has several. ``recover``: read an MCAP file that was cut off or is damaged up to the damage, an
     error otherwise; flight logs are always read that far.
 
-    A value that is missing (an empty cell, null, pandas' NaN) is no sample: the signal then has a
-    clock of its own. Any other NaN stays, and an evaluation that reads it is an error; for the signals
+    A value that is missing (an empty cell, null, pandas' NaN) is no sample: the signal then has
+    its own time base. Any other NaN stays, and an evaluation that reads it is an error; for the signals
     in ``skip_nan`` it is a missing value, too. ``types``: those of a specification (``spec.types``), so that text
     columns, and the value tables of MDF and ROS, are read as the codes of its enumerations. ``hold_for``: how long,
     in seconds or as text such as ``"500ms"``, the value before may take the place of samples that are missing; one

@@ -37,7 +37,7 @@ def missing_sample(name: str, index: int, source: str | None) -> TraceError:
         "fill the gap, or use dense time (--time dense)"
         if source is None
         else "fill the gap, hold the value before it (--hold-for DURATION), use dense time (--time dense), or put "
-        "all on one clock (--resample PERIOD)"
+        "all on one time base (--resample PERIOD)"
     )
     return TraceError(
         f"'{name}' is missing at {where}, but discrete time needs a value at every sample: {mend}",

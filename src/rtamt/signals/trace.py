@@ -242,7 +242,7 @@ class Trace(Clocked):
     def _between(self, times: slice) -> Trace:
         if times.step is not None:
             raise UsageError(
-                "a slice of a trace takes two times; put it on another clock with resample(period=...)"
+                "a slice of a trace takes two times; put it on another time base with resample(period=...)"
             )
         found = {}
         for name, channel in self._channels.items():
@@ -388,7 +388,7 @@ class Trace(Clocked):
             raise TraceError(f"{self._source} has no signals")
         for name, channel in self._channels.items():
             if channel.times is None:
-                raise TraceError(f"'{name}' has no timestamps, so that it cannot be put on another clock")
+                raise TraceError(f"'{name}' has no timestamps, so that it cannot be put on another time base")
             if not len(channel.times):
                 raise TraceError(f"'{name}' has no samples: give at least one", variable=name)
         return [channel.times for channel in self._channels.values() if channel.times is not None]
@@ -402,8 +402,8 @@ class Trace(Clocked):
             if mine is None and its is None and len(first[1].values) == len(other[1].values):
                 continue
             raise TraceError(
-                f"'{first[0]}' and '{other[0]}' are on different clocks "
-                f"({extent(first[1])}; {extent(other[1])}): evaluate in dense time, or put them on one clock "
+                f"'{first[0]}' and '{other[0]}' have different time bases "
+                f"({extent(first[1])}; {extent(other[1])}): evaluate in dense time, or put them on one time base "
                 f"with trace.resample(period=...) or trace.hold(), on the command line with --resample PERIOD",
                 variable=other[0],
             )

@@ -301,7 +301,7 @@ def test_an_empty_cell_in_discrete_time_is_rejected_by_one_sentence_at_every_ent
     monkeypatch.chdir(tmp_path)
     expected = MISSING.format(
         " of log.csv",
-        "hold the value before it (--hold-for DURATION), use dense time (--time dense), or put all on one clock "
+        "hold the value before it (--hold-for DURATION), use dense time (--time dense), or put all on one time base "
         "(--resample PERIOD)",
     )
     for command in (("check",), ("explain",), ("report", "-o", "r.html"), ("plot", "-o", "p.png")):

@@ -179,7 +179,7 @@ def test_the_data_of_the_caller_is_not_shared():
         (lambda: rtamt.read({"x": [1, "a"]}, columns=["x"]), "'x' of a dict is 'a' at sample 1, expected a number"),
         (lambda: rtamt.read({"x": [1, None]}),
          "'x' is missing at sample 1 of a dict: fill the gap, or name the column of timestamps, "
-         "so that each signal has a clock of its own"),
+         "so that each signal has its own time base"),
         (lambda: rtamt.read({"req": [1]}, columns=["rq"]),
          "a dict has no column 'rq'; did you mean 'req'? (columns: req)"),
         (lambda: rtamt.read({"req": [1]}, time="clock"), "a dict has no column 'clock'; columns: req"),

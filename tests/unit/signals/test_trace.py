@@ -27,8 +27,8 @@ def test_discrete_time_needs_one_clock_and_says_what_to_do():
     with pytest.raises(rtamt.TraceError) as error:
         rtamt.parse("req >= gnt").evaluate(two_clocks())
     assert str(error.value) == (
-        "'req' and 'gnt' are on different clocks (2 samples, 0 s to 2.5 s; 3 samples, 0 s to 4 s): "
-        "evaluate in dense time, or put them on one clock with trace.resample(period=...) or trace.hold(), "
+        "'req' and 'gnt' have different time bases (2 samples, 0 s to 2.5 s; 3 samples, 0 s to 4 s): "
+        "evaluate in dense time, or put them on one time base with trace.resample(period=...) or trace.hold(), "
         "on the command line with --resample PERIOD"
     )
     # Of one signal alone the clock is the clock.
@@ -103,7 +103,8 @@ def test_without_stamps_samples_are_one_period_apart_and_dense_time_says_what_it
         (lambda t: t.resample("0s"), "the sampling period is '0s'; it must be positive"),
         (lambda t: t.resample(1, how="line"), "cannot resample by 'line'; did you mean 'linear'? "
          "(methods: linear, hold)"),
-        (lambda _: rtamt.read({"x": [1]}).hold(), "'x' has no timestamps, so that it cannot be put on another clock"),
+        (lambda _: rtamt.read({"x": [1]}).hold(),
+         "'x' has no timestamps, so that it cannot be put on another time base"),
         (lambda _: rtamt.read({"x": ([0.0], [1]), "y": ([5.0], [1])}).resample(1, how="linear"),
          "the signals have no instant in common"),
         (lambda _: rtamt.read({"x": (np.array([2**60]), [1])}, time_unit="ns").resample(Fraction(1, 3)),
