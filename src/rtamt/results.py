@@ -257,7 +257,7 @@ class Result:
         instant to explain, as in :meth:`explain`. ``start`` and ``end``: the visible time range;
         ``zoom="violation"``: the range around the first violation. ``bounds``: also draw what was known of the
         robustness at the start after each sample, a band that narrows to it, and the sample that decided the
-        verdict (discrete time). ``figure``: the matplotlib figure to draw into, by default a new one of pyplot.
+        verdict. ``figure``: the matplotlib figure to draw into, by default a new one of pyplot.
 
         >>> import rtamt
         >>> from matplotlib.figure import Figure

@@ -3,17 +3,21 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rtamt.errors import UsageError
 from rtamt.plot.clock import Clock
+from rtamt.signals.dense import DenseTrace
 from rtamt.verdicts.at_start import StartMonitor
+from rtamt.verdicts.dense_early import DenseEarlyMonitor, push_tick
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from rtamt.results import Result
     from rtamt.signals.arrays import FloatArray
+    from rtamt.signals.domain_interface import DomainTrace
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -34,30 +38,55 @@ class Band:
 def band(result: Result) -> Band:
     """Return the bounds of a result's robustness at the start of its trace, as they were after each sample.
 
-    Raises :class:`UsageError` in dense time, and for operators that have no bounds.
+    In dense time a sample is that of any variable, once all variables have started. Raises :class:`UsageError` for
+    operators that have no bounds.
 
     >>> import rtamt
     >>> found = band(rtamt.parse("eventually[0:2](x >= 3)").evaluate({"x": [1, 4, 2, 9]}))
     >>> found.lower.tolist(), found.upper.tolist(), found.decided
     ([-2.0, 1.0, 1.0, 1.0], [inf, inf, 1.0, 1.0], 1.0)
     """
-    trace, spec = result.trace, result.specification
-    period = trace.domain.period
-    if period is None:
-        raise UsageError(
-            "bounds are drawn in discrete time only; plot without them, or evaluate in discrete time"
-        )
-    monitor = StartMonitor(spec, period=period, semantics=result.semantics)
-    columns = {name: trace.columns[name].tolist() for name in monitor.input_names}
-    clock = Clock.of(trace)
-    positions = clock.positions(result.signal.times)
-    lower, upper = np.empty(len(positions)), np.empty(len(positions))
-    step = float(period)
+    trace = result.trace
+    monitor = StartMonitor(result.specification, time=trace.domain, semantics=result.semantics)
+    times, lower, upper = [], [], []
     decided = None
-    for i in range(len(positions)):
-        monitor.update(i * step, **{name: column[i] for name, column in columns.items()})
+    for time in _ticks(trace, monitor) if isinstance(trace, DenseTrace) else _samples(trace, monitor):
         known = monitor.interval()
-        lower[i], upper[i] = known.lower, known.upper
+        times.append(time)
+        lower.append(known.lower)
+        upper.append(known.upper)
         if decided is None and monitor.satisfied is not None:
-            decided = float(positions[i])
-    return Band(positions, lower, upper, decided, result.robustness)
+            decided = len(times) - 1
+    positions = Clock.of(trace).positions(np.array(times))
+    return Band(
+        positions,
+        np.array(lower),
+        np.array(upper),
+        None if decided is None else float(positions[decided]),
+        result.robustness,
+    )
+
+
+def _samples(trace: DomainTrace, monitor: StartMonitor) -> Iterator[Any]:
+    """Bring the samples of a recording to a monitor; yield the time of each."""
+    columns = {name: trace.columns[name].tolist() for name in monitor.input_names}
+    step = float(trace.step)
+    for i in range(trace.samples):
+        monitor.update(i * step, **{name: column[i] for name, column in columns.items()})
+        yield trace.time(i)
+
+
+def _ticks(trace: DenseTrace, monitor: StartMonitor) -> Iterator[Any]:
+    """Bring the samples of a recording in dense time to a monitor; yield their times once the trace has started."""
+    rows: dict[int, dict[str, float]] = {}
+    for name in monitor.input_names:
+        ticks, values = trace.columns[name]
+        for tick, value in zip(ticks.tolist(), values.tolist(), strict=True):
+            rows.setdefault(tick, {})[name] = value
+    for tick in sorted(rows):
+        for each in (monitor.bounds, monitor.truth):
+            assert isinstance(each, DenseEarlyMonitor)
+            push_tick(each, tick, rows[tick])
+        monitor.look(tick)
+        if tick >= trace.start:
+            yield trace.time(tick - trace.start)

@@ -32,7 +32,7 @@ class StartMonitor:
         self.bounds: IntervalMonitor = spec.monitor(
             verdict="interval", at="start", semantics=semantics, **settings
         )
-        self._truth: IntervalMonitor = spec.monitor(
+        self.truth: IntervalMonitor = spec.monitor(
             verdict="interval", at="start", semantics="boolean", **settings
         )
         self.reset()
@@ -50,7 +50,7 @@ class StartMonitor:
     def reset(self) -> None:
         """Forget the trace; the next sample is the first."""
         self.bounds.reset()
-        self._truth.reset()
+        self.truth.reset()
         self.finished = False
         self.satisfied: bool | None = None
         #: The time of the sample that decided the verdict, as it was given; None while it is open, or if the end did.
@@ -59,22 +59,23 @@ class StartMonitor:
     def update(self, time: Any, /, **values: Any) -> None:
         """Take a sample; errors and arguments as for :class:`IntervalMonitor`."""
         self.bounds.update(time, **values)  # fails where the other would
-        self._truth.update(time, **values)
-        self._look(time)
+        self.truth.update(time, **values)
+        self.look(time)
 
     def finish(self) -> None:
         """End the trace."""
         self.bounds.finish()
-        self._truth.finish()
+        self.truth.finish()
         self.finished = True
-        self._look(None)
+        self.look(None)
 
     def interval(self) -> Interval:
         """Return the bounds."""
         return self.bounds.interval()
 
-    def _look(self, time: Any) -> None:
-        truth = self._truth.interval()
+    def look(self, time: Any) -> None:
+        """Look at the verdict after a sample, which both monitors have taken."""
+        truth = self.truth.interval()
         satisfied = True if truth.lower > 0 else False if truth.upper < 0 else None
         if satisfied != self.satisfied:
             self.satisfied, self.decided_at = satisfied, time

@@ -235,12 +235,12 @@ def test_a_page_holds_what_was_known_after_each_sample():
     assert told["line"]["ends"] == [True, False]
 
 
-@pytest.mark.parametrize(("more", "there"), [([], True), (["--time", "dense"], False)])
-def test_a_report_shows_bounds_in_discrete_time(tmp_path, monkeypatch, more, there):
+@pytest.mark.parametrize("more", [[], ["--time", "dense"]])
+def test_a_report_shows_bounds_in_both_time_domains(tmp_path, monkeypatch, more):
     monkeypatch.chdir(tmp_path)
     Path("a.csv").write_text(ROWS)
     assert main(["report", SPEC, "a.csv", "-o", "r.html", *more]) == 1
-    assert ('"bounds":{"decided":' in Path("r.html").read_text()) == there
+    assert '"bounds":{"decided":' in Path("r.html").read_text()
 
 
 def signals(path):

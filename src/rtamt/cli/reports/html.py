@@ -135,8 +135,8 @@ def _facts(path: str) -> str:
 
 
 def _band(result: Result) -> Band | None:
-    """Return what was known after each sample; None in dense time and for long traces."""
-    if result.trace.domain.continuous or len(result.signal) > _SAMPLES:
+    """Return what was known after each sample; None for long traces."""
+    if result.trace.samples > _SAMPLES:
         return None
     try:
         return band(result)
