@@ -8,11 +8,14 @@ from math import isnan
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, TypeAlias, TypedDict
 
+import numpy as np
+
 from rtamt.engine.backend import BACKENDS
 from rtamt.engine.engine import engine_of
 from rtamt.errors import UsageError, choices, did_you_mean, shown
 from rtamt.language.formula import Formula, variables
 from rtamt.language.operators import Language
+from rtamt.language.value_types import BOOLEAN
 from rtamt.rewrite.semantics import ROLES, PredicateSemantics
 from rtamt.signals.arrays import is_number
 
@@ -21,6 +24,7 @@ if TYPE_CHECKING:
 
     from rtamt.language.document import Document
     from rtamt.language.units import Duration
+    from rtamt.language.value_types import ValueType
     from rtamt.signals.domain_interface import TimeDomain
 
 #: A name, a member of an enumeration whose text is a name, or a function of a predicate and roles.
@@ -112,14 +116,16 @@ def check_constants(constants: Mapping[str, float]) -> None:
 def assignments(texts: Iterable[str]) -> dict[str, float]:
     """Return the values of parameters that are given as texts.
 
-    >>> assignments(["limit=3", "battery.low = 3.5"])
-    {'limit': 3.0, 'battery.low': 3.5}
+    >>> assignments(["limit=3", "battery.low = 3.5", "strict=true"])
+    {'limit': 3.0, 'battery.low': 3.5, 'strict': True}
     """
-    values = {}
+    truths = {"true": True, "false": False}
+    values: dict[str, float] = {}
     for text in texts:
         name, equals, value = text.rpartition("=")
         try:
-            values[name.strip()] = float(value)
+            truth = truths.get(value.strip().lower())
+            values[name.strip()] = float(value) if truth is None else truth
         except ValueError:
             equals = ""
         if not equals or not name.strip():
@@ -127,8 +133,10 @@ def assignments(texts: Iterable[str]) -> dict[str, float]:
     return values
 
 
-def check_parameters(values: Mapping[str, float], known: Collection[str]) -> None:
-    """Raise :class:`UsageError` unless every name is a known parameter and every value a number."""
+def check_parameters(
+    values: Mapping[str, float], known: Collection[str], types: Mapping[str, ValueType] = MappingProxyType({})
+) -> None:
+    """Raise :class:`UsageError` unless every name is a known parameter and every value one of its type."""
     for name, value in values.items():
         if name not in known:
             declared = (
@@ -137,6 +145,11 @@ def check_parameters(values: Mapping[str, float], known: Collection[str]) -> Non
             raise UsageError(f"there is no parameter '{name}'{declared}")
         if not is_number(value) or isnan(value):
             raise UsageError(f"the parameter '{name}' is {shown(value)}; give a number")
+        truth = isinstance(value, bool | np.bool_)
+        if types.get(name) is BOOLEAN and not truth and value not in (0, 1):
+            raise UsageError(f"the parameter '{name}' is {shown(value)}; it is a bool, so give true or false")
+        if types.get(name) is None and truth:
+            raise UsageError(f"the parameter '{name}' is {shown(value)}, and it is no bool; give a number")
 
 
 def _check_mapping(what: str, given: object, example: str) -> None:

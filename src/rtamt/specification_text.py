@@ -147,7 +147,7 @@ class SpecificationText:
         {'limit': 3.0}
         """
         current = self.parameters
-        check_parameters(values, current)
+        check_parameters(values, current, self.document.types)
         new = {name: float(value) for name, value in values.items() if value != current[name]}
         if not new:
             return self

@@ -343,10 +343,10 @@ DOCUMENTS = [
         "the parameter 'c' has no value; write parameter float c = ...",
     ),
     (
-        "parameter bool c = 1 x > 1",
-        "          ^^^^",
+        "parameter complex c = 1 x > 1",
+        "          ^^^^^^^",
         ParseError,
-        "a parameter is a number, not 'bool'; choose from float, int, long",
+        "a parameter is a number or a Boolean, not 'complex'; choose from float, int, long, bool",
     ),
     (
         "float x = 3; x > 1",

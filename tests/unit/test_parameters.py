@@ -204,3 +204,39 @@ def test_parameters_in_templates_have_the_values_in_use():
     monitor.update(0, x=1)
     monitor.update(1, x=2)
     assert (monitor["soon(x)"], monitor["low(x, limit)"]) == (2.0, 1.0)
+
+
+STRICT = """
+float x
+parameter bool strict = false
+parameter float limit = 4
+require A: strict -> x <= 3
+require B: x <= limit + strict
+"""
+
+
+def test_a_parameter_is_a_boolean():
+    spec = rtamt.parse(STRICT)
+    assert [str(one) for one in spec.requirements.values()] == ["false -> x <= 3", "x <= 4 + 0"]
+    strict = spec.with_parameters(strict=True)
+    assert [str(one) for one in strict.requirements.values()] == ["true -> x <= 3", "x <= 4 + 1"]
+    assert r"\top \to" in strict.requirements["A"].formula.latex()
+    assert spec.evaluate({"x": [3.5]}).robustness == 0.5
+    assert strict.evaluate({"x": [3.5]}).robustness == -0.5
+    assert pickled(strict).evaluate({"x": [3.5]}).robustness == -0.5
+    monitor = spec.monitor(watch=["strict -> x <= 2"])
+    monitor.reset(strict=True)
+    assert (monitor.update(0, x=3.5), monitor["strict -> x <= 2"]) == (-0.5, -1.5)
+
+
+@pytest.mark.parametrize(
+    ("values", "message"),
+    [
+        ({"strict": 2}, "the parameter 'strict' is 2; it is a bool, so give true or false"),
+        ({"limit": True}, "the parameter 'limit' is True, and it is no bool; give a number"),
+    ],
+)
+def test_values_of_another_type_are_one_sentence(values, message):
+    with pytest.raises(UsageError) as error:
+        rtamt.parse(STRICT).with_parameters(**values)
+    assert str(error.value) == message

@@ -23,6 +23,7 @@ from rtamt.errors import BoundError, SpecificationError, UsageError, choices
 from rtamt.language.lexer import quoted
 from rtamt.language.printer import excerpt
 from rtamt.language.units import format_duration
+from rtamt.language.value_types import value_text
 from rtamt.rewrite.check import check_online
 from rtamt.rewrite.desugar import desugar
 from rtamt.rewrite.early import ends_differently, loose
@@ -298,10 +299,12 @@ def _lines(facts: Facts) -> Iterator[str]:
         yield "variables  none"
     for i, parameter in enumerate(_parameters(spec)):
         unit = f" [{parameter['unit']}]" if parameter["unit"] else ""
-        default = (
-            f"  (by default {parameter['default']:g})" if parameter["value"] != parameter["default"] else ""
+        type_ = spec.document.types.get(parameter["name"])
+        value, default = (
+            value_text(parameter[each], type_) or f"{parameter[each]:g}" for each in ("value", "default")
         )
-        yield f"{'' if i else 'parameters':<11}{parameter['name']} = {parameter['value']:g}{unit}{default}"
+        other = f"  (by default {default})" if value != default else ""
+        yield f"{'' if i else 'parameters':<11}{parameter['name']} = {value}{unit}{other}"
     yield f"{spec.domain.setting:<11}{format_duration(facts.step)}{_about_step(spec)}"
     if facts.horizon is not None:
         ahead = format_duration(facts.horizon)

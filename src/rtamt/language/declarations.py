@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 TYPES = ("float", "int", "long", "complex", "bool")
 
 #: The types of parameters.
-_NUMBERS = ("float", "int", "long")
+_SET_LATER = ("float", "int", "long", "bool")
 
 _Kind = Literal["var", "const", "parameter"]
 
@@ -215,9 +215,9 @@ class DeclarationParser(RequirementParser):
                 f"{'' if hint else ', and classes that are imported'}",
                 type_name.span,
             )
-        if kind == "parameter" and type_name.text not in _NUMBERS:
+        if kind == "parameter" and type_name.text not in _SET_LATER:
             raise self.error(
-                f"a parameter is a number, not '{type_name.text}'; choose from {', '.join(_NUMBERS)}",
+                f"a parameter is a number or a Boolean, not '{type_name.text}'; choose from {', '.join(_SET_LATER)}",
                 type_name.span,
             )
         name = self._taken(f"the name of a {_CALLED[kind]}", quotes=True)

@@ -139,7 +139,7 @@ class NameParser:
         value = scope.constants.get(name)
         if value is not None:
             if name in scope.parameters:
-                return Parameter(float(value), span, name)
+                return Parameter(float(value), span, name, scope.types.get(name))
             return self._constant(name, float(value), span)
         if scope.variables is not None and name in scope:
             return self.signal(name, span)

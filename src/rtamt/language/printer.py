@@ -66,7 +66,7 @@ def to_text(
         if not isinstance(node, Apply):
             raise TypeError(f"{type(node).__name__} is not a formula")
         if node.op is TRUTH:
-            return node.args
+            return (_written_operand(node),) if parameters else (_truth(node),)
         op, word = node.op, node.op.spellings[0] + _bounds(node)
         if op.fixity is Fixity.ATOM:
             return (word,)
@@ -134,7 +134,7 @@ def canonical(formula: Formula, language: Language = STL, *, limit: int = LONGES
             raise TypeError(f"{type(node).__name__} is not a formula")
         op = node.op
         if op is TRUTH:
-            return node.args
+            return (_truth(node),)
         word = _longest(op.spellings) + _bounds(node, ",", str)
         if op.fixity is Fixity.ATOM:
             return (word,)
@@ -174,6 +174,9 @@ def to_latex(formula: Formula) -> str:
             yield _latex_name(str(node.name)) if _is_member(node) else _latex_number(node.value)
         elif isinstance(node, Var):
             yield _latex_name(node.name)
+        elif isinstance(node, Apply) and node.op is TRUTH:
+            truth = _truth(node)
+            yield STL[truth].latex if isinstance(truth, str) else truth
         elif isinstance(node, Apply):
             for literal, operand, exposed in _template(
                 _latex_of(node.op, len(node.args)), node.interval is not None
@@ -277,6 +280,12 @@ def _operands(node: Apply) -> tuple[Formula, ...]:
 def _written_operand(formula: Formula) -> Formula:
     """Return what stands in the text: a Boolean itself, not its truth."""
     return formula.args[0] if isinstance(formula, Apply) and formula.op is TRUTH else formula
+
+
+def _truth(node: Apply) -> Piece:
+    """Return what stands for the truth of a Boolean in the text: of a parameter, its value as a formula."""
+    (operand,) = node.args
+    return ("true" if operand.value else "false") if isinstance(operand, Parameter) else operand
 
 
 def _is_member(formula: Formula) -> TypeGuard[Const]:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, TypeAlias
 
-from rtamt.language.formula import Apply, Const, Formula, Var
+from rtamt.language.formula import Apply, Const, Formula, Parameter, Var
 from rtamt.language.grammar import is_number
 from rtamt.language.operators import STL, TRUTH, Sort
 from rtamt.language.value_types import BOOLEAN, UNKNOWN, Ambiguous, Enumeration
@@ -61,7 +61,7 @@ def as_formula(formula: Formula) -> Formula:
     """Return what a Boolean means as a formula: +inf where it is true, else -inf; anything else as it is."""
     if type_of(formula) is not BOOLEAN:
         return formula
-    if isinstance(formula, Const):
+    if isinstance(formula, Const) and not isinstance(formula, Parameter):
         return STL["true" if formula.value else "false"]()
     return Apply(TRUTH, (formula,), None, formula.span)
 

@@ -88,3 +88,11 @@ def test_only_requirements_have_parameters(run, files):
         run("info", files[1], "--set", "limit=3").err
         == "rtamt: --set is for requirements, and this is a recording\n"
     )
+
+
+def test_a_boolean_is_set_by_its_word(run, write):
+    spec = write("strict.stl", "float x parameter bool strict = false require A: strict -> x <= 2")
+    write("log.csv", TRACE)
+    assert run("check", spec, "log.csv").code == 0
+    assert run("check", spec, "log.csv", "--set", "strict=true").code == 1
+    assert "parameters strict = true  (by default false)" in run("info", spec, "--set", "strict=true").out
