@@ -4,6 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import IntEnum
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from rtamt.ros.watch import Watch
 
 
 class Level(IntEnum):
@@ -31,3 +35,16 @@ class Notice:
 
     level: Level
     message: str
+
+
+def begins_anew(watch: Watch) -> str:
+    """Return that the outputs of a watch begin anew, as the start of a sentence."""
+    first, *others = (f"'{standing.output.name}'" for standing in watch.standings)
+    if not others:
+        return f"{first} begins anew, its"
+    return f"{first} and {others[0] if len(others) == 1 else f'{len(others)} others'} begin anew, their"
+
+
+def seconds_text(nanoseconds: int) -> str:
+    """Return nanoseconds as seconds for a message."""
+    return f"{nanoseconds / 1e9:.6g} s"

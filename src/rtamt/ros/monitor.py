@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import StlError, UsageError
 from rtamt.language.units import duration, positive_period
-from rtamt.ros.diagnostics import Condition, Level, Notice
+from rtamt.ros.diagnostics import Condition, Level, Notice, begins_anew, seconds_text
 from rtamt.ros.early_watch import Bounds
 from rtamt.ros.fields import reader, stamp_of
 from rtamt.ros.watch import MessageWatch, Robustness, SampledWatch, Verdict
@@ -182,7 +182,7 @@ class RosMonitor:
             if stamp == last:
                 self._repeat(topic)
                 return records
-            self._begin_anew(f"the stamps on {topic} went back by {_seconds(last - stamp)}")
+            self._begin_anew(f"the stamps on {topic} went back by {seconds_text(last - stamp)}")
         self._arrived(topic, now)
         self._stamps[topic] = stamp
         self._faults.pop(topic, None)
@@ -230,7 +230,7 @@ class RosMonitor:
         foreign = now != 0 and not -max(self._leap, SKEW) <= stamp - now <= SKEW
         if foreign and topic not in self._foreign:
             self._foreign.add(topic)
-            apart = f"{_seconds(abs(stamp - now))} {'behind' if stamp < now else 'ahead of'}"
+            apart = f"{seconds_text(abs(stamp - now))} {'behind' if stamp < now else 'ahead of'}"
             self._say(
                 Level.WARN,
                 f"the stamps on {topic} are {apart} the clock: its messages are sampled as of their arrival",
@@ -252,7 +252,7 @@ class RosMonitor:
         except StlError as error:
             watch.reset()
             if watch.fault is None:
-                self._say(Level.ERROR, f"{_begins_anew(watch)} samples cannot be used: {error}")
+                self._say(Level.ERROR, f"{begins_anew(watch)} samples cannot be used: {error}")
             watch.fault = str(error)
             return []
         watch.fault = None
@@ -262,7 +262,7 @@ class RosMonitor:
 
     def _advance(self, now: int) -> None:
         if self._last is not None and now < self._last:
-            self._begin_anew(f"the clock went back by {_seconds(self._last - now)}")
+            self._begin_anew(f"the clock went back by {seconds_text(self._last - now)}")
         elif self._last == 0 and now:  # the clock starts: earlier messages arrive now, and are not stale
             self._heard = dict.fromkeys(self._heard, now)
             for watch in self._sampled:
@@ -281,7 +281,9 @@ class RosMonitor:
             self._silent.discard(topic)
         for watch in self._sampled:
             watch.leap(now)
-        self._say(Level.WARN, f"the clock went forward by {_seconds(by)} at once: all monitors begin anew")
+        self._say(
+            Level.WARN, f"the clock went forward by {seconds_text(by)} at once: all monitors begin anew"
+        )
 
     def _begin_anew(self, why: str) -> None:
         for watch in self.watches:
@@ -328,7 +330,9 @@ class RosMonitor:
                 )
         for topic in stale:
             self._silent.add(topic)
-            self._say(Level.WARN, f"{topic} is stale: no message for {_seconds(now - self._heard[topic])}")
+            self._say(
+                Level.WARN, f"{topic} is stale: no message for {seconds_text(now - self._heard[topic])}"
+            )
             for watch in self.watches:
                 if topic in watch.topics:
                     watch.drop(topic)
@@ -380,7 +384,7 @@ class RosMonitor:
         if watch.fault is not None or faulty:
             level, text = Level.ERROR, watch.fault or faulty[0]
         elif silent:
-            ages = [f"{topic} for {_seconds(now - self._heard[topic])}" for topic in silent]
+            ages = [f"{topic} for {seconds_text(now - self._heard[topic])}" for topic in silent]
             level, text = Level.STALE, f"no message on {', '.join(ages)}"
         elif now == 0 and self._heard and standing.satisfied is not False:
             level, text = Level.WARN, _NO_CLOCK
@@ -391,17 +395,6 @@ class RosMonitor:
         else:
             level, text = Level.OK, standing.text
         return Condition(f"{self.binding.name}: {output.name}", level, text, values)
-
-
-def _begins_anew(watch: Watch) -> str:
-    first, *others = (f"'{standing.output.name}'" for standing in watch.standings)
-    if not others:
-        return f"{first} begins anew, its"
-    return f"{first} and {others[0] if len(others) == 1 else f'{len(others)} others'} begin anew, their"
-
-
-def _seconds(nanoseconds: int) -> str:
-    return f"{nanoseconds / 1e9:.6g} s"
 
 
 __all__ = ["Bounds", "Robustness", "RosMonitor", "Verdict"]

@@ -8,6 +8,7 @@ module           purpose
 ===============  ====================================================================
 options          Semantics, Language, TimeInterpretation, StlIOType
 declarations     shared by every class: names, types, topics, modules, the text
+objects          variables that are objects, and their fields
 formulas         the parsed formulas: canonical text, values of sub-formulas
 online           pastification and the result, shared by the online classes
 discrete         discrete time: sampling period, the offline class

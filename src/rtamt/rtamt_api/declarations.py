@@ -22,6 +22,7 @@ from rtamt.language.specfile import parse_document
 from rtamt.language.units import check_unit
 from rtamt.rtamt_api.associativity import warn_of_chains
 from rtamt.rtamt_api.failures import raises_rtamt
+from rtamt.rtamt_api.objects import head_of, numbers_in
 from rtamt.signals.arrays import field
 
 if TYPE_CHECKING:
@@ -352,11 +353,11 @@ class Declarations(ABC):
             value = field(held, path)
         except AttributeError:
             missing = ".".join(path)
-            hint = did_you_mean(missing, _numbers_in(held))
+            hint = did_you_mean(missing, numbers_in(held))
             return f"'{head}' is {with_article(kind)} and has no field '{missing}'{hint}"
         if path or isinstance(value, Real):
             return ""
-        such = [f", such as {head}.{number}" for number in _numbers_in(held)[:1]]
+        such = [f", such as {head}.{number}" for number in numbers_in(held)[:1]]
         return f"'{head}' is {with_article(kind)} and no number; name one of its fields{''.join(such)}"
 
     def _assertions(self, document: Document) -> dict[str, Formula]:
@@ -389,16 +390,6 @@ class Declarations(ABC):
             raise UsageError(
                 f"'{name}' cannot start as {with_article(type_name)} without arguments: {error}"
             ) from error
-
-
-def head_of(name: str) -> str:
-    """Return the variable to which a name belongs: for a field, the part before the first dot."""
-    return name.partition(".")[0]
-
-
-def _numbers_in(held: Any) -> list[str]:
-    """Return the names of an object's public fields that hold numbers."""
-    return [name for name in dir(held) if name[0] != "_" and isinstance(getattr(held, name, None), Real)]
 
 
 def _require_text(what: str, value: object) -> None:

@@ -16,11 +16,11 @@ from rtamt.language.printer import EXCERPT, canonical
 from rtamt.language.units import UNITS
 from rtamt.rewrite.check import TICKS, check_bounds, check_dense, has_future
 from rtamt.rtamt_api.backends import backend, check_language, signal
-from rtamt.rtamt_api.declarations import head_of
 from rtamt.rtamt_api.dense_points import points_of, samples_by_name, with_points_at
 from rtamt.rtamt_api.explained import ExplainedSpecification
 from rtamt.rtamt_api.failures import raises_rtamt
 from rtamt.rtamt_api.formulas import Formulas
+from rtamt.rtamt_api.objects import head_of
 from rtamt.rtamt_api.online import OnlineSpecification, require_past
 from rtamt.rtamt_api.options import Language, Semantics, sampling
 from rtamt.signals import arrays

@@ -11,9 +11,9 @@ from rtamt.errors import TraceError
 from rtamt.language.formula import Formula, Var
 from rtamt.language.units import UNITS
 from rtamt.rtamt_api.backends import Stream, check_language, require_core
-from rtamt.rtamt_api.declarations import head_of
 from rtamt.rtamt_api.discrete import DiscreteTimeSpecification, StlDiscreteTimeOfflineSpecification
 from rtamt.rtamt_api.failures import raises_rtamt
+from rtamt.rtamt_api.objects import head_of
 from rtamt.rtamt_api.online import OnlineSpecification, require_past
 from rtamt.rtamt_api.options import Language, Semantics
 from rtamt.signals import arrays

@@ -9,9 +9,9 @@ from rtamt.errors import RTAMTException, SpecificationError
 from rtamt.language.formula import Apply, Formula, postorder
 from rtamt.language.operators import Tense
 from rtamt.rewrite.pastify import pastify
-from rtamt.rtamt_api.declarations import head_of
 from rtamt.rtamt_api.failures import raises_rtamt
 from rtamt.rtamt_api.formulas import Formulas
+from rtamt.rtamt_api.objects import head_of
 from rtamt.signals import arrays
 
 if TYPE_CHECKING:
