@@ -24,6 +24,7 @@ value_types          the types of variables that are no plain numbers: Booleans,
 type_rules           what Booleans and enumerations may stand in
 typed_parser         members of enumerations and ``x in {...}`` in formulas
 scope                names in a formula: constants, named formulas, declared variables
+template_order       templates that a text defines further down, and cycles among them
 templates            ``def name(parameters) = formula``, and its uses
 imports              files that others import: where they may be, and what is taken from them
 sampling             the sampling rule: ``sample 100ms hold``

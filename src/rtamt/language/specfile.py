@@ -44,7 +44,8 @@ from rtamt.language.operators import STL, Language
 from rtamt.language.sampling import begins_sampling, parse_sampling
 from rtamt.language.scope import Scope
 from rtamt.language.tables import begins_table
-from rtamt.language.templates import begins_template, parse_template, templates_to_come
+from rtamt.language.template_order import templates_to_come
+from rtamt.language.templates import begins_template, parse_template
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping

@@ -81,7 +81,7 @@ class Binding:
             if values is not channel_of.values:
                 notes.append(f"{name} was converted from {channel_of.unit} to {unit}")
             made[name] = replace(channel_of, values=values, unit=unit)
-        return trace.with_channels(made, notes)
+        return trace.with_channels(made, conversions=notes)
 
     def _mapping(self, data: Mapping[Any, Any], partial: bool) -> dict[Any, Any]:
         found = {}

@@ -5,6 +5,7 @@ Of a whole recording with :func:`sampled`, of a stream with :class:`HeldSampler`
 
 from __future__ import annotations
 
+from dataclasses import replace
 from math import isnan
 from typing import TYPE_CHECKING, Any
 
@@ -55,8 +56,23 @@ def sampled(
 
 def _held(trace: Trace, rule: Sampling, period: Fraction) -> Trace:
     if rule.skip_nan:
-        trace = trace.without_nan()
+        trace = _without_nan(trace)
     return trace.resample(period, "hold", rule.limit)
+
+
+def _without_nan(trace: Trace) -> Trace:
+    """Return a trace without the samples that are NaN, and with a note on them."""
+    channels, losses = {}, []
+    for name in trace:
+        channel = channels[name] = trace.channel(name)
+        bad = np.array([isinstance(value, float) and isnan(value) for value in channel.values.tolist()], bool)
+        if not bad.any() or channel.times is None:
+            continue
+        first, count = int(bad.argmax()), int(bad.sum())
+        at = show_time(channel.times[first])
+        losses.append(f"left out, NaN: {count:,} sample{'s' * (count != 1)} of {name}, the first at {at}")
+        channels[name] = replace(channel, times=channel.times[~bad], values=channel.values[~bad])
+    return trace.with_channels(channels, losses)
 
 
 def _has_times(samples: Any) -> bool:

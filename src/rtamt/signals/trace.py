@@ -21,7 +21,7 @@ from rtamt.errors import TraceError, UsageError, choices, shown
 from rtamt.language.units import positive_period
 from rtamt.signals.arrays import TIME, Clocked, stamps
 from rtamt.signals.data_errors import missing_sample
-from rtamt.signals.listing import extent, html, listing, show_time
+from rtamt.signals.listing import extent, html, listing
 from rtamt.signals.regular import merged
 from rtamt.signals.resampling import grid_of, resampled
 from rtamt.signals.signal import Signal
@@ -191,7 +191,7 @@ class Trace(Clocked):
         if len(renamed) < len(self._channels):
             twice = next(name for name in names if name in self._channels and name not in names.values())
             raise UsageError(f"{self._source} has a '{twice}' already; choose another name")
-        return self._with(renamed)
+        return self.with_channels(renamed)
 
     def select(self, names: Collection[str]) -> Trace:
         """Return the trace with some of its signals alone, in its own order.
@@ -202,7 +202,9 @@ class Trace(Clocked):
         """
         for name in names:
             self.channel(name)
-        return self._with({name: channel for name, channel in self._channels.items() if name in names})
+        return self.with_channels(
+            {name: channel for name, channel in self._channels.items() if name in names}
+        )
 
     def extended(self, signals: Mapping[str, Signal], units: Mapping[str, str] | None = None) -> Trace:
         """Return the trace with further signals, such as those of a result; one of the same name is replaced.
@@ -223,7 +225,7 @@ class Trace(Clocked):
             found[name] = Channel(
                 np.asarray(signal.times), np.asarray(signal.values, float), units.get(name, "")
             )
-        return self._with(found)
+        return self.with_channels(found)
 
     def to_pandas(self) -> Any:
         """Return a pandas DataFrame: a column for each signal, NaN at times at which it has no sample.
@@ -255,7 +257,7 @@ class Trace(Clocked):
             inside &= True if low is None else channel.times >= low
             inside &= True if high is None else channel.times <= high
             found[name] = replace(channel, times=channel.times[inside], values=channel.values[inside])
-        return self._with(found)
+        return self.with_channels(found)
 
     # ---- for the engine --------------------------------------------------------------------------
 
@@ -318,28 +320,6 @@ class Trace(Clocked):
             raise UsageError(f"hold_for= is for how='hold', got how='{how}'")
         return self._at(grid_of(self._all_timed(), period, how), how, limit)
 
-    def without_nan(self) -> Trace:
-        """Return the trace without the samples that are NaN; :attr:`losses` lists them.
-
-        >>> import rtamt
-        >>> rtamt.read({"time": [0, 1, 2], "x": [1.0, float("nan"), 3.0]}, skip_nan=["x"]).without_nan()["x"].values
-        array([1., 3.])
-        """
-        channels, losses = {}, []
-        for name, channel in self._channels.items():
-            bad = np.isnan(channel.values) if channel.values.dtype.kind == "f" else np.zeros(0, bool)
-            if bad.any() and channel.times is not None:
-                first, count = int(bad.argmax()), int(bad.sum())
-                at = show_time(channel.times[first])
-                losses.append(
-                    f"left out, NaN: {count:,} sample{'s' * (count != 1)} of {name}, the first at {at}"
-                )
-                kept = replace(channel, times=channel.times[~bad], values=channel.values[~bad])
-                channels[name] = replace(kept, first_gap=channel.first_gap or first)
-            else:
-                channels[name] = channel
-        return self._with(channels, losses)
-
     def hold(self) -> Trace:
         """Return all signals at the timestamps of each, holding last values, from the latest first timestamp on.
 
@@ -360,17 +340,14 @@ class Trace(Clocked):
             values, left_out = resampled(name, channel.times, channel.values, grid, how, hold_for)
             losses += left_out
             channels[name] = replace(channel, times=grid, values=values, first_gap=None)
-        return self._with(channels, losses)
+        return self.with_channels(channels, losses)
 
     # ---- inside ----------------------------------------------------------------------------------
 
-    def with_channels(self, channels: Mapping[str, Channel], conversions: Sequence[str] = ()) -> Trace:
-        """Return the trace with other signals; ``conversions``: what became of their units, a sentence each."""
-        return self._with(channels, conversions=conversions)
-
-    def _with(
+    def with_channels(
         self, channels: Mapping[str, Channel], losses: Sequence[str] = (), conversions: Sequence[str] = ()
     ) -> Trace:
+        """Return the trace with other signals, and with notes on what was lost and converted on the way."""
         return Trace(
             channels,
             source=self._source,

@@ -210,6 +210,3 @@ def test_samples_that_are_nan_are_skipped():
         spec.evaluate({"time": [0, 1, 2, 3, 4], "x": [1, np.nan, np.nan, np.nan, 2]})
     with pytest.raises(TraceError, match="'x' is NaN at sample 1"):
         rtamt.parse("sample 1s hold; always(x <= 3)").evaluate({"time": [0, 1, 2], "x": [1, np.nan, 2]})
-    trace = rtamt.read({"x": (np.array([0.0, 1.0]), np.array([np.nan, 2.0]))})
-    if np.isnan(trace["x"].values).any():
-        assert trace.without_nan().losses == ("left out, NaN: 1 sample of x, the first at 0 s",)
