@@ -1,7 +1,7 @@
-"""Writes `corpus/early.jsonl`: bounds and earliest verdicts of traces that are known in part, from the definition.
+"""Writes `corpus/early.jsonl`: bounds, earliest verdicts and causation of traces that are known in part.
 
-Part of `python -m conformance.generate`. Formulas and traces are drawn as for the rest of the corpus, with
-bounded future in discrete time; then samples become missing or uncertain. README.md describes the fields.
+From the definition. Part of `python -m conformance.generate`. Formulas and traces are drawn as for the rest of the corpus,
+with bounded future in discrete time; then samples become missing or uncertain. README.md describes the fields.
 """
 
 from __future__ import annotations
@@ -20,8 +20,10 @@ from rtamt.language.enclosures import Enclosure
 from rtamt.language.formula import variables
 from rtamt.language.parser import parse_formula
 from rtamt.reference import dense_bounds, discrete_bounds, earliest
+from rtamt.reference.causation import causation
 from rtamt.reference.discrete_bounds import ANYTHING, Knowledge
 from rtamt.rewrite.check import unbounded_future
+from rtamt.rewrite.early import causeless
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -30,6 +32,7 @@ if TYPE_CHECKING:
 
 FILE = "early.jsonl"
 DRAWN = 150  # cases a time domain
+EXACT = 50  # cases more whose samples are all known, for causation
 
 
 @dataclass
@@ -45,6 +48,13 @@ class EarlyCase:
     tree: dict[str, Any] = field(default_factory=dict)
     bounds: list[Any] = field(default_factory=list)
     verdicts: list[Any] = field(default_factory=list)
+    causation: list[Any] = field(default_factory=list)
+
+    @property
+    def exact(self) -> bool:
+        """Whether all samples are known, and nothing is of later ones, in discrete time."""
+        known = (value for values in self.signals.values() for value in values)
+        return self.time == "discrete" and not self.ranges and all(isinstance(v, int | float) for v in known)
 
     @property
     def seconds(self) -> Fraction:
@@ -88,6 +98,9 @@ def answered(case: EarlyCase) -> EarlyCase:
         stages = [known.until(k) for k in range(1, n + 1)] + [known]
         case.bounds = [_filled(discrete_bounds.bounds(formula, stage, case.seconds), n) for stage in stages]
         case.verdicts = [list(map(list, news)) for news in earliest.verdicts(formula, known, case.seconds)]
+        if case.exact and causeless(formula) is None:
+            caused = (causation(formula, stage, case.seconds, 1)[0] for stage in stages[:-1])
+            case.causation = [[each.violation + 0.0, each.satisfaction + 0.0] for each in caused]
         return case
     updates = updates_of(case)
     names = tuple(case.signals)
@@ -126,12 +139,15 @@ def _filled(found: Enclosure, n: int) -> list[list[float]]:
     return [list(pairs[min(i, len(pairs) - 1)]) for i in range(n)]
 
 
-def drawn(draw: Drawing, name: str, time: str, step: str) -> EarlyCase | None:
-    """Draw a case; None where it has no answer."""
+def drawn(draw: Drawing, name: str, time: str, step: str, *, exact: bool) -> EarlyCase | None:
+    """Draw a case; None where it has no answer. ``exact``: one that has causation."""
     formula = draw.nested(draw.random.choice((1, 2, 2, 3)))
     names = variables(formula)
     if not names or (time == "discrete" and unbounded_future(formula) is not None):
         return None
+    if exact:
+        case = _answered(EarlyCase(name, time, str(formula), step, draw.signals(names), {}))
+        return case if case is not None and case.causation else None
     ranges = {each: [-3.5, 3.5] for each in names if draw.chance(3)}
     signals = draw.signals(names)
     for each_, samples in signals.items():
@@ -141,8 +157,12 @@ def drawn(draw: Drawing, name: str, time: str, step: str) -> EarlyCase | None:
                 return None
             known = _known(draw, value)
             samples[i] = known if time == "discrete" else [sample[0], known]
+    return _answered(EarlyCase(name, time, str(formula), step, signals, ranges))
+
+
+def _answered(case: EarlyCase) -> EarlyCase | None:
     try:
-        return answered(EarlyCase(name, time, str(formula), step, signals, ranges))
+        return answered(case)
     except EvaluationError:
         return None
 
@@ -155,13 +175,17 @@ def _known(draw: Drawing, value: float) -> Any:
 
 def cases(drawing: Any, steps: tuple[str, ...], seed: int) -> Iterator[EarlyCase]:
     """Yield the cases; ``drawing`` makes a :class:`Drawing` of a seed, a time domain and a step."""
-    for time in ("discrete", "dense"):
+    for kind, time, count in (
+        ("discrete", "discrete", DRAWN),
+        ("dense", "dense", DRAWN),
+        ("causation", "discrete", EXACT),
+    ):
         found = attempt = 0
-        while found < DRAWN:
+        while found < count:
             attempt += 1
             step = steps[attempt % len(steps)]
-            draw = drawing(f"{seed} early {time} {attempt}", time, step)
-            case = drawn(draw, f"early/{time}/{found:03}", time, step)
+            draw = drawing(f"{seed} early {kind} {attempt}", time, step)
+            case = drawn(draw, f"early/{kind}/{found:03}", time, step, exact=kind == "causation")
             if case is not None:
                 found += 1
                 yield case

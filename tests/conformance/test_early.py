@@ -19,7 +19,7 @@ CASES = early.read()
 
 @pytest.mark.parametrize("case", [pytest.param(case, id=case.id) for case in CASES])
 def test_the_answers_are_those_of_the_definition(case):
-    fresh = replace(case, tree={}, bounds=[], verdicts=[])
+    fresh = replace(case, tree={}, bounds=[], verdicts=[], causation=[])
     assert early.answered(fresh) == case
 
 
@@ -54,6 +54,27 @@ def test_the_monitors_of_dense_time_give_the_answers(case, backend):
         ]
         for news in case.verdicts
     ]
+
+
+CAUSED = [case for case in CASES if case.causation]
+
+
+@pytest.mark.parametrize("backend", ["cpp", "python"])
+@pytest.mark.parametrize("case", [pytest.param(case, id=case.id) for case in CAUSED])
+def test_causation_is_that_of_the_monitor_and_adds_up_to_the_bounds(case, backend):
+    spec = rtamt.parse(case.formula, period=case.seconds, backend=backend)
+    monitor = spec.monitor(verdict="causation")
+    before = spec.monitor(verdict="interval", at="start").interval()
+    lower, upper = before.lower, before.upper
+    for i, (violation, satisfaction) in enumerate(case.causation):
+        row = {name: values[i] for name, values in case.signals.items()}
+        assert monitor.update(_seconds(i, case), **row) == rtamt.Causation(violation, satisfaction)
+        lower, upper = max(lower, satisfaction), min(upper, violation)
+        assert [lower, upper] == case.bounds[i][0]
+
+
+def test_the_corpus_has_causation():
+    assert len(CAUSED) >= 50
 
 
 def _seconds(tick, case):
