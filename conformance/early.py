@@ -1,7 +1,7 @@
 """Writes `corpus/early.jsonl`: bounds, earliest verdicts and causation of traces that are known in part.
 
-From the definition. Part of `python -m conformance.generate`. Formulas and traces are drawn as for the rest of the corpus,
-with bounded future in discrete time; then samples become missing or uncertain. README.md describes the fields.
+From the definition. Part of `python -m conformance.generate`. Formulas and traces are drawn as for the rest of the
+corpus, with bounded future in discrete time; then samples become missing or uncertain. README.md describes the fields.
 """
 
 from __future__ import annotations
