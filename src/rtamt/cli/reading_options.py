@@ -186,15 +186,9 @@ def choice_for(specs: Sequence[Specification], trace: str, reading: Reading) -> 
     for spec in specs:
         names.update(spec.recorded)
     # A value that is held in samples of a sampling rule is too old by that rule, wherever it is missing.
-    ruled = any(spec.sampling is not None and spec.sampling.hold for spec in specs)
-    hold_for = (
-        None if ruled and reading.resample is None and not specs[0].domain.continuous else reading.hold_for
-    )
-    skips = {spec.sampling is not None and spec.sampling.skip_nan for spec in specs}
-    if len(skips) > 1:  # each then reads the recording alone
-        raise TraceError("NaN is left out by some of the specifications alone")
-    discrete = not specs[0].domain.continuous
-    skipped = [name for name in columns if name in reading.skip_nan or (discrete and skips == {True})]
+    held, skips_nan = _sampling_of(specs[0])
+    hold_for = None if held and reading.resample is None else reading.hold_for
+    skipped = [name for name in columns if name in reading.skip_nan or skips_nan]
     types = {name: type_ for spec in specs for name, type_ in spec.types.items()}
     return replace(
         choice(reading.time, columns or None, names, None, skipped, hold_for, reading.unit, types),
@@ -203,12 +197,20 @@ def choice_for(specs: Sequence[Specification], trace: str, reading: Reading) -> 
 
 
 def _check_places(specs: Sequence[Specification]) -> None:
-    """Raise where specifications read one variable of different columns: each then reads the recording alone."""
+    """Raise where specifications read a recording differently: each then reads it alone."""
+    if len(set(map(_sampling_of, specs))) > 1:
+        raise TraceError("the specifications sample the recording differently")
     places: dict[str, str] = {}
     for spec in specs:
         for name, (column, _) in spec.binding.places().items():
             if places.setdefault(name, column) != column:
                 raise TraceError(f"'{name}' is recorded as '{places[name]}' and as '{column}'", variable=name)
+
+
+def _sampling_of(spec: Specification) -> tuple[bool, bool]:
+    """Return whether a sampling rule holds values, and whether it leaves out NaN."""
+    rule = None if spec.domain.continuous else spec.sampling
+    return rule is not None and rule.hold, rule is not None and rule.skip_nan
 
 
 def has_own_clocks(spec: Specification, trace: str, reading: Reading) -> bool:
@@ -218,8 +220,8 @@ def has_own_clocks(spec: Specification, trace: str, reading: Reading) -> bool:
 
 def is_resampled(spec: Specification, trace: str, reading: Reading) -> bool:
     """Return whether each requirement is sampled anew, from when all variables that it reads have started."""
-    held = spec.sampling is not None and spec.sampling.hold
-    return reading.resample is not None or (not spec.domain.continuous and (held or is_bag(trace)))
+    held, _ = _sampling_of(spec)
+    return reading.resample is not None or held or (not spec.domain.continuous and is_bag(trace))
 
 
 def oldest_held(spec: Specification, reading: Reading) -> Fraction | None:

@@ -105,3 +105,15 @@ def test_samples_that_are_nan_are_skipped(run, write):
     write("other.stl", "input float y  sample 100ms hold skip nan  always(y <= 3)")
     both = rows(run("check", "spec.stl", "other.stl", "log.csv", "--json"))
     assert ["error" in each for each in both] == [True, False]
+
+
+def test_specifications_with_and_without_a_rule_read_one_recording(run, write):
+    write("plain.stl", "input float x  historically(x <= 3)")
+    write("even.csv", "time,x,y\n0,1,0\n0.1,,1\n0.2,2,\n0.3,4,0\n")
+    for given in (["spec.stl", "plain.stl"], ["plain.stl", "spec.stl"]):
+        found = {
+            row["requirement"]: row
+            for row in rows(run("check", *given, "even.csv", "--json", "--hold-for", "1s"))
+        }
+        assert found["R"]["samples"] == found["plain.stl"]["samples"] == 4
+        assert found["plain.stl"]["robustness"] == 2.0
