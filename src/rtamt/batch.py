@@ -16,7 +16,7 @@ from rtamt.errors import StlError, UsageError, placed, shown
 from rtamt.results import Result, requirements_of
 from rtamt.signals.arrays import is_number
 from rtamt.signals.binding import union
-from rtamt.verdicts.offline import judge
+from rtamt.verdicts.offline import findings_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
@@ -185,7 +185,7 @@ def evaluate_requirements(spec: Specification, data: Any) -> Mapping[str, Result
     )
     spec._check(query, recording)
     outputs = [one._outputs() for one in spec.requirements.values()]
-    return requirements_of(spec, judge(outputs, recording, spec._signals_of), query.semantics)
+    return requirements_of(spec, findings_of(outputs, recording, spec._signals_of), query.semantics)
 
 
 _Asked = dict[int, tuple["Specification", "Query"]]

@@ -18,7 +18,7 @@ from rtamt.signals.episodes import WindowTracker
 from rtamt.signals.listing import show_time
 from rtamt.signals.outcomes import BoundedSignal, Interval
 from rtamt.verdicts import offline as verdicts
-from rtamt.verdicts.offline import Judged, judge
+from rtamt.verdicts.offline import Findings, findings_of
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -50,7 +50,7 @@ class Result:
     #: The semantics of predicates: a name, or the given function.
     semantics: str | PredicateSemantics = "standard"
     #: What is known already: of a requirement what its program has found, of several with different starts each.
-    known: Judged | Mapping[str, Result] | None = None
+    known: Findings | Mapping[str, Result] | None = None
 
     def __repr__(self) -> str:
         of = self.specification.name or self.specification.formula
@@ -91,7 +91,7 @@ class Result:
             return self.known
         spec = self.specification
         outputs = [one._outputs(self.semantics) for one in specs.values()]
-        return requirements_of(spec, judge(outputs, self.trace, spec._signals_of), self.semantics)
+        return requirements_of(spec, findings_of(outputs, self.trace, spec._signals_of), self.semantics)
 
     @property
     def robustness(self) -> float:
@@ -164,7 +164,7 @@ class Result:
         if len(spec.requirements) > 1:
             violations = [part._first_violation for part in self.requirements.values()]
             return min((each for each in violations if each is not None), default=None)
-        if isinstance(self.known, Judged) and self.known.violations:
+        if isinstance(self.known, Findings) and self.known.violations:
             return self.known.violations[0]
         return verdicts.first_violation(spec._outputs().truth, self.trace, spec._signals_of)
 
@@ -341,13 +341,13 @@ class Result:
 
 
 def requirements_of(
-    spec: Specification, judged: Sequence[Judged], semantics: str | PredicateSemantics
+    spec: Specification, findings: Sequence[Findings], semantics: str | PredicateSemantics
 ) -> Mapping[str, Result]:
     """Return the results of the requirements of a specification, by name."""
     return MappingProxyType(
         {
             name: Result(one, each.trace, each.signal, semantics, each)
-            for (name, one), each in zip(spec.requirements.items(), judged, strict=True)
+            for (name, one), each in zip(spec.requirements.items(), findings, strict=True)
         }
     )
 

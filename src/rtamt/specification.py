@@ -20,7 +20,7 @@ from rtamt.signals.inexact import Uncertainty, fill_gaps
 from rtamt.signals.sampling import sampled
 from rtamt.specification_text import SpecificationText
 from rtamt.verdicts.modes import DELAYED, mode_of, monitor_of, semantics_in
-from rtamt.verdicts.offline import by_start, judge_apart
+from rtamt.verdicts.offline import by_start, findings_apart
 from rtamt.verdicts.standalone import bounds_program, carried_program
 
 if TYPE_CHECKING:
@@ -126,8 +126,8 @@ class Specification(SpecificationText):
                         "the requirements start at different times, and samples are missing or uncertain; "
                         "evaluate each of spec.requirements alone"
                     )
-                signal, judged = judge_apart(outputs, recording, self._signals_of)
-                parts = requirements_of(self, judged, query.semantics)
+                signal, findings = findings_apart(outputs, recording, self._signals_of)
+                parts = requirements_of(self, findings, query.semantics)
                 return Result(self, recording, signal, query.semantics, parts)
         return Result(self, recording, self._signals_of((query.formula,), recording)[0], query.semantics)
 

@@ -272,12 +272,12 @@ class SpecificationText:
     def _outputs(
         self, semantics: str | PredicateSemantics | None = None, formula: Formula | None = None
     ) -> Outputs:
-        """Return what is computed to judge the requirement: robustness under a semantics, and truth.
+        """Return what is computed to decide the requirement: robustness under a semantics, and truth.
 
         ``formula``: one that replaces that of the specification, such as its pastified form.
         """
-        judged = self.formula if formula is None else formula
-        return outputs_of(judged, self._apply_semantics(judged, semantics))
+        chosen = self.formula if formula is None else formula
+        return outputs_of(chosen, self._apply_semantics(chosen, semantics))
 
     def _named(self, name: str) -> Formula:
         """Return a named sub-specification or requirement, or the formula of any other text, read in its place."""

@@ -3,13 +3,13 @@
 ==============  ============================================================================
 module          purpose
 ==============  ============================================================================
-engine          what an engine has: back ends, a monitor, a timeline; the engine of a time domain
+engine          what an engine has: back ends, a monitor, a time axis; the engine of a time domain
 discrete        the engine of discrete time
 dense           the engine of dense time
 backend         the interface of a back end, and what compiled back ends share
 offline         evaluate queries on a recording; cache compiled plans
 offline_bounds  offline bounds of recordings with missing or uncertain samples
-timeline        a recording divided into cells, as explanations evaluate it
+time_axis        a recording divided into cells, as explanations evaluate it
 online          watched formulas and copies, shared by the monitors
 usage_guard     reject concurrent and reentrant use of a monitor
 native          load the compiled core

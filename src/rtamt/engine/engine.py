@@ -10,7 +10,7 @@ if TYPE_CHECKING:
 
     from rtamt.engine.backend import Backend
     from rtamt.engine.online import OnlineMonitor
-    from rtamt.engine.timeline import Timeline
+    from rtamt.engine.time_axis import TimeAxis
     from rtamt.signals.domain_interface import TimeDomain
 
 
@@ -19,12 +19,12 @@ class Engine:
     """What evaluates, monitors and explains formulas in one time domain: ``ENGINE`` in its folder.
 
     ``backends``: by name, see :data:`rtamt.engine.backend.BACKENDS`. ``monitor``: takes a formula and the time
-    domain; for its settings see :class:`Monitor`. ``timeline``: takes a recording and the name of a back end.
+    domain; for its settings see :class:`Monitor`. ``time_axis``: takes a recording and the name of a back end.
     """
 
     backends: Mapping[str, Backend]
     monitor: Callable[..., OnlineMonitor]
-    timeline: Callable[[Any, str], Timeline]
+    time_axis: Callable[[Any, str], TimeAxis]
 
 
 def engine_of(domain: TimeDomain) -> Engine:

@@ -71,7 +71,7 @@ class _Explainer:
         self._text = text
         self._recording = recording
         self._evaluators = Evaluators(backend)
-        self._line = engine_of(recording.domain).timeline(recording, backend)
+        self._line = engine_of(recording.domain).time_axis(recording, backend)
         self._dense = recording.domain.continuous
         self._structure = Structure.of(formula, self._line.period if self._dense else None)
         leaves = self._structure.leaves

@@ -19,7 +19,7 @@ from rtamt.signals.instants import NONE, Cells, StepFunction, two_valued
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
-    from rtamt.engine.timeline import Timeline
+    from rtamt.engine.time_axis import TimeAxis
     from rtamt.explain.propagate import Demands
     from rtamt.rewrite.structure import Place, Structure
 
@@ -38,20 +38,20 @@ class Forcing:
     """Tells where the verdict falls when the predicates are known on some intervals only."""
 
     def __init__(
-        self, structure: Structure, demands: Demands, timeline: Timeline, fixed: Mapping[str, StepFunction]
+        self, structure: Structure, demands: Demands, axis: TimeAxis, fixed: Mapping[str, StepFunction]
     ) -> None:
         self._structure = structure
         self._demands = demands
-        self._timeline = timeline
-        self._end = timeline.end
+        self._axis = axis
+        self._end = axis.end
         self._fixed = fixed
         self._literals = [
             (leaf.name, sign) for leaf in structure.leaves.values() if not leaf.fixed for sign in (1, -1)
         ]
         self._choices = [(place, surely) for place, surely in demands.choices if len(surely)]
         formulas = [structure.polar[place] for place, _ in self._choices]
-        self._run = timeline.runner(formulas) if formulas else None
-        found = reaches(structure.order, timeline.period)
+        self._run = axis.runner(formulas) if formulas else None
+        found = reaches(structure.order, axis.period)
         nodes = [node for (node, _), _ in self._choices]
         #: How many cells behind and ahead a choice can look.
         self.behind = max((found[node][0] for node in nodes), default=0)
@@ -73,7 +73,7 @@ class Forcing:
         """Return where each place has the truth that is asked of it, by the intervals alone."""
         polar = self._structure.polar
         order = tuple(dict.fromkeys(polar.values()))
-        holds = truths(order, self._timeline, self._signals(intervals))
+        holds = truths(order, self._axis, self._signals(intervals))
         whole = Cells.of([(0, self._end)])
         return {
             (node, sign): holds[formula] if self._demands.truth(sign) else whole - holds[formula]

@@ -14,7 +14,7 @@ from rtamt.signals.instants import Cells, StepFunction, two_valued
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from rtamt.engine.timeline import Timeline
+    from rtamt.engine.time_axis import TimeAxis
     from rtamt.rewrite.structure import Structure
 
 
@@ -25,8 +25,8 @@ class Signals:
     minimum, maximum or negation at one instant, found where they are asked for.
     """
 
-    def __init__(self, structure: Structure, timeline: Timeline, leaves: Mapping[str, StepFunction]) -> None:
-        self._end = timeline.end
+    def __init__(self, structure: Structure, axis: TimeAxis, leaves: Mapping[str, StepFunction]) -> None:
+        self._end = axis.end
         self._steps: dict[Formula, StepFunction] = {}
         self._at: tuple[int, dict[Formula, float]] = (-1, {})
         wanted: dict[Formula, None] = {}
@@ -40,7 +40,7 @@ class Signals:
             elif isinstance(node, Const):
                 self._steps[node] = StepFunction(np.zeros(1, np.int64), np.array([node.value]), self._end)
         if asked:
-            self._steps.update(zip(asked, timeline.runner(asked)(leaves), strict=True))
+            self._steps.update(zip(asked, axis.runner(asked)(leaves), strict=True))
 
     def of(self, node: Formula) -> StepFunction:
         """Return the values of a leaf, of a sub-formula that reads other instants, or of what one reads."""
@@ -73,18 +73,18 @@ def _chosen(code: str | None, values: list[float]) -> float:
 
 
 def truths(
-    order: Sequence[Formula], timeline: Timeline, leaves: Mapping[str, StepFunction]
+    order: Sequence[Formula], axis: TimeAxis, leaves: Mapping[str, StepFunction]
 ) -> dict[Formula, Cells]:
     """Return where each sub-formula holds, given signals of its leaves that are above 0 where they hold.
 
     ``order``: the distinct sub-formulas, operands first.
     """
-    whole = Cells.of([(0, timeline.end)])
+    whole = Cells.of([(0, axis.end)])
     bold = {name: two_valued(steps.positive(), inf, -inf, steps.end) for name, steps in leaves.items()}
     asked = [node for node in order if isinstance(node, Apply) and opcode(node) is None]
     found: dict[Formula, StepFunction] = {}
     if asked:
-        found.update(zip(asked, timeline.runner(asked)(bold), strict=True))
+        found.update(zip(asked, axis.runner(asked)(bold), strict=True))
     holds: dict[Formula, Cells] = {}
     for node in order:
         code = opcode(node)

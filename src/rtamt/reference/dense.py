@@ -1,6 +1,6 @@
 """The definition, executed in dense time: formula and step functions to robustness, slowly and plainly.
 
-This is the judge of the dense engine and the Python back end. Bottom-up over the formula, every
+This is the reference for the dense engine and the Python back end. Bottom-up over the formula, every
 operator in time is evaluated by its ``dense`` definition on the refined set of critical instants and the
 open intervals between them, every other one value by value; it shares nothing with the engine but the
 formula. Online, :class:`DenseReferenceMonitor` keeps the whole trace and evaluates it again.

@@ -1,6 +1,6 @@
 """The definition, executed: formula and samples to robustness in discrete time, slowly and plainly.
 
-This is the judge of the engine and the Python back end. It applies the ``definition`` of each
+This is the reference for the engine and the Python back end. It applies the ``definition`` of each
 operator of the table, bottom-up, over whole arrays; it shares nothing with the engine but the formula.
 Online, :class:`ReferenceMonitor` keeps the stretch of trace that it needs and evaluates it again.
 

@@ -24,6 +24,7 @@ prediction            predictions of later samples, and the radius of their erro
 caller_clock          times of early monitors in the format of the caller
 early_check           whether a recording can no longer change a verdict (``rtamt check --early``)
 dense_early_check     the same in dense time
+evidence              which samples decided a verdict
 at_start              bounds and verdict at the start of the trace
 standalone            compile a requirement to a program that runs without Python
 ====================  =================================================================

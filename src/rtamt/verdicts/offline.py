@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 ROOM = 2**24
 
 
-class Judged(NamedTuple):
+class Findings(NamedTuple):
     """What one requirement has over its trace.
 
     ``violations``: when it is first violated (see :func:`first_violation`), in the times of the trace; empty
@@ -42,42 +42,42 @@ class Judged(NamedTuple):
     violations: tuple[Any, ...]
 
 
-def judge(outputs: Sequence[Outputs], trace: DomainTrace, evaluate: Evaluate) -> list[Judged]:
+def findings_of(outputs: Sequence[Outputs], trace: DomainTrace, evaluate: Evaluate) -> list[Findings]:
     """Return robustness and verdict of each requirement, each over the trace of its own variables.
 
     Raises :class:`EvaluationError` where a robustness has no value.
     """
-    found: dict[int, Judged] = {}
+    found: dict[int, Findings] = {}
     for numbers in by_start(outputs, trace):
         whole = trace_of([outputs[i].truth for i in numbers], trace)
         size = max(1, ROOM // max(1, whole.size))
         for first in range(0, len(numbers), size):
             some = numbers[first : first + size]
-            judged = _judge([outputs[i] for i in some], whole, trace, evaluate)
-            found.update(zip(some, judged, strict=True))
+            findings = _findings_of([outputs[i] for i in some], whole, trace, evaluate)
+            found.update(zip(some, findings, strict=True))
     return [found[i] for i in range(len(outputs))]
 
 
-def judge_apart(
+def findings_apart(
     outputs: Sequence[Outputs], trace: DomainTrace, evaluate: Evaluate
-) -> tuple[Signal, list[Judged]]:
+) -> tuple[Signal, list[Findings]]:
     """Return the same of requirements whose traces start at different instants, and their common signal.
 
     That begins with the first requirement: at each instant it is the minimum over those that have started.
     """
     # In steps, since instants that differ by a tick may be equal in the caller's times.
-    found = judge(outputs, trace.in_steps(), evaluate)
+    found = findings_of(outputs, trace.in_steps(), evaluate)
     every = [(each.signal.times, each.signal.values) for each in found]
     ticks, values = changes(*minimum(every, [np.inf] * len(every)))
-    judged = [
-        Judged(
+    findings = [
+        Findings(
             trace_of([output.truth], trace),
             trace.in_caller_times(each.signal),
             tuple(None if step is None else trace.time(step - trace.start) for step in each.violations),
         )
         for output, each in zip(outputs, found, strict=True)
     ]
-    return trace.in_caller_times(Signal(ticks, values)), judged
+    return trace.in_caller_times(Signal(ticks, values)), findings
 
 
 def first_violation(truth: Formula, trace: DomainTrace, evaluate: Evaluate) -> Any:
@@ -113,12 +113,12 @@ def by_start(outputs: Sequence[Outputs], trace: DomainTrace) -> list[list[int]]:
 # ---- outputs ---------------------------------------------------------------------------------------
 
 
-def _judge(
+def _findings_of(
     outputs: Sequence[Outputs],
     trace: DomainTrace,
     whole: DomainTrace,
     evaluate: Evaluate,
-) -> Iterator[Judged]:
+) -> Iterator[Findings]:
     """Yield what requirements have over their common trace; robustness is reported to the end of the ``whole``."""
     trace = trace.held_until(whole.end)
     robustness = tuple(each.robustness for each in outputs)
@@ -127,7 +127,7 @@ def _judge(
     except EvaluationError:  # of one of the truths, or indeed of a robustness
         signals, found = evaluate(robustness, trace), []
     for i, (each, signal) in enumerate(zip(outputs, signals, strict=True)):
-        yield Judged(trace_of([each.truth], whole), signal, tuple(found[i : i + 1]))
+        yield Findings(trace_of([each.truth], whole), signal, tuple(found[i : i + 1]))
 
 
 def _outputs(

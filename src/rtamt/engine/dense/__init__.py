@@ -7,7 +7,7 @@ backends              the back ends: the compiled core and the definition
 evaluate              offline evaluation by the compiled core
 monitor               the monitor
 groups                several requirements, each with the trace of its own variables
-timeline              a recording in ticks, as explanations evaluate it
+time_axis              a recording in ticks, as explanations evaluate it
 python_backend        the definition behind the interface of the compiled monitor
 early_python_backend  the definition of bounds behind the interface of monitors before the horizon
 runs                  runs of ticks
@@ -16,7 +16,7 @@ runs                  runs of ticks
 
 from rtamt.engine.dense.backends import BACKENDS
 from rtamt.engine.dense.monitor import DenseMonitor
-from rtamt.engine.dense.timeline import DenseTimeline
+from rtamt.engine.dense.time_axis import DenseTimeAxis
 from rtamt.engine.engine import Engine
 
-ENGINE = Engine(BACKENDS, DenseMonitor, DenseTimeline)
+ENGINE = Engine(BACKENDS, DenseMonitor, DenseTimeAxis)

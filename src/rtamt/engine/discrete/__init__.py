@@ -8,7 +8,7 @@ evaluate              offline evaluation by the compiled core
 monitor               the monitor
 samples               read and check the numbers and the time of one sample
 caller_times          timestamps of samples as the caller gives them
-timeline              a recording in samples, as explanations evaluate it
+time_axis              a recording in samples, as explanations evaluate it
 python_backend        the definition behind the interface of the compiled monitor
 early_python_backend  the definition of bounds behind the interface of the core's EarlyMonitor
 ====================  =====================================================================
@@ -16,7 +16,7 @@ early_python_backend  the definition of bounds behind the interface of the core'
 
 from rtamt.engine.discrete.backends import BACKENDS
 from rtamt.engine.discrete.monitor import Monitor
-from rtamt.engine.discrete.timeline import DiscreteTimeline
+from rtamt.engine.discrete.time_axis import DiscreteTimeAxis
 from rtamt.engine.engine import Engine
 
-ENGINE = Engine(BACKENDS, Monitor, DiscreteTimeline)
+ENGINE = Engine(BACKENDS, Monitor, DiscreteTimeAxis)

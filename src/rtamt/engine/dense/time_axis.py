@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rtamt.engine.dense.backends import BACKENDS
-from rtamt.engine.timeline import Timeline
+from rtamt.engine.time_axis import TimeAxis
 from rtamt.errors import UsageError
 from rtamt.language.formula import Apply, postorder
 from rtamt.language.units import decimal
@@ -22,12 +22,12 @@ from rtamt.signals.instants import StepFunction
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
-    from rtamt.engine.timeline import Runner
+    from rtamt.engine.time_axis import Runner
     from rtamt.language.formula import Formula
     from rtamt.signals.dense_arrays import Samples
 
 
-class DenseTimeline(Timeline):
+class DenseTimeAxis(TimeAxis):
     """Cells are ticks, from the recording's start on for ever: the last values hold."""
 
     def __init__(self, recording: DenseTrace, backend: str) -> None:
@@ -45,12 +45,12 @@ class DenseTimeline(Timeline):
             )
 
     def measured(self, formulas: Sequence[Formula]) -> list[StepFunction]:
-        """See :class:`Timeline`."""
+        """See :class:`TimeAxis`."""
         found = self._evaluator([desugar(formula) for formula in formulas])(self._recording.columns)
         return [StepFunction(ticks - self._start, values, NEVER) for ticks, values in found]
 
     def runner(self, formulas: Sequence[Formula]) -> Runner:
-        """See :class:`Timeline`."""
+        """See :class:`TimeAxis`."""
         evaluator = self._evaluator(formulas)
 
         def run(signals: Mapping[str, StepFunction]) -> list[StepFunction]:
@@ -74,21 +74,21 @@ class DenseTimeline(Timeline):
         return evaluated
 
     def cell(self, at: Any) -> int:
-        """See :class:`Timeline`."""
+        """See :class:`TimeAxis`."""
         return self._recording.position(at)
 
     def later(self, time: Any) -> int:
-        """See :class:`Timeline`."""
+        """See :class:`TimeAxis`."""
         return int(self._recording.scale.widened([[time]]).ticks([time], "at")[0]) - self._start
 
     def time(self, cell: int) -> Any:
-        """See :class:`Timeline`."""
+        """See :class:`TimeAxis`."""
         if cell >= NEVER // 2:
             return None
         return self._recording.time(cell)
 
     def show(self, cell: int) -> str:
-        """See :class:`Timeline`."""
+        """See :class:`TimeAxis`."""
         scale = self._recording.scale
         start = self._recording.start * scale.tick
         if scale.kind == "zoned":
@@ -99,11 +99,11 @@ class DenseTimeline(Timeline):
 
     @property
     def last(self) -> int:
-        """See :class:`Timeline`."""
+        """See :class:`TimeAxis`."""
         return self._last
 
     def closes(self, end: int, formula: Formula, at: int) -> bool:
-        """See :class:`Timeline`.
+        """See :class:`TimeAxis`.
 
         [2 s, 5 s] and [2 s, 5 s + 1 tick) are the same ticks, as are [2 s, 5 s) and [2 s, 5 s - 1 tick]. What
         is meant is the end on the grid that all samples and bounds, and the instant asked for, share.

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 Runner: TypeAlias = Callable[[Mapping[str, StepFunction]], list[StepFunction]]
 
 
-class Timeline(ABC):
+class TimeAxis(ABC):
     """The cells of a recording: ``period`` is the seconds from one to the next, ``end`` how many there are.
 
     Formulas go to the back end of the specification: the engine, or the definition.

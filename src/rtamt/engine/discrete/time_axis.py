@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rtamt.engine.discrete.backends import BACKENDS
-from rtamt.engine.timeline import Timeline
+from rtamt.engine.time_axis import TimeAxis
 from rtamt.rewrite.desugar import desugar
 from rtamt.signals.datetimes import nanoseconds_of
 from rtamt.signals.discrete import DiscreteTrace
@@ -18,12 +18,12 @@ from rtamt.signals.instants import StepFunction
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
-    from rtamt.engine.timeline import Runner
+    from rtamt.engine.time_axis import Runner
     from rtamt.language.formula import Formula
     from rtamt.signals.arrays import FloatArray
 
 
-class DiscreteTimeline(Timeline):
+class DiscreteTimeAxis(TimeAxis):
     """Cells are samples."""
 
     def __init__(self, recording: DiscreteTrace, backend: str) -> None:
@@ -33,12 +33,12 @@ class DiscreteTimeline(Timeline):
         self.end = len(recording)
 
     def measured(self, formulas: Sequence[Formula]) -> list[StepFunction]:
-        """See :class:`Timeline`."""
+        """See :class:`TimeAxis`."""
         evaluator = self._evaluator([desugar(formula) for formula in formulas])
         return [StepFunction.of_samples(values) for values in evaluator(self._recording)]
 
     def runner(self, formulas: Sequence[Formula]) -> Runner:
-        """See :class:`Timeline`."""
+        """See :class:`TimeAxis`."""
         evaluator = self._evaluator(formulas)
 
         def run(signals: Mapping[str, StepFunction]) -> list[StepFunction]:
@@ -58,19 +58,19 @@ class DiscreteTimeline(Timeline):
         return np.repeat(steps.values, np.diff(steps.changes, append=self.end))
 
     def cell(self, at: Any) -> int:
-        """See :class:`Timeline`."""
+        """See :class:`TimeAxis`."""
         return self._recording.position(at)
 
     def later(self, time: Any) -> int:
-        """See :class:`Timeline`."""
+        """See :class:`TimeAxis`."""
         return self.cell(time)
 
     def time(self, cell: int) -> Any:
-        """See :class:`Timeline`."""
+        """See :class:`TimeAxis`."""
         return self._recording.time(cell)
 
     def show(self, cell: int) -> str:
-        """See :class:`Timeline`."""
+        """See :class:`TimeAxis`."""
         stamps = self._recording.stamps
         if stamps.dtype.kind in "mM":
             seconds = [Fraction(nanoseconds_of(stamps[i]) or 0, 10**9) for i in (0, cell)]
@@ -82,9 +82,9 @@ class DiscreteTimeline(Timeline):
 
     @property
     def last(self) -> int:
-        """See :class:`Timeline`."""
+        """See :class:`TimeAxis`."""
         return self.end - 1
 
     def closes(self, end: int, formula: Formula, at: int) -> bool:  # noqa: ARG002 - samples are all there is
-        """See :class:`Timeline`."""
+        """See :class:`TimeAxis`."""
         return True
