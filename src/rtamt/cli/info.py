@@ -297,6 +297,9 @@ def _lines(facts: Facts) -> Iterator[str]:
         yield f"{'' if i else 'variables':<11}{' '.join(word for word in words if word)}"
     if not spec.input_names:
         yield "variables  none"
+    for i, known in enumerate(spec.document.enumerations.values()):
+        members = ", ".join(f"{name} = {code}" for name, code in known.members)
+        yield f"{'' if i else 'types':<11}enum {known.name} {{ {members} }}"
     for i, parameter in enumerate(_parameters(spec)):
         unit = f" [{parameter['unit']}]" if parameter["unit"] else ""
         type_ = spec.document.types.get(parameter["name"])

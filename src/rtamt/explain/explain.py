@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from itertools import islice
-from math import inf
+from math import inf, isinf
 from typing import TYPE_CHECKING, Any
 
 from rtamt.engine.engine import engine_of
@@ -16,8 +16,9 @@ from rtamt.explain.propagate import Demands
 from rtamt.explain.report import CriticalPoint, Explanation, Stretch
 from rtamt.explain.sentences import cause, predicate_text, summary
 from rtamt.explain.signals import Signals, truths
-from rtamt.language.formula import postorder
+from rtamt.language.formula import Var, postorder, types_of
 from rtamt.language.printer import PAGE, to_text
+from rtamt.language.value_types import value_text
 from rtamt.rewrite.semantics import boolean, no_verdict
 from rtamt.rewrite.structure import NEVER, Structure, literal, reaches
 from rtamt.signals.instants import StepFunction, two_valued
@@ -25,7 +26,7 @@ from rtamt.verdicts.offline import first_violation
 from rtamt.verdicts.robustness_and_truth import outputs_of
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Sequence
+    from collections.abc import Callable, Iterable, Iterator, Sequence
 
     from rtamt.explain.minimise import Interval
     from rtamt.language.formula import Formula
@@ -177,6 +178,7 @@ class _Explainer:
             lowest,
             highest,
             decided_by,
+            "" if leaf is None else self._recorded(leaf, (value,), point.cell, point.cell + 1),
         )
         return found, point.cell
 
@@ -236,12 +238,26 @@ class _Explainer:
             float(values.max()),
             line.time(begin),
             line.time(end) if ahead else stop,
+            self._recorded(leaf, values, interval.start, interval.end),
         )
         when = self._when(interval, closed)
         if behind or ahead:
             reading = f"to {line.show(end)}" if end < NEVER // 2 else "on"
             when += f", read as a whole: from {line.show(begin)} {reading}"
         return stretch, when
+
+    def _recorded(self, leaf: Leaf, values: Iterable[float], start: int, end: int) -> str:
+        """Return the Booleans and members that a predicate of truth read on an interval of cells."""
+        types = types_of(leaf.formula)
+        if not types or not all(map(isinf, values)):
+            return ""
+        found = []
+        steps = self._line.measured([Var(name) for name in types])
+        for (name, type_), step in zip(types.items(), steps, strict=True):
+            _, read = step.between(start, end)
+            texts = dict.fromkeys(value_text(value, type_) or f"{value:g}" for value in read.tolist())
+            found.append(f"{name} is {' or '.join(texts)}")
+        return ", ".join(found)
 
     def _reads(self, leaf: Leaf) -> tuple[int, int]:
         """Return how many cells behind and ahead the value of a predicate depends on."""

@@ -33,6 +33,8 @@ class CriticalPoint:
     is, the robustness would be r, cut to [``lowest``, ``highest``]: beyond these something else
     decides. So moving it across 0 makes the verdict fall where 0 lies between them, and does not
     where something else (the other operand of an ``or``, a later witness) holds as well.
+
+    ``recorded``: of a predicate over Booleans and enumerations what was recorded, such as ``mode is AUTO``.
     """
 
     predicate: str | None
@@ -45,6 +47,7 @@ class CriticalPoint:
     lowest: float
     highest: float
     decided_by: str = "predicate"
+    recorded: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,7 +58,8 @@ class Stretch:
     belongs to the interval if ``closed``, as it always does in discrete time. ``lowest`` and
     ``highest``: of the predicate's robustness on the interval. The predicate's value on it depends on
     the signals from ``reads_from`` to ``reads_to``: more than the interval where operators in time stand
-    inside a comparison, or where an operator has a definition only and is taken as a whole.
+    inside a comparison, or where an operator has a definition only and is taken as a whole. ``recorded``: as for
+    :class:`CriticalPoint`.
     """
 
     predicate: str
@@ -68,6 +72,7 @@ class Stretch:
     highest: float
     reads_from: Any
     reads_to: Any
+    recorded: str = ""
 
 
 @dataclass(frozen=True, slots=True)

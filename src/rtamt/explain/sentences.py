@@ -54,8 +54,8 @@ def summary(
 
 def cause(stretch: Stretch, when: str) -> str:
     """Return the line about one interval of the implicant."""
-    values = _short(stretch.lowest)
-    if stretch.highest != stretch.lowest:
+    values = stretch.recorded or _short(stretch.lowest)
+    if not stretch.recorded and stretch.highest != stretch.lowest:
         values += f" to {_short(stretch.highest)}"
     return f"'{stretch.predicate}' {'holds' if stretch.holds else 'fails'} {when} ({values})"
 
@@ -63,7 +63,10 @@ def cause(stretch: Stretch, when: str) -> str:
 def _decision(point: CriticalPoint, when: str) -> str:
     if point.predicate is None:
         return _NO_PREDICATE[point.decided_by]
-    sentence = f"critical point at {when}: '{point.predicate}' is {_short(point.value)}"
+    value = f"is {_short(point.value)}"
+    if point.recorded:
+        value = f"{'holds' if point.value > 0 else 'fails'} ({point.recorded})"
+    sentence = f"critical point at {when}: '{point.predicate}' {value}"
     if point.decided_by == "constant":
         return f"{sentence}, a constant"
     if point.lowest == point.highest:

@@ -308,7 +308,8 @@ class Declarations(ABC):
             self._import_as_text(imported.module, imported.name)
         for declaration in document.declarations:
             if declaration.kind == "var":
-                self.declare_var(declaration.name, declaration.type)
+                number = declaration.type in document.enumerations
+                self.declare_var(declaration.name, "int" if number else declaration.type)
                 self.var_io_dict[declaration.name] = declaration.role or "output"
         for name, topic in document.topics.items():
             self.set_var_topic(name, topic)
