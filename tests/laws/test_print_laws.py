@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from rtamt.language.formula import Apply, Const, Interval, Var, variables
 from rtamt.language.grammar import is_number
-from rtamt.language.operators import STL, Bounds, Fixity
+from rtamt.language.operators import STL, Bounds, Fixity, Sort
 from rtamt.language.parser import parse_formula as parse
 from rtamt.language.printer import canonical, to_latex, to_text
 from rtamt.language.units import UNITS
@@ -48,6 +48,15 @@ def intervals(draw, bounds):
     return Interval(begin, begin + length, draw(unit), draw(unit), begin_open=begin_open, end_open=end_open)
 
 
+def operands_of(operator, sort, below):
+    """Return operands that the parser takes, from formulas."""
+    if operator.presence:
+        return st.sampled_from(NAMES).map(Var)
+    if sort is Sort.CONDITION:
+        return below.map(lambda one: STL["gt"](one, Const(0.0)) if is_number(one) else one)
+    return below.filter(is_number) if operator.strict else below
+
+
 @st.composite
 def spelled(draw, language):
     """Draw a formula of any names, numbers and units: it need have no value, only a text."""
@@ -55,8 +64,7 @@ def spelled(draw, language):
     @st.composite
     def applied(inner, below):
         operator = inner(st.sampled_from(language.operators))
-        operand = below.filter(is_number) if operator.strict else below
-        args = tuple(inner(operand) for _ in operator.operands)
+        args = tuple(inner(operands_of(operator, sort, below)) for sort in operator.operands)
         return Apply(operator, args, inner(intervals(operator.bounds)))
 
     leaf = st.sampled_from(NUMBERS).map(Const) | st.sampled_from(NAMES).map(Var)

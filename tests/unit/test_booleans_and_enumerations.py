@@ -94,3 +94,28 @@ def test_watched_booleans_are_formulas():
     monitor = spec.monitor(watch=["p", "flag", "x"])
     monitor.update(0, p=True, x=5)
     assert [monitor[name] for name in ("p", "flag", "x")] == [inf, inf, 5]
+
+
+def test_if_keeps_the_type_of_its_branches():
+    data = {"p": [1, 0], "mode": ["AUTO", "AUTO"]}
+    assert rtamt.parse(MODES + "(if p then mode else RTL) == AUTO").evaluate(data).signal.values.tolist() == [
+        inf,
+        -inf,
+    ]
+    flags = {"p": [1, 0], "x": [5, 1]}
+    spec = rtamt.parse(MODES + "if x > 3 then p else p")
+    assert spec.evaluate(flags).signal.values.tolist() == [inf, -inf]
+
+
+def test_explanations_name_members_and_booleans_instead_of_numbers():
+    spec = rtamt.parse(MODES + "always(p -> mode == AUTO)")
+    explanation = str(spec.evaluate({"p": [0, 1], "mode": ["AUTO", "RTL"]}).explain())
+    assert "'p' holds at 1 s (p is true)" in explanation
+    assert "'mode == AUTO' fails at 1 s (mode is RTL)" in explanation
+
+
+def test_rtamt_classes_keep_numbers():
+    spec = rtamt.StlDiscreteTimeSpecification()
+    spec.spec = "enum Mode { MANUAL, AUTO = 4 }\nMode mode\nbool p\nalways(p and mode == AUTO)"
+    spec.parse()
+    assert spec.evaluate({"time": [0, 1], "p": [1, 0.5], "mode": [4, 4]}) == [[0, 0.5], [1, 0.5]]

@@ -9,6 +9,7 @@ from rtamt.errors import NameInFormulaError, did_you_mean
 from rtamt.language.formula import Apply, Const, Formula, Span, Var
 from rtamt.language.grammar import is_number
 from rtamt.language.names import NameParser
+from rtamt.language.operators import Sort
 from rtamt.language.type_rules import MistypedError, ambiguous, as_formula, no_formula, type_of, typed
 from rtamt.language.value_types import Ambiguous, Enumeration
 
@@ -46,10 +47,18 @@ class TypedParser(NameParser):
             try:
                 op, args = typed(op, args, lambda k: self._written(places[k]))
             except MistypedError as error:
-                whole = Span(places[0].start, places[-1].end)
+                whole = span or Span(places[0].start, places[-1].end)
                 raise self.error(
                     error.message, whole if error.operand is None else places[error.operand]
                 ) from None
+        for k, (sort, operand) in enumerate(zip(op.operands, args, strict=False)):
+            if sort is Sort.CONDITION and is_number(operand) and type_of(operand) is None:
+                written = self._written(places[k])
+                raise self.error(
+                    f"'{written}' is a number, and '{op.spellings[0]}' needs a condition, which is true or false; "
+                    f"compare it, such as {written} > 0",
+                    places[k],
+                )
         return Apply(op, args, interval, span or Span(places[0].start, places[-1].end))
 
     def standing_alone(self, formula: Formula, span: Span, *, named: bool = False) -> Formula:

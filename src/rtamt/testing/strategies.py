@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 
 from rtamt.errors import EvaluationError
 from rtamt.language.formula import Apply, Const, Formula, Interval, Var
+from rtamt.language.grammar import is_number
 from rtamt.language.operators import STL, Bounds, Language, Operator, Sort, Tense
 from rtamt.reference import discrete as reference
 
@@ -138,13 +139,13 @@ def formulas(
         op = draw(st.sampled_from(candidates))
         optional = draw(st.integers(0, op.optional)) if op.optional else 0
         sorts = op.operands[: len(op.operands) - optional]
-        operands = [draw_one(depth - 1, operand, strict=op.strict) for operand in sorts]
+        operands = [_suited(draw_one(depth - 1, operand, strict=op.strict), operand) for operand in sorts]
         window = interval(op)
         drawn = apply(op, operands, window)
         for kept in reversed(range(len(operands))):
             if not np.isnan(drawn.probe).any() or chance(20):
                 break
-            operands[kept:] = [number(anywhere=False) for _ in operands[kept:]]
+            operands[kept:] = [_suited(number(anywhere=False), operand) for operand in sorts[kept:]]
             drawn = apply(op, operands, window)
         if np.isnan(drawn.probe).any():
             # A formula on top of it would have no value to probe: start again from one that has.
@@ -153,6 +154,13 @@ def formulas(
         return drawn
 
     return draw_one(max_depth, Sort.FORMULA).formula
+
+
+def _suited(drawn: _Drawn, sort: Sort) -> _Drawn:
+    """Return an operand of this sort: a condition is no number."""
+    if sort is not Sort.CONDITION or not is_number(drawn.formula):
+        return drawn
+    return _Drawn(STL["gt"](drawn.formula, Const(0.0)), Sort.FORMULA, drawn.probe, drawn.depth + 1)
 
 
 def _meaning(op: Operator, window: Interval | None) -> Callable[..., Array]:

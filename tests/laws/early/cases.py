@@ -60,7 +60,7 @@ def formula(
         if sort is Sort.NUMBER:
             return number(max(depth, 0))
         if depth <= 0:
-            odd = rng.random() < 0.3
+            odd = sort is Sort.FORMULA and rng.random() < 0.3
             return Var(rng.choice(names)) if odd else apply(STL[rng.choice(("ge", "gt", "le", "lt"))], 1)
         return apply(rng.choice(by_sort[sort]), depth)
 

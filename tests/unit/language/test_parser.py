@@ -8,7 +8,7 @@ import pytest
 
 from rtamt.errors import ParseError
 from rtamt.language.formula import Apply, Const, Interval, Span, Var, postorder
-from rtamt.language.operators import STL, Bounds, Fixity
+from rtamt.language.operators import STL, Bounds, Fixity, Sort
 from rtamt.language.parser import parse_formula as parse
 
 X, Y, Z = Var("x"), Var("y"), Var("z")
@@ -32,13 +32,16 @@ def test_the_example_of_every_operator(operator):
 def test_every_spelling_of_every_operator(operator):
     interval = seconds(0, 5) if operator.bounds is Bounds.REQUIRED else None
     bounds = "" if interval is None else "[0:5]"
-    names = [Var(f"v{k}") for k in range(len(operator.operands))]
+    names = [
+        STL["gt"](Var(f"v{k}"), Const(0)) if sort is Sort.CONDITION else Var(f"v{k}")
+        for k, sort in enumerate(operator.operands)
+    ]
     for spelling in operator.spellings:
         text = {
             Fixity.ATOM: spelling,
-            Fixity.FUNCTION: f"{spelling}({', '.join(v.name for v in names)})",
+            Fixity.FUNCTION: f"{spelling}({', '.join(map(str, names))})",
             Fixity.PREFIX: f"{spelling}{bounds} v0",
-            Fixity.CONDITIONAL: f"{spelling} v0 then v1 else v2",
+            Fixity.CONDITIONAL: f"{spelling} v0 > 0 then v1 else v2",
         }.get(operator.fixity, f"v0 {spelling}{bounds} v1")
         assert parse(text) == operator(*names, interval=interval)
 
@@ -59,8 +62,8 @@ def test_every_spelling_of_every_operator(operator):
         ("not always x", "not (always x)"),
         ("always not x", "always (not x)"),
         ("prev always x", "prev (always x)"),
-        ("if p then x else y + 1 > 2", "(if (p) then (x) else (y + 1)) > 2"),
-        ("if a then x else if b then y else z", "if a then x else (if b then y else z)"),
+        ("if p > 0 then x else y + 1 > 2", "(if (p > 0) then (x) else (y + 1)) > 2"),
+        ("if a > 0 then x else if b > 0 then y else z", "if a > 0 then x else (if b > 0 then y else z)"),
         ("if -x > 1 then X else Y", '(if ((-x) > 1) then ("X") else "Y")'),
         ("if > 3 and then - else > if", '"if" > 3 and "then" - "else" > "if"'),
         ("if - then > 3", '"if" - "then" > 3'),

@@ -25,6 +25,8 @@ PRINTED = [
     ("not mode in {AUTO}", "not(mode == AUTO)"),
     ("x in {1, 2 * x} and p", "(x == 1 or x == 2 * x) and p"),
     ("alias = mode; flag = p; always(alias == RTL and flag and flag == 1)", "always(mode == RTL and p and p == 1)"),
+    ("(if p then mode else RTL) == AUTO", "(if p then mode else RTL) == AUTO"),
+    ("always(if x > 3 then p else p)", "always(if x > 3 then p else p)"),
     ("require R1: p", "p"),
     ("def at(m, f = p) = m == AUTO and f; at(mode) or at(phase, x > 1)",
      "mode == AUTO and p or phase == AUTO and x > 1"),
