@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from rtamt.errors import UsageError
 from rtamt.plot.clock import Clock
-from rtamt.signals.dense import DenseTrace
 from rtamt.verdicts.at_start import StartMonitor
 from rtamt.verdicts.dense_early import DenseEarlyMonitor, push_tick
 
@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
     from rtamt.results import Result
     from rtamt.signals.arrays import FloatArray
+    from rtamt.signals.dense import DenseTrace
     from rtamt.signals.domain_interface import DomainTrace
 
 
@@ -47,10 +48,13 @@ def band(result: Result) -> Band:
     ([-2.0, 1.0, 1.0, 1.0], [inf, inf, 1.0, 1.0], 1.0)
     """
     trace = result.trace
+    replay = trace.domain.part("replay")
+    if replay is None:
+        raise UsageError(f"bounds are not drawn in {trace.domain.name} time; plot without them")
     monitor = StartMonitor(result.specification, time=trace.domain, semantics=result.semantics)
     times, lower, upper = [], [], []
     decided = None
-    for time in _ticks(trace, monitor) if isinstance(trace, DenseTrace) else _samples(trace, monitor):
+    for time in replay(trace, monitor):
         known = monitor.interval()
         times.append(time)
         lower.append(known.lower)
@@ -67,7 +71,7 @@ def band(result: Result) -> Band:
     )
 
 
-def _samples(trace: DomainTrace, monitor: StartMonitor) -> Iterator[Any]:
+def replay_samples(trace: DomainTrace, monitor: StartMonitor) -> Iterator[Any]:
     """Bring the samples of a recording to a monitor; yield the time of each."""
     columns = {name: trace.columns[name].tolist() for name in monitor.input_names}
     step = float(trace.step)
@@ -76,7 +80,7 @@ def _samples(trace: DomainTrace, monitor: StartMonitor) -> Iterator[Any]:
         yield trace.time(i)
 
 
-def _ticks(trace: DenseTrace, monitor: StartMonitor) -> Iterator[Any]:
+def replay_ticks(trace: DenseTrace, monitor: StartMonitor) -> Iterator[Any]:
     """Bring the samples of a recording in dense time to a monitor; yield their times once the trace has started."""
     rows: dict[int, dict[str, float]] = {}
     for name in monitor.input_names:
