@@ -30,8 +30,7 @@ from rtamt.results import first_violation
 from rtamt.signals.arrays import TIME
 from rtamt.signals.episodes import Episodes
 from rtamt.signals.resampling import Sampler
-from rtamt.verdicts.dense_early_check import DenseEarlyCheck
-from rtamt.verdicts.early_check import DiscreteEarlyCheck, holds_at_end
+from rtamt.verdicts.early_check import holds_at_end
 from rtamt.verdicts.streaming import check_stream, check_streamable
 
 if TYPE_CHECKING:
@@ -44,6 +43,7 @@ if TYPE_CHECKING:
     from rtamt.signals.trace import Trace
     from rtamt.specification import Specification
     from rtamt.verdicts.chunks import StreamResult
+    from rtamt.verdicts.early_check import EarlyCheck
 
 #: Bytes of a file from which on it is read in chunks, where format and formula allow it.
 LARGE = 256 * 2**20
@@ -140,7 +140,8 @@ def _early(requirement: Requirement, trace: str, reading: Reading) -> list[Outco
     begin = time.perf_counter()
     rows = requirement.rows or (requirement,)
     specs = [row.spec for row in rows]
-    if not all(map(holds_at_end, specs)):
+    make = requirement.spec.domain.part("early_check")
+    if make is None or not all(map(holds_at_end, specs)):
         return None
     resampled = is_resampled(requirement.spec, trace, reading)
     period = reading.resample or requirement.spec.period
@@ -158,7 +159,7 @@ def _early(requirement: Requirement, trace: str, reading: Reading) -> list[Outco
             chunks = _Chunks(
                 requirement.spec, chunks_of(source, choice_for([requirement.spec], trace, reading))
             )
-            check = (DenseEarlyCheck if requirement.spec.domain.continuous else DiscreteEarlyCheck)(specs)
+            check: EarlyCheck = make(specs)
             taken = _sampled(chunks, specs[0], period, reading) if resampled else chunks
             if not any(map(check.take, taken)):
                 return None

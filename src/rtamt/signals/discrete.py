@@ -57,6 +57,7 @@ class Discrete(TimeDomain):
         "eager": "rtamt.verdicts.eager:EagerMonitor",
         "interval": "rtamt.verdicts.discrete_interval:DiscreteIntervalMonitor",
         "causation": "rtamt.verdicts.causation:CausationMonitor",
+        "early_check": "rtamt.verdicts.early_check:DiscreteEarlyCheck",
         "replay": "rtamt.plot.band:replay_samples",
         "watches": "rtamt.ros.watches:sampled",
     }
