@@ -39,6 +39,11 @@ struct Block {
         const std::int64_t end = std::clamp<std::int64_t>(lag + samples - slot, begin, size);
         return {static_cast<std::size_t>(begin), static_cast<std::size_t>(end)};
     }
+
+    // The part of a range in which values of a lag are not past the end of the trace.
+    [[nodiscard]] Range until_end(Range range, std::int64_t lag) const noexcept {
+        return {range.begin, std::clamp(present(lag).end, range.begin, range.end)};
+    }
 };
 
 class Kernel {

@@ -39,11 +39,14 @@ struct Make {
     }
     template <class Algebra>
     [[nodiscard]] Pointer slide() const {
-        return with_ring<Slide<Algebra>, typename Algebra::Value>();
+        using Value = typename Algebra::Value;
+        return std::make_unique<Slide<Algebra>>(lag, static_cast<std::size_t>(at.n),
+                                                static_cast<Value*>(state),
+                                                static_cast<Value*>(journal), at.lag);
     }
     template <class Algebra>
     [[nodiscard]] Pointer running() const {
-        return std::make_unique<Running<Algebra>>(lag);
+        return std::make_unique<Running<Algebra>>(lag, at.lag);
     }
     template <ValueDomain D>
     [[nodiscard]] Pointer since() const {

@@ -15,8 +15,9 @@ class Running final : public Scalar<typename Algebra::Value> {
   public:
     using Value = typename Algebra::Value;
 
-    explicit Running(std::int64_t operand_lag) noexcept
-        : Scalar<Value>(operand_lag, Algebra::identity) {}
+    // `lag`: of the result, as in two_stack.hpp.
+    explicit Running(std::int64_t operand_lag, std::int64_t lag = 0) noexcept
+        : Scalar<Value>(operand_lag, Algebra::identity), lag_(lag) {}
 
     std::size_t run(const Block& block) noexcept override {
         const Range present = block.present(this->lag());
@@ -31,10 +32,13 @@ class Running final : public Scalar<typename Algebra::Value> {
         fill_values(out + present.end, block.count - present.end, total);
         this->state() = total;
         if constexpr (Algebra::partial) {
-            return first_undefined<typename Algebra::Domain>(out, present);
+            return first_undefined<typename Algebra::Domain>(out, block.until_end(present, lag_));
         }
         return Kernel::defined;
     }
+
+  private:
+    std::int64_t lag_;
 };
 
 } // namespace rtamt::discrete

@@ -241,8 +241,10 @@ class Sliding final : public Kernel {
     using Element = typename M::Element;
     using Value = typename M::Value;
 
-    Sliding(std::int64_t operand_lag, std::size_t width, Element* ring, Element* journal) noexcept
-        : Kernel(operand_lag), stack_(width, ring, journal) {}
+    // `lag`: of the result; it may be less than that of the operand for windows of the past alone.
+    Sliding(std::int64_t operand_lag, std::size_t width, Element* ring, Element* journal,
+            std::int64_t lag = 0) noexcept
+        : Kernel(operand_lag), stack_(width, ring, journal), lag_(lag) {}
 
     std::size_t run(const Block& block) noexcept override {
         const Range present = block.present(lag());
@@ -252,7 +254,9 @@ class Sliding final : public Kernel {
         const Operands<M> in{a<Value>(), b<Value>()};
         stack_.push(in.from(present.begin), out + present.begin, present.end - present.begin);
         stack_.expire(out + present.end, block.count - present.end);
-        if constexpr (M::partial) return first_undefined<typename M::Domain>(out, present);
+        if constexpr (M::partial) {
+            return first_undefined<typename M::Domain>(out, block.until_end(present, lag_));
+        }
         return defined;
     }
 
@@ -263,6 +267,7 @@ class Sliding final : public Kernel {
 
   private:
     TwoStack<M> stack_;
+    std::int64_t lag_;
 };
 
 } // namespace rtamt::discrete

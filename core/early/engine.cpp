@@ -50,6 +50,8 @@ void Engine::begin(Tick newest) noexcept {
     clear();
     seen_before_ = seen_;
     seen_ = std::max(seen_, newest);
+    for (Totals& totals : totals_)
+        totals.undefined_before = totals.undefined;
 }
 
 void Engine::clear() noexcept {
@@ -69,8 +71,10 @@ std::optional<Engine::Failure> Engine::attempt(std::optional<Failure> failure) {
 void Engine::revert() {
     for (const Undo& undo : std::views::reverse(journal_))
         undo.runs->set(undo.l, undo.r, undo.old);
-    for (Totals& totals : totals_)
+    for (Totals& totals : totals_) {
         totals.forget();
+        totals.undefined = totals.undefined_before;
+    }
     seen_ = seen_before_;
     clear();
 }
@@ -342,6 +346,8 @@ void Engine::transfer(Snapshot& snapshot) {
         registers[0].transfer(snapshot);
         registers[1].transfer(snapshot);
     }
+    for (Totals& totals : totals_)
+        snapshot.item(totals.undefined);
     snapshot.item(seen_);
     snapshot.require(seen_ >= -1 && seen_ < forever);
     if (!snapshot.loading()) return;

@@ -161,8 +161,8 @@ class Engine {
     // sums.cpp
     void lift(State& state, Tick l, Tick r, const Bounds& now);
     [[nodiscard]] std::optional<Failure> add_up(std::uint32_t index, bool first);
-    [[nodiscard]] std::optional<Failure> add_windows(std::uint32_t index, Tick t, Tick r,
-                                                     bool first);
+    [[nodiscard]] std::optional<Failure> add_windows(std::uint32_t index, Tick t, Tick r);
+    [[nodiscard]] std::optional<Failure> fails(std::uint32_t index, Tick t) noexcept;
     [[nodiscard]] std::optional<Failure> add_all(std::uint32_t index, Tick t);
 
     // kernels.cpp: all other nodes, a register at a time

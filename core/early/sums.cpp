@@ -19,6 +19,7 @@ std::optional<Engine::Failure> Engine::add_up(std::uint32_t index, bool first) {
     const Node& own = node(index);
     const State& state = nodes_[index];
     if (state.from >= forever) return std::nullopt; // nobody wants it
+    if (totals_[index].undefined <= seen_) return Failure{index, 0, totals_[index].undefined};
     spans_.clear();
     if (first) {
         spans_.emplace_back(0, forever);
@@ -38,16 +39,22 @@ std::optional<Engine::Failure> Engine::add_up(std::uint32_t index, bool first) {
     for (const auto& [l, r] : spans_) {
         t = std::max(t, l);
         if (own.low <= -forever) return add_all(index, t);
-        const auto failure = add_windows(index, t, r, first);
+        const auto failure = add_windows(index, t, r);
         if (failure) return failure;
         t = std::max(t, plus(r, 1));
     }
     return std::nullopt;
 }
 
+// A sum that is undefined at a tick is a failure as soon as there is a sample.
+std::optional<Engine::Failure> Engine::fails(std::uint32_t index, Tick t) noexcept {
+    if (t <= seen_) return Failure{index, 0, t};
+    totals_[index].undefined = std::min(totals_[index].undefined, t);
+    return std::nullopt;
+}
+
 // The sums at [t, r].
-std::optional<Engine::Failure> Engine::add_windows(std::uint32_t index, Tick t, Tick r,
-                                                   bool first) {
+std::optional<Engine::Failure> Engine::add_windows(std::uint32_t index, Tick t, Tick r) {
     const Node& own = node(index);
     State& state = nodes_[index];
     const Runs& lower = runs(own.a, 0);
@@ -82,8 +89,8 @@ std::optional<Engine::Failure> Engine::add_windows(std::uint32_t index, Tick t, 
         const Bounds sum = totals_[index].at(end, [&](Tick i) { return at(own.a, i); });
         if (!Interval::undefined(sum)) {
             lift(state, t, t, sum);
-        } else if (!first) {
-            return Failure{index, 0, t};
+        } else if (const auto failure = fails(index, t)) {
+            return failure;
         }
         ++t;
     }
@@ -102,7 +109,10 @@ std::optional<Engine::Failure> Engine::add_all(std::uint32_t index, Tick t) {
     Bounds sum = t + own.high > 0 ? at(2 * index, t - 1) : Totals::Add::identity;
     for (; t + own.high <= seen_; ++t) {
         sum = Totals::Add::join(at(own.a, t + own.high), sum);
-        if (Interval::undefined(sum)) return Failure{index, 0, t};
+        if (Interval::undefined(sum)) {
+            if (const auto failure = fails(index, t)) return failure;
+            sum = bounds::anything;
+        }
         lift(state, t, t, sum);
     }
     const Tick unseen = seen_ + 1;

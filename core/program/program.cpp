@@ -82,8 +82,7 @@ class Checker {
           info_(info(instruction_.opcode)), dense_(program.domain == Domain::dense) {}
 
     void check() const {
-        if (dense_ &&
-            (instruction_.opcode == Opcode::slide_sum || instruction_.opcode == Opcode::run_sum)) {
+        if (dense_ && sums()) {
             fail("is for discrete time, and dense time is wanted here");
         }
         operands();
@@ -97,6 +96,10 @@ class Checker {
     const Instruction& instruction_;
     const OpcodeInfo& info_;
     bool dense_;
+
+    [[nodiscard]] bool sums() const noexcept {
+        return instruction_.opcode == Opcode::slide_sum || instruction_.opcode == Opcode::run_sum;
+    }
 
     [[noreturn]] void fail(const std::string& reason) const {
         refuse("instruction " + std::to_string(index_) + " (" + std::string(info_.name) + ") " +
@@ -193,7 +196,7 @@ class Checker {
             fail("has the lag " + std::to_string(lag) + " where its operands have " +
                  std::to_string(expected));
         }
-        if (lag < expected) {
+        if (lag < expected && !sums()) { // sums may lie behind their operands
             fail("has the lag " + std::to_string(lag) + ", before its operands are known at " +
                  std::to_string(expected));
         }

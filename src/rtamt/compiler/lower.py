@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from rtamt.signals.domain_interface import TimeDomain
 
-_IDENTITY = {"max": -inf, "min": inf, "sum": 0.0}
+_IDENTITY = {"max": -inf, "min": inf}
 
 
 def seconds_per_step(step: Fraction) -> tuple[tuple[str, float], ...]:
@@ -92,7 +92,7 @@ class Lowering(ABC):
         if isinstance(kernel, Pointwise):
             return self.pointwise(node, kernel, args)
         if isinstance(kernel, Window):
-            return self.window(node, kernel.reduce, args[0])
+            return self.window(node, kernel, args[0])
         if isinstance(kernel, Sum):
             return self.sum(node, args[0])
         if isinstance(kernel, Shift):
@@ -176,33 +176,56 @@ class Lowering(ABC):
         a, b = (*args, None)[:2]
         return self.emit(Instruction(kernel.opcode, a, b, lag=lag), node)
 
-    def window(self, node: Apply, reduce: str, x: int) -> int:
-        """Lower the largest or smallest value in a window, or the sum of all."""
+    def window(self, node: Apply, kernel: Window, x: int) -> int:
+        """Lower the largest or smallest value in a window."""
         begin, end = self.bounds(node)
-        fill = _IDENTITY[reduce]
+        fill = _IDENTITY[kernel.reduce]
         lag = self.lag(x)
         if node.op.tense is Tense.PAST:
             if end is None:
-                x = self.emit(Instruction(f"run_{reduce}", x, lag=lag), node)
+                x = self.emit(Instruction(f"run_{kernel.reduce}", x, lag=lag), node)
             else:
-                x = self.slide(reduce, x, end - begin + self.point, lag, node)
+                x = self.slide(kernel.reduce, x, end - begin + self.point, lag, node)
             return self.moved(x, begin, fill, lag, node) if begin else x
         assert end is not None, "unbounded future is cut off before"
         if end == 0:
             return x
         if begin == end:
             return self.moved(x, 0, fill, lag + end, node)
-        return self.slide(reduce, x, end - begin + self.point, lag + end, node)
+        return self.slide(kernel.reduce, x, end - begin + self.point, lag + end, node)
 
     def slide(self, reduce: str, x: int, width: int, lag: int, origin: Formula) -> int:
         """Return the extremum or the sum over the last ``width`` steps."""
         if width == self.point:
             return x
+        operand = self.origins[x]
+        if reduce == "sum" and isinstance(operand, Const) and operand.value.is_integer():
+            most = operand.value * width
+            if 0 <= most <= 2**53:  # exact in any order
+                return self.counting(x, most, lag, origin)
         return self.emit(Instruction(f"slide_{reduce}", x, n=width, lag=lag), origin)
 
+    def counting(self, x: int, most: float, lag: int, origin: Formula) -> int:
+        """Return the sum over a window of a whole number: the sum so far, but no more than of a whole window."""
+        total = self.emit(Instruction("run_sum", x, lag=lag), origin)
+        limit = self.emit(Instruction("const", x=most), origin)
+        return self.emit(Instruction("min", total, limit, lag=lag), origin)
+
     def sum(self, node: Apply, x: int) -> int:
-        """Lower the sum over a window of the past."""
-        x = self.window(node, "sum", x)
+        """Lower the sum over a window of the past.
+
+        The operand is delayed, not the sum: that of a window which lies later than the last sample may have no value.
+        """
+        begin, end = self.bounds(node)
+        lag = self.lag(x)
+        if end == begin:
+            x = self.moved(x, begin, 0.0, lag, node) if begin else x
+        else:
+            x = self.late(x, lag + begin)
+            if end is None:
+                x = self.emit(Instruction("run_sum", x, lag=lag), node)
+            else:
+                x = self.slide("sum", x, end - begin + self.point, lag, node)
         for opcode, factor in seconds_per_step(self.period) if node.op.timed else ():
             x = self.emit(
                 Instruction(opcode, x, self.emit(Instruction("const", x=factor), node), lag=self.lag(x)), node

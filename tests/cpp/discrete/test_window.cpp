@@ -41,8 +41,11 @@ TEST_CASE("sum is its definition to the bit for any width and chunks") {
         for (const std::int64_t width : {1, 2, 3, 4, 7, 8, 17, 100, 255, 256, 257, 800}) {
             Builder builder;
             const auto x = builder.input();
-            builder.output(builder.unary(Opcode::slide_sum, x, width, 0));
-            builder.output(builder.unary(Opcode::run_sum, x, 0, 0));
+            for (const std::int64_t behind : {0, 3, 270}) { // windows of the past alone
+                const auto late = builder.later(x, behind);
+                builder.output(builder.unary(Opcode::slide_sum, late, width, 0));
+                builder.output(builder.unary(Opcode::run_sum, late, 0, 0));
+            }
             ways::check_all_ways(builder.program(), columns, count, random,
                                  "width " + std::to_string(width) + ", count " +
                                      std::to_string(count));
@@ -58,6 +61,18 @@ TEST_CASE("sum fails only while both infinities are in the window") {
     CHECK((outputs[0] == Signal{1, inf, inf, inf, -inf, -inf, -inf, 1}));
     const auto failure = ways::offline(builder.program(), {{1, inf, 3, -inf, 4}}, 5, outputs);
     CHECK((failure && failure->instruction == 1 && failure->sample == 3));
+}
+
+TEST_CASE("sum of a window that lies later than the last sample may be undefined") {
+    Builder builder;
+    const auto late = builder.later(builder.input(), 1);
+    builder.output(builder.unary(Opcode::slide_sum, late, 2, 0));
+    builder.output(builder.later(late, 3)); // so that the last value comes later
+    std::vector<Signal> outputs;
+    CHECK(!ways::offline(builder.program(), {{0.5, -inf, inf}}, 3, outputs));
+    CHECK((outputs[0] == Signal{0, 0.5, -inf}));
+    const auto failure = ways::offline(builder.program(), {{0.5, -inf, inf, 1}}, 4, outputs);
+    CHECK((failure && failure->instruction == 2 && failure->sample == 3));
 }
 
 TEST_CASE("window of a constant is cut at the ends of the trace") {

@@ -83,6 +83,30 @@ def test_a_failed_update_with_both_infinities_leaves_the_sum_as_it_was(backend):
     assert [monitor.update(3.0 + i, x=value) for i, value in enumerate((4.0, 5.0, -inf))] == [inf, 12, -inf]
 
 
+@pytest.mark.parametrize("backend", ["cpp", "python"])
+@pytest.mark.parametrize("window", ["[1:2]", "[1:inf]"])
+def test_infinities_that_meet_in_a_window_after_the_last_sample_are_no_error(backend, window):
+    spec = rtamt.parse(f"sum{window}(x) >= 0", backend=backend)
+    values = [0.5, -inf, inf]
+    assert spec.evaluate({"x": values}).signal.values.tolist() == [0, 0.5, -inf]
+    told = f"'sum{window}(x)' has no value at sample 3, time 3 s"
+    monitor = spec.monitor()
+    assert [monitor.update(float(i), x=value) for i, value in enumerate(values)] == [0, 0.5, -inf]
+    with pytest.raises(rtamt.EvaluationError) as info:
+        monitor.update(3.0, x=1.0)
+    assert str(info.value).startswith(told)
+    assert len(monitor.finish()) == 0
+    bounds = spec.monitor(verdict="interval", at="every")
+    for i, value in enumerate(values):
+        bounds.update(float(i), x=value)
+    for _ in range(2):
+        with pytest.raises(rtamt.EvaluationError) as info:
+            bounds.update(3.0, x=1.0)
+        assert str(info.value).startswith(told)
+    bounds.finish()
+    assert bounds.interval(2.0) == rtamt.Interval(-inf, -inf)
+
+
 def test_the_python_monitor_keeps_no_more_than_it_needs():
     monitor = rtamt.parse("sum[0:9](x) >= 0", backend="python").monitor()
     for i in range(500):
