@@ -117,3 +117,28 @@ def test_specifications_with_and_without_a_rule_read_one_recording(run, write):
         }
         assert found["R"]["samples"] == found["plain.stl"]["samples"] == 4
         assert found["plain.stl"]["robustness"] == 2.0
+
+
+def test_imports_templates_types_parameters_bindings_units_and_sampling_work_together(run, write):
+    write("all.stl", """\
+        specification all
+        import "control.stl"
+        enum Mode { MANUAL, AUTO }
+        input float z [m] = "sp.z"
+        input Mode mode
+        parameter float band = 0.5 [m]
+        sample 100ms hold for 1s skip nan
+        def near(x, target, tol = band) = abs(x - target) <= tol
+        require R1 "settles" severity warning: settles(z, 10, band, within=500ms)
+        require R2: always(mode == AUTO -> eventually[0:1s] near(z, target=10))
+        """)  # fmt: skip
+    write(
+        "all.csv", "time,sp.z [ft],mode\n0,0,AUTO\n0.25,20,\n0.5,nan,MANUAL\n0.61,32.9,AUTO\n1.2,32.8,AUTO\n"
+    )
+    found = rows(run("check", "all.stl", "all.csv", "--json"))
+    assert [row["samples"] for row in found] == [13, 13]
+    held, last = 20 * 0.3048, 32.9 * 0.3048  # metres
+    assert [row["robustness"] for row in found] == pytest.approx([held - 9.5, 10.5 - last], abs=1e-9)
+    assert found[0]["severity"] == "warning"
+    wide = rows(run("check", "all.stl", "all.csv", "--json", "--set", "band=5"))
+    assert [row["satisfied"] for row in wide] == [True, True]
