@@ -9,7 +9,7 @@ import numpy as np
 
 from rtamt.cli.command import READING, CommandError, add_stamp_options, options
 from rtamt.errors import TraceError, UsageError
-from rtamt.language.units import duration
+from rtamt.language.units import duration, positive_period
 from rtamt.readers.assemble import select, trace_of
 from rtamt.readers.dates import EXAMPLE, date_in
 from rtamt.readers.formats import is_bag
@@ -185,9 +185,10 @@ def choice_for(specs: Sequence[Specification], trace: str, reading: Reading) -> 
             names.update(columns_of(spec))
     for spec in specs:
         names.update(spec.recorded)
-    # A value that is held in samples of a sampling rule is too old by that rule, wherever it is missing.
+    # A value that is held in new samples is too old in these, wherever it is missing.
     held, skips_nan = _sampling_of(specs[0])
-    hold_for = None if held and reading.resample is None else reading.hold_for
+    anew = reading.how == "hold" and (held or reading.resample is not None)
+    hold_for = None if anew else reading.hold_for
     skipped = [name for name in columns if name in reading.skip_nan or skips_nan]
     types = {name: type_ for spec in specs for name, type_ in spec.types.items()}
     return replace(
@@ -226,8 +227,12 @@ def is_resampled(spec: Specification, trace: str, reading: Reading) -> bool:
 
 def oldest_held(spec: Specification, reading: Reading) -> Fraction | None:
     """Return how old a value may be that is held in the samples of a requirement; None: however old."""
-    ruled = spec.sampling is not None and reading.resample is None and reading.how == "hold"
-    return spec.sampling.limit if ruled and spec.sampling is not None else None
+    if reading.how != "hold":
+        return None
+    if reading.resample is not None:
+        what = "longest time for which a value is held"
+        return None if reading.hold_for is None else positive_period(reading.hold_for, what)
+    return None if spec.sampling is None else spec.sampling.limit
 
 
 def on_clock(data: Trace, spec: Specification, trace: str, reading: Reading) -> Trace:

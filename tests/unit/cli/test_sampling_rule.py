@@ -81,6 +81,9 @@ def test_a_value_that_is_too_old(run, write):
     write("spec.stl", SPEC.replace("500ms", "200ms"))
     sentence = "'y' has no sample from 0.05 s to 0.3 s, longer than the 200 ms for which a value is held"
     assert f"log.csv: {sentence}" in run("check", "spec.stl", "log.csv").err
+    write("plain.stl", SPEC.replace("sample 100ms hold for 500ms\n", ""))
+    options = ["--resample", "100ms", "--hold-for", "200ms"]
+    assert f"log.csv: {sentence}" in run("check", "plain.stl", "log.csv", *options).err
     stream = run("monitor", "spec.stl", stdin=LOG)
     assert (stream.code, len(rows(stream))) == (2, 2)
     assert f"stdin, line 5: {sentence}" in stream.err
