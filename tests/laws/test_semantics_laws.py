@@ -18,7 +18,7 @@ from rtamt.language.operators import Sort
 from rtamt.language.printer import canonical
 from rtamt.rewrite.horizon import horizon
 from rtamt.rewrite.semantics import SEMANTICS
-from rtamt.rewrite.truth import truth
+from rtamt.rewrite.truth import is_part_of_a_condition, truth
 from tests.laws.test_dense_definition_laws import TICK, dense_formulas, value
 from tests.laws.test_engine_laws import by_definition, online
 from tests.oracle import interface
@@ -262,6 +262,8 @@ def test_the_papers_classes_are_the_definition_and_so_is_every_part(
         number = not isinstance(part, Apply) or part.op.result is Sort.NUMBER
         if part in judged and not number:
             wanted = interface.values(part, semantics, inputs, columns, n, ONE)
+        elif not number and is_part_of_a_condition(part, (formula,)):
+            wanted = interface.values(part, "boolean", inputs, columns, n, ONE)
         else:
             wanted = by_definition(part, columns)
         np.testing.assert_array_equal(spec.get_value(canonical(part)), wanted)

@@ -13,7 +13,7 @@ from rtamt.language.grammar import is_number
 from rtamt.language.operators import Sort, holds, is_truth
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Iterable, Sequence
 
 
 def truth(predicate: Formula) -> Formula:
@@ -56,31 +56,47 @@ def with_truths(formula: Formula) -> Formula:
     >>> chosen, chosen.args[0].args[0].op
     (<formula (if x >= 3 then x else y) > 0>, <operator holds_ge>)
     """
-    conditions = [
+    conditions = _conditions(formula)
+    return _replaced(formula, conditions, truth)[0] if conditions else formula
+
+
+def is_part_of_a_condition(part: Formula, formulas: Sequence[Formula]) -> bool:
+    """Return whether a part of formulas is only read by its truth."""
+    conditions = _conditions(*formulas)
+    return part in _read_from(conditions)[1] and part not in _read_from(formulas)[1]
+
+
+def _conditions(*formulas: Formula) -> list[Formula]:
+    return [
         operand
-        for node in postorder(formula)
+        for node in postorder(*formulas)
         if isinstance(node, Apply) and Sort.CONDITION in node.op.operands
         for sort, operand in zip(node.op.operands, node.args, strict=False)
         if sort is Sort.CONDITION
     ]
-    return _replaced(formula, conditions, truth)[0] if conditions else formula
+
+
+def _read_from(places: Iterable[Formula]) -> tuple[set[int], set[Formula]]:
+    """Return the identities of what is read as a formula, from these places on, and the formulas."""
+    found: dict[int, Formula] = {}
+    stack = list(places)
+    while stack:
+        node = stack.pop()
+        if id(node) in found:
+            continue
+        found[id(node)] = node
+        if isinstance(node, Apply) and not is_predicate(node):
+            operands = zip(node.op.operands, node.args, strict=False)
+            stack.extend(arg for sort, arg in operands if sort is Sort.FORMULA)
+    return set(found), set(found.values())
 
 
 def _replaced(
     formula: Formula, places: Sequence[Formula], replace: Callable[[Formula], Formula]
 ) -> tuple[Formula, Formula]:
     """Return a formula with the predicates of ``places`` replaced: as a number, and as one of the places."""
-    asked: set[int] = set()
     conditions = {id(place) for place in places if place is not formula}
-    stack = list(places)
-    while stack:
-        node = stack.pop()
-        if id(node) in asked:
-            continue
-        asked.add(id(node))
-        if isinstance(node, Apply) and not is_predicate(node):
-            operands = zip(node.op.operands, node.args, strict=False)
-            stack.extend(arg for sort, arg in operands if sort is Sort.FORMULA)
+    asked, _ = _read_from(places)
 
     def step(node: Formula, below: tuple[tuple[Formula, Formula], ...]) -> tuple[Formula, Formula]:
         if not isinstance(node, Apply):

@@ -14,7 +14,8 @@ from rtamt.language.grammar import is_number
 from rtamt.language.printer import canonical
 from rtamt.language.units import UNITS
 from rtamt.rewrite.ground import grounds
-from rtamt.rewrite.semantics import apply_semantics, semantics_of
+from rtamt.rewrite.semantics import apply_semantics, boolean, semantics_of
+from rtamt.rewrite.truth import is_part_of_a_condition
 from rtamt.rtamt_api.declarations import Declarations
 from rtamt.rtamt_api.failures import raises_rtamt
 from rtamt.rtamt_api.options import Semantics
@@ -122,10 +123,12 @@ class Formulas(Declarations):
     def _worth(self, part: Formula) -> Formula:
         """Return the formula whose robustness is the value of a part of the specification.
 
-        Numbers have their ordinary value under every semantics.
+        Numbers have their ordinary value under every semantics, and conditions are true or false.
         """
         if part is not self._result and is_number(part):
             return part
+        if is_part_of_a_condition(part, tuple(self._formulas.values())):
+            return boolean(part)
         applied = self._apply_semantics(part)
         read_so = postorder(*map(self._apply_semantics, self._formulas.values()))
         return applied if applied == part or applied in set(read_so) else part
