@@ -83,6 +83,7 @@ class Drawing:
             return None
         begin = self.random.choice((0, 0, 0, 1, 2, 3))
         if op.bounds is Bounds.DURATION:
+            begin = max(begin, op.positive)
             return Interval(begin * self.step, begin * self.step)
         if op.bounds is Bounds.OPTIONAL and self.chance(10):
             return Interval(begin * self.step, None)

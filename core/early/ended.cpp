@@ -83,7 +83,7 @@ std::vector<Engine::Rest> Engine::ended(std::span<const std::uint32_t> refs, Tic
             break;
         case Kind::held:
             for (Tick t = from; t < end; ++t)
-                place(t) = a(std::max<Tick>(0, t + own.low));
+                place(t) = a(std::clamp<Tick>(plus(t, own.low), 0, end - 1));
             break;
         case Kind::until: {
             Bounds next = Interval::bottom;

@@ -306,9 +306,11 @@ void Engine::settle(Tick closed, std::span<const Tick> wanted) {
             break;
         case Kind::least:
         case Kind::greatest:
-        case Kind::held:
         case Kind::sum:
             want(own.a, plus(from, own.low <= -forever ? own.high : own.low));
+            break;
+        case Kind::held: // the trace may end now, so that the last value is wanted
+            want(own.a, std::min(plus(from, own.low), closed));
             break;
         default:
             want(own.a, from);

@@ -127,7 +127,7 @@ void Graph::check() const {
         const bool pair = node.kind == Kind::both || node.kind == Kind::either ||
                           node.kind == Kind::until || node.kind == Kind::since ||
                           node.kind == Kind::since_dense;
-        require(node.kind <= Kind::sum && (node.kind != Kind::held || node.low < 0));
+        require(node.kind <= Kind::sum && (node.kind != Kind::held || node.low == node.high));
         if (node.kind == Kind::atom || node.kind == Kind::map) require(!node.steps.empty());
         if (node.kind != Kind::atom) require(earlier(node.a));
         if (pair || (node.kind == Kind::map && node.b != none)) require(earlier(node.b));

@@ -13,7 +13,7 @@
 //     until        max(b, min(a, own value at t + 1))
 //     since        max(b, min(a, own value at t - 1))
 //     since_dense  min(a, max(b, own value at t - 1)): in dense time the rest of the tick counts
-//     held         a at t + low, before the start its first value; low is negative
+//     held         a at t + low; before the start its first value, after the end its last
 //     sum          the sum of a over w, behind t and cut at the start, in the order of totals.hpp
 #pragma once
 

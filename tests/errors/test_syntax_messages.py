@@ -65,14 +65,14 @@ FORMULAS = [
         "^^^^^^",
         ParseError,
         "'zigzag' is not a function; functions: abs, sqrt, exp, pow, log, ln, min, max, sin, cos, tan, asin, acos, "
-        "atan, atan2, hypot and 22 more",
+        "atan, atan2, hypot and 27 more",
     ),
     (
         "abz(x)",
         "^^^",
         ParseError,
         "'abz' is not a function; did you mean 'abs'? (functions: abs, sqrt, exp, pow, log, ln, min, max, sin, cos, "
-        "tan, asin, acos, atan, atan2, hypot and 22 more)",
+        "tan, asin, acos, atan, atan2, hypot and 27 more)",
     ),
     (
         "wrap(x, 0, y > 3) > 1",
@@ -122,6 +122,27 @@ FORMULAS = [
         "'sum' takes a number, and 'x >= 3' is a formula, true or false; write a signal or arithmetic, "
         "such as (if x >= 3 then 1 else 0) or count(x >= 3)",
     ),
+    (
+        "delay[1:2](x) > 1",
+        "       ^",
+        ParseError,
+        "'delay' takes one duration, such as delay[5], got ':'",
+    ),
+    (
+        "delay[1](x > 2) > 1",
+        "         ^^^^^",
+        ParseError,
+        "'delay' takes a number, and 'x > 2' is a formula, true or false; write a signal or arithmetic, "
+        "such as (if x > 2 then 1 else 0)",
+    ),
+    ("held(x) > 1", "^^^^^^^", ParseError, "'held' takes 2 or 3 operands, got 1"),
+    (
+        "rate[0](x) > 1",
+        "     ^",
+        BoundError,
+        "'rate' divides by its duration, which may not be 0; write one such as rate[1]",
+    ),
+    ("ahead[inf](x) > 1", "      ^^^", BoundError, "a duration may not be infinite"),
     ("min(x)", "^^^^^^", ParseError, "'min' takes 2 or more operands, got 1"),
     ("abs(x, y)", "^^^^^^^^^", ParseError, "'abs' takes 1 operand, got 2"),
     ("abs[0:1](x)", "   ^", ParseError, "'abs' takes no interval"),

@@ -12,11 +12,12 @@ from hypothesis import strategies as st
 from rtamt.errors import EvaluationError
 from rtamt.language.dense_definitions import QUARTERS, Steps, critical, lifted
 from rtamt.language.formula import Apply, Const, Formula, Interval, Var, postorder
-from rtamt.language.operators import STL, Bounds, Operator, Sort, Tense, holds
+from rtamt.language.operators import STL, Bounds, Operator, Sort, Tense
 from rtamt.reference import discrete as reference
 from rtamt.reference.dense import DenseReferenceMonitor, StepFunction, evaluate
 from rtamt.rewrite.horizon import horizon
 from rtamt.rewrite.pastify import pastify
+from rtamt.rewrite.truth import with_truths
 from tests.oracle import dense_grid
 from tests.strategies import dense_chunkings, dense_traces, formulas, traces
 
@@ -38,7 +39,8 @@ def named(ops):
 def operands(op: Operator) -> tuple[Formula, ...]:
     if Sort.CONDITION in op.operands:
         names = iter("xyx")
-        return tuple(holds(Var("y")) if sort is Sort.CONDITION else Var(next(names)) for sort in op.operands)
+        condition = STL["gt"](Var("y"), Const(0.0))
+        return tuple(condition if sort is Sort.CONDITION else Var(next(names)) for sort in op.operands)
     if len(op.operands) > 2:  # limits that are not reversed
         return (Var("x"), Const(-1.0), Const(1.5))
     return tuple(Var(name) for name, _ in zip("xy", op.operands, strict=False))
@@ -50,6 +52,7 @@ def intervals(draw, op: Operator) -> Interval | None:
         return Interval(TICK, TICK, implied=True) if op.one_tick else None
     begin, length = draw(st.integers(0, 4)), draw(st.integers(0, 4))
     if op.bounds is Bounds.DURATION:
+        begin = max(begin, op.positive)
         return Interval(begin * TICK, begin * TICK)
     bounded = Interval(begin * TICK, (begin + length) * TICK)
     if op.bounds is Bounds.REQUIRED:
@@ -97,7 +100,7 @@ def lone(node: Formula) -> bool:
 def test_an_expansion_means_what_the_definition_says(op, data):
     interval = data.draw(intervals(op))
     trace = data.draw(dense_traces(infinite=Sort.NUMBER not in op.operands))
-    expanded = op.expansion(*operands(op), interval)
+    expanded = op.expansion(*with_truths(Apply(op, operands(op), interval)).args, interval)
     same(value(expanded, trace), value(Apply(op, operands(op), interval), trace))
 
 
@@ -134,7 +137,9 @@ def test_robustness_is_right_continuous(op, data):
         assert op.dense(instant, *signals, a, b) == whole.at(instant)
 
 
-@pytest.mark.parametrize("op", named(op for op in EVERY if op.dense))
+@pytest.mark.parametrize(
+    "op", named(op for op in EVERY if op.dense and not op.timed)
+)  # a finer grid is faster
 @given(data=st.data())
 def test_between_critical_instants_nothing_changes(op, data):
     signals = tuple(data.draw(steps()) for _ in op.operands)

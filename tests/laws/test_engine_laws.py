@@ -23,6 +23,7 @@ from rtamt.reference import discrete as reference
 from rtamt.rewrite.desugar import desugar
 from rtamt.rewrite.horizon import horizon
 from rtamt.rewrite.semantics import boolean
+from rtamt.rewrite.truth import with_truths
 from rtamt.signals.discrete import record_discrete
 from tests.oracle.boolean import satisfied
 from tests.strategies import chunkings, formulas, traces
@@ -224,6 +225,8 @@ def test_the_verdict_of_a_result_is_boolean_satisfaction(
 
 #: They read a window, and have no value where it holds both infinities.
 SUMS = {"sum", "mean", "integral"}
+#: They read two samples.
+DIFFERENCES = {"diff", "rate"}
 
 
 def places_without_value(formula: Formula, columns: dict[str, Any]) -> list[tuple[str, int]]:
@@ -242,6 +245,8 @@ def places_without_value(formula: Formula, columns: dict[str, Any]) -> list[tupl
         new = np.zeros(n, bool)  # others choose among values, and make none
         if node.op.tense is Tense.NONE:
             new = np.isnan(value) & ~np.any([np.isnan(operand) for operand in below], axis=0)
+        elif node.op.name in DIFFERENCES:
+            new = np.isnan(value) & ~np.isnan(below).any()
         elif node.op.name in SUMS:
             new = np.isnan(
                 node.op.definition(np.nan_to_num(below[0], posinf=np.inf, neginf=-np.inf), *window)
@@ -250,7 +255,7 @@ def places_without_value(formula: Formula, columns: dict[str, Any]) -> list[tupl
         return value
 
     with np.errstate(all="ignore"):
-        fold(formula, step)
+        fold(with_truths(formula), step)
     return places
 
 

@@ -16,7 +16,7 @@ from rtamt.compiler.lower import seconds_per_step
 from rtamt.compiler.program import NO_OPERAND, OPCODES
 from rtamt.errors import UsageError
 from rtamt.language.formula import Apply, Const, Formula, Parameter, Var, postorder
-from rtamt.language.operators import Pointwise, Shift, Since, Sum, Tense, Until, Window
+from rtamt.language.operators import Ahead, Pointwise, Shift, Since, Sum, Tense, Until, Window
 from rtamt.rewrite.check import reads_unbounded_future
 from rtamt.rewrite.horizon import horizons
 from rtamt.signals.discrete import Discrete
@@ -222,6 +222,10 @@ def _node(graph: Graph, formula: Formula) -> int:
     if isinstance(kernel, Shift):
         step = -1 if formula.op.tense is Tense.PAST else 1
         return _over(graph, "least" if kernel.fill > 0 else "greatest", args[0], step, step)
+    if isinstance(kernel, Ahead):
+        distance, _ = interval_in_steps(graph, formula)
+        kind = "greatest" if graph.domain.continuous else "held"
+        return _over(graph, kind, args[0], distance, distance)
     if isinstance(kernel, Since):
         return _since(graph, formula, *args)
     if isinstance(kernel, Until):

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 
 from rtamt.compiler.program import CallSite, Instruction, Program
 from rtamt.language.formula import Apply, Const, Formula, Parameter, Var, postorder
-from rtamt.language.operators import Bounds, Pointwise, Shift, Since, Sum, Tense, Until, Window
+from rtamt.language.operators import Ahead, Bounds, Pointwise, Shift, Since, Sum, Tense, Until, Window
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -97,6 +97,8 @@ class Lowering(ABC):
             return self.sum(node, args[0])
         if isinstance(kernel, Shift):
             return self.shift_by_one(node, kernel, args[0])
+        if isinstance(kernel, Ahead):
+            return self.ahead_of(node, args[0])
         if isinstance(kernel, Since):
             return self.since(node, *args)
         if isinstance(kernel, Until):
@@ -242,6 +244,10 @@ class Lowering(ABC):
             return self.moved(x, 1, kernel.fill, self.lag(x), node)
         return self.moved(x, 0, kernel.fill, self.lag(x) + 1, node)
 
+    @abstractmethod
+    def ahead_of(self, node: Apply, x: int) -> int:
+        """Lower an operator that reads later values, and the last one where the trace ends before."""
+
     def since(self, node: Apply, hold: int, goal: int) -> int:
         """φ since[a, b] ψ is once[a, b] ψ, φ on (t - a, t], and (φ since ψ) a ago: O(1) state apart from windows."""
         begin, end = self.bounds(node)
@@ -316,6 +322,13 @@ class SampledLowering(Lowering):
         """Return how much shorter than a the closed window is that stands for [0, a)."""
         return period
 
+    def ahead_of(self, node: Apply, x: int) -> int:
+        """Return x since x: x itself, and its last value after the last sample."""
+        distance, _ = self.bounds(node)
+        if distance == 0 or self.is_const(x):
+            return x
+        return self.emit(Instruction("since", x, x, lag=self.lag(x) + distance), node)
+
     def until_within(self, node: Apply, hold: int, goal: int, bounds: tuple[int, int], known: int) -> int:
         """φ on [t, t') is "φ on [j - a, j) for every j from t + a to t'".
 
@@ -339,6 +352,11 @@ class ContinuousLowering(Lowering):
     def until_just_before(period: Fraction) -> Fraction:
         """Signals are right-continuous: [0, a] and [0, a) differ only at isolated instants."""
         return 0 * period
+
+    def ahead_of(self, node: Apply, x: int) -> int:
+        """The trace goes on with its last values."""
+        distance, _ = self.bounds(node)
+        return self.moved(x, 0, -inf, self.lag(x) + distance, node) if distance else x
 
     def until_within(self, node: Apply, hold: int, goal: int, bounds: tuple[int, int], known: int) -> int:
         """φ until[a, b] ψ is φ on [t, t + a], and φ until[0, b - a] ψ from t + a on."""

@@ -337,6 +337,42 @@ def count(truth: Array, a: int, b: int | None) -> Array:
     return sum_(np.where(rise(truth) > 0, 1.0, 0.0), a, b)
 
 
+# ---- numbers at other instants ------------------------------------------------------------------
+
+
+def held(x: Array, truth: Array, *init: Array) -> Array:
+    """``held(x, φ)``: x at the last sample where φ is true, by its truth; before the first ``init``, or x(0)."""
+    values = []
+    for t in range(len(x)):
+        true = [u for u in range(t + 1) if truth[u] > 0]
+        values.append(x[true[-1]] if true else init[0][t] if init else x[0])
+    return np.array(values, float)
+
+
+def delay(x: Array, *rest: Any) -> Array:
+    """``delay[d](x)``: x(t-d); where that is before sample 0 ``init``, or x(0)."""
+    *init, a, b = rest
+    d = 1 if b is None else a
+    return np.array([x[t - d] if t >= d else init[0][t] if init else x[0] for t in range(len(x))], float)
+
+
+def ahead(x: Array, a: int, b: int | None) -> Array:
+    """``ahead[d](x)``: x(t+d), or at the last sample."""
+    d = 1 if b is None else a
+    return np.array([x[min(t + d, len(x) - 1)] for t in range(len(x))], float)
+
+
+def diff(x: Array, a: int, b: int | None) -> Array:
+    """``diff[d](x)``: x - delay[d](x)."""
+    return sub(x, delay(x, a, b))
+
+
+def rate(x: Array, a: int, b: int | None, period: Fraction = Fraction(1)) -> Array:
+    """``rate[d](x)``: diff[d](x) / d, d in seconds."""
+    d = 1 if b is None else a
+    return div(diff(x, a, b), np.array(float(d * period)))
+
+
 # ---- one sample away ----------------------------------------------------------------------------
 
 

@@ -26,9 +26,10 @@ Steps(times=(0, 8, 16, 24), values=(-inf, 0.0, 6.0, 0.0))
 from __future__ import annotations
 
 from bisect import bisect_left, bisect_right
+from fractions import Fraction
 from itertools import pairwise
 from math import inf
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
@@ -139,6 +140,45 @@ def once(t: int, x: Steps, a: int, b: int | None) -> float:
 def historically(t: int, x: Steps, a: int, b: int | None) -> float:
     """``historically[a,b] φ``: inf of φ over [t-b, t-a] ∩ [t₀, ∞)."""
     return min(_behind(t, x, a, b), default=inf)
+
+
+# ---- numbers at other instants ------------------------------------------------------------------
+
+
+def held(t: int, x: Steps, truth: Steps, *rest: Any) -> float:
+    """``held(x, φ)``: x where φ is true, else just before φ ended last, else ``init``, or x(t₀)."""
+    *init, _a, _b = rest
+    last = bisect_right(truth.times, t) - 1
+    if truth.values[last] > 0:
+        return x.at(t)
+    while last >= 0 and not truth.values[last] > 0:
+        last -= 1
+    if last < 0:
+        return init[0].at(t) if init else x.values[0]
+    return x.at(truth.times[last + 1] - 1)
+
+
+def delay(t: int, x: Steps, *rest: Any) -> float:
+    """``delay[d](x)``: x(t-d); where that is before t₀ ``init``, or x(t₀)."""
+    *init, a, _b = rest
+    if t - a >= x.times[0]:
+        return x.at(t - a)
+    return init[0].at(t) if init else x.values[0]
+
+
+def ahead(t: int, x: Steps, a: int, _b: int | None) -> float:
+    """``ahead[d](x)``: x(t+d), the last value being held."""
+    return x.at(t + a)
+
+
+def diff(t: int, x: Steps, a: int, b: int | None) -> float:
+    """``diff[d](x)``: x - delay[d](x)."""
+    return x.at(t) - delay(t, x, a, b)
+
+
+def rate(t: int, x: Steps, a: int, b: int | None, period: Fraction = Fraction(1, QUARTERS)) -> float:
+    """``rate[d](x)``: diff[d](x) / d; ``period`` is the length of a quarter of a tick in seconds."""
+    return diff(t, x, a, b) / float(a * period)
 
 
 # ---- edges --------------------------------------------------------------------------------------

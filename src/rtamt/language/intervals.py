@@ -58,6 +58,12 @@ def parse_interval(parser: FormulaParser, op: Operator, token: Token) -> Interva
     if begin is None:
         what = "a duration" if op.bounds is Bounds.DURATION else "the lower bound of an interval"
         raise parser.error(f"{what} may not be infinite", begin_span, BoundError)
+    if op.positive and begin == 0:
+        raise parser.error(
+            f"'{token.text}' divides by its duration, which may not be 0; write one such as {token.text}[1]",
+            begin_span,
+            BoundError,
+        )
     if end is None and op.bounds is Bounds.REQUIRED:
         raise _unbounded(parser, token, end_span)
     default = "" if parser.unit == "s" else parser.unit

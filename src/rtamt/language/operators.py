@@ -16,8 +16,9 @@ from __future__ import annotations
 
 from dataclasses import replace
 from fractions import Fraction
-from math import inf
-from typing import Any
+from functools import partial
+from math import inf, nan
+from typing import TYPE_CHECKING, Any
 
 from rtamt.language import definitions as d
 from rtamt.language import dense_definitions as dense
@@ -26,6 +27,7 @@ from rtamt.language import function_enclosures as fe
 from rtamt.language import functions as f
 from rtamt.language.formula import Const, Formula, Interval
 from rtamt.language.records import (
+    Ahead,
     Blocks,
     Bounds,
     Compiled,
@@ -43,9 +45,13 @@ from rtamt.language.records import (
     Window,
 )
 
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
 __all__ = [
     "STL",
     "TRUTH",
+    "Ahead",
     "Blocks",
     "Bounds",
     "Compiled",
@@ -208,6 +214,63 @@ def choice(truth: Formula, a: Formula, b: Formula) -> Formula:
     """
     both = STL["min"](a, b)
     return STL["max"](STL["max"](STL["min"](truth, a), STL["min"](STL["neg"](truth), b)), both)
+
+
+# ---- numbers at other instants ------------------------------------------------------------------
+
+# The operand one step before, a sample or a tick; +inf at the start. Not part of the language.
+_BEFORE = _prefix(
+    "before", "before", 70, "One step ago.", "before(x >= 3)", tense=Tense.PAST, reach=1, one_tick=True,
+    definition=d.prev, dense=dense.historically, kernel=Shift(inf),
+)  # fmt: skip
+
+
+def _held(x: Formula, truth: Formula, *rest: Any) -> Formula:
+    *init, _interval = rest
+    # x from the first step on; where bounds leave the truth open, the hull of both numbers.
+    taken = STL["or"](truth, _BEFORE(Const(-inf)))
+    last = STL["since"](STL["or"](STL["neg"](taken), x), STL["and"](taken, x))
+    return choice(STL["once"](truth), last, init[0]) if init else last
+
+
+def _delay(x: Formula, *rest: Any) -> Formula:
+    *init, interval = rest
+    before = STL["s_prev"] if interval is None else partial(STL["once"], interval=interval)
+    instead = init[0] if init else _held(x, Const(-inf), None)
+    return STL["or"](before(x), STL["and"](STL["neg"](before(Const(inf))), instead))
+
+
+def _diff(x: Formula, interval: Interval | None) -> Formula:
+    return STL["sub"](x, STL["delay"](x, interval=interval))
+
+
+def _rate(x: Formula, interval: Interval | None) -> Formula:
+    # Without a duration it is expanded only to see what it reads.
+    seconds = float(interval.begin) if interval is not None else nan
+    return STL["div"](_diff(x, interval), Const(seconds))
+
+
+def _past_held(
+    args: tuple[Formula, ...], _i: Interval | None, known: Callable[[Fraction], Formula]
+) -> Formula:
+    x, condition, *init = args
+    given = known(Fraction(0))
+    instead = init[0] if init else _since_when(x, given)
+    return STL["held"](x, STL["and"](condition, given), instead)
+
+
+def _past_delay(
+    args: tuple[Formula, ...], i: Interval | None, known: Callable[[Fraction], Formula]
+) -> Formula:
+    x, *init = args
+    assert i is not None
+    instead = init[0] if init else _since_when(x, known(Fraction(0)))
+    return STL["if"](known(i.begin), STL["delay"](x, interval=i), instead)
+
+
+def _since_when(x: Formula, given: Formula) -> Formula:
+    """Return x at the first instant at which ``given`` is true, from then on."""
+    return STL["held"](x, STL["rise"](given))
 
 
 def _clip(x: Formula, lo: Formula, hi: Formula, _i: Interval | None) -> Formula:
@@ -378,11 +441,12 @@ STL: Language = Language.of((
     # ---- numbers over time -------------------------------------------------------------------
     _function("minimum", 1, "The least number of the window behind.", "minimum[0:5](x) >= 3",
               latex=r"\mathrm{{minimum}}_{I}({0})", tense=Tense.PAST, bounds=Bounds.OPTIONAL,
-              definition=d.historically, dense=dense.historically, kernel=Window("min"), guards=("implies",),
-              strict=True),
+              definition=d.historically, dense=dense.historically, kernel=Window("min"),
+              guards=("implies",), strict=True),
     _function("maximum", 1, "The greatest number of the window behind.", "maximum[0:5](x) - x <= 3",
               latex=r"\mathrm{{maximum}}_{I}({0})", tense=Tense.PAST, bounds=Bounds.OPTIONAL,
-              definition=d.once, dense=dense.once, kernel=Window("max"), guards=("and",), strict=True),
+              definition=d.once, dense=dense.once, kernel=Window("max"),
+              guards=("and",), strict=True),
     _function("sum", 1, "The sum of the samples in the window behind; 0 where there is none.", "sum[0:5](x) <= 3",
               latex=r"\mathrm{{sum}}_{I}({0})", tense=Tense.PAST, bounds=Bounds.OPTIONAL, discrete_only=True,
               why_discrete=_SAMPLES, instead="count", definition=d.sum_, kernel=Sum(), guards=("zero",), strict=True),
@@ -401,6 +465,22 @@ STL: Language = Language.of((
     _function("count", 1, "How often a formula begins to hold in the window behind.", "count[0:60](x >= 3) <= 10",
               operands=(C,), latex=r"\mathrm{{count}}_{I}({0})", tense=Tense.PAST, bounds=Bounds.OPTIONAL,
               before=1, discrete_only=True, why_discrete=_COUNT, definition=d.count, expansion=_count, guards=("and",)),
+    _function("held", 3, "The first operand when the second was last true; the third, or its first value, where it "
+              "never was.", "x - held(x, y >= 3) <= 2", operands=(N, C, N), optional=1, latex="", tense=Tense.PAST,
+              reach=None, definition=d.held, dense=dense.held, expansion=_held, pastified=_past_held, strict=True,
+              keeps=(0, 2)),
+    _function("delay", 2, "The first operand d ago; the second, or its first value, where that is before the start.",
+              "x - delay[2](x) <= 2", optional=1, latex="", tense=Tense.PAST, bounds=Bounds.DURATION,
+              definition=d.delay, dense=dense.delay, expansion=_delay, pastified=_past_delay, strict=True, keeps=(0, 1)),
+    _function("ahead", 1, "The operand d ahead; where the trace ends before, its last value.",
+              "ahead[2](x) - x <= 2", latex="", tense=Tense.FUTURE, bounds=Bounds.DURATION,
+              definition=d.ahead, dense=dense.ahead, kernel=Ahead(), twin="", strict=True, keeps=(0,)),
+    _function("diff", 1, "The operand minus what it was d ago, or at the start.", "diff[2](x) <= 2", latex="",
+              tense=Tense.PAST, bounds=Bounds.DURATION, definition=d.diff, dense=dense.diff, expansion=_diff,
+              strict=True),
+    _function("rate", 1, "The change of the operand in the last d, a second: diff[d](x) / d.", "rate[2](x) <= 1",
+              latex="", tense=Tense.PAST, bounds=Bounds.DURATION, definition=d.rate, dense=dense.rate,
+              expansion=_rate, strict=True, positive=True, timed=True),
     # ---- one sample away ---------------------------------------------------------------------
     _prefix("prev", "prev Y previous", 70, "One sample ago; holds where there is none.", "prev(x >= 3)",
             latex=r"\mathbf{{Y}} {0}", tense=Tense.PAST, reach=1, discrete_only=True,

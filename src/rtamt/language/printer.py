@@ -379,7 +379,7 @@ def _rational(value: Fraction) -> str:
 
 def _bounds(node: Apply, separator: str = ":", form: Callable[[Fraction], str] = _rational) -> str:
     """Return an operator's interval or duration as it was written, or nothing if there is none."""
-    if node.interval is not None and node.op.bounds is Bounds.DURATION:
+    if node.interval is not None and node.op.bounds is Bounds.DURATION and not node.interval.implied:
         unit = node.interval.end_unit
         return f"[{form(node.interval.begin / UNITS[unit or 's'])}{unit}]"
     return interval_text(node.interval, separator, form)

@@ -15,8 +15,11 @@ from rtamt.language.formula import Apply, Formula, Interval
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping
+    from fractions import Fraction
 
     Expansion = Callable[..., Formula]
+    #: From delayed operands, the interval, and what is true from the delay (and some seconds more) on.
+    Pastification = Callable[[tuple[Formula, ...], Interval | None, Callable[[Fraction], Formula]], Formula]
 
 
 class Fixity(Enum):
@@ -83,6 +86,11 @@ class Shift:
 
 
 @dataclass(frozen=True, slots=True)
+class Ahead:
+    """The operand so many steps ahead; where the trace ends before, its last value."""
+
+
+@dataclass(frozen=True, slots=True)
 class Since:
     """The recursion of since; the tense of its record is past."""
 
@@ -118,7 +126,7 @@ class Compiled:
     dense: str | None = None
 
 
-Kernel = Pointwise | Window | Sum | Shift | Since | Until | Blocks | Compiled
+Kernel = Pointwise | Window | Sum | Shift | Ahead | Since | Until | Blocks | Compiled
 
 #: The default of ``reach``: not given.
 _UNSAID = -1
@@ -134,6 +142,7 @@ class Operator:
     ``power`` is the binding power (higher binds tighter). ``guards`` determines how pastification keeps
     an operand that was delayed by d from being read before its first value:
     ``"and"`` (the operand counts as false there), ``"implies"`` (as true), ``"zero"`` (as 0), None (not necessary).
+    Of an operator that needs more than this, ``pastified`` returns the formula in the past.
     ``twin`` names the past operator that a future one becomes ("" if the operand itself does).
     ``dual`` names the operator for which ``not op(x) == dual(not x)``.
     """
@@ -155,7 +164,7 @@ class Operator:
     dense: Callable[..., float] | None = None
     discrete_only: bool = False
     before: int = 0  # how many samples before its window of the past it reads, too
-    timed: bool = False  # its value is in seconds: the definition takes the sampling period after the bounds
+    timed: bool = False  # seconds matter: the definition takes the sampling period after the bounds
     one_tick: bool = (
         False  # in dense time its interval is the tick behind, in discrete time the sample behind
     )
@@ -167,7 +176,9 @@ class Operator:
     dual: str | None = None
     twin: str | None = None
     guards: tuple[str | None, ...] = ()
+    pastified: Pastification | None = None
     optional: int = 0  # how many of the last operands may be left out
+    positive: bool = False  # its duration is longer than zero
     strict: bool = False  # a formula is no operand, though others read its robustness as a number
     folds: bool = False  # a function that accepts more operands: f(a, b, c) is f(f(a, b), c)
     keeps: tuple[int, ...] = ()  # the operands, Boolean or of an enumeration too, whose type the result has

@@ -8,6 +8,8 @@ the definition reads, and apply it to that again.
 from __future__ import annotations
 
 import copy
+from fractions import Fraction
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -154,11 +156,14 @@ class DefinedEvents:
         return copy.copy(self)  # tuples are replaced here, never written to
 
 
-def signal_of(node: Apply, operands: tuple[Steps, ...], begin: int, end: int | None) -> Steps:
-    """Return an operator's values at all instants; times and bounds in quarters of a tick."""
+def signal_of(
+    node: Apply, operands: tuple[Steps, ...], begin: int, end: int | None, tick: Fraction = Fraction(1)
+) -> Steps:
+    """Return an operator's values at all instants; times and bounds in quarters of a tick, ``tick`` in seconds."""
     if node.op.dense is not None:
+        at = partial(node.op.dense, period=tick / QUARTERS) if node.op.timed else node.op.dense
         try:
-            return lifted(node.op.dense, operands, begin, end)
+            return lifted(at, operands, begin, end)
         except Exception as error:
             raise raised(node, error) from error
     times = sorted({t for x in operands for t in x.times})

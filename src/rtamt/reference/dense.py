@@ -248,13 +248,13 @@ def _apply(node: Formula, below: tuple[Steps, ...], trace: _Trace) -> Steps:
         return trace.signals[node.name]
     if not isinstance(node, Apply):
         raise TypeError(f"not a formula: {node!r}")
-    return signal_of(node, below or (Steps((trace.start,), (0.0,)),), *_window(node, trace.tick))
+    return signal_of(node, below or (Steps((trace.start,), (0.0,)),), *_window(node, trace.tick), trace.tick)
 
 
 def _window(node: Apply, tick: Fraction) -> tuple[int, int | None]:
     """Return the bounds of a node's interval in quarters of a tick; one that was left out is [0, inf)."""
     if node.interval is None:
-        return 0, None
+        return (QUARTERS, QUARTERS) if node.op.one_tick else (0, None)
     begin, end = node.interval.begin, node.interval.end
     return int(begin / tick) * QUARTERS, None if end is None else int(end / tick) * QUARTERS
 

@@ -228,6 +228,6 @@ def _defined(value: _Signal, node: Formula, formula: Formula, final: int | None,
 def _window(node: Apply, tick: Fraction) -> tuple[int, int | None]:
     """Return the bounds of a node's interval in quarters of a tick; one that was left out is [0, inf)."""
     if node.interval is None:
-        return 0, None
+        return (QUARTERS, QUARTERS) if node.op.one_tick else (0, None)
     begin, end = node.interval.begin, node.interval.end
     return int(begin / tick) * QUARTERS, None if end is None else int(end / tick) * QUARTERS

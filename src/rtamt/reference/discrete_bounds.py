@@ -20,7 +20,7 @@ import numpy as np
 from rtamt.errors import SpecificationError
 from rtamt.language.enclosures import Enclosure, extended
 from rtamt.language.formula import Apply, Const, Formula, Var, fold
-from rtamt.language.operators import Bounds, Pointwise, Shift, Since, Sum, Tense, Until, Window
+from rtamt.language.operators import Ahead, Bounds, Pointwise, Shift, Since, Sum, Tense, Until, Window
 from rtamt.language.undefined_value import at_sample, undefined
 from rtamt.rewrite.desugar import desugar, written
 from rtamt.rewrite.ground import ground
@@ -212,7 +212,7 @@ def pointwise(node: Apply, operands: tuple[Enclosure, ...]) -> Enclosure:
 
 def componentwise(node: Apply) -> None:
     """Raise :class:`SpecificationError` unless an operator takes minima and maxima of its operands in time."""
-    if not isinstance(node.op.kernel, Window | Shift | Since | Until):
+    if not isinstance(node.op.kernel, Window | Shift | Ahead | Since | Until):
         # No operator of the table comes here: pointwise ones have an extension or expand to such.
         assert not isinstance(node.op.kernel, Pointwise)
         raise SpecificationError(

@@ -135,6 +135,14 @@ def check_dense(formula: Formula, text: str | None = None, *, ticks: bool = True
 
     ``ticks``: whether an operator may read one tick behind.
     """
+    for node in postorder(formula):
+        if isinstance(node, Apply) and node.op.bounds is Bounds.DURATION and node.interval is None:
+            raise SpecificationError(
+                f"'{node.op.name}' without a duration means one sampling period, which dense time does not have; "
+                f"write one, such as {node.op.name}[1s](...)",
+                text,
+                node.span,
+            )
     for node in postorder(spelled_out(formula)):
         if isinstance(node, Apply) and (node.op.discrete_only or (node.op.one_tick and not ticks)):
             why = node.op.why_discrete or (
@@ -161,6 +169,8 @@ def reads_unbounded_future(node: Apply) -> bool:
         return False
     if node.op.bounds is Bounds.NONE:
         return node.op.reach is None
+    if node.op.bounds is Bounds.DURATION:
+        return False
     return node.interval is None or node.interval.end is None
 
 

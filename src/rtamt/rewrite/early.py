@@ -15,7 +15,7 @@ import numpy as np
 
 from rtamt.language.enclosures import Enclosure, extended
 from rtamt.language.formula import Apply, Const, Formula, Var, children, fold, postorder, variables
-from rtamt.language.operators import Bounds, Pointwise, Shift, Since, Sum, Tense, Until, Window
+from rtamt.language.operators import Ahead, Bounds, Pointwise, Shift, Since, Sum, Tense, Until, Window
 from rtamt.rewrite.desugar import desugar, written
 from rtamt.rewrite.presence import tracked
 
@@ -152,8 +152,7 @@ def _read(node: Apply, operand: int, span: _Span, period: Fraction | None) -> _S
     begin: Fraction | float
     end: Fraction | float
     if op.bounds is Bounds.NONE:
-        assert period is not None
-        begin = end = period
+        begin = end = period or 0  # in dense time the span does not matter
     elif node.interval is None:
         begin, end = 0, inf
     else:
@@ -231,7 +230,7 @@ def causeless(formula: Formula) -> Formula | None:
     core = desugar(tracked(formula))
     for node in postorder(core):
         below = any(in_time[id(operand)] for operand in children(node))
-        if below and not connects(node):
+        if (below and not connects(node)) or (isinstance(node, Apply) and isinstance(node.op.kernel, Ahead)):
             return written(node, [formula])
         in_time[id(node)] = below or (isinstance(node, Apply) and node.op.tense is not Tense.NONE)
     return None

@@ -11,6 +11,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rtamt.language.formula import Apply, Formula, Interval, folds, postorder
+from rtamt.language.records import Bounds
 from rtamt.language.units import UNITS
 from rtamt.rewrite.truth import rebuilt
 
@@ -23,7 +24,8 @@ def ground(formula: Formula, step: Fraction, *, continuous: bool = False) -> For
     """Return the formula in a time domain with steps of ``step`` seconds; ``continuous`` in dense time.
 
     Half-open bounds become closed ones: (a, b] is [a + step, b]. In dense time an operator that compares an
-    instant with the one before (``rise``) is given the length of a tick. If there is nothing to do, the result is
+    instant with the one before (``rise``) is given the length of a tick; in discrete time a duration that was left out
+    (``delay(x)``) is a period. If there is nothing to do, the result is
     the same object; a grounded formula is left as it is. The bounds must have been checked (``check_bounds``).
 
     >>> from fractions import Fraction
@@ -73,7 +75,7 @@ def closed(interval: Interval, step: Fraction) -> Interval:
 def _grounded(node: Apply, step: Fraction, *, continuous: bool) -> Interval | None:
     if node.interval is not None:
         return closed(node.interval, step)
-    if not (continuous and node.op.one_tick):
+    if not (node.op.one_tick if continuous else node.op.bounds is Bounds.DURATION):
         return None
     unit = next((unit for unit, seconds in UNITS.items() if (step / seconds).denominator == 1), "")
     return Interval(step, step, unit, unit, implied=True)

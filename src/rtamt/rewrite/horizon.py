@@ -40,6 +40,8 @@ def horizons(formula: Formula, period: Fraction) -> dict[int, Fraction | None]:
             return deepest
         if node.op.bounds is Bounds.NONE:
             return None if node.op.reach is None else deepest + node.op.reach * period
+        if node.interval is None and node.op.bounds is Bounds.DURATION:
+            return deepest + period
         if node.interval is None or node.interval.end is None:
             return None
         return deepest + node.interval.end

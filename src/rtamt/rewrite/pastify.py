@@ -12,11 +12,12 @@ from __future__ import annotations
 
 from dataclasses import replace
 from fractions import Fraction
+from math import inf
 
 from rtamt.errors import BoundError, SpecificationError
 from rtamt.language.formula import Apply, Const, Formula, Interval, fold, postorder
 from rtamt.language.grammar import is_number
-from rtamt.language.operators import STL, Sort, Tense
+from rtamt.language.operators import STL, Bounds, Sort, Tense
 from rtamt.rewrite.check import has_future, unbounded_future
 from rtamt.rewrite.horizon import horizon
 
@@ -63,7 +64,8 @@ def expand_future_shorthand(formula: Formula) -> Formula:
         args = tuple(arg for arg, _ in below)
         future = node.op.tense is Tense.FUTURE or any(ahead for _, ahead in below)
         defined = node.op.definition is not None
-        derived = future and node.op.tense is not Tense.NONE and not node.op.guards
+        ruled = bool(node.op.guards) or node.op.pastified is not None
+        derived = future and node.op.tense is not Tense.NONE and not ruled
         if node.op.expansion is not None and (not defined or derived):
             expanded = expand_future_shorthand(node.op.expansion(*args, node.interval))
             if future or has_future(expanded):
@@ -116,7 +118,8 @@ class _Pastifier:
         if node.op.tense is not Tense.FUTURE:
             return delay
         if node.interval is None:
-            return delay - self.period * (node.op.reach or 0)
+            one = node.op.bounds is Bounds.DURATION
+            return delay - self.period * (1 if one else node.op.reach or 0)
         assert node.interval.end is not None
         return delay - node.interval.end
 
@@ -128,11 +131,14 @@ class _Pastifier:
             args = tuple(map(_as_number, node.op.operands, node.args, args))
         if node.op.tense is Tense.FUTURE:
             return _past_twin(node, args, self.text)
+        if node.op.tense is Tense.PAST and node.op.pastified is not None:
+            return self._by_rule(node, args, delay)
         if node.op.tense is Tense.PAST:
             if len(node.op.guards) != len(args):
                 raise _no_rule(node, "guards", self.text)
             args = tuple(
-                self._guarded(arg, how, delay) for arg, how in zip(args, node.op.guards, strict=True)
+                self._guarded(arg, how, delay, sort)
+                for arg, how, sort in zip(args, node.op.guards, node.op.operands, strict=True)
             )
         return Apply(node.op, args, node.interval, node.span)
 
@@ -141,14 +147,27 @@ class _Pastifier:
             return formula
         return Apply(STL["once"], (formula,), Interval(delay, delay, self.unit, self.unit), formula.span)
 
-    def _guarded(self, operand: Formula, how: str | None, delay: Fraction) -> Formula:
+    def _by_rule(self, node: Apply, args: tuple[Formula, ...], delay: Fraction) -> Formula:
+        if delay == 0:
+            return Apply(node.op, args, node.interval, node.span)
+        assert node.op.pastified is not None
+        interval = node.interval
+        if interval is None and node.op.bounds is Bounds.DURATION:
+            interval = Interval(self.period, self.period, implied=True)
+        return node.op.pastified(args, interval, lambda more: self._shifted(STL["true"](), delay + more))
+
+    def _guarded(self, operand: Formula, how: str | None, delay: Fraction, sort: Sort) -> Formula:
         if how is None or delay == 0:
             return operand
         meant = self._shifted(STL["true"](), delay)
-        if how == "zero":
-            return Apply(STL["if"], (meant, operand, Const(0.0)), None, operand.span)
+        if sort is Sort.NUMBER:
+            return Apply(STL["if"], (meant, operand, Const(_INSTEAD[how])), None, operand.span)
         pair = (meant, operand) if how == "implies" else (operand, meant)
         return Apply(STL[how], pair, None, operand.span)
+
+
+#: A number that counts as none, as true and as false.
+_INSTEAD = {"zero": 0.0, "implies": inf, "and": -inf}
 
 
 def _as_number(sort: Sort, operand: Formula, delayed: Formula) -> Formula:
@@ -156,7 +175,7 @@ def _as_number(sort: Sort, operand: Formula, delayed: Formula) -> Formula:
     if sort is not Sort.NUMBER or is_number(delayed) or not is_number(operand):
         return delayed
     assert isinstance(delayed, Apply)
-    return replace(delayed, op=STL["maximum"])
+    return replace(delayed, op=STL["delay"])
 
 
 def _unit(formula: Formula) -> str:

@@ -76,6 +76,12 @@ def formulas(
         if select(op)
         and not op.presence  # on complete data it is true
         and (past or op.tense is not Tense.PAST)
+        and (
+            unbounded_past
+            or op.tense is not Tense.PAST
+            or op.bounds is not Bounds.NONE
+            or op.reach is not None
+        )
         and (future or op.tense is not Tense.FUTURE)
         and (discrete or not op.discrete_only)
         and (arithmetic or op.result is Sort.FORMULA)
@@ -109,7 +115,7 @@ def formulas(
         unbounded = unbounded_past if op.tense is Tense.PAST else unbounded_future
         if op.bounds is Bounds.NONE or (op.bounds is Bounds.OPTIONAL and unbounded and chance(5)):
             return None
-        begin = draw(st.integers(0, 3))
+        begin = draw(st.integers(int(op.positive), 3))
         if op.bounds is Bounds.DURATION:
             return Interval(begin * period, begin * period)
         if op.bounds is Bounds.OPTIONAL and unbounded and chance(6):

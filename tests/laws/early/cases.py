@@ -80,6 +80,7 @@ def _interval(rng: Random, op: Operator, *, unbounded: bool) -> Interval | None:
         return None
     begin, length = rng.randint(0, 2), rng.randint(0, 3)
     if op.bounds is Bounds.DURATION:
+        begin = max(begin, op.positive)
         return Interval(Fraction(begin), Fraction(begin))
     if op.bounds is Bounds.OPTIONAL and (unbounded or op.tense is Tense.PAST) and rng.random() < 0.3:
         return None if rng.random() < 0.5 else Interval(Fraction(begin), None)

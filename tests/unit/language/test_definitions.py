@@ -105,6 +105,13 @@ CASES = [
     ("once", [X], (1, None), [-inf, 1, 4, 4, 4]),
     ("once", [X], (5, 9), [-inf] * 5),
     ("minimum", [X], (0, 1), [1, 1, 2, -3, -3]),
+    ("held", [X, [-inf, inf, -inf, -inf, inf]], (), [1, 4, 4, 4, 0]),
+    ("held", [X, [-inf, inf, -inf, -inf, inf], Y], (), [-1, 4, 4, 4, 0]),
+    ("delay", [X], (2, 2), [1, 1, 1, 4, 2]),
+    ("delay", [X, Y], (2, 2), [-1, 2, 1, 4, 2]),
+    ("rate", [X], (2, 2), [0, 1.5, 0.5, -3.5, -1]),
+    ("ahead", [X], (2, 2), [2, -3, 0, 0, 0]),
+    ("diff", [X], (2, 2), [0, 3, 1, -7, -2]),
     ("minimum", [X], (2, 3), [inf, inf, 1, 1, 2]),
     ("maximum", [X], (0, None), [1, 4, 4, 4, 4]),
     ("maximum", [X], (5, 9), [-inf] * 5),
@@ -163,6 +170,12 @@ def test_worked_values(name, operands, bounds, expected):
 
 def test_every_operator_has_a_worked_value():
     assert {case[0] for case in CASES} == {op.name for op in STL}
+
+
+def test_the_rate_is_a_change_a_second():
+    rate = STL["rate"](Var("x"), interval=Interval(Fraction(1, 2), Fraction(1, 2)))
+    values = evaluate(rate, {"x": np.array(X)}, len(X), Fraction(1, 4))
+    assert values.tolist() == [0, 6, 2, -14, -4]
 
 
 def test_truth_of_predicates():
