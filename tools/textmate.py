@@ -37,7 +37,7 @@ def grammar() -> dict[str, object]:
         {"name": "keyword.control.temporal.stl", "match": rf"\b(?:{_any(long)})\b(?!\.)"},
         {"name": "keyword.control.temporal.stl", "match": rf"\b(?:{_any(short)})(?=\s*[\[(])"},
         {"name": "support.function.stl", "match": rf"\b(?:{_any(functions())})(?=\s*[\[(])"},
-        {"name": "keyword.operator.word.stl", "match": rf"\b(?:{_any(logical())})\b(?!\.)"},
+        {"name": "keyword.operator.word.stl", "match": rf"\b(?:{_any(logical())})\b(?!\.)|\bin\b(?=\s*\{{)"},
         {"name": "keyword.operator.stl", "match": _any(symbols())},
         {"name": "variable.other.stl", "match": r"[^\W\d][\w$]*(?:\.[^\W\d][\w$]*)*"},
     ]

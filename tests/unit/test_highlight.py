@@ -91,3 +91,14 @@ def test_the_grammar_for_editors_knows_every_operator(op):
             assert found[0].startswith(op.spellings[0])
             return
     pytest.fail(f"no pattern for {op.spellings[0]}")
+
+
+def test_enumerations_and_sets_have_no_error_tokens():
+    text = "enum Mode { MANUAL, AUTO = 4 } input Mode mode  mode in {AUTO} and in > 3"
+    tokens = list(StlLexer().get_tokens(text))
+    assert not [value for kind, value in tokens if kind is Error]
+    assert [kind for kind, value in tokens if value in ("enum", "in")] == [
+        Keyword.Declaration,
+        Operator.Word,
+        Name.Variable,
+    ]
