@@ -119,3 +119,21 @@ def test_rtamt_classes_keep_numbers():
     spec.spec = "enum Mode { MANUAL, AUTO = 4 }\nMode mode\nbool p\nalways(p and mode == AUTO)"
     spec.parse()
     assert spec.evaluate({"time": [0, 1], "p": [1, 0.5], "mode": [4, 4]}) == [[0, 0.5], [1, 0.5]]
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("delay[1](mode) == AUTO", [-inf, -inf, inf]),
+        ("delay[1](mode, RTL) in {RTL, AUTO}", [inf, -inf, inf]),
+        ("ahead[1](mode) != MANUAL", [inf, inf, inf]),
+        ("held(mode, p) == MANUAL", [inf, inf, inf]),
+        ("delay[1](p)", [inf, inf, -inf]),
+        ("held(p, mode == AUTO, p)", [inf, -inf, -inf]),
+    ],
+)
+@pytest.mark.parametrize("backend", ["cpp", "python"])
+def test_delay_ahead_and_held_keep_the_type(text, expected, backend):
+    data = {"mode": ["MANUAL", "AUTO", "RTL"], "p": [1, 0, 0]}
+    spec = rtamt.parse(MODES + text, backend=backend)
+    assert spec.evaluate({name: data[name] for name in spec.input_names}).signal.values.tolist() == expected
