@@ -41,6 +41,8 @@ def intervals(draw, bounds):
         return None
     begin = draw(st.fractions(0, 10, max_denominator=1000))
     length = draw(st.fractions(0, 10, max_denominator=7))
+    if bounds is Bounds.DURATION:
+        return None if draw(st.booleans()) or begin == 0 else Interval(begin, begin)
     unit = st.sampled_from(["", *UNITS])
     begin_open, end_open = (draw(st.booleans()) and length > 0 for _ in range(2))
     if bounds is Bounds.OPTIONAL and draw(st.booleans()):
