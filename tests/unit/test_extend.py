@@ -109,17 +109,17 @@ def test_without_a_dense_definition_dense_time_refuses_on_both_back_ends() -> No
 
 
 def test_unbounded_future_runs_by_the_definition_offline() -> None:
-    ahead = replace(STL["eventually"], name="ahead", spellings=("ahead",), kernel=None)
+    later = replace(STL["eventually"], name="later", spellings=("later",), kernel=None)
     for time in ("discrete", "dense"):
-        spec = parsed("historically[1:1](ahead[2:inf] x)", ahead, time=time)
+        spec = parsed("historically[1:1](later[2:inf] x)", later, time=time)
         data: Any = {"x": [[0, 1.0], [1, 5.0], [2, 2.0], [3, 4.0], [4, 0.0]]}
         if time == "discrete":
             data = {"x": [1, 5, 2, 4, 0]}
         values = spec.evaluate(data).signal.values
         expected = parsed("historically[1:1](eventually[2:inf] x)", time=time).evaluate(data)
         np.testing.assert_array_equal(values, expected.signal.values)
-    text = "always ahead x"
-    assert parsed(text, ahead).evaluate({"x": [1, 5, 2]}).robustness == 2
+    text = "always later x"
+    assert parsed(text, later).evaluate({"x": [1, 5, 2]}).robustness == 2
 
 
 def test_a_derived_operator_is_one_entry() -> None:

@@ -304,6 +304,8 @@ class FormulaParser(TypedParser):
         if self.tokens[at].text in self.scope:
             return False
         after = self.tokens[at + 1]
+        if after.text == self._awaited:
+            return False
         if self.language.infix(after.text) is None:
             return after.kind in ("name", "number", "quoted") or after.text == "(" or self.opens(at + 1)
         # `if - x then` has no other reading, for two operands are adjacent.

@@ -1,13 +1,16 @@
 """Text to formula: which tree, which spans, which names."""
 
+import json
+import re
 from dataclasses import replace
 from fractions import Fraction
 from math import copysign, inf
+from pathlib import Path
 
 import pytest
 
 from rtamt.errors import ParseError
-from rtamt.language.formula import Apply, Const, Interval, Span, Var, postorder
+from rtamt.language.formula import Apply, Const, Interval, Span, Var, fold, postorder
 from rtamt.language.operators import STL, Bounds, Fixity, Sort
 from rtamt.language.parser import parse_formula as parse
 
@@ -16,6 +19,9 @@ X, Y, Z = Var("x"), Var("y"), Var("z")
 
 def op(name, *args, interval=None):
     return STL[name](*args, interval=interval)
+
+
+CORPUS = Path(__file__).parents[3] / "conformance" / "corpus" / "discrete.jsonl"
 
 
 def seconds(begin, end):
@@ -321,3 +327,18 @@ def test_a_variable_called_if_stays_a_variable_where_it_is_declared():
     assert parse("if > then", variables=["if", "then"]) == STL["gt"](Var("if"), Var("then"))
     with pytest.raises(ParseError, match="expected an operator between 'if' and 'x'"):
         parse("if x > 3 then 1 else 2", variables=["if", "x"])
+
+
+@pytest.mark.parametrize("word", ["if", "then", "else", "held", "delay", "ahead", "diff", "rate"])
+def test_formulas_over_a_variable_with_a_new_word_read_as_before(word):
+    for line in CORPUS.read_text(encoding="utf-8").splitlines()[::40]:
+        formula = parse(json.loads(line)["formula"])
+        renamed = fold(formula, lambda node, args: _renamed(node, args, word))
+        written = re.sub(r"\bx\b", word, str(formula))
+        assert parse(written) == renamed == parse(str(renamed))
+
+
+def _renamed(node, args, word):
+    if isinstance(node, Var):
+        return Var(word) if node.name == "x" else node
+    return Apply(node.op, args, node.interval) if isinstance(node, Apply) else node
