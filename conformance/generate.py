@@ -25,6 +25,7 @@ from rtamt.errors import EvaluationError
 from rtamt.language.formula import Apply, Const, Formula, Interval, Var, postorder, variables
 from rtamt.language.operators import STL
 from rtamt.language.records import Bounds, Operator, Sort
+from rtamt.language.shares import Share, ShareKind
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -87,7 +88,16 @@ class Drawing:
             return Interval(begin * self.step, begin * self.step)
         if op.bounds is Bounds.OPTIONAL and self.chance(10):
             return Interval(begin * self.step, None)
-        return Interval(begin * self.step, (begin + self.random.choice((0, 1, 1, 2, 3))) * self.step)
+        width = self.random.choice((0, 1, 1, 2, 3))
+        if op.share:  # in dense time of more than an instant
+            width += 1
+            counts = [Share(Fraction(self.random.choice((10, 50, 80, 100))), ShareKind.PERCENT)]
+            counts.append(Share(self.random.randint(1, width) * self.step, ShareKind.DURATION))
+            counts += (
+                [] if self.dense else [Share(Fraction(self.random.randint(1, width)), ShareKind.SAMPLES)]
+            )
+            return Interval(begin * self.step, (begin + width) * self.step, share=self.random.choice(counts))
+        return Interval(begin * self.step, (begin + width) * self.step)
 
     def alone(self, op: Operator) -> Formula:
         """Draw a formula with one operator over plain predicates or, for a number's, in one."""

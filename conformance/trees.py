@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from rtamt.language.formula import Apply, Const, Formula, Interval, Var, fold
+from rtamt.language.shares import Share, ShareKind
 from rtamt.rewrite.ground import ground
 
 if TYPE_CHECKING:
@@ -19,7 +20,11 @@ def in_steps(formula: Formula, step: Fraction) -> Formula:
             return node
         bounds = node.interval
         if bounds is not None:
-            bounds = Interval(bounds.begin / step, None if bounds.end is None else bounds.end / step)
+            share = bounds.share
+            if share is not None and share.kind is ShareKind.DURATION:
+                share = Share(share.amount / step, share.kind)
+            end = None if bounds.end is None else bounds.end / step
+            bounds = Interval(bounds.begin / step, end, share=share)
         return Apply(node.op, args, bounds)
 
     return fold(ground(formula, step), counted)
@@ -39,4 +44,7 @@ def _node(node: Formula, args: tuple[Any, ...]) -> dict[str, Any]:
     assert isinstance(node, Apply)
     bounds = node.interval
     ends = None if bounds is None else [int(bounds.begin), None if bounds.end is None else int(bounds.end)]
-    return {"op": node.op.name, "args": list(args), "interval": ends}
+    whole = {"op": node.op.name, "args": list(args), "interval": ends}
+    if bounds is not None and bounds.share is not None:
+        whole["share"] = [bounds.share.kind.value, str(bounds.share.amount)]
+    return whole

@@ -41,7 +41,11 @@ class Text(Writer):
         text = "" if bounds is None else self.interval(bounds)
         if bounds is not None and op.bounds is Bounds.DURATION:
             text = f"[{bounds[0]}]"
-        return f"{op.spellings[0]}{text}({', '.join(map(self.write, node['args']))})"
+        operands = [*map(self.write, node["args"])]
+        if "share" in node:
+            kind, amount = node["share"]
+            operands.insert(0, amount + {"percent": "%", "duration": "s"}.get(kind, ""))
+        return f"{op.spellings[0]}{text}({', '.join(operands)})"
 
 
 TEXT = Text({op.name: spelled(op) for op in STL})

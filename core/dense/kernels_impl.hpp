@@ -7,6 +7,7 @@
 #include "../program/kernel_factory.hpp"
 #include "constant.hpp"
 #include "pointwise.hpp"
+#include "rank.hpp"
 #include "running.hpp"
 #include "shift.hpp"
 #include "since.hpp"
@@ -49,6 +50,10 @@ struct Make {
     template <ValueDomain D>
     [[nodiscard]] Pointer until() const {
         return std::make_unique<Until<D>>(at.lag, at.n);
+    }
+    template <ValueDomain D, bool least>
+    [[nodiscard]] Pointer rank() const {
+        return std::make_unique<Rank<D, least>>(at.lag, at.n, at.x);
     }
 };
 

@@ -5,6 +5,7 @@
 #include "kernels.hpp"
 
 #include "../program/kernel_factory.hpp"
+#include "rank.hpp"
 #include "running.hpp"
 #include "shift.hpp"
 #include "since.hpp"
@@ -57,6 +58,12 @@ struct Make {
         return with_ring<Until<D>, ClampOf<D>>();
     }
 
+    template <ValueDomain D, bool least>
+    [[nodiscard]] Pointer rank() const {
+        return std::make_unique<Rank<D, least>>(lag, static_cast<std::size_t>(at.n), at.x, state,
+                                                journal);
+    }
+
   private:
     template <class Ringed, class Element, class... Arguments>
     [[nodiscard]] Pointer with_ring(const Arguments&... arguments) const {
@@ -80,6 +87,9 @@ std::size_t Kernels<D>::state_size(const Instruction& instruction, Sort sort) no
                                          : sizeof(typename D::Value));
     case Opcode::until:
         return n * sizeof(ClampOf<D>);
+    case Opcode::rank_max:
+    case Opcode::rank_min:
+        return n * Rank<D, true>::slot_size;
     default:
         return 0;
     }

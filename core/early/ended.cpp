@@ -49,6 +49,16 @@ class Sliding {
     std::deque<std::pair<Tick, Value>> queue_;
 };
 
+// The value of this rank, counted from the greatest or the least; an infinity where there are
+// fewer.
+[[nodiscard]] double ranked(std::vector<double>& values, std::size_t order, bool greatest) {
+    if (order > values.size()) return greatest ? -infinity : infinity;
+    const std::size_t place = greatest ? values.size() - order : order - 1;
+    const auto wanted = values.begin() + static_cast<std::ptrdiff_t>(place);
+    std::ranges::nth_element(values, wanted);
+    return *wanted;
+}
+
 } // namespace
 
 std::vector<Engine::Rest> Engine::ended(std::span<const std::uint32_t> refs, Tick end) const {
@@ -85,6 +95,22 @@ std::vector<Engine::Rest> Engine::ended(std::span<const std::uint32_t> refs, Tic
             for (Tick t = from; t < end; ++t)
                 place(t) = a(std::clamp<Tick>(plus(t, own.low), 0, end - 1));
             break;
+        case Kind::rank_least:
+        case Kind::rank_greatest: {
+            const bool greatest = own.kind == Kind::rank_greatest;
+            for (Tick t = from; t < end; ++t) {
+                std::vector<double> lower;
+                std::vector<double> upper;
+                const Tick last = std::min(end - 1, plus(t, own.high));
+                for (Tick u = std::max<Tick>(0, plus(t, own.low)); u <= last; ++u) {
+                    lower.push_back(a(u).lower);
+                    upper.push_back(a(u).upper);
+                }
+                const auto order = static_cast<std::size_t>(own.steps.front().x);
+                place(t) = {ranked(lower, order, greatest), ranked(upper, order, greatest)};
+            }
+            break;
+        }
         case Kind::until: {
             Bounds next = Interval::bottom;
             for (Tick t = end; t-- > from;)

@@ -245,6 +245,19 @@ std::optional<Engine::Failure> Engine::remap(std::uint32_t index, Tick l, Tick r
     return std::nullopt;
 }
 
+// At the start of the trace nothing is in a window of the past yet, or too little for a rank.
+void Engine::lift_empty(std::uint32_t index) {
+    const Node& own = node(index);
+    const bool rank = own.kind == Kind::rank_least || own.kind == Kind::rank_greatest;
+    Tick ticks = own.kind == Kind::held ? 0 : -own.high;
+    if (rank && own.low < 0) ticks += static_cast<Tick>(own.steps.front().x) - 1;
+    if (ticks <= 0) return;
+    const bool least = own.kind == Kind::least || own.kind == Kind::rank_least;
+    const double empty = least ? infinity : -infinity;
+    lift(nodes_[index], 0, 0, ticks - 1, empty);
+    lift(nodes_[index], 1, 0, ticks - 1, -empty);
+}
+
 // Lets every node look at what its operands have changed. `first`: at what they are.
 std::optional<Engine::Failure> Engine::propagate(bool first) {
     for (std::uint32_t i = 0; i < nodes_.size(); ++i) {
@@ -267,11 +280,7 @@ std::optional<Engine::Failure> Engine::propagate(bool first) {
             const auto failure = add_up(i, first);
             if (failure && !first) return failure;
         } else {
-            if (first && own.high < 0 && own.kind != Kind::held) { // nothing is in the window yet
-                const double empty = own.kind == Kind::least ? infinity : -infinity;
-                lift(nodes_[i], 0, 0, -own.high - 1, empty);
-                lift(nodes_[i], 1, 0, -own.high - 1, -empty);
-            }
+            if (first) lift_empty(i);
             pass(i, 0);
             pass(i, 1);
         }
@@ -307,6 +316,8 @@ void Engine::settle(Tick closed, std::span<const Tick> wanted) {
         case Kind::least:
         case Kind::greatest:
         case Kind::sum:
+        case Kind::rank_least:
+        case Kind::rank_greatest:
             want(own.a, plus(from, own.low <= -forever ? own.high : own.low));
             break;
         case Kind::held: // the trace may end now, so that the last value is wanted

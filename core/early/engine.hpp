@@ -157,6 +157,7 @@ class Engine {
                                                  bool supposed = false);
     [[nodiscard]] std::optional<Failure> remap(std::uint32_t index, Tick l, Tick r);
     [[nodiscard]] std::optional<Failure> propagate(bool first);
+    void lift_empty(std::uint32_t index);
 
     // sums.cpp
     void lift(State& state, Tick l, Tick r, const Bounds& now);
@@ -171,6 +172,7 @@ class Engine {
     void pass(std::uint32_t index, int reg);
     void combine(std::uint32_t index, int reg, bool up);
     void slide(std::uint32_t index, int reg, bool up);
+    void rank(std::uint32_t index, int reg, bool up);
     void slide_least(State& state, int reg, const Node& node, const Runs& operand, Piece piece);
     void run_least(State& state, int reg, const Node& node, const Runs& operand, Piece piece);
     template <bool up>

@@ -13,6 +13,9 @@
 //     until        max(b, min(a, own value at t + 1))
 //     since        max(b, min(a, own value at t - 1))
 //     since_dense  min(a, max(b, own value at t - 1)): in dense time the rest of the tick counts
+//     rank_least   the c-th smallest value of a at [t + low, t + high], +inf where there are fewer;
+//                  c is the constant of the only step
+//     rank_greatest  the c-th greatest, -inf where there are fewer
 //     held         a at t + low; before the start its first value, after the end its last
 //     sum          the sum of a over w, behind t and cut at the start, in the order of totals.hpp
 #pragma once
@@ -42,6 +45,8 @@ enum class Kind : std::uint8_t {
     since_dense,
     held,
     sum,
+    rank_least,
+    rank_greatest,
 };
 
 // One operation of an expression; operands are earlier steps.

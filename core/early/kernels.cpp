@@ -29,7 +29,8 @@ void Engine::pass(std::uint32_t index, int reg) {
     const Node& own = node(index);
     State& state = nodes_[index];
     if (state.from >= forever) return; // nobody wants it
-    const bool greatest = own.kind != Kind::both && own.kind != Kind::least;
+    const bool greatest =
+        own.kind != Kind::both && own.kind != Kind::least && own.kind != Kind::rank_least;
     const bool up = greatest == (reg == 0); // whether the register takes the greatest
     switch (own.kind) {
     case Kind::both:
@@ -38,6 +39,9 @@ void Engine::pass(std::uint32_t index, int reg) {
     case Kind::least:
     case Kind::greatest:
         return slide(index, reg, up);
+    case Kind::rank_least:
+    case Kind::rank_greatest:
+        return rank(index, reg, up);
     case Kind::held:
         for (const Piece& piece : news(own.a, reg)) {
             const Tick l = piece.l == 0 ? 0 : plus(piece.l, -own.low);

@@ -1,8 +1,8 @@
 // Which operation an opcode is, for the kernels of both time domains.
 //
 // A `Make` has a template for every kind of kernel: unary and binary for an operation
-// (values/operations.hpp), shift, since and until for a domain, slide and running for an algebra;
-// each returns a `Make::Pointer`, which owns the kernel. `Make::sums`: whether slide and
+// (values/operations.hpp), shift, since, until and rank for a domain, slide and running for an
+// algebra; each returns a `Make::Pointer`, which owns the kernel. `Make::sums`: whether slide and
 // running have sums, which only samples have.
 #pragma once
 
@@ -79,6 +79,10 @@ template <ValueDomain D, class Make>
         return make.template since<D>();
     case Opcode::until:
         return make.template until<D>();
+    case Opcode::rank_max:
+        return make.template rank<D, false>();
+    case Opcode::rank_min:
+        return make.template rank<D, true>();
     default:
         return make_either<D>(opcode, make);
     }

@@ -59,10 +59,12 @@ enum class Opcode : std::uint8_t {
     at_least,
     slide_sum,
     run_sum,
+    rank_max,
+    rank_min,
 };
 
-// What the number n of an instruction means.
-enum class Count : std::uint8_t { none, input, distance, width, call };
+// What the number n of an instruction means. Of a rank it is a width, and x says which value.
+enum class Count : std::uint8_t { none, input, distance, width, rank, call };
 
 // What an instruction works on. `either`: on numbers or on formulas, and it gives what it takes.
 enum class Sort : std::uint8_t { number, formula, either };
@@ -77,7 +79,7 @@ struct OpcodeInfo {
     Sort gives;
 };
 
-inline constexpr std::array<OpcodeInfo, 47> opcodes{{
+inline constexpr std::array<OpcodeInfo, 49> opcodes{{
     {"input", 0, false, false, Count::input, Sort::either, Sort::either},
     {"const", 0, false, false, Count::none, Sort::either, Sort::either},
     {"neg", 1, true, false, Count::none, Sort::either, Sort::either},
@@ -125,10 +127,12 @@ inline constexpr std::array<OpcodeInfo, 47> opcodes{{
     {"at_least", 2, true, true, Count::none, Sort::number, Sort::number},
     {"slide_sum", 1, false, true, Count::width, Sort::number, Sort::number},
     {"run_sum", 1, false, true, Count::none, Sort::number, Sort::number},
+    {"rank_max", 1, false, false, Count::rank, Sort::formula, Sort::formula},
+    {"rank_min", 1, false, false, Count::rank, Sort::formula, Sort::formula},
 }};
 
 static_assert(opcodes[static_cast<std::size_t>(Opcode::call)].name == "call");
-static_assert(opcodes[static_cast<std::size_t>(Opcode::run_sum)].name == "run_sum");
+static_assert(opcodes[static_cast<std::size_t>(Opcode::rank_min)].name == "rank_min");
 
 [[nodiscard]] constexpr const OpcodeInfo& info(Opcode opcode) noexcept {
     return opcodes[static_cast<std::size_t>(opcode)];

@@ -168,10 +168,23 @@ class Checker {
         case Count::width:
             bounded("width", n, dense_ ? 0 : 1);
             break;
+        case Count::rank:
+            bounded("width", n, 1);
+            rank();
+            break;
         case Count::call:
             call();
             break;
         }
+    }
+
+    // Of w values the c-th is asked for; the one after the last stands for none.
+    void rank() const {
+        const double x = instruction_.x;
+        if (x >= 1.0 && x <= static_cast<double>(instruction_.n) + 1.0 && x == std::floor(x))
+            return;
+        fail("has the rank " + std::to_string(x) +
+             ", which is no whole number from 1 to its width");
     }
 
     void lags() const {

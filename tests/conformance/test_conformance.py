@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
 from math import inf
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -15,12 +16,11 @@ import rtamt
 from rtamt.language import parser
 from rtamt.language.formula import Apply, Const, Formula, Interval, Var, postorder
 from rtamt.language.operators import STL, Fixity
+from rtamt.language.shares import Share, ShareKind
 from rtamt.rewrite.ground import ground
 from tests.oracle import meaning
 
 if TYPE_CHECKING:
-    from fractions import Fraction
-
     from conformance.cases import Case
 
 # As many parts as keep a failure close to its case and the suite quick to start.
@@ -213,7 +213,11 @@ def formula_of(tree: dict[str, Any], step: Fraction) -> Formula:
     interval = None
     if tree["interval"] is not None:
         begin, end = tree["interval"]
-        interval = Interval(begin * step, None if end is None else end * step)
+        share = None
+        if "share" in tree:
+            kind, amount = ShareKind(tree["share"][0]), Fraction(tree["share"][1])
+            share = Share(amount * step if kind is ShareKind.DURATION else amount, kind)
+        interval = Interval(begin * step, None if end is None else end * step, share=share)
     return Apply(STL[tree["op"]], tuple(formula_of(arg, step) for arg in tree["args"]), interval)
 
 
@@ -240,7 +244,7 @@ README = (Path(__file__).parents[2] / "conformance" / "README.md").read_text(enc
 def test_the_readme_has_the_grammar_of_the_parser() -> None:
     _, _, rest = (parser.__doc__ or "").partition("::\n")
     productions = [line.strip() for line in rest.splitlines() if " = " in line]
-    assert len(productions) == 10
+    assert len(productions) == 11
     listing = README.split("```ebnf\n")[1].split("```")[0]
     assert listing.splitlines() == productions
 

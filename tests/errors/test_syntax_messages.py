@@ -65,14 +65,14 @@ FORMULAS = [
         "^^^^^^",
         ParseError,
         "'zigzag' is not a function; functions: abs, sqrt, exp, pow, log, ln, min, max, sin, cos, tan, asin, acos, "
-        "atan, atan2, hypot and 27 more",
+        "atan, atan2, hypot and 29 more",
     ),
     (
         "abz(x)",
         "^^^",
         ParseError,
         "'abz' is not a function; did you mean 'abs'? (functions: abs, sqrt, exp, pow, log, ln, min, max, sin, cos, "
-        "tan, asin, acos, atan, atan2, hypot and 27 more)",
+        "tan, asin, acos, atan, atan2, hypot and 29 more)",
     ),
     (
         "wrap(x, 0, y > 3) > 1",

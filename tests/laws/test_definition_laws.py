@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from fractions import Fraction
 
 import numpy as np
@@ -12,6 +13,7 @@ from hypothesis import strategies as st
 from rtamt.errors import EvaluationError
 from rtamt.language.formula import Apply, Const, Formula, Interval, Var, children, fold, postorder
 from rtamt.language.operators import STL, Bounds, Operator, Sort, Tense
+from rtamt.language.shares import Share, ShareKind
 from rtamt.reference.discrete import ReferenceMonitor, evaluate, evaluate_all, history
 from rtamt.rewrite.desugar import spelled_out
 from rtamt.rewrite.horizon import horizon
@@ -52,6 +54,10 @@ def intervals(draw, op: Operator) -> Interval | None:
         begin = max(begin, op.positive)
         return Interval(begin * PERIOD, begin * PERIOD)
     bounded = Interval(begin * PERIOD, (begin + length) * PERIOD)
+    if op.share:
+        count = Fraction(draw(st.integers(1, length + 1)))
+        percent = Share(draw(st.fractions(1, 100, max_denominator=7)), ShareKind.PERCENT)
+        return replace(bounded, share=draw(st.sampled_from((percent, Share(count, ShareKind.SAMPLES)))))
     if op.bounds is Bounds.REQUIRED:
         return bounded
     return draw(st.sampled_from((bounded, Interval(begin * PERIOD, None), None)))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from fractions import Fraction
 
 import numpy as np
@@ -13,6 +14,7 @@ from rtamt.errors import EvaluationError
 from rtamt.language.dense_definitions import QUARTERS, Steps, critical, lifted
 from rtamt.language.formula import Apply, Const, Formula, Interval, Var, postorder
 from rtamt.language.operators import STL, Bounds, Operator, Sort, Tense
+from rtamt.language.shares import Share, ShareKind
 from rtamt.reference import discrete as reference
 from rtamt.reference.dense import DenseReferenceMonitor, StepFunction, evaluate
 from rtamt.rewrite.horizon import horizon
@@ -55,6 +57,11 @@ def intervals(draw, op: Operator) -> Interval | None:
         begin = max(begin, op.positive)
         return Interval(begin * TICK, begin * TICK)
     bounded = Interval(begin * TICK, (begin + length) * TICK)
+    if op.share:
+        bounded = Interval(begin * TICK, (begin + length + 1) * TICK)
+        count = Share(draw(st.integers(1, length + 1)) * TICK, ShareKind.DURATION)
+        percent = Share(draw(st.fractions(1, 100, max_denominator=7)), ShareKind.PERCENT)
+        return replace(bounded, share=draw(st.sampled_from((percent, count))))
     if op.bounds is Bounds.REQUIRED:
         return bounded
     return draw(st.sampled_from((bounded, Interval(begin * TICK, None), None)))

@@ -19,6 +19,7 @@ from rtamt.errors import EvaluationError
 from rtamt.language.formula import Apply, Formula, Var, fold, variables
 from rtamt.language.grammar import is_number
 from rtamt.language.operators import STL, Bounds, Pointwise, Sort, Tense
+from rtamt.language.shares import rank_arguments
 from rtamt.reference import discrete as reference
 from rtamt.rewrite.desugar import desugar
 from rtamt.rewrite.horizon import horizon
@@ -241,6 +242,7 @@ def places_without_value(formula: Formula, columns: dict[str, Any]) -> list[tupl
             (Fraction(0), None) if node.interval is None else (node.interval.begin, node.interval.end)
         )
         window = () if node.op.bounds is Bounds.NONE else (int(begin), None if end is None else int(end))
+        window = (*window, *rank_arguments(node.interval, Fraction(1), continuous=False))
         value = node.op.definition(*(below or (n,)), *window)
         new = np.zeros(n, bool)  # others choose among values, and make none
         if node.op.tense is Tense.NONE:

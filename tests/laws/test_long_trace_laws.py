@@ -17,6 +17,7 @@ from rtamt.errors import EvaluationError
 from rtamt.language.formula import Apply, Formula, Interval, fold
 from rtamt.language.operators import STL, Bounds
 from rtamt.language.printer import to_text
+from rtamt.language.shares import Share, ShareKind
 from tests.laws.test_engine_laws import by_definition, by_engine, online
 from tests.strategies import formulas
 
@@ -44,12 +45,16 @@ def long_windows(draw: st.DrawFn, **options: Any) -> Formula:
         interval = node.interval
         if interval is not None:
             begin, end = sorted((draw(bounds), draw(bounds)))
-            interval = Interval(Fraction(begin), None if interval.end is None else Fraction(end))
+            share = interval.share
+            if share is not None:
+                share = Share(Fraction(draw(st.integers(1, 100))), ShareKind.PERCENT)
+            interval = Interval(Fraction(begin), None if interval.end is None else Fraction(end), share=share)
         return replace(node, args=below, interval=interval)
 
     op = draw(st.sampled_from([op for op in STL if op.bounds is not Bounds.NONE]))
     operands = (draw(formulas(max_depth=2, **options)) for _ in op.operands)
-    return fold(op(*operands, interval=Interval(Fraction(0), Fraction(1))), widened)
+    share = Share(Fraction(50), ShareKind.PERCENT) if op.share else None
+    return fold(op(*operands, interval=Interval(Fraction(0), Fraction(1), share=share)), widened)
 
 
 @given(long_windows(unbounded_future=True), long_traces())

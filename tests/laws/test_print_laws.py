@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from fractions import Fraction
 from math import inf
 
 import pytest
@@ -14,6 +15,7 @@ from rtamt.language.grammar import is_number
 from rtamt.language.operators import STL, Bounds, Fixity, Sort
 from rtamt.language.parser import parse_formula as parse
 from rtamt.language.printer import canonical, to_latex, to_text
+from rtamt.language.shares import Share, ShareKind
 from rtamt.language.units import UNITS
 from tests.strategies import formulas
 
@@ -67,7 +69,12 @@ def spelled(draw, language):
     def applied(inner, below):
         operator = inner(st.sampled_from(language.operators))
         args = tuple(inner(operands_of(operator, sort, below)) for sort in operator.operands)
-        return Apply(operator, args, inner(intervals(operator.bounds)))
+        interval = inner(intervals(operator.bounds))
+        if operator.share:
+            kind = inner(st.sampled_from(ShareKind))
+            amount = Fraction(inner(st.integers(1, 100)), 1 if kind is ShareKind.SAMPLES else 3)
+            interval = replace(interval, share=Share(amount, kind, "s" if kind is ShareKind.DURATION else ""))
+        return Apply(operator, args, interval)
 
     leaf = st.sampled_from(NUMBERS).map(Const) | st.sampled_from(NAMES).map(Var)
     return draw(st.recursive(leaf, applied, max_leaves=12))

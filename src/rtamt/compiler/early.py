@@ -16,7 +16,8 @@ from rtamt.compiler.lower import seconds_per_step
 from rtamt.compiler.program import NO_OPERAND, OPCODES
 from rtamt.errors import UsageError
 from rtamt.language.formula import Apply, Const, Formula, Parameter, Var, postorder
-from rtamt.language.operators import Ahead, Pointwise, Shift, Since, Sum, Tense, Until, Window
+from rtamt.language.operators import Ahead, Pointwise, Rank, Shift, Since, Sum, Tense, Until, Window
+from rtamt.language.shares import rank_of
 from rtamt.rewrite.check import reads_unbounded_future
 from rtamt.rewrite.horizon import horizons
 from rtamt.signals.discrete import Discrete
@@ -31,6 +32,7 @@ if TYPE_CHECKING:
 KINDS = (
     "atom", "map", "both", "either", "least", "greatest", "until", "since", "since_dense", "held",
     "sum",
+    "rank_least", "rank_greatest",
 )  # fmt: skip
 ITEMS = ("value", "all", "some", "until", "both", "either")
 
@@ -219,6 +221,8 @@ def _node(graph: Graph, formula: Formula) -> int:
         return _window(graph, formula, kernel, args[0])
     if isinstance(kernel, Sum):
         return _sum(graph, formula, args[0])
+    if isinstance(kernel, Rank):
+        return _rank(graph, formula, args[0])
     if isinstance(kernel, Shift):
         step = -1 if formula.op.tense is Tense.PAST else 1
         return _over(graph, "least" if kernel.fill > 0 else "greatest", args[0], step, step)
@@ -328,6 +332,28 @@ def _sum(graph: Graph, formula: Apply, operand: int) -> int:
         steps = (Step(OPCODES.index(opcode)),)
         value = _add(graph, Node(KINDS.index("map"), value, number, horizon=depth, steps=steps), (formula,))
     return value
+
+
+def _rank(graph: Graph, formula: Apply, operand: int) -> int:
+    """Return the k-th largest value of a window; in dense time it holds for whole ticks, hence in both windows.
+
+    There a window covers a part of each of the ticks at its ends: see ``core/dense/rank.hpp``.
+    """
+    begin, end = interval_in_steps(graph, formula)
+    dense = graph.domain.continuous
+    k, outside = rank_of(formula.interval, graph.period, continuous=dense)
+    order = end - begin + (0 if dense else 1) - k + 1 if outside > 0 else k
+    kind = KINDS.index("rank_least" if outside > 0 else "rank_greatest")
+    steps = (Step(OPCODES.index("const"), x=float(order)),)
+    low, high = (-end, -begin) if formula.op.tense is Tense.PAST else (begin, end)
+
+    def window(first: int, last: int) -> int:
+        depth = graph.horizon(operand)
+        horizon = FOREVER if depth == FOREVER else depth + max(0, high)
+        node = Node(kind, operand, low=first, high=last, horizon=horizon, steps=steps)
+        return _add(graph, node, (formula,))
+
+    return _pair(graph, "both", window(low, high - 1), window(low + 1, high)) if dense else window(low, high)
 
 
 def _before(graph: Graph, begin: int) -> int:

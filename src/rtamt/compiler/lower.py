@@ -15,7 +15,8 @@ from typing import TYPE_CHECKING
 
 from rtamt.compiler.program import CallSite, Instruction, Program
 from rtamt.language.formula import Apply, Const, Formula, Parameter, Var, postorder
-from rtamt.language.operators import Ahead, Bounds, Pointwise, Shift, Since, Sum, Tense, Until, Window
+from rtamt.language.operators import Ahead, Bounds, Pointwise, Rank, Shift, Since, Sum, Tense, Until, Window
+from rtamt.language.shares import rank_of
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -95,6 +96,8 @@ class Lowering(ABC):
             return self.window(node, kernel, args[0])
         if isinstance(kernel, Sum):
             return self.sum(node, args[0])
+        if isinstance(kernel, Rank):
+            return self.rank(node, args[0])
         if isinstance(kernel, Shift):
             return self.shift_by_one(node, kernel, args[0])
         if isinstance(kernel, Ahead):
@@ -195,6 +198,31 @@ class Lowering(ABC):
         if begin == end:
             return self.moved(x, 0, fill, lag + end, node)
         return self.slide(kernel.reduce, x, end - begin + self.point, lag + end, node)
+
+    def rank(self, node: Apply, x: int) -> int:
+        """Lower the k-th largest value in a window, whose values outside the trace count as the same infinity."""
+        begin, end = self.bounds(node)
+        assert node.interval is not None
+        assert node.interval.end is not None
+        assert end is not None
+        k, outside = rank_of(node.interval, self.period, continuous=self.point == 0)
+        # Counted from the other end, infinite values outside need not be counted.
+        reduce = "min" if outside > 0 else "max"
+        nominal = self.whole(node.interval.end - node.interval.begin) + self.point
+        order = nominal - k + 1 if outside > 0 else k
+        width = end - begin + self.point
+        past = node.op.tense is Tense.PAST
+        lag = self.lag(x) + (0 if past else end)
+        if order == 1 and (self.point or outside > 0):
+            if width == self.point and not past:
+                return self.moved(x, 0, outside, lag, node) if end else x
+            x = self.slide(reduce, x, width, lag, node)
+        else:
+            order = min(
+                order, width + 1
+            )  # of a window that is clipped to the trace, so many are never inside
+            x = self.emit(Instruction(f"rank_{reduce}", x, n=width, x=float(order), lag=lag), node)
+        return self.moved(x, begin, outside, lag, node) if past and begin else x
 
     def slide(self, reduce: str, x: int, width: int, lag: int, origin: Formula) -> int:
         """Return the extremum or the sum over the last ``width`` steps."""

@@ -44,6 +44,7 @@ OPCODES = (
     "sin", "cos", "tan", "asin", "acos", "atan", "atan2", "hypot", "sinh", "cosh", "tanh",
     "degrees", "radians", "floor", "ceil", "round", "sign", "mod", "at_least",
     "slide_sum", "run_sum",
+    "rank_max", "rank_min",
 )  # fmt: skip
 
 #: Time domains, in the order of their codes.
@@ -87,6 +88,8 @@ class Instruction:
             parts.append(f"n={self.n}")
         if self.opcode == "shift":
             parts.append(f"fill={self.x!r}")
+        if self.opcode.startswith("rank_"):
+            parts.append(f"k={int(self.x)}")
         return " ".join(parts)
 
 

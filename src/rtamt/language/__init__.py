@@ -30,6 +30,7 @@ imports              files that others import: where they may be, and what is ta
 sampling             the sampling rule: ``sample 100ms hold``
 declarations         what stands before the formulas of a file: imports, declarations, annotations
 enumerations         ``enum Mode { MANUAL, AUTO = 4 }``
+shares               the share of a window that an operator needs
 specfile             specification files (``.stl``) to a document, and their grammar
 document             the content of a specification file
 tables               ``table name = {(x, y), ...}``, a function of one number

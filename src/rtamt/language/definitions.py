@@ -373,6 +373,26 @@ def rate(x: Array, a: int, b: int | None, period: Fraction = Fraction(1)) -> Arr
     return div(diff(x, a, b), np.array(float(d * period)))
 
 
+# ---- shares of a window -------------------------------------------------------------------------
+
+
+def _share(x: Array, windows: list[range], k: int, outside: float) -> Array:
+    """The k-th largest value of each window, values outside the trace being ``outside``."""
+    n = len(x)
+    values = [sorted((x[u] if 0 <= u < n else outside for u in window), reverse=True) for window in windows]
+    return np.array([each[k - 1] if k <= len(each) else -inf for each in values], float)
+
+
+def atleast(x: Array, a: int, b: int, k: int, outside: float) -> Array:
+    """``atleast[a,b](share, φ)``: the k-th largest φ over [t+a, t+b]."""
+    return _share(x, [range(t + a, t + b + 1) for t in range(len(x))], k, outside)
+
+
+def wasatleast(x: Array, a: int, b: int, k: int, outside: float) -> Array:
+    """``wasatleast[a,b](share, φ)``: the k-th largest φ over [t-b, t-a]."""
+    return _share(x, [range(t - b, t - a + 1) for t in range(len(x))], k, outside)
+
+
 # ---- one sample away ----------------------------------------------------------------------------
 
 

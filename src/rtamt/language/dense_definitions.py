@@ -71,17 +71,23 @@ def critical(operands: Iterable[Steps], a: int, b: int | None) -> list[int]:
     return sorted({c + shift for c in changes for shift in shifts if c + shift >= start})
 
 
-def lifted(at: Callable[..., float], operands: tuple[Steps, ...], a: int, b: int | None) -> Steps:
+def lifted(
+    at: Callable[..., float], operands: tuple[Steps, ...], a: int, b: int | None, *rank: float
+) -> Steps:
     """Return an operator's values at all instants, from ``at(t, *operands, a, b)``, its value at one.
 
     Robustness is right-continuous: at each critical instant it has the value that it has strictly between
     that instant and the next. The definitions give the same value at the critical instant itself, except for
     until[a,b] and precedes[a,b] with a > 0, which may differ there (φ falls exactly a later); by convention
-    such an instant takes the value that follows.
+    such an instant takes the value that follows. ``rank``: what an operator of a share takes after its bounds.
     """
     instants = critical(operands, a, b)
+    if rank:
+        assert b is not None
+        windows = [(t + a, t + b) if at is atleast else (t - b, t - a) for t in instants]
+        instants = sorted({*instants, *crossings(instants, operands[0], windows, *rank)})  # type: ignore[arg-type]
     between = [(c + d) // 2 for c, d in pairwise(instants)] + [instants[-1] + QUARTERS // 2]
-    return merged(instants, [at(t, *operands, a, b) for t in between])
+    return merged(instants, [at(t, *operands, a, b, *rank) for t in between])
 
 
 def _pieces(
@@ -179,6 +185,57 @@ def diff(t: int, x: Steps, a: int, b: int | None) -> float:
 def rate(t: int, x: Steps, a: int, b: int | None, period: Fraction = Fraction(1, QUARTERS)) -> float:
     """``rate[d](x)``: diff[d](x) / d; ``period`` is the length of a quarter of a tick in seconds."""
     return diff(t, x, a, b) / float(a * period)
+
+
+# ---- shares of a window -------------------------------------------------------------------------
+
+
+def _held(x: Steps, first: int, last: int, value: float, outside: float) -> int:
+    """Return for how long φ is at least ``value`` within [first, last]; before t₀ it is ``outside``."""
+    total = min(last, x.times[0]) - first if outside >= value and first < x.times[0] else 0
+    ends = (*x.times[1:], max(last, x.times[-1]))
+    for begin, end, v in zip(x.times, ends, x.values, strict=True):
+        if v >= value:
+            total += max(0, min(end, last) - max(begin, first))
+    return total
+
+
+def _share(x: Steps, first: int, last: int, k: int, outside: float) -> float:
+    """The greatest value that φ has, or exceeds, for k ticks within [first, last]."""
+    return max(
+        v
+        for v in (*x.values, outside, -inf)
+        if v == -inf or _held(x, first, last, v, outside) >= k * QUARTERS
+    )
+
+
+def atleast(t: int, x: Steps, a: int, b: int, k: int, outside: float) -> float:
+    """``atleast[a,b](share, φ)``: the greatest value that φ reaches for k ticks within [t+a, t+b]."""
+    return _share(x, t + a, t + b, k, outside)
+
+
+def wasatleast(t: int, x: Steps, a: int, b: int, k: int, outside: float) -> float:
+    """``wasatleast[a,b](share, φ)``: the greatest value that φ reaches for k ticks within [t-b, t-a]."""
+    return _share(x, t - b, t - a, k, outside)
+
+
+def crossings(
+    instants: list[int], x: Steps, windows: list[tuple[int, int]], k: int, outside: float
+) -> set[int]:
+    """Return where between adjacent instants φ begins or ceases to reach a value for k ticks of the window.
+
+    ``windows``: that of each instant. Between adjacent ones the time for which a value is reached is a line of slope
+    1, 0 or -1.
+    """
+    found = set()
+    for value in {*x.values, outside}:
+        missing = [k * QUARTERS - _held(x, *window, value, outside) for window in windows]
+        found |= {
+            c + abs(m)
+            for (c, d), (m, n) in zip(pairwise(instants), pairwise(missing), strict=True)
+            if m * n < 0
+        }
+    return found
 
 
 # ---- edges --------------------------------------------------------------------------------------

@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from fractions import Fraction
 
     from rtamt.language.operators import Operator
+    from rtamt.language.shares import Share
     from rtamt.language.value_types import PartType, ValueType
 
 T = TypeVar("T")
@@ -50,9 +51,9 @@ class Interval:
     """An interval ``[begin, end]`` of seconds, exact; ``end=None`` means unbounded.
 
     ``begin_open``, ``end_open``: whether a bound is not part of it; ``rewrite.ground`` turns such bounds into
-    closed ones. ``begin_unit``, ``end_unit`` and ``constants`` (the named ones) only record how the bounds were
-    written; ``written`` is the interval of the text, if it is another one, and ``implied`` one that the text does
-    not contain at all.
+    closed ones. ``share``: how much of the window an operator needs. ``begin_unit``, ``end_unit`` and ``constants``
+    (the named ones) only record how the bounds were written; ``written`` is the interval of the text, if it is
+    another one, and ``implied`` one that the text does not contain at all.
     """
 
     begin: Fraction
@@ -63,6 +64,7 @@ class Interval:
     constants: tuple[str, ...] = field(default=(), compare=False, repr=False)
     begin_open: bool = False
     end_open: bool = False
+    share: Share | None = None
     written: Interval | None = field(default=None, compare=False, repr=False)
     implied: bool = field(default=False, compare=False, repr=False)
 

@@ -6,7 +6,7 @@ kind       text
 number     ``3``, ``0.5``, ``.5``, ``1e-3``, ``1_000``
 name       ``req``, ``req.value``, ``always``; the parser decides which are operators
 quoted     ``"engine speed"``: always a name; ``""`` inside denotes a double quote
-symbol     operators that are not words, longest first, and ``( ) [ ] , : ; = @ =>``
+symbol     operators that are not words, longest first, and ``( ) [ ] , : ; = @ % =>``
 unclosed   the opening of a comment or quoted name without an end
 unknown    any other character
 end        after the last token
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 #: Not an operator, but one token, so that ``gap => 5`` gets a message of its own.
 NO_ARROW = "=>"
 
-PUNCTUATION = [*"( ) [ ] , : ; = @".split(), NO_ARROW]
+PUNCTUATION = [*"( ) [ ] , : ; = @ %".split(), NO_ARROW]
 
 _WORD = r"[^\W\d][\w$]*|\$[\w$]*"
 _NAME = rf"(?:{_WORD})(?:\.(?:{_WORD}))*"

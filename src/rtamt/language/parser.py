@@ -6,7 +6,8 @@
     set        = "{" , expression , { "," , expression } , "}"
     operand    = number | name | atom | group | call | prefix | choice | use of a template
     group      = "(" , expression , ")"
-    call       = function , [ interval ] , "(" , expression , { "," , expression } , ")"
+    call       = function , [ interval ] , "(" , [ share , "," ] , expression , { "," , expression } , ")"
+    share      = number , [ "/" , number ] , [ "%" | unit ]
     prefix     = prefix operator , [ interval ] , expression
     choice     = "if" , expression , "then" , expression , "else" , expression
     interval   = ( "[" | "(" ) , bound , [ ( ":" | "," ) , bound ] , ( "]" | ")" )
@@ -22,6 +23,7 @@ is ``1 <= x and x < 3``; so ``x in {1, 2}`` is ``x == 1 or x == 2``, and ``in`` 
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import pairwise
 from math import inf, isinf
 from typing import TYPE_CHECKING
@@ -42,6 +44,7 @@ from rtamt.language.grammar import (
 from rtamt.language.intervals import parse_interval
 from rtamt.language.operators import STL, Bounds, Fixity, Language, Operator, Sort
 from rtamt.language.scope import Scope
+from rtamt.language.shares import parse_share
 from rtamt.language.templates import Template, parse_use
 from rtamt.language.typed_parser import TypedParser
 
@@ -170,12 +173,15 @@ class FormulaParser(TypedParser):
         return inner
 
     def call(self, op: Operator) -> Formula:
-        """``call = function , [ interval ] , "(" , expression , { "," , expression } , ")"``."""
+        """``call = function , [ interval ] , "(" , [ share , "," ] , expression , { "," , expression } , ")"``."""
         name = self.next()
         interval = parse_interval(self, op, name)
         opening = self.token
         if not self.accept("("):
             raise self.error(f"expected '(' after '{name.text}', got {opening}", opening.span)
+        if op.share:
+            assert interval is not None
+            interval = replace(interval, share=parse_share(self, name.text))
         starts, operands = [self.token.start], [self.argument(op, 0)]
         ends = [self.tokens[self.index - 1].end]
         while self.accept(","):

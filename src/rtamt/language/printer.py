@@ -71,7 +71,7 @@ def to_text(
         if op.fixity is Fixity.ATOM:
             return (word,)
         if op.fixity is Fixity.FUNCTION:
-            return (word, "(", *_joined(_operands(node), ", "), ")")
+            return (f"{word}({_share(node, ', ')}", *_joined(_operands(node), ", "), ")")
         if op.fixity is Fixity.CONDITIONAL:
             condition, first, second = node.args
             return (
@@ -142,7 +142,7 @@ def canonical(formula: Formula, language: Language = STL, *, limit: int = LONGES
             return ("(", node.args[0], ")", word, "(", node.args[1], ")")
         if op.fixity is Fixity.CONDITIONAL:
             return (f"{word}(", node.args[0], f"){THEN}(", node.args[1], f"){ELSE}(", node.args[2], ")")
-        return (word, "(", *_joined(node.args, ","), ")")
+        return (f"{word}({_share(node, ',')}", *_joined(node.args, ","), ")")
 
     return _written(formula, pieces, limit)
 
@@ -184,6 +184,8 @@ def to_latex(formula: Formula) -> str:
                 yield literal
                 if operand == "I":
                     yield _latex_interval(node)
+                elif operand == "S":
+                    yield _share(node, "").replace("%", r"\%")
                 elif operand is not None:
                     k = int(operand)
                     yield from ("(", node.args[k], ")") if exposed and grouped(node, k) else (node.args[k],)
@@ -383,6 +385,12 @@ def _bounds(node: Apply, separator: str = ":", form: Callable[[Fraction], str] =
         unit = node.interval.end_unit
         return f"[{form(node.interval.begin / UNITS[unit or 's'])}{unit}]"
     return interval_text(node.interval, separator, form)
+
+
+def _share(node: Apply, separator: str) -> str:
+    """Return an operator's share of its window as the first of its operands, or nothing if it has none."""
+    share = None if node.interval is None else node.interval.share
+    return "" if share is None else f"{share.text()}{separator}"
 
 
 def interval_text(

@@ -91,6 +91,11 @@ class Ahead:
 
 
 @dataclass(frozen=True, slots=True)
+class Rank:
+    """The k-th largest value in a window, by the share in the interval."""
+
+
+@dataclass(frozen=True, slots=True)
 class Since:
     """The recursion of since; the tense of its record is past."""
 
@@ -126,7 +131,7 @@ class Compiled:
     dense: str | None = None
 
 
-Kernel = Pointwise | Window | Sum | Shift | Ahead | Since | Until | Blocks | Compiled
+Kernel = Pointwise | Window | Rank | Sum | Shift | Ahead | Since | Until | Blocks | Compiled
 
 #: The default of ``reach``: not given.
 _UNSAID = -1
@@ -165,6 +170,7 @@ class Operator:
     discrete_only: bool = False
     before: int = 0  # how many samples before its window of the past it reads, too
     timed: bool = False  # seconds matter: the definition takes the sampling period after the bounds
+    share: bool = False  # its first operand is a share of the window, which the interval holds
     one_tick: bool = (
         False  # in dense time its interval is the tick behind, in discrete time the sample behind
     )

@@ -18,6 +18,7 @@ from rtamt.errors import EvaluationError, StlError, UsageError
 from rtamt.language.dense_definitions import QUARTERS, Steps, lifted, merged
 from rtamt.language.operators import Bounds, Tense
 from rtamt.language.printer import excerpt
+from rtamt.language.shares import rank_arguments
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -163,7 +164,7 @@ def signal_of(
     if node.op.dense is not None:
         at = partial(node.op.dense, period=tick / QUARTERS) if node.op.timed else node.op.dense
         try:
-            return lifted(at, operands, begin, end)
+            return lifted(at, operands, begin, end, *rank_arguments(node.interval, tick, continuous=True))
         except Exception as error:
             raise raised(node, error) from error
     times = sorted({t for x in operands for t in x.times})

@@ -202,7 +202,7 @@ def _apply(
         lower, upper = pointwise(node, operands)
         return _Signal(merged(times, lower.tolist()), merged(times, upper.tolist()))
     componentwise(node)
-    window = _window(node, tick)
+    window = (*_window(node, tick), tick)
     return _Signal(
         signal_of(node, tuple(x.lower for x in below), *window),
         signal_of(node, tuple(x.upper for x in below), *window),

@@ -20,7 +20,8 @@ import numpy as np
 from rtamt.errors import SpecificationError
 from rtamt.language.enclosures import Enclosure, extended
 from rtamt.language.formula import Apply, Const, Formula, Var, fold
-from rtamt.language.operators import Ahead, Bounds, Pointwise, Shift, Since, Sum, Tense, Until, Window
+from rtamt.language.operators import Ahead, Bounds, Pointwise, Rank, Shift, Since, Sum, Tense, Until, Window
+from rtamt.language.shares import rank_arguments
 from rtamt.language.undefined_value import at_sample, undefined
 from rtamt.rewrite.desugar import desugar, written
 from rtamt.rewrite.ground import ground
@@ -126,6 +127,7 @@ def _apply(node: Formula, below: tuple[Enclosure, ...], known: Knowledge, period
         sums = summed(below[0], *_window(node, period), known)
         return _timed(sums, period) if node.op.timed else sums
     componentwise(node)
+    window = (*window, *rank_arguments(node.interval, period, continuous=False))
     if known.finished:
         return _by_bound(node, below, window)
     # Operands are constant after their last entry. So is the result: of an operator of the future from
@@ -212,7 +214,7 @@ def pointwise(node: Apply, operands: tuple[Enclosure, ...]) -> Enclosure:
 
 def componentwise(node: Apply) -> None:
     """Raise :class:`SpecificationError` unless an operator takes minima and maxima of its operands in time."""
-    if not isinstance(node.op.kernel, Window | Shift | Ahead | Since | Until):
+    if not isinstance(node.op.kernel, Window | Rank | Shift | Ahead | Since | Until):
         # No operator of the table comes here: pointwise ones have an extension or expand to such.
         assert not isinstance(node.op.kernel, Pointwise)
         raise SpecificationError(
@@ -242,7 +244,7 @@ def _padded(x: Enclosure, n: int) -> Enclosure:
 def _reach(node: Apply, window: tuple[int | None, ...]) -> tuple[int, int]:
     """Return for how many samples an operator of the past remembers, and how many one of the future reads ahead."""
     if window:
-        begin, end = window
+        begin, end = window[:2]
         assert begin is not None
         reach = begin + 1 if end is None else end + 1
     else:

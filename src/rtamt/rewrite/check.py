@@ -7,9 +7,10 @@ from decimal import Decimal
 from fractions import Fraction
 
 from rtamt.errors import BoundError, SpecificationError
-from rtamt.language.formula import Apply, Const, Formula, children, postorder
+from rtamt.language.formula import Apply, Const, Formula, Interval, children, postorder
 from rtamt.language.operators import STL, Bounds, Pointwise, Sum, Tense
 from rtamt.language.printer import interval_text
+from rtamt.language.shares import ShareKind, rank_of
 from rtamt.language.units import format_duration
 from rtamt.rewrite.desugar import spelled_out
 from rtamt.rewrite.ground import closed
@@ -19,15 +20,17 @@ from rtamt.rewrite.ground import closed
 class BoundUnit:
     """The unit in which a time domain counts bounds: its name in messages, and the largest count.
 
-    ``setting``: the setting that gives the length of a step. ``steps``: the plural. ``longer`` and ``finer``: the
-    setting that reduces or increases their number. ``most``: the longest bound. ``farthest``: the longest sum of
-    bounds of nested operators; None where sums of the longest bounds fit into an int64.
+    ``continuous``: whether signals have values between the steps. ``setting``: the setting that gives the length of
+    a step. ``steps``: the plural. ``longer`` and ``finer``: the setting that reduces or increases their number.
+    ``most``: the longest bound. ``farthest``: the longest sum of bounds of nested operators; None where sums of
+    the longest bounds fit into an int64.
     """
 
     setting: str
     steps: str
     longer: str
     finer: str
+    continuous: bool
     most: int
     farthest: int | None
 
@@ -37,10 +40,13 @@ class BoundUnit:
         return self.steps[:-1]
 
 
+#: The largest number of steps of a window of which a share is taken: doubles count them.
+MOST_RANKED = 2**53
+
 #: Sampling periods, between the samples of discrete time.
-PERIODS = BoundUnit("sampling period", "periods", "a longer period", "shorter period", 2**44, None)
+PERIODS = BoundUnit("sampling period", "periods", "a longer period", "shorter period", False, 2**44, None)
 #: Ticks; the sum of bounds is limited because it is added to timestamps.
-TICKS = BoundUnit("resolution", "ticks", "a coarser resolution", "finer resolution", 2**56, 2**61)
+TICKS = BoundUnit("resolution", "ticks", "a coarser resolution", "finer resolution", True, 2**56, 2**61)
 
 
 def check_bounds(
@@ -86,8 +92,40 @@ def check_bounds(
                 text,
                 node.interval.span or node.span,
             )
+        if node.op.share:
+            _check_share(whole, step, text, unit)
     if unit.farthest is not None:
         _check_sums(spelled_out(formula), step, text, unit, unit.farthest)
+
+
+def _check_share(interval: Interval, step: Fraction, text: str | None, unit: BoundUnit) -> None:
+    """Raise :class:`BoundError` at a share that is not a number of steps of its window."""
+    share = interval.share
+    assert share is not None
+    assert interval.end is not None
+    nominal = int((interval.end - interval.begin) / step) + (not unit.continuous)
+    window = f"the window {interval_text(interval)}"
+    if unit.continuous and share.kind is ShareKind.SAMPLES:
+        reason = "a number of samples is a share in discrete time only; write a duration, such as 3s, or 80%"
+    elif share.kind is ShareKind.DURATION and (share.amount / step).denominator != 1:
+        reason = (
+            f"the share {share.text()} is not a whole number of {unit.steps} of {format_duration(step)}; "
+            f"change it or the {unit.step}"
+        )
+    elif nominal == 0:
+        reason = f"{window} is an instant, which has no share in dense time; make it longer"
+    elif nominal > MOST_RANKED:
+        reason = (
+            f"{window} is {_short(nominal)} {unit.steps} long, more than a share is counted in; shorten it"
+        )
+    elif rank_of(interval, step, continuous=unit.continuous).k > nominal:
+        reason = (
+            f"{window} has {nominal} {'samples' if not unit.continuous else unit.steps}, fewer than the share "
+            f"{share.text()} of it; make the window longer or the share smaller"
+        )
+    else:
+        return
+    raise BoundError(reason, text, share.span)
 
 
 def _short(count: int) -> str:

@@ -15,7 +15,7 @@ import numpy as np
 
 from rtamt.language.enclosures import Enclosure, extended
 from rtamt.language.formula import Apply, Const, Formula, Var, children, fold, postorder, variables
-from rtamt.language.operators import Ahead, Bounds, Pointwise, Shift, Since, Sum, Tense, Until, Window
+from rtamt.language.operators import Ahead, Bounds, Pointwise, Rank, Shift, Since, Sum, Tense, Until, Window
 from rtamt.rewrite.desugar import desugar, written
 from rtamt.rewrite.presence import tracked
 
@@ -220,7 +220,7 @@ def connects(node: Formula) -> bool:
 
 
 def causeless(formula: Formula) -> Formula | None:
-    """Return a part of a formula that has no causation, which is arithmetic on a formula in time.
+    """Return a part of a formula that has no causation: arithmetic on a formula in time, or a share of a window.
 
     >>> from rtamt.language.parser import parse_formula
     >>> causeless(parse_formula("always((once x) + 1 >= 0)"))
@@ -230,7 +230,9 @@ def causeless(formula: Formula) -> Formula | None:
     core = desugar(tracked(formula))
     for node in postorder(core):
         below = any(in_time[id(operand)] for operand in children(node))
-        if (below and not connects(node)) or (isinstance(node, Apply) and isinstance(node.op.kernel, Ahead)):
+        if (below and not connects(node)) or (
+            isinstance(node, Apply) and isinstance(node.op.kernel, Ahead | Rank)
+        ):
             return written(node, [formula])
         in_time[id(node)] = below or (isinstance(node, Apply) and node.op.tense is not Tense.NONE)
     return None

@@ -18,6 +18,7 @@ from rtamt.errors import BoundError, SpecificationError
 from rtamt.language.formula import Apply, Const, Formula, Interval, fold, postorder
 from rtamt.language.grammar import is_number
 from rtamt.language.operators import STL, Bounds, Sort, Tense
+from rtamt.language.shares import ShareKind
 from rtamt.rewrite.check import has_future, unbounded_future
 from rtamt.rewrite.horizon import horizon
 
@@ -137,7 +138,7 @@ class _Pastifier:
             if len(node.op.guards) != len(args):
                 raise _no_rule(node, "guards", self.text)
             args = tuple(
-                self._guarded(arg, how, delay, sort)
+                self._guarded(arg, _guard(node, how), delay, sort)
                 for arg, how, sort in zip(args, node.op.guards, node.op.operands, strict=True)
             )
         return Apply(node.op, args, node.interval, node.span)
@@ -187,6 +188,15 @@ def _unit(formula: Formula) -> str:
     return next(filter(None, units), "")
 
 
+def _guard(node: Apply, how: str | None) -> str | None:
+    """Return how an operand is guarded; that of a share counts as true or false outside the trace."""
+    if not node.op.share:
+        return how
+    assert node.interval is not None
+    assert node.interval.share is not None
+    return "implies" if node.interval.share.kind is ShareKind.PERCENT else "and"
+
+
 def _past_twin(node: Apply, args: tuple[Formula, ...], text: str | None) -> Formula:
     if node.op.twin == "":
         return args[0]  # next: only its operand is delayed
@@ -198,7 +208,8 @@ def _past_twin(node: Apply, args: tuple[Formula, ...], text: str | None) -> Form
     assert interval.end is not None
     if len(args) == 1:
         unit = interval.end_unit
-        interval = Interval(Fraction(0), interval.end - interval.begin, "", unit, interval.span)
+        width = interval.end - interval.begin
+        interval = Interval(Fraction(0), width, "", unit, interval.span, share=interval.share)
     return Apply(twin, args, interval, node.span)
 
 

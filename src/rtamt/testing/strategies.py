@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
@@ -14,6 +14,7 @@ from rtamt.errors import EvaluationError
 from rtamt.language.formula import Apply, Const, Formula, Interval, Var
 from rtamt.language.grammar import is_number
 from rtamt.language.operators import STL, Bounds, Language, Operator, Sort, Tense
+from rtamt.language.shares import Share, ShareKind, rank_arguments
 from rtamt.reference import discrete as reference
 
 if TYPE_CHECKING:
@@ -110,23 +111,15 @@ def formulas(
         return number(anywhere=True)
 
     def interval(op: Operator) -> Interval | None:
-        if op.one_tick and not discrete:
-            return Interval(period, period, implied=True)
         unbounded = unbounded_past if op.tense is Tense.PAST else unbounded_future
-        if op.bounds is Bounds.NONE or (op.bounds is Bounds.OPTIONAL and unbounded and chance(5)):
-            return None
-        begin = draw(st.integers(int(op.positive), 3))
-        if op.bounds is Bounds.DURATION:
-            return Interval(begin * period, begin * period)
-        if op.bounds is Bounds.OPTIONAL and unbounded and chance(6):
-            return Interval(begin * period, None)
-        return Interval(begin * period, (begin + draw(st.integers(0, 3))) * period)
+        return draw(_intervals(op, period, unbounded, discrete))
 
     def apply(op: Operator, operands: Sequence[_Drawn], window: Interval | None) -> _Drawn:
-        bounds: tuple[int | None, ...] = ()
+        bounds: tuple[float | None, ...] = ()
         if op.bounds is not Bounds.NONE:
             end = None if window is None or window.end is None else int(window.end / period)
-            bounds = (0 if window is None else int(window.begin / period), end)
+            rank = rank_arguments(window, period, continuous=not discrete)
+            bounds = (0 if window is None else int(window.begin / period), end, *rank)
         with np.errstate(all="ignore"):
             values: list[Any] = [o.probe for o in operands] or [n]
             probe = _meaning(op, window)(*values, *bounds)
@@ -167,6 +160,40 @@ def _suited(drawn: _Drawn, sort: Sort) -> _Drawn:
     if sort is not Sort.CONDITION or not is_number(drawn.formula):
         return drawn
     return _Drawn(STL["gt"](drawn.formula, Const(0.0)), Sort.FORMULA, drawn.probe, drawn.depth + 1)
+
+
+@st.composite
+def _intervals(
+    draw: DrawFn, op: Operator, period: Fraction, unbounded: bool, discrete: bool
+) -> Interval | None:
+    """Draw the interval of an operator; None if it takes none, or sometimes if it may be left out."""
+
+    def chance(one_in: int) -> bool:
+        return draw(st.integers(0, one_in - 1)) == one_in - 1
+
+    if op.one_tick and not discrete:
+        return Interval(period, period, implied=True)
+    if op.bounds is Bounds.NONE or (op.bounds is Bounds.OPTIONAL and unbounded and chance(5)):
+        return None
+    begin = draw(st.integers(int(op.positive), 3))
+    if op.bounds is Bounds.DURATION:
+        return Interval(begin * period, begin * period)
+    if op.bounds is Bounds.OPTIONAL and unbounded and chance(6):
+        return Interval(begin * period, None)
+    width = draw(st.integers(0 if discrete or not op.share else 1, 3))
+    window = Interval(begin * period, (begin + width) * period)
+    return replace(window, share=draw(_shares(width + discrete, period, discrete))) if op.share else window
+
+
+@st.composite
+def _shares(draw: DrawFn, nominal: int, period: Fraction, discrete: bool) -> Share:
+    """Draw a share of a window of so many steps."""
+    if draw(st.booleans()):
+        return Share(Fraction(draw(st.sampled_from((1, 30, 50, 75, 100)))), ShareKind.PERCENT)
+    count = Fraction(draw(st.integers(1, nominal)))
+    if discrete and draw(st.booleans()):
+        return Share(count, ShareKind.SAMPLES)
+    return Share(count * period, ShareKind.DURATION)
 
 
 def _meaning(op: Operator, window: Interval | None) -> Callable[..., Array]:

@@ -7,7 +7,7 @@
 using rtamt::Opcode;
 
 TEST_CASE("codes are the ones of the program format") {
-    CHECK(rtamt::opcodes.size() == 47);
+    CHECK(rtamt::opcodes.size() == 49);
     CHECK((rtamt::info(Opcode::input).name == "input" && static_cast<int>(Opcode::input) == 0));
     CHECK(
         (rtamt::info(Opcode::constant).name == "const" && static_cast<int>(Opcode::constant) == 1));

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from rtamt.language.formula import Apply, Const, Formula, Interval, Var, variables
 from rtamt.language.operators import STL, Bounds, Fixity, Operator, Sort, Tense
+from rtamt.language.shares import Share, ShareKind
 from rtamt.rewrite.horizon import horizon
 
 if TYPE_CHECKING:
@@ -84,6 +85,10 @@ def _interval(rng: Random, op: Operator, *, unbounded: bool) -> Interval | None:
         return Interval(Fraction(begin), Fraction(begin))
     if op.bounds is Bounds.OPTIONAL and (unbounded or op.tense is Tense.PAST) and rng.random() < 0.3:
         return None if rng.random() < 0.5 else Interval(Fraction(begin), None)
+    if op.share:  # in dense time the window must not be an instant
+        percent = Share(Fraction(rng.randint(1, 100)), ShareKind.PERCENT)
+        share = rng.choice((percent, Share(Fraction(rng.randint(1, length + 1)), ShareKind.DURATION)))
+        return Interval(Fraction(begin), Fraction(begin + length + 1), share=share)
     return Interval(Fraction(begin), Fraction(begin + length))
 
 

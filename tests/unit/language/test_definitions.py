@@ -100,6 +100,8 @@ CASES = [
     ("valid", [X], (), [inf] * 5),
     ("historically", [X], (0, None), [1, 1, 1, -3, -3]),
     ("historically", [X], (5, 9), [inf] * 5),
+    ("atleast", [X], (0, 2, 2, inf), [2, 2, 0, 0, inf]),
+    ("wasatleast", [X], (1, 2, 1, -inf), [-inf, 1, 4, 4, 2]),
     ("once", [X], (0, 1), [1, 4, 4, 2, 0]),
     ("once", [X], (2, 2), [-inf, -inf, 1, 4, 2]),
     ("once", [X], (1, None), [-inf, 1, 4, 4, 4]),
@@ -189,7 +191,7 @@ def test_truth_of_predicates():
 @pytest.mark.parametrize("n", [0, 1, 2])
 def test_short_traces_give_new_arrays_and_leave_the_operands_alone(op, n):
     operands = [np.full(n, k + 1.0) for k, _ in enumerate(op.operands)]
-    bounds = () if op.bounds is Bounds.NONE else (1, 1)
+    bounds = () if op.bounds is Bounds.NONE else (1, 1, 1, inf) if op.share else (1, 1)
     result = op.definition(*(operands or [n]), *bounds)
     assert result.shape == (n,)
     assert result.dtype == np.float64

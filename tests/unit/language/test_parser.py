@@ -13,6 +13,7 @@ from rtamt.errors import ParseError
 from rtamt.language.formula import Apply, Const, Interval, Span, Var, fold, postorder
 from rtamt.language.operators import STL, Bounds, Fixity, Sort
 from rtamt.language.parser import parse_formula as parse
+from rtamt.language.shares import Share, ShareKind
 
 X, Y, Z = Var("x"), Var("y"), Var("z")
 
@@ -38,6 +39,9 @@ def test_the_example_of_every_operator(operator):
 def test_every_spelling_of_every_operator(operator):
     interval = seconds(0, 5) if operator.bounds is Bounds.REQUIRED else None
     bounds = "" if interval is None else "[0:5]"
+    share = ""
+    if operator.share:
+        interval, share = replace(interval, share=Share(Fraction(80), ShareKind.PERCENT)), "80%, "
     names = [
         STL["gt"](Var(f"v{k}"), Const(0)) if sort is Sort.CONDITION else Var(f"v{k}")
         for k, sort in enumerate(operator.operands)
@@ -45,7 +49,7 @@ def test_every_spelling_of_every_operator(operator):
     for spelling in operator.spellings:
         text = {
             Fixity.ATOM: spelling,
-            Fixity.FUNCTION: f"{spelling}({', '.join(map(str, names))})",
+            Fixity.FUNCTION: f"{spelling}{bounds}({share}{', '.join(map(str, names))})",
             Fixity.PREFIX: f"{spelling}{bounds} v0",
             Fixity.CONDITIONAL: f"{spelling} v0 > 0 then v1 else v2",
         }.get(operator.fixity, f"v0 {spelling}{bounds} v1")
