@@ -43,7 +43,10 @@ def long_windows(draw: st.DrawFn, **options: Any) -> Formula:
         if not isinstance(node, Apply):
             return node
         interval = node.interval
-        if interval is not None:
+        if interval is not None and node.op.bounds is Bounds.DURATION:
+            length = Fraction(max(draw(bounds), int(node.op.positive)))
+            interval = Interval(length, length)
+        elif interval is not None:
             begin, end = sorted((draw(bounds), draw(bounds)))
             share = interval.share
             if share is not None:
