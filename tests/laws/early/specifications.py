@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import copy
 import pickle
+from dataclasses import replace
 from math import inf
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -15,8 +16,9 @@ import numpy as np
 
 import rtamt
 from rtamt.errors import EvaluationError
-from rtamt.language.formula import Apply, Formula, Interval, fold
+from rtamt.language.formula import Apply, Formula, fold
 from rtamt.language.grammar import is_number
+from rtamt.language.shares import Share, ShareKind
 from rtamt.rewrite.check import unbounded_future
 from rtamt.rewrite.semantics import SEMANTICS
 from tests.laws.early import cases
@@ -65,10 +67,16 @@ def _in_milliseconds(formula: Formula) -> Formula:
         bounds = node.interval
         if bounds is not None:
             end = None if bounds.end is None else bounds.end / 1000
-            bounds = Interval(bounds.begin / 1000, end)
+            bounds = replace(bounds, begin=bounds.begin / 1000, end=end, share=_shorter(bounds.share))
         return Apply(node.op, args, bounds)
 
     return fold(formula, step)
+
+
+def _shorter(share: Share | None) -> Share | None:
+    if share is None or share.kind is not ShareKind.DURATION:
+        return share
+    return replace(share, amount=share.amount / 1000)
 
 
 class Drawn(NamedTuple):
