@@ -28,7 +28,7 @@ def grammar() -> dict[str, object]:
         {"name": "comment.block.stl", "begin": r"/\*", "end": r"\*/"},
         {"name": "variable.other.quoted.stl", "match": r'"(?:[^"]|"")*"'},
         {
-            "match": rf"({number})\s*({'|'.join(UNITS)})\b",
+            "match": rf"({number})\s*((?:{'|'.join(UNITS)})\b|%)",
             "captures": {"1": {"name": "constant.numeric.stl"}, "2": {"name": "keyword.other.unit.stl"}},
         },
         {"name": "constant.numeric.stl", "match": rf"{number}|\binf\b"},

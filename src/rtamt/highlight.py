@@ -55,7 +55,7 @@ def functions() -> list[str]:
     """Return the names of functions.
 
     >>> functions()[:3]
-    ['abs', 'acos', 'asin']
+    ['abs', 'acos', 'ahead']
     """
     return _spelled(lambda op: op.fixity is Fixity.FUNCTION)
 
@@ -108,7 +108,7 @@ class StlLexer(RegexLexer):
             (r"//[^\n]*", Comment.Single),
             (r"/\*[\s\S]*?\*/", Comment.Multiline),
             (r'"(?:[^"]|"")*"', String.Symbol),
-            (rf"[\d_.]+(?:[eE][+-]?\d+)?(?=\s*(?:{'|'.join(UNITS)})\b)", Number, "unit"),
+            (rf"[\d_.]+(?:[eE][+-]?\d+)?(?=\s*(?:(?:{'|'.join(UNITS)})\b|%))", Number, "unit"),
             (r"(?:\d[\d_]*(?:\.[\d_]*)?|\.\d[\d_]*)(?:[eE][+-]?\d+)?", Number),
             (r"@\s*topic\b", Keyword.Declaration),
             (words(DECLARING, suffix=r"\b(?!\s*[<>=!.])"), Keyword.Declaration),
@@ -123,5 +123,5 @@ class StlLexer(RegexLexer):
             (r"[()\[\]{},:;=]", Punctuation),
             (r"[^\W\d][\w$]*(?:\.[^\W\d][\w$]*)*|\$[\w$]*", Name.Variable),
         ],
-        "unit": [(r"\s+", Whitespace), (r"\w+", Keyword.Type, "#pop")],
+        "unit": [(r"\s+", Whitespace), (r"\w+|%", Keyword.Type, "#pop")],
     }

@@ -154,19 +154,19 @@ def test_writing_into_a_result_changes_no_other() -> None:
 @pytest.mark.parametrize("reads", [{}, {"guards": ()}])
 def test_what_has_no_rule_for_pastification_is_refused(reads: dict[str, Any]) -> None:
     once, always = STL["once"], STL["always"]
-    ahead = type(always)(
-        "ahead", ("ahead",), always.fixity, 75, always.operands, always.result, "doc", "ahead x", "{0}",
+    coming = type(always)(
+        "coming", ("coming",), always.fixity, 75, always.operands, always.result, "doc", "coming x", "{0}",
         always.definition, always.tense, always.bounds, **reads,
     )  # fmt: skip
     behind = type(once)(
         "behind", ("behind",), once.fixity, 75, once.operands, once.result, "doc", "behind x", "{0}",
         once.definition, once.tense, once.bounds, **reads,
     )  # fmt: skip
-    language = STL.extend(ahead, behind)
+    language = STL.extend(coming, behind)
     with pytest.raises(rtamt.SpecificationError) as info:
-        rtamt.parse("ahead[0:2] x", language=language).pastified()
+        rtamt.parse("coming[0:2] x", language=language).pastified()
     assert info.value.message == (
-        "Cannot pastify 'ahead': its record names no past twin; "
+        "Cannot pastify 'coming': its record names no past twin; "
         "monitor the formula as it is, which needs no pastification"
     )
     with pytest.raises(rtamt.SpecificationError) as info:

@@ -55,6 +55,12 @@ def test_the_words_of_a_file_have_their_kinds():
     assert Error not in {kind for _, kind in found}
 
 
+def test_a_share_in_percent_has_its_unit():
+    found = kinds("atleast[0:4s](87.5 %, x >= 3)")
+    assert {("87.5", Number), ("%", Keyword.Type)} <= found
+    assert Error not in {kind for _, kind in found}
+
+
 @given(formulas())
 def test_every_formula_that_is_printed_has_a_colour_for_each_character(formula):
     assert Error not in {kind for kind, _ in StlLexer().get_tokens(str(formula))}

@@ -48,7 +48,7 @@ class Table:
     def definition(self, x: Array) -> Array:
         """Return the values of the table at x.
 
-        >>> Table((0.0, 10.0), (1.0, 4.0)).definition(np.array([-inf, 0, 5, 10, inf]))
+        >>> Table((0.0, 10.0), (1.0, 4.0)).definition(np.array([-np.inf, 0, 5, 10, np.inf]))
         array([1. , 1. , 2.5, 4. , 4. ])
         """
         return np.array([self._at(each) for each in np.asarray(x, float).tolist()], float)

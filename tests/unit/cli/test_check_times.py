@@ -45,7 +45,7 @@ def test_in_dense_time_a_variable_has_no_sample_where_its_cell_is_empty(run, wri
         "",
         "rtamt: 'x' is missing at sample 1 of events.csv, but discrete time needs a value at every sample: "
         "fill the gap, hold the value before it (--hold-for DURATION), use dense time (--time dense), or put all on "
-        "one clock (--resample PERIOD)\n",
+        "one time base (--resample PERIOD)\n",
     )
 
 
