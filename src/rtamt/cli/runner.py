@@ -296,7 +296,9 @@ def _outcome(requirement: Requirement, trace: str, result: Result, data: Trace, 
     """Return the outcome of one requirement on ``data``."""
     try:
         satisfied, violated = result.satisfied, first_violation(result)
-        episodes = Episodes.of(result.episodes())
+        # A plot shows several requirements together, and episodes are those of one.
+        alone = len(result.specification.requirements) == 1
+        episodes = Episodes.of(result.episodes()) if alone else None
     except StlError as error:
         return failed(requirement, trace, f"{shown(trace)}: {error}", begin)
     recording = result.trace

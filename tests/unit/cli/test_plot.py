@@ -18,6 +18,13 @@ def test_a_picture_is_written(tmp_path, suffix, first, capsys):
     assert path.read_bytes().startswith(first)
 
 
+def test_several_requirements_are_drawn_together(tmp_path, capsys):
+    path = tmp_path / "both.png"
+    both = "require A: always(req <= 5); require B: always(gnt >= 0)"
+    assert main(["plot", both, TRACE, "-o", str(path)]) == 0
+    assert capsys.readouterr().out == f"{path}: violated, robustness -1, first violation at 2 s\n"
+
+
 def test_a_tree_in_dense_time_at_an_instant(tmp_path):
     path = tmp_path / "tree.png"
     arguments = ["plot", FORMULA, TRACE, "--time", "dense", "--tree", "--at", "2", "-o", str(path)]
