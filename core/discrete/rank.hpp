@@ -34,8 +34,8 @@ class Rank final : public Kernel {
 
     std::size_t run(const Block& block) noexcept override {
         const Range present = block.present(lag());
-        const Value* in = a<Value>();
-        Value* out = this->out<Value>();
+        const auto* in = a<Value>();
+        auto* out = this->out<Value>();
         std::fill_n(out, present.begin, outside);
         for (std::size_t i = present.begin; i < present.end; ++i) {
             const Value value = in[i];

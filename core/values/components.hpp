@@ -67,17 +67,19 @@ template <bool least>
 struct Key {
     [[nodiscard]] static std::int64_t of(double value) noexcept {
         const std::int64_t key = turned(std::bit_cast<std::int64_t>(value));
-        return least ? key : ~key;
+        return least ? key : reversed(key);
     }
     [[nodiscard]] static double value(std::int64_t key) noexcept {
-        return std::bit_cast<double>(turned(least ? key : ~key));
+        return std::bit_cast<double>(turned(least ? key : reversed(key)));
     }
 
   private:
     // Negative doubles are ordered the other way round; twice the same is the identity.
     [[nodiscard]] static std::int64_t turned(std::int64_t bits) noexcept {
-        return bits < 0 ? bits ^ std::numeric_limits<std::int64_t>::max() : bits;
+        return bits < 0 ? std::numeric_limits<std::int64_t>::min() + reversed(bits) : bits;
     }
+    // Greater for smaller ones, and twice the same is the identity; -x would overflow.
+    [[nodiscard]] static std::int64_t reversed(std::int64_t key) noexcept { return -1 - key; }
 };
 
 } // namespace rtamt
