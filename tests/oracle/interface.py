@@ -14,6 +14,7 @@ import numpy as np
 from rtamt.language.formula import Apply, Formula, fold, postorder
 from rtamt.language.formula import Var as Variable
 from rtamt.language.operators import Bounds, Sort
+from rtamt.language.shares import rank_arguments
 from rtamt.reference.discrete import evaluate
 from tests.oracle.boolean import COMPARISONS
 
@@ -61,10 +62,11 @@ def values(
         if is_predicate(node):
             return _predicate(node, case(node, semantics, inputs), columns, n, period)
         assert isinstance(node, Apply)
-        window: tuple[int | None, ...] = ()
+        window: tuple[float | None, ...] = ()
         if node.op.bounds is not Bounds.NONE:
             begin, end = (0, None) if node.interval is None else (node.interval.begin, node.interval.end)
             window = (int(begin / period), None if end is None else int(end / period))
+        window = (*window, *rank_arguments(node.interval, period, continuous=False))
         return node.op.definition(*([operand() for operand in below] or (n,)), *window)
 
     return fold(formula, step)()

@@ -133,12 +133,14 @@ def formulas(
         # Sometimes a number where a formula is expected, or the reverse: both are legal but for strict functions.
         odd = arithmetic and not strict and chance(8)
         candidates = by_sort[sort] if not odd else operators
+        if depth == 1:  # a condition is at least a comparison
+            candidates = [op for op in candidates if Sort.CONDITION not in op.operands]
         if depth == 0 or not candidates or chance(10):
             return leaf(sort)
         op = draw(st.sampled_from(candidates))
         optional = draw(st.integers(0, op.optional)) if op.optional else 0
         sorts = op.operands[: len(op.operands) - optional]
-        operands = [_suited(draw_one(depth - 1, operand, strict=op.strict), operand) for operand in sorts]
+        operands = [draw_operand(depth - 1, operand, strict=op.strict) for operand in sorts]
         window = interval(op)
         drawn = apply(op, operands, window)
         for kept in reversed(range(len(operands))):
@@ -151,6 +153,11 @@ def formulas(
             return drawn if chance(20) else leaf(sort)
         pool.append(drawn)
         return drawn
+
+    def draw_operand(depth: int, sort: Sort, *, strict: bool) -> _Drawn:
+        drawn = _suited(draw_one(depth, sort, strict=strict), sort)
+        # A number as deep as this has no room for the comparison that makes it a condition.
+        return drawn if drawn.depth <= depth else _suited(leaf(sort), sort)
 
     return draw_one(max_depth, Sort.FORMULA).formula
 
