@@ -16,9 +16,13 @@ from hypothesis import strategies as st
 import rtamt
 from rtamt.errors import EvaluationError
 from rtamt.language.formula import Apply, Formula, Var, fold, postorder
+from rtamt.language.grammar import is_number
 from rtamt.language.printer import canonical
+from rtamt.language.shares import ShareKind
 from rtamt.language.units import UNITS
 from rtamt.rewrite.horizon import horizon
+from rtamt.rewrite.semantics import boolean
+from rtamt.rewrite.truth import is_part_of_a_condition
 from tests.laws.test_engine_laws import by_definition
 from tests.strategies import formulas, traces
 
@@ -97,6 +101,32 @@ def online(spec: Any, columns: dict[str, Any], step: float = 1.0) -> list[float]
     return results
 
 
+def values_of(part: Formula, formula: Formula, columns: dict[str, Any]) -> np.ndarray:
+    """Return the values of a part of a formula by definition: numbers as they are, a condition by its truth."""
+    condition = not is_number(part) and is_part_of_a_condition(part, (formula,))
+    return defined(boolean(part) if condition else part, columns)
+
+
+def in_unit(formula: Formula, unit: str, *, bounds: bool) -> Formula:
+    """Return the formula with as many ``unit`` as it has seconds: its shares, and perhaps its bounds."""
+    factor = UNITS[unit]
+
+    def step(node: Formula, args: tuple[Formula, ...]) -> Formula:
+        if not isinstance(node, Apply):
+            return node
+        interval = node.interval
+        if interval is not None:
+            share = interval.share
+            if share is not None and share.kind is ShareKind.DURATION:
+                interval = replace(interval, share=replace(share, amount=share.amount * factor, unit=unit))
+            if bounds:
+                end = None if interval.end is None else interval.end * factor
+                interval = replace(interval, begin=interval.begin * factor, end=end)
+        return replace(node, args=args, interval=interval)
+
+    return fold(formula, step)
+
+
 def named_apart(formula: Formula, part: Formula) -> Formula:
     """Return the formula with the variable ``part`` wherever that part stands."""
 
@@ -134,8 +164,9 @@ def test_a_pastified_specification_says_the_same_one_horizon_later_in_any_unit(
     assert depth is not None
     delay = int(depth / period)
     assume(delay < len(columns["x"]))
-    expected = defined(formula, columns, period)
-    spec = specification(way(formula), period=period, unit=unit)
+    # Bounds without a unit are in that of the specification; a share has its own, and integrals are in seconds.
+    expected = defined(in_unit(formula, unit, bounds=True), columns, period * UNITS[unit])
+    spec = specification(way(in_unit(formula, unit, bounds=False)), period=period, unit=unit)
     np.testing.assert_array_equal(offline(spec, columns, float(period)), expected)
     spec.pastify()
     late = online(spec, columns, float(period))
@@ -168,7 +199,7 @@ def test_after_evaluate_every_part_has_the_values_of_its_definition(
     spec = specification(way(formula))
     offline(spec, columns)
     for part in parts(formula):
-        np.testing.assert_array_equal(spec.get_value(way(part)), defined(part, columns))
+        np.testing.assert_array_equal(spec.get_value(way(part)), values_of(part, formula, columns))
 
 
 @given(formulas(max_depth=3, future=False), traces(max_size=8), WAYS)
@@ -176,7 +207,7 @@ def test_after_each_update_every_part_has_the_value_of_its_definition(
     formula: Formula, columns: dict[str, Any], way: Any
 ) -> None:
     defined(formula, columns)
-    values = {part: defined(part, columns) for part in parts(formula)}
+    values = {part: values_of(part, formula, columns) for part in parts(formula)}
     spec = specification(way(formula))
     for i, (x, y) in enumerate(zip(columns["x"], columns["y"], strict=True)):
         spec.update(i, [("x", x), ("y", y)])

@@ -296,10 +296,10 @@ def _first(x: Formula) -> Formula:
 def _mean(x: Formula, *rest: Any) -> Formula:
     *init, i = rest
     total, count = (STL["sum"](each, interval=i) for each in (x, Const(1.0)))
-    begin = Fraction(0) if i is None else i.begin
+    begin, unit = (Fraction(0), "") if i is None else (i.begin, i.begin_unit)
     if begin == 0 and not init:
         return STL["div"](total, count)
-    begun = STL["once"](STL["true"](), interval=Interval(begin, begin))
+    begun = STL["once"](STL["true"](), interval=Interval(begin, begin, unit, unit))
     mean = STL["div"](total, STL["max"](count, Const(1.0)))
     return STL["if"](begun, mean, *(init or (_first(x),)))
 

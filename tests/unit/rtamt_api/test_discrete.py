@@ -106,6 +106,22 @@ def test_a_delay_is_printed_in_the_unit_in_which_it_is_read_again():
     assert [spec.update(10 * t, [("x", 9), ("y", y)]) for t, y in enumerate([3, 1, 2])] == [-inf, 3.0, 1.0]
 
 
+def test_the_start_of_a_mean_is_printed_in_the_unit_in_which_it_is_read_again():
+    spec = rtamt.StlDiscreteTimeSpecification()
+    spec.unit = "h"
+    spec.set_sampling_period(1, "h")
+    spec.spec = "rise(mean[1:2](ahead[1](x)) >= 3)"
+    spec.parse()
+    spec.pastify()
+    assert "once[1h,1h](once[1h,1h](true))" in spec.spec_print()
+    values = [spec.update(t, [("x", x)]) for t, x in enumerate([2, 0, 8, 1, 5])]
+    printed = spec.spec_print()
+    spec.spec = printed
+    spec.parse()
+    assert spec.spec_print() == printed
+    assert [spec.update(t, [("x", x)]) for t, x in enumerate([2, 0, 8, 1, 5])] == values
+
+
 def test_a_chain_that_rtamt_read_differently_is_warned_of_where_parse_is_called():
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
