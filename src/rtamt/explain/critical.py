@@ -1,7 +1,7 @@
 """The critical point: the predicate and the instant whose value is, up to sign, the robustness.
 
-From the root down: through minimum and maximum to the operand that attains the value, through a window
-to an instant at which the operand attains it, through until and since to the t' that attains the
+From the root down: through minimum and maximum to the operand that attains the value, through a window or
+a share of it to an instant at which the operand attains it, through until and since to the t' that attains the
 supremum, and there to ψ or to an instant of φ. Signals are step functions and windows closed, so that
 every supremum is attained. Of equal ones the earliest is taken (of since: the latest t'); ``explain.py`` prefers
 one that overturns the verdict alone.
@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rtamt.language.formula import Apply, Const, Formula, Var
-from rtamt.language.records import Shift, Since, Tense, Until, Window
+from rtamt.language.records import Rank, Shift, Since, Tense, Until, Window
 from rtamt.rewrite.structure import CHOOSING, NEGATION, opcode, window_of
 
 if TYPE_CHECKING:
@@ -72,6 +72,12 @@ class Walk:
         changes, values = self._signals.of(node).between(begin, end)
         return int(changes[values.argmax() if reduce == "max" else values.argmin()])
 
+    def _equal(self, node: Apply, cell: int, begin: int, end: int) -> int | None:
+        """Return the first cell in [begin, end) at which the operand has the value of ``node`` at ``cell``."""
+        changes, values = self._signals.of(node.args[0]).between(begin, end)
+        found = changes[values == self._signals.at(node, cell)]
+        return int(found[0]) if len(found) else None
+
     def _elsewhere(self, node: Apply, cell: int) -> tuple[Formula, int] | None:
         """Return the operand and the cell from which the value comes; None if there is none to come from."""
         kernel, past = node.op.kernel, node.op.tense is Tense.PAST
@@ -79,6 +85,10 @@ class Walk:
             there = cell - 1 if past else cell + 1
             return (node.args[0], there) if 0 <= there < self._end else None
         first, last = window_of(node, self._period)
+        if isinstance(kernel, Rank):
+            begin, end = around(cell, first, last, past=past, end=self._end)
+            same = None if begin >= end else self._equal(node, cell, begin, end)
+            return None if same is None else (node.args[0], same)
         if isinstance(kernel, Window):
             begin, end = around(cell, first, last, past=past, end=self._end)
             return (

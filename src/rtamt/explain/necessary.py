@@ -19,7 +19,9 @@ from rtamt.rewrite.structure import NEVER
 from rtamt.signals.instants import NONE, Cells
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Callable, Mapping
+
+    from numpy.typing import NDArray
 
     from rtamt.language.formula import Apply, Formula
     from rtamt.rewrite.structure import Place
@@ -45,6 +47,15 @@ class Needs(Demands):
         del reduce  # whichever it is
         having = self._having(node.args[0], sign)
         return _needed(node.args[0], only_stretches(cells, having, *self._offsets(node)), having)
+
+    def _deciding(self, node: Apply, sign: int, cells: Cells) -> Cells:
+        need, found = self._share(node, sign)
+        before, after = self._offsets(node)
+        return only_share(cells, found, before, after, need, ends=self._ends(sign))
+
+    def _ends(self, sign: int) -> Callable[..., NDArray[np.int64]] | None:
+        # In dense time the cells at both ends of a window count as one, which holds where both do.
+        return (np.minimum if self.truth(sign) else np.maximum) if self._dense else None
 
     def _until(
         self, node: Apply, sign: int, cells: Cells, having: tuple[Cells, Cells], window: tuple[int, int]
@@ -82,6 +93,38 @@ def only_stretches(asked: Cells, having: Cells, before: int, after: int) -> Cell
     met[met] = asked.starts[k[met]] < end[met]
     met &= first < end
     return Cells(having.starts[met], having.starts[met] + 1)
+
+
+def only_share(
+    asked: Cells,
+    having: Cells,
+    before: int,
+    after: int,
+    need: int,
+    *,
+    ends: Callable[..., NDArray[np.int64]] | None,
+) -> Cells:
+    """Return cells of ``having`` without which some k of ``asked`` has fewer than ``need`` in [k + before, k + after].
+
+    Looked for where such a window begins or ends with an interval, and at the ends of ``asked``. ``ends``: how the
+    numbers without the last and without the first cell are combined, where both of them make up one cell.
+    """
+    edges = np.concatenate((having.starts, having.ends))
+    shifted = [edges - by for end in (before, after) for by in (end - 1, end, end + 1)]
+    points = np.concatenate((asked.starts, asked.ends - 1, *shifted))
+    among = np.searchsorted(asked.ends, points, side="right")
+    points, among = points[among < len(asked)], among[among < len(asked)]
+    points = points[asked.starts[among] <= points]
+
+    def count(first: int, last: int) -> NDArray[np.int64]:
+        return having.before(points + last + 1) - having.before(points + first)
+
+    if ends is None:
+        tight = points[count(before, after) <= need]
+        return having & Cells.union(tight + before, tight + after + 1)
+    # Every cell but the two at the ends is in both numbers.
+    tight = points[ends(count(before, after - 1), count(before + 1, after)) <= need]
+    return having & Cells.union(tight + before + 1, tight + after)
 
 
 def only_goals(asked: Cells, holds: Cells, goals: Cells, first: int, last: int) -> Cells:

@@ -9,10 +9,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from rtamt.explain.critical import around
 from rtamt.explain.witnesses import blocking, reaching, witnesses
 from rtamt.language.formula import Apply, Formula, Var
-from rtamt.language.records import Shift, Since, Tense, Window
+from rtamt.language.records import Rank, Shift, Since, Tense, Window
+from rtamt.language.shares import rank_of
 from rtamt.rewrite.structure import CHOOSING, NEGATION, NEVER, Place, opcode, window_of
 from rtamt.signals.instants import NONE, Cells
 
@@ -141,6 +144,8 @@ class Demands:
             self._choose_operands(node, sign, cells)
         elif isinstance(kernel, Window):
             self._add(node.args[0], sign, Asked(self._witnesses(node, kernel.reduce, sign, cells)))
+        elif isinstance(kernel, Rank):
+            self._add(node.args[0], sign, Asked(self._deciding(node, sign, cells)))
         else:
             self._choose_in_time(node, sign, cells)
 
@@ -205,6 +210,36 @@ class Demands:
                 # In dense time the interval around it, and it alone.
                 found = next_to(found, best) if self._dense else here
         return witnesses(cells, found, before, after, whole=self._dense)
+
+    def _share(self, node: Apply, sign: int) -> tuple[int, Cells]:
+        """Return how many cells of a window must have the truth that is asked for, and which cells have it.
+
+        Those outside the trace are among them if they count.
+        """
+        k, outside = rank_of(node.interval, self._period, continuous=self._dense)
+        first, last = window_of(node, self._period)
+        found = self._having(node.args[0], sign)
+        if (outside > 0) == self.truth(sign):
+            found = found | Cells.of([(-2 * NEVER, 0)])
+            if not self._dense:
+                found = found | Cells.of([(self._end, 4 * NEVER)])
+        nominal = last - first + (0 if self._dense else 1)
+        return k if self.truth(sign) else nominal - k + 1, found
+
+    def _deciding(self, node: Apply, sign: int, cells: Cells) -> Cells:
+        """Choose instants of the operand for a share of a window: for a single sample, as few as possible."""
+        need, found = self._share(node, sign)
+        window = cells.widened(*self._offsets(node))
+        found = found & window
+        if self._dense or cells.lone is None:
+            return found
+        # Those that decide the value: the largest, or the smallest.
+        inside = found.within(0, self._end)
+        samples = np.concatenate([np.arange(*each) for each in inside] or [np.empty(0, np.int64)])
+        values = self._signals.of(node.args[0]).each(samples)
+        best = np.argsort(-values if self.truth(sign) else values, kind="stable")
+        chosen = samples[best[: max(need - (found.count - inside.count), 0)]]
+        return Cells.union(chosen, chosen + 1)
 
     def _offsets(self, node: Apply) -> tuple[int, int]:
         """Return the ends of a window, counted from the present cell on."""

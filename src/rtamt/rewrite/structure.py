@@ -2,8 +2,8 @@
 
 A formula is split into *predicates* (leaves, as the user wrote them) under operators whose value is
 always that of one of their operands at some instant, or its negation. After desugaring these are the kernels
-min, max, neg, windows, shifts, since and until. No operator is named here. An operator not composed of these
-(added with a definition alone, or with arithmetic over formulas) is a leaf as a whole.
+min, max, neg, windows, shares of them, shifts, since and until. No operator is named here. An operator not
+composed of these (added with a definition alone, or with arithmetic over formulas) is a leaf as a whole.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, TypeGuard
 
 from rtamt.language.formula import Apply, Const, Formula, Interval, Span, Var, fold, postorder, variables
 from rtamt.language.operators import STL
-from rtamt.language.records import Bounds, Pointwise, Shift, Since, Sort, Tense, Until, Window
+from rtamt.language.records import Bounds, Pointwise, Rank, Shift, Since, Sort, Tense, Until, Window
 from rtamt.rewrite.desugar import desugar
 
 if TYPE_CHECKING:
@@ -120,7 +120,7 @@ def _is_structural(node: Formula) -> bool:
     kernel = node.op.kernel
     if isinstance(kernel, Pointwise):
         return kernel.opcode in (*CHOOSING, NEGATION)
-    return isinstance(kernel, Window | Shift | Since | Until)
+    return isinstance(kernel, Window | Rank | Shift | Since | Until)
 
 
 def _polar(order: tuple[Formula, ...], leaves: Mapping[str, Leaf]) -> dict[Place, Formula]:

@@ -94,6 +94,13 @@ class Cells:
         """Return the part in [begin, end)."""
         return Cells.union(np.maximum(self.starts, begin), np.minimum(self.ends, end))
 
+    def before(self, points: Ints) -> Ints:
+        """Return how many of the cells are before each point."""
+        total = np.concatenate((np.zeros(1, np.int64), np.cumsum(self.ends - self.starts)))
+        begun = np.searchsorted(self.starts, points, side="right")
+        ends = np.concatenate((np.array([-4 * NEVER]), self.ends))
+        return total[begun] - np.maximum(ends[begun] - points, 0)
+
     def __iter__(self) -> Iterator[tuple[int, int]]:
         return iter(zip(self.starts.tolist(), self.ends.tolist(), strict=True))
 
@@ -143,6 +150,10 @@ class StepFunction:
     def at(self, cell: int) -> float:
         """Return the value at a cell."""
         return float(self.values[int(np.searchsorted(self.changes, cell, side="right")) - 1])
+
+    def each(self, cells: Ints) -> Floats:
+        """Return the values at several cells."""
+        return self.values[np.searchsorted(self.changes, cells, side="right") - 1]
 
     def between(self, begin: int, end: int) -> tuple[Ints, Floats]:
         """Return the changes and values in [begin, end), which is not empty; the first change is ``begin``."""

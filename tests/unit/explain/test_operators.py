@@ -59,6 +59,14 @@ DISCRETE = [
     ("rise(x)", 1, ("x", 0, 5, -inf, 4), [("x", True, 0, 0)]),
     ("fall(x)", 4, ("x", 4, -1, -inf, 2), [("x", True, 3, 3), ("x", False, 4, 4)]),
     ("fall(x)", 5, ("x", 5, 6, -inf, -1), [("x", True, 5, 5)]),
+    # 3 of 5: the three largest; for less than 3 of 5, the three smallest.
+    ("atleast[0:4](60%, x)", 0, ("x", 2, 3, 2, 4), [("x", True, 0, 2)]),
+    ("atleast[0:4](60%, y)", 0, ("y", 1, -2, -2, -1), [("y", False, 1, 2), ("y", False, 4, 4)]),
+    # After the end: no sample of those that are needed, one of those that a percentage counts.
+    ("atleast[0:2](2, x)", 5, ("x", 5, 6, -inf, 7), [("x", True, 5, 6)]),
+    ("atleast[0:2](100%, y)", 5, ("y", 6, -6, -inf, 5), [("y", False, 6, 6)]),
+    ("wasatleast[0:4](2s, x)", 4, ("x", 1, 4, 3, 5), [("x", True, 0, 1)]),
+    ("wasatleast[1:3](50%, y)", 5, ("y", 4, -2, -3, 4), [("y", False, 2, 2), ("y", False, 4, 4)]),
     # Comparisons, and arithmetic in them, are predicates as they stand.
     ("x >= 3", 3, ("x >= 3", 3, -1, -inf, inf), [("x >= 3", False, 3, 3)]),
     ("x + y > 3", 3, ("x + y > 3", 3, 3, -inf, inf), [("x + y > 3", True, 3, 3)]),
@@ -87,6 +95,11 @@ DENSE = [
     ("x precedes[0:2] y", 4, ("x", 2, 3, -3, 4), [("x", True, 2, 3, False), ("y", True, 3, 4, False)]),
     ("x precedes[1:2] y", 4, ("x", 3, 2, -inf, 3), [("x", True, 2, 3, True), ("y", True, 3, 4, False)]),
     ("x unless[0:2] y", 0, ("x", 2, 3, -1, 4), [("x", True, 0, 2, True)]),
+    # Just after 0 s, 3 is reached for a little less than 3 s.
+    ("atleast[0:4](3s, x)", 0, ("x", 3, 2, -1, 3), [("x", True, 0, 4, False)]),
+    ("atleast[0:4](50%, y)", 0, ("y", 1, -2, -2, 4), [("y", False, 0, 3, False)]),
+    # What leaves the window at its beginning comes in at its end.
+    ("wasatleast[0:2](1s, x)", 5, ("x", 3, 2, -1, 6), [("x", True, 3, 4, False), ("x", True, 5, 5, True)]),
     # After the last sample the last value holds.
     ("eventually[8:9] x", 2, ("x", 10, 7, -inf, inf), [("x", True, 10, 11, True)]),
 ]
@@ -138,6 +151,8 @@ def test_every_operator_is_here():
         ("historically[2:3] x", 1, "start", inf),
         ("eventually[2:3] x", 5, "end", -inf),
         ("always[2:3] x", 5, "end", inf),
+        ("atleast[2:3](50%, x)", 6, "end", inf),
+        ("wasatleast[2:3](1, x)", 1, "start", -inf),
         ("x since[2:3] y", 1, "start", -inf),
         ("x until[2:3] y", 5, "end", -inf),
         ("x or true", 0, "constant", inf),

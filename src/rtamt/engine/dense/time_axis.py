@@ -11,6 +11,7 @@ from rtamt.engine.dense.backends import BACKENDS
 from rtamt.engine.time_axis import TimeAxis
 from rtamt.errors import UsageError
 from rtamt.language.formula import Apply, postorder
+from rtamt.language.shares import rank_of
 from rtamt.language.units import decimal
 from rtamt.rewrite.desugar import desugar
 from rtamt.rewrite.horizon import reach
@@ -121,4 +122,6 @@ class DenseTimeAxis(TimeAxis):
             if isinstance(node, Apply) and node.interval is not None:
                 bounds = node.interval.begin, node.interval.end or 0
                 grain = math.gcd(grain, *(int(bound / self.period) for bound in bounds))
+                if node.op.share:
+                    grain = math.gcd(grain, rank_of(node.interval, self.period, continuous=True).k)
         return grain or 1
