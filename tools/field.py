@@ -58,7 +58,7 @@ def _one(log: Path, stem: Path) -> tuple[int, int, str]:
     samples = sum(len(trace[name].values) for name in trace)
     timed = [name for name in trace if _can_be_plotted(trace, name)]
     if not timed:
-        return len(trace.names), samples, "read; no signal changes"
+        return len(trace.names), samples, "read; no finite signal with increasing timestamps changes"
     name = max(timed, key=lambda each: len(trace[each].values))
     values = trace[name].values
     quoted = '"' + name.replace('"', '""') + '"'

@@ -46,3 +46,21 @@ def test_a_notebook_is_committed_without_output(path):
         for cell in cells
         if cell["cell_type"] == "code"
     )
+
+
+def test_a_plot_is_a_picture_once_in_a_kernel_that_has_drawn_nothing_before(tmp_path):
+    program = (
+        "import nbformat, nbclient\n"
+        'cell = nbformat.v4.new_code_cell(\'import rtamt; rtamt.parse("x >= 3").evaluate({"x": [5, 2]}).plot()\')\n'
+        "notebook = nbformat.v4.new_notebook(cells=[cell])\n"
+        "nbclient.NotebookClient(notebook, timeout=120, kernel_name='python3').execute()\n"
+        "print([kind for output in cell.outputs for kind in output.get('data', {})])\n"
+    )
+    environment = {name: value for name, value in os.environ.items() if name != "MPLBACKEND"}
+    done = subprocess.run(
+        [sys.executable, "-c", program],
+        cwd=tmp_path, env={**environment, "JUPYTER_PLATFORM_DIRS": "1"},
+        capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.count("image/png") == 1

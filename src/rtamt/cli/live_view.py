@@ -99,7 +99,7 @@ class Live:
             f"{name} = {short(value)} {self.units.get(name, '')}".rstrip()
             for name, value in self._latest.items()
         )
-        yield self._line(f"{self._samples} samples  {values}")
+        yield self._line(f"{self._samples} sample{'s' if self._samples != 1 else ''}  {values}")
 
     def _robustness(self, width: int) -> Iterator[Any]:
         seen = list(self._values)[-width:]

@@ -33,12 +33,16 @@ _FEW = 4
 
 
 def new_figure() -> Any:
-    """Return a figure of pyplot; in a notebook a figure of its own, which a cell shows once, as its last expression.
+    """Return a figure of pyplot; in a notebook one that is closed, which a cell shows once, as its last expression.
 
-    Of pyplot's figures a notebook shows each at the end of its cell, and that of the last expression once more.
+    Of pyplot's open figures a notebook shows each at the end of its cell, and that of the last expression once more.
+    It can show a figure at all once pyplot has made one, which loads the notebook's backend.
     """
     pyplot = matplotlib("pyplot")
-    return matplotlib().Figure() if "inline" in pyplot.get_backend() else pyplot.figure()
+    figure = pyplot.figure()
+    if "inline" in pyplot.get_backend():
+        pyplot.close(figure)
+    return figure
 
 
 def draw(scene: Scene, rows: int, figure: Any, window: tuple[float, float] | None = None) -> None:

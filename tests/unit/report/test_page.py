@@ -58,6 +58,9 @@ def test_page_shows_the_episodes_of_violation(tmp_path, monkeypatch):
     main(["check", "always(x >= 3)", "a.csv", "--html", "a.html", "--quiet"])
     text = Text(Path("a.html").read_text()).text
     assert "2 episodes of violation, the worst at 4 s: robustness -3" in text
+    assert re.search(
+        r"sufficient cause[^:]*:\s+'x >= 3' fails", text
+    )  # nothing between the head and the causes
 
 
 @pytest.fixture
