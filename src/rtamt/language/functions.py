@@ -161,9 +161,12 @@ def _wrap(x: float, lo: float, hi: float) -> float:
     if not lo < hi or math.isinf(x):
         return nan
     turned = lo + (x - lo) % (hi - lo)
-    return turned if turned < hi else lo
+    return lo if turned >= hi else turned
 
 
 def wrap(x: Array, lo: Array, hi: Array) -> Array:
-    """``wrap(x, lo, hi)``: x moved into [lo, hi) by whole multiples of hi - lo; NaN where lo ≥ hi or x = ±inf."""
+    """``wrap(x, lo, hi)``: x moved into [lo, hi) by whole multiples of hi - lo.
+
+    NaN where lo ≥ hi, or where x outside the interval, or its distance from lo, is infinite.
+    """
     return _each(_wrap, x, lo, hi)
