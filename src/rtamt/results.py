@@ -9,6 +9,8 @@ from html import escape
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from rtamt.errors import EvaluationError, UsageError, did_you_mean
 from rtamt.language.formula import Apply, variables
 from rtamt.language.grammar import is_number
@@ -54,13 +56,19 @@ class Result:
 
     def __repr__(self) -> str:
         of = self.specification.name or self.specification.formula
-        return f"<result of {of}: robustness {self.robustness} at {self.signal.times[0]}>"
+        start = self.signal.times[0]
+        at = show_time(start) if isinstance(start, np.timedelta64) else start
+        return f"<result of {of}: robustness {self.robustness} at {at}>"
 
     def _repr_html_(self) -> str:
         rows = []
         for name, part in self.requirements.items():
             violated = first_violation(part)
-            verdict = "satisfied" if violated is None else f"violated, first at {show_time(violated)}"
+            verdict = (
+                "satisfied"
+                if violated is None
+                else f"violated, first at {show_time(violated, part.signal.times[0])}"
+            )
             formula = escape(excerpt(part.specification.formula))
             rows.append(
                 f"<tr><td>{escape(name)}</td><td><code>{formula}</code></td><td>{part.robustness:.6g}</td>"

@@ -43,6 +43,17 @@ def test_a_plot_as_last_expression_of_a_cell_is_shown_once(result, monkeypatch):
     assert all(figure.axes for figure in figures)
 
 
+@pytest.mark.parametrize("kind", ["M8[ns]", "m8[ns]", "f8"])
+def test_times_since_1970_are_dates_and_never_raw_numbers(kind):
+    stamps = np.array([1_700_000_000_000_000_000 + i * 500_000_000 for i in range(3)])
+    trace = rtamt.read({"time": stamps / 1e9 if kind == "f8" else stamps.astype(kind), "x": [5, 1, 4]})
+    result = rtamt.parse("always(x >= 3)", period="500ms").evaluate(trace)
+    assert "violated, first at 2023-11-14 22:13:20.5 (+0.5 s)" in result._repr_html_()
+    for text in (str(trace), trace._repr_html_()):
+        assert re.search("2023-11-14[ T]22:13:20 to 2023-11-14[ T]22:13:21", text)
+        assert "1700000" not in text
+
+
 @pytest.mark.parametrize(
     ("stamps", "low", "high"),
     [

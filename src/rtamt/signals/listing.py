@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
 from html import escape
 from itertools import groupby
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+
+from rtamt.signals.datetimes import nanoseconds_of
+from rtamt.signals.epoch import date_text, is_epoch, moment_text
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -76,12 +80,30 @@ def extent(channel: Channel) -> str:
     return f"{text}, {show_time(channel.times[0])} to {show_time(channel.times[-1])}"
 
 
-def show_time(time: Any) -> str:
-    """Return one time as text: seconds, nanoseconds or a date.
+def show_time(time: Any, start: Any = None) -> str:
+    """Return one time as text: seconds, nanoseconds or a date, with ``start`` and the seconds since then.
 
     >>> show_time(np.float64(2.5)), show_time(np.timedelta64(7, "ns"))
     ('2.5 s', '7 ns')
+    >>> begin = np.timedelta64(1_700_000_000_000_000_000, "ns")
+    >>> show_time(begin), show_time(begin + np.timedelta64(2, "s"), begin)
+    ('2023-11-14 22:13:20', '2023-11-14 22:13:22 (+2 s)')
     """
+    since, begin = _since_1970(time), _since_1970(start)
+    if since is not None and begin is not None:
+        return moment_text(since, begin)
     if isinstance(time, np.datetime64):
         return str(time).rstrip("0").rstrip(".") if "." in str(time) else str(time)
+    if since is not None:
+        return date_text(since)
     return f"{time.astype(np.int64)} ns" if isinstance(time, np.timedelta64) else f"{time:.12g} s"
+
+
+def _since_1970(time: Any) -> Fraction | None:
+    """Return the seconds of a time that counts from 1970, and None of another one."""
+    if time is None:
+        return None
+    if not isinstance(time, np.datetime64 | np.timedelta64):
+        return Fraction(repr(float(time))) if is_epoch(float(time)) else None
+    seconds = Fraction(nanoseconds_of(time) or 0, 10**9)
+    return seconds if isinstance(time, np.datetime64) or is_epoch(seconds) else None
