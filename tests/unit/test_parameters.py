@@ -240,3 +240,10 @@ def test_values_of_another_type_are_one_sentence(values, message):
     with pytest.raises(UsageError) as error:
         rtamt.parse(STRICT).with_parameters(**values)
     assert str(error.value) == message
+
+
+def test_the_sum_of_a_parameter_follows_its_value():
+    spec = rtamt.parse("parameter float k = 1  float x  x <= sum[0:2](k)", period=1)
+    for value in (1, 3, 0):
+        found = spec.with_parameters(k=value).evaluate({"x": [0, 0, 0, 0]}).signal.values
+        assert found.tolist() == [value, 2 * value, 3 * value, 3 * value]

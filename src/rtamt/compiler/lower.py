@@ -229,7 +229,12 @@ class Lowering(ABC):
         if width == self.point:
             return x
         operand = self.origins[x]
-        if reduce == "sum" and isinstance(operand, Const) and operand.value.is_integer():
+        if (
+            reduce == "sum"
+            and isinstance(operand, Const)
+            and not isinstance(operand, Parameter)  # whose value may be changed
+            and operand.value.is_integer()
+        ):
             most = operand.value * width
             if 0 <= most <= 2**53:  # exact in any order
                 return self.counting(x, most, lag, origin)

@@ -65,11 +65,16 @@ def carried_program(
     judged = domain.ground(*(output for pair in pairs.values() for output in pair))
     cores = [_with_parameters(desugar(each), structural) for each in judged]
     program = compile_program(cores, domain.step, inputs, domain=type(domain))
+    # What delays a parameter comes from it, too.
+    constants = [
+        origin if instruction.opcode == "const" else None
+        for instruction, origin in zip(program.instructions, program.origins, strict=True)
+    ]
     metadata = Metadata(
         name or "",
         to_text(formula, limit=PAGE),
         tuple(f"{output}{suffix}" for suffix in pairs for output in OUTPUTS),
-        _places(program.origins, 0),
+        _places(constants, 0),
         MappingProxyType(_meanings(program, [_with_parameters(each, structural) for each in judged])),
     )
     return replace(program, metadata=metadata)
