@@ -128,7 +128,7 @@ double cost(const Program& program, std::size_t traces) {
 // The window's loops alone, unrolled or not.
 template <class D>
 double loops(std::size_t width) {
-    using Window = rtamt::discrete::TwoStack<rtamt::Extremum<rtamt::MaxOf<D>>>;
+    using Window = rtamt::discrete::TwoStack<rtamt::Joined<rtamt::MaxOf<D>>>;
     std::mt19937_64 engine(1);
     std::vector<typename D::Value> ring(width);
     std::vector<typename D::Value> in(256);

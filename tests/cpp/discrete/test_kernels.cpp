@@ -40,18 +40,16 @@ TEST_CASE("every opcode that computes has a kernel in every domain") {
     check_opcodes<Truth>();
 }
 
-TEST_CASE("only windows and shifts keep samples") {
+TEST_CASE("only windows, shares and shifts keep samples") {
     for (std::size_t code = 0; code < rtamt::opcodes.size(); ++code) {
         Instruction instruction;
         instruction.opcode = static_cast<Opcode>(code);
         instruction.n = 10;
         const auto count = rtamt::opcodes[code].count;
-        const bool keeps = count == rtamt::Count::width || count == rtamt::Count::distance;
+        // A share keeps each value with its places in two heaps, and those of every trace apart.
+        const bool ranks = count == rtamt::Count::rank;
+        const bool keeps = ranks || count == rtamt::Count::width || count == rtamt::Count::distance;
         const std::size_t values = instruction.opcode == Opcode::until ? 20 : 10;
-        // A share keeps each value with its places in two heaps, and those of every trace for
-        // itself.
-        const bool ranks =
-            instruction.opcode == Opcode::rank_max || instruction.opcode == Opcode::rank_min;
         const std::size_t expected = keeps ? values * (ranks ? 24 : 8) : 0;
         CHECK(Kernels<Real>::state_size(instruction, Sort::formula) == expected);
         CHECK(Kernels<Truth>::state_size(instruction, Sort::formula) ==
