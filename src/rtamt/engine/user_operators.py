@@ -18,10 +18,11 @@ import numpy as np
 from rtamt.errors import EvaluationError, StlError, UsageError
 from rtamt.language.dense_definitions import QUARTERS, Steps
 from rtamt.language.formula import Apply
-from rtamt.language.operators import Blocks, Bounds, Compiled, Pointwise, Shift, Since, Sum, Until, Window
+from rtamt.language.operators import Blocks, Bounds, Compiled
 from rtamt.reference.definition_adapter import (
     DefinedEvents,
     DefinedSamples,
+    arguments_of,
     check_dense_meaning,
     numbers_of,
     raised,
@@ -53,7 +54,7 @@ def calls_of(program: Program, driver: type[_Driver]) -> list[tuple[Any, int, in
     """
     return [
         (
-            _kernel(site, driver),
+            _kernel(site, driver, program.period),
             site.begin,
             -1 if site.end is None else site.end,
             float(program.period),
@@ -63,7 +64,7 @@ def calls_of(program: Program, driver: type[_Driver]) -> list[tuple[Any, int, in
     ]
 
 
-def _kernel(site: CallSite, driver: type[_Driver]) -> Any:
+def _kernel(site: CallSite, driver: type[_Driver], step: Fraction) -> Any:
     """Return the capsule of a compiled kernel, or a factory of drivers."""
     kernel, name = site.op.kernel, driver.domain.name
     if isinstance(kernel, Compiled):
@@ -75,7 +76,7 @@ def _kernel(site: CallSite, driver: type[_Driver]) -> Any:
         make = blocks if site.op.bounds is Bounds.NONE else partial(blocks, site.begin, site.end)
     else:
         driver.check_defined(site.op)
-        make = partial(driver.defined, site.node, site.begin, site.end, site.ahead)
+        make = partial(driver.defined, site.node, site.begin, site.end, site.ahead, step)
     return partial(driver, site.node, len(site.operands), make, site.ahead)
 
 
@@ -242,9 +243,9 @@ class EventDriver(_Driver):
 
 def defined_column(node: Apply, period: Fraction, operands: Sequence[Array]) -> Array:
     """Return the values of an operator of unbounded future over whole columns."""
-    bounds = () if node.op.bounds is Bounds.NONE else (_begin(node, period), None)
+    arguments = arguments_of(node, _begin(node, period), None, period)
     with np.errstate(all="ignore"):
-        return values_of(node, operands, len(operands[0]), bounds, "sample")
+        return values_of(node, operands, len(operands[0]), arguments, "sample")
 
 
 def defined_signal(node: Apply, tick: Fraction, operands: Sequence[Events]) -> Events:
@@ -257,7 +258,7 @@ def defined_signal(node: Apply, tick: Fraction, operands: Sequence[Events]) -> E
         ticks = (start, *times[at_start + 1 :].tolist())
         signals.append(Steps(tuple(t * QUARTERS for t in ticks), tuple(values[at_start:].tolist())))
     with np.errstate(all="ignore"):
-        result = signal_of(node, tuple(signals), _begin(node, tick) * QUARTERS, None)
+        result = signal_of(node, tuple(signals), _begin(node, tick) * QUARTERS, None, tick)
     return np.array([t // QUARTERS for t in result.times], np.int64), np.array(result.values, float)
 
 
@@ -267,6 +268,4 @@ def _begin(node: Apply, step: Fraction) -> int:
 
 def is_built_in(node: Formula) -> bool:
     """Return whether the core has a built-in kernel for an operator."""
-    return not isinstance(node, Apply) or isinstance(
-        node.op.kernel, Pointwise | Window | Sum | Shift | Since | Until
-    )
+    return not isinstance(node, Apply) or not isinstance(node.op.kernel, Blocks | Compiled | None)

@@ -8,7 +8,6 @@ the definition reads, and apply it to that again.
 from __future__ import annotations
 
 import copy
-from fractions import Fraction
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
@@ -22,6 +21,7 @@ from rtamt.language.shares import rank_arguments
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
+    from fractions import Fraction
 
     from numpy.typing import NDArray
 
@@ -77,25 +77,38 @@ def check_dense_meaning(op: Operator) -> None:
         )
 
 
-def behind(op: Operator, end: int | None) -> int | None:
+def behind(node: Apply, end: int | None) -> int | None:
     """Return how many steps behind the present one an operator reads; None: all of them."""
+    op = node.op
     if op.tense is not Tense.PAST:
         return 0
-    return op.reach if op.bounds is Bounds.NONE else end
+    if len(node.args) < len(op.operands):
+        return None  # the default of an operand that is left out is a value at the start
+    reach = op.reach if op.bounds is Bounds.NONE else end
+    return None if reach is None else reach + op.before
+
+
+def arguments_of(node: Apply, begin: int, end: int | None, period: Fraction) -> tuple[Any, ...]:
+    """Return what the definition of an operator takes after its operands in discrete time.
+
+    These are the bounds in samples, the period of an operator that counts in seconds, and the rank of a share.
+    """
+    bounds = () if node.op.bounds is Bounds.NONE else (begin, end)
+    seconds = (period,) if node.op.timed else ()
+    return (*bounds, *seconds, *rank_arguments(node.interval, period, continuous=False))
 
 
 class DefinedSamples:
     """The definition in discrete time, over blocks of samples."""
 
-    def __init__(self, node: Apply, begin: int, end: int | None, ahead: int) -> None:
-        op = node.op
+    def __init__(self, node: Apply, begin: int, end: int | None, ahead: int, period: Fraction) -> None:
         self._node = node
-        self._bounds = () if op.bounds is Bounds.NONE else (begin, end)
-        self._behind = behind(op, end)
+        self._arguments = arguments_of(node, begin, end, period)
+        self._behind = behind(node, end)
         self._ahead = ahead
         self._first = 0  # the sample that the kept stretch begins with
         self._reported = 0
-        self._kept: tuple[Array, ...] = (np.empty(0),) * max(len(op.operands), 1)
+        self._kept: tuple[Array, ...] = (np.empty(0),) * max(len(node.args), 1)
 
     def push(self, *blocks: Array) -> Array:
         """Take new values of each operand; return the values that are known by now."""
@@ -109,7 +122,7 @@ class DefinedSamples:
     def _news(self, end: int) -> Array:
         end = max(end, self._reported)
         n = len(self._kept[0])
-        values = values_of(self._node, self._kept, n, self._bounds, "sample")
+        values = values_of(self._node, self._kept, n, self._arguments, "sample")
         news: Array = values[self._reported - self._first : end - self._first].copy()
         self._reported = end
         if self._behind is not None:
@@ -125,14 +138,14 @@ class DefinedSamples:
 class DefinedEvents:
     """The definition in dense time, over stretches of events; times and bounds are ticks."""
 
-    def __init__(self, node: Apply, begin: int, end: int | None, ahead: int) -> None:
-        op = node.op
+    def __init__(self, node: Apply, begin: int, end: int | None, ahead: int, tick: Fraction) -> None:
         self._node = node
+        self._tick = tick
         self._bounds = begin * QUARTERS, None if end is None else end * QUARTERS
-        self._behind = behind(op, end)
+        self._behind = behind(node, end)
         self._ahead = ahead
         self._reported: int | None = None  # up to when values were reported
-        self._kept: tuple[Steps, ...] = (Steps((), ()),) * max(len(op.operands), 1)
+        self._kept: tuple[Steps, ...] = (Steps((), ()),) * max(len(node.args), 1)
 
     def push(self, *events: Events, until: int) -> Events:
         """Take the operands' events up to ``until``; return those that are known by now."""
@@ -141,7 +154,7 @@ class DefinedEvents:
             for old, (times, values) in zip(self._kept, events, strict=True)
         )
         due = until - self._ahead
-        result = signal_of(self._node, self._kept, *self._bounds)
+        result = signal_of(self._node, self._kept, *self._bounds, self._tick)
         news = [
             (t // QUARTERS, value)
             for t, value in zip(*result, strict=True)
@@ -157,9 +170,7 @@ class DefinedEvents:
         return copy.copy(self)  # tuples are replaced here, never written to
 
 
-def signal_of(
-    node: Apply, operands: tuple[Steps, ...], begin: int, end: int | None, tick: Fraction = Fraction(1)
-) -> Steps:
+def signal_of(node: Apply, operands: tuple[Steps, ...], begin: int, end: int | None, tick: Fraction) -> Steps:
     """Return an operator's values at all instants; times and bounds in quarters of a tick, ``tick`` in seconds."""
     if node.op.dense is not None:
         at = partial(node.op.dense, period=tick / QUARTERS) if node.op.timed else node.op.dense

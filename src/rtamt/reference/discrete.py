@@ -18,9 +18,8 @@ import numpy as np
 from rtamt.errors import UsageError
 from rtamt.language.formula import Apply, Const, Formula, Var, fold, postorder
 from rtamt.language.operators import Bounds, Sum, Tense
-from rtamt.language.shares import rank_arguments
 from rtamt.language.undefined_value import at_sample, undefined
-from rtamt.reference.definition_adapter import values_of
+from rtamt.reference.definition_adapter import arguments_of, values_of
 from rtamt.rewrite.desugar import desugar, spelled_out
 from rtamt.rewrite.ground import ground, grounds
 
@@ -262,13 +261,9 @@ def _apply(node: Formula, below: tuple[Array, ...], stretch: _Stretch) -> Array:
         return np.array(stretch.columns[node.name], float)
     if not isinstance(node, Apply):
         raise TypeError(f"not a formula: {node!r}")
-    window: tuple[int | Fraction | float | None, ...] = ()
-    if node.op.bounds is not Bounds.NONE:
-        window = _window(node, stretch.period)
-    if node.op.timed:
-        window = (*window, stretch.period)
-    window = (*window, *rank_arguments(node.interval, stretch.period, continuous=False))
-    return values_of(node, below, n, window, "sample")
+    return values_of(
+        node, below, n, arguments_of(node, *_window(node, stretch.period), stretch.period), "sample"
+    )
 
 
 def _window(node: Apply, period: Fraction) -> tuple[int, int | None]:
