@@ -158,7 +158,7 @@ def test_robustness_is_right_continuous(op, data):
 def test_between_critical_instants_nothing_changes(op, data):
     signals = tuple(data.draw(steps()) for _ in op.operands)
     bounds = arguments(data.draw(intervals(op)))
-    whole = lifted(op.dense, signals, *bounds)
+    whole = lifted(op.dense, signals, *bounds[:2], bounds[2:], past=op.tense is Tense.PAST)
     # The same on a grid ten times as fine, at instants that are not in the middle of anything.
     fine = tuple(Steps(tuple(10 * t for t in x.times), x.values) for x in signals)
     finer = tuple(None if each is None else 10 * each for each in bounds)

@@ -72,20 +72,27 @@ def critical(operands: Iterable[Steps], a: int, b: int | None) -> list[int]:
 
 
 def lifted(
-    at: Callable[..., float], operands: tuple[Steps, ...], a: int, b: int | None, *rank: float
+    at: Callable[..., float],
+    operands: tuple[Steps, ...],
+    a: int,
+    b: int | None,
+    rank: tuple[int, float] | tuple[()] = (),
+    *,
+    past: bool = True,
 ) -> Steps:
     """Return an operator's values at all instants, from ``at(t, *operands, a, b)``, its value at one.
 
     Robustness is right-continuous: at each critical instant it has the value that it has strictly between
     that instant and the next. The definitions give the same value at the critical instant itself, except for
     until[a,b] and precedes[a,b] with a > 0, which may differ there (φ falls exactly a later); by convention
-    such an instant takes the value that follows. ``rank``: what an operator of a share takes after its bounds.
+    such an instant takes the value that follows. ``rank``: what an operator of a share takes after its bounds;
+    ``past``: whether its window lies behind.
     """
     instants = critical(operands, a, b)
     if rank:
         assert b is not None
-        windows = [(t + a, t + b) if at is atleast else (t - b, t - a) for t in instants]
-        instants = sorted({*instants, *crossings(instants, operands[0], windows, *rank)})  # type: ignore[arg-type]
+        windows = [(t - b, t - a) if past else (t + a, t + b) for t in instants]
+        instants = sorted({*instants, *crossings(instants, operands[0], windows, *rank)})
     between = [(c + d) // 2 for c, d in pairwise(instants)] + [instants[-1] + QUARTERS // 2]
     return merged(instants, [at(t, *operands, a, b, *rank) for t in between])
 

@@ -83,7 +83,7 @@ def rank_arguments(
     """Return what the definition of an operator takes after the bounds: its rank, if it has one."""
     if interval is None or interval.share is None:
         return ()
-    return tuple(rank_of(interval, step, continuous=continuous))  # type: ignore[return-value]
+    return rank_of(interval, step, continuous=continuous)
 
 
 def parse_share(parser: FormulaParser, name: str) -> Share:

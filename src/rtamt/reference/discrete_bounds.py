@@ -20,9 +20,9 @@ import numpy as np
 from rtamt.errors import SpecificationError
 from rtamt.language.enclosures import Enclosure, extended
 from rtamt.language.formula import Apply, Const, Formula, Var, fold
-from rtamt.language.operators import Ahead, Bounds, Pointwise, Rank, Shift, Since, Sum, Tense, Until, Window
-from rtamt.language.shares import rank_arguments
+from rtamt.language.operators import Ahead, Pointwise, Rank, Shift, Since, Sum, Tense, Until, Window
 from rtamt.language.undefined_value import at_sample, undefined
+from rtamt.reference.definition_adapter import arguments_of
 from rtamt.rewrite.desugar import desugar, written
 from rtamt.rewrite.ground import ground
 from rtamt.rewrite.horizon import horizons
@@ -122,12 +122,11 @@ def _apply(node: Formula, below: tuple[Enclosure, ...], known: Knowledge, period
         raise TypeError(f"not a formula: {node!r}")
     if node.op.extension is not None:
         return pointwise(node, tuple(_padded(x, _longest(below)) for x in below))
-    window = () if node.op.bounds is Bounds.NONE else _window(node, period)
     if isinstance(node.op.kernel, Sum):
         sums = summed(below[0], *_window(node, period), known)
         return _timed(sums, period) if node.op.timed else sums
     componentwise(node)
-    window = (*window, *rank_arguments(node.interval, period, continuous=False))
+    window = arguments_of(node, *_window(node, period), period)
     if known.finished:
         return _by_bound(node, below, window)
     # Operands are constant after their last entry. So is the result: of an operator of the future from
