@@ -137,3 +137,10 @@ def test_delay_ahead_and_held_keep_the_type(text, expected, backend):
     data = {"mode": ["MANUAL", "AUTO", "RTL"], "p": [1, 0, 0]}
     spec = rtamt.parse(MODES + text, backend=backend)
     assert spec.evaluate({name: data[name] for name in spec.input_names}).signal.values.tolist() == expected
+
+
+def test_an_explanation_names_the_member_of_a_set_that_decides():
+    spec = rtamt.parse(MODES + "always(mode in {AUTO, RTL})")
+    report = str(spec.evaluate({"mode": ["AUTO", "AUTO"]}).explain())
+    assert "'mode == AUTO' holds" in report
+    assert "{" not in report.partition("cause")[2]

@@ -26,7 +26,9 @@ def predicate_text(predicate: Formula, text: str | None) -> str:
     span = predicate.span
     if text is not None and span is not None:
         written = text[span.start : span.end]
-        if written and "\n" not in written and "/*" not in written and len(written) <= PAGE:
+        # A comparison with one member of a set, `mode in {AUTO, RTL}`, is not written as a text of its own.
+        whole = written.count("{") == written.count("}")
+        if written and whole and "\n" not in written and "/*" not in written and len(written) <= PAGE:
             return written
     return to_text(predicate, limit=PAGE)
 
