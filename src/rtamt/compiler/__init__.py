@@ -6,7 +6,8 @@ module     purpose
 lower      formula to instructions: value numbering, lags, alignment of operands
 plan       formulas to one program (online) or a sequence of programs (offline)
 shared     programs and plans that are compiled once for all values of parameters
-early      formulas to the graph that gives verdicts and bounds before the horizon
+graph      the graph that gives verdicts and bounds before the horizon, and its nodes
+early      formulas to that graph, and their values at the start of the trace
 causation  the parts of formulas in that graph, of which causation is computed
 program    the program: instructions, serialisation, disassembly
 metadata   names, period and labels stored with a program

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple
 
-from rtamt.compiler.early import ITEMS, interval_in_steps
+from rtamt.compiler.graph import ITEMS, LATTICE, interval_in_steps
 from rtamt.compiler.program import NO_OPERAND
 from rtamt.language.formula import Apply, Formula, postorder
 from rtamt.language.operators import Pointwise, Shift, Since, Tense, Until, Window
@@ -15,7 +15,7 @@ from rtamt.language.operators import Pointwise, Shift, Since, Tense, Until, Wind
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from rtamt.compiler.early import Graph
+    from rtamt.compiler.graph import Graph
 
 #: In the order of the core's enumeration.
 KINDS = ("atom", "both", "either", "least", "greatest", "until", "since")
@@ -81,9 +81,6 @@ def compile_causes(graph: Graph, formulas: Sequence[Formula]) -> Causes:
     return Causes(parts, outputs, starts)
 
 
-_LATTICE = {"min": "both", "max": "either"}
-
-
 def _recursive(formula: Formula) -> bool:
     return isinstance(formula, Apply) and isinstance(formula.op.kernel, Since | Until)
 
@@ -99,7 +96,7 @@ def _part(graph: Graph, parts: list[Cause], refs: dict[Formula, int], formula: F
     if isinstance(kernel, Pointwise):
         if kernel.opcode == "neg":
             return args[0] ^ 1
-        return _add(parts, Cause(KINDS.index(_LATTICE[kernel.opcode]), graph.ref(formula), *args))
+        return _add(parts, Cause(KINDS.index(LATTICE[kernel.opcode]), graph.ref(formula), *args))
     if isinstance(kernel, Shift):
         step = -1 if past else 1
         kind = "least" if kernel.fill > 0 else "greatest"

@@ -1,146 +1,26 @@
-"""Core formulas to the graph that gives verdicts and bounds before the horizon (``core/early/graph.hpp``).
+"""Core formulas to the graph that gives verdicts and bounds before the horizon (``graph.py``).
 
-Nodes compute in absolute time and no operand is delayed. Parts that read inputs at one instant alone become
-one node, an atom. Bounded until is a window over ψ, a window over φ and the recursion of untimed until; since
-likewise. Negation is no node: a reference to a node is twice its index, plus one where it is negated.
+A formula of unbounded future has no node where its value is asked for at the start of the trace alone: there it
+is put together from items (``core/early/origin.hpp``).
 """
 
 from __future__ import annotations
 
-import zlib
-from copy import copy
-from dataclasses import dataclass, field, fields, replace
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
-from rtamt.compiler.lower import seconds_per_step
-from rtamt.compiler.program import NO_OPERAND, OPCODES
-from rtamt.errors import UsageError
-from rtamt.language.formula import Apply, Const, Formula, Parameter, Var, postorder
-from rtamt.language.operators import Ahead, Pointwise, Rank, Shift, Since, Sum, Tense, Until, Window
-from rtamt.language.shares import rank_of
+from rtamt.compiler.graph import ITEMS, LATTICE, Graph, Item, interval_in_steps, last_before, over
+from rtamt.compiler.program import NO_OPERAND
+from rtamt.language.formula import Apply, Const, Formula, Var, postorder
+from rtamt.language.operators import Pointwise, Until, Window
 from rtamt.rewrite.check import reads_unbounded_future
 from rtamt.rewrite.horizon import horizons
 from rtamt.signals.discrete import Discrete
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Sequence
     from fractions import Fraction
 
     from rtamt.signals.domain_interface import TimeDomain
-
-#: In the order of the core's enumerations.
-KINDS = (
-    "atom", "map", "both", "either", "least", "greatest", "until", "since", "since_dense", "held",
-    "sum",
-    "rank_least", "rank_greatest",
-)  # fmt: skip
-ITEMS = ("value", "all", "some", "until", "both", "either")
-
-#: Beyond every step, as the core has it.
-FOREVER = (2**63 - 1) // 4
-#: Before every step.
-NEVER = -FOREVER
-
-_LATTICE = {"min": "both", "max": "either"}
-
-
-class Step(NamedTuple):
-    """One operation of an atom: the place of an opcode, operands (earlier steps, or an input), a constant."""
-
-    opcode: int
-    a: int = NO_OPERAND
-    b: int = NO_OPERAND
-    x: float = 0.0
-
-
-class Node(NamedTuple):
-    """A node: operands are references, ``low`` and ``high`` a window around the instant, in steps."""
-
-    kind: int
-    a: int = NO_OPERAND
-    b: int = NO_OPERAND
-    low: int = 0
-    high: int = 0
-    horizon: int = 0
-    steps: tuple[Step, ...] = ()
-
-
-class Item(NamedTuple):
-    """A part of a formula's value at the start of the trace (``core/early/origin.hpp``)."""
-
-    kind: int
-    negated: bool
-    a: int
-    b: int = NO_OPERAND
-    c: int = NO_OPERAND
-    tick: int = 0
-
-
-#: What a graph is for; the rest is what it contains.
-_FIXED = ("period", "inputs", "domain")
-
-
-@dataclass
-class Graph:
-    """The graph of several formulas, ``outputs`` being references; ``origins`` names the formula of each step."""
-
-    period: Fraction
-    inputs: tuple[str, ...]
-    domain: type[TimeDomain] = Discrete
-    nodes: list[Node] = field(default_factory=list)
-    outputs: list[int] = field(default_factory=list)
-    items: list[Item] = field(default_factory=list)
-    #: What each item is the value of; None for a part that is no formula.
-    starts: list[Formula | None] = field(default_factory=list)
-    origins: list[Formula] = field(default_factory=list)
-    #: By node, and by its parameters, which differ even if their values are equal.
-    _index: dict[tuple[Node, tuple[tuple[int, str], ...]], int] = field(default_factory=dict)
-    _refs: dict[Formula, int] = field(default_factory=dict)
-    _local: dict[Formula, bool] = field(default_factory=dict)
-    _depths: dict[int, Fraction | None] = field(default_factory=dict)
-
-    def ref(self, formula: Formula) -> int:
-        """Return the reference of a part of a compiled formula, other than one that has items instead."""
-        return _ref(self, formula)
-
-    def is_atom(self, formula: Formula) -> bool:
-        """Return whether a part reads inputs at one instant alone."""
-        return self._local[formula]
-
-    def recursion(self, formula: Apply) -> int:
-        """Return the reference of an until or since without its bounds."""
-        hold, goal = (_ref(self, arg) for arg in formula.args)
-        return (
-            _since_core(self, hold, goal)
-            if isinstance(formula.op.kernel, Since)
-            else _recursion(self, hold, goal)
-        )
-
-    def horizon(self, ref: int) -> int:
-        """Return how many steps after an instant the value of a reference is final at the latest."""
-        return self.nodes[ref // 2].horizon
-
-    def copied(self) -> Graph:
-        """Return the same graph, to which more can be added."""
-        own = {each.name: copy(getattr(self, each.name)) for each in fields(self) if each.name not in _FIXED}
-        return replace(self, **own)
-
-    def with_parameters(self, values: Mapping[str, float]) -> Graph:
-        """Return the graph with values of parameters; ``ref`` and ``origins`` have others."""
-        if not values:
-            return self
-        origins, nodes = iter(self.origins), []
-        for node in self.nodes:
-            steps = [
-                step._replace(x=values[origin.name]) if isinstance(origin, Parameter) else step
-                for step, origin in zip(node.steps, origins, strict=False)
-            ]
-            nodes.append(node._replace(steps=tuple(steps)))
-        return replace(self, nodes=nodes)
-
-    def fingerprint(self) -> bytes:
-        """Return what distinguishes this graph from others."""
-        return zlib.crc32(repr((self.nodes, self.outputs, self.items)).encode()).to_bytes(4, "little")
 
 
 def compile_graph(
@@ -158,14 +38,14 @@ def compile_graph(
     """
     graph = Graph(period, inputs, domain)
     for position, formula in enumerate(formulas):
-        graph._depths.update(horizons(formula, period))
+        graph.depths.update(horizons(formula, period))
         _lower(graph, formula, only_start=start and position == 0)
         if start and position == 0:
             _at_start(graph, formula, {}, negated=False)
-            if graph._depths[id(formula)] is None:
+            if graph.depths[id(formula)] is None:
                 graph.outputs.append(NO_OPERAND)
                 continue
-        graph.outputs.append(_ref(graph, formula))
+        graph.outputs.append(graph.ref(formula))
     return graph
 
 
@@ -179,7 +59,7 @@ def compile_starts(
     graph = Graph(period, inputs)
     ends = []
     for formula in formulas:
-        graph._depths.update(horizons(formula, period))
+        graph.depths.update(horizons(formula, period))
         _lower(graph, formula, only_start=True)
         _at_start(graph, formula, {}, negated=False)
         ends.append(len(graph.items))
@@ -189,222 +69,16 @@ def compile_starts(
 def _lower(graph: Graph, formula: Formula, *, only_start: bool) -> None:
     """Add the nodes of a formula, operands first; without those that its value at the start does not need."""
     for node in postorder(formula):
-        if node not in graph._local:
-            graph._local[node] = isinstance(node, Const | Var) or (
+        if node not in graph.local:
+            graph.local[node] = isinstance(node, Const | Var) or (
                 isinstance(node, Apply)
                 and isinstance(node.op.kernel, Pointwise)
-                and all(graph._local[arg] for arg in node.args)
+                and all(graph.local[arg] for arg in node.args)
             )
     above = _above(graph, formula) if only_start else set()
     for node in postorder(formula):
-        if isinstance(node, Apply) and not graph._local[node] and id(node) not in above:
-            _ref(graph, node)
-
-
-def _ref(graph: Graph, formula: Formula) -> int:
-    """Return the reference of a formula whose operands have one, or need none."""
-    found = graph._refs.get(formula)
-    if found is None:
-        found = graph._refs[formula] = _node(graph, formula)
-    return found
-
-
-def _node(graph: Graph, formula: Formula) -> int:
-    if graph._local[formula]:
-        return _atom(graph, formula)
-    assert isinstance(formula, Apply)
-    kernel = formula.op.kernel
-    args = [_ref(graph, arg) for arg in formula.args]
-    if isinstance(kernel, Pointwise):
-        return _pointwise(graph, formula, kernel, args)
-    if isinstance(kernel, Window):
-        return _window(graph, formula, kernel, args[0])
-    if isinstance(kernel, Sum):
-        return _sum(graph, formula, args[0])
-    if isinstance(kernel, Rank):
-        return _rank(graph, formula, args[0])
-    if isinstance(kernel, Shift):
-        step = -1 if formula.op.tense is Tense.PAST else 1
-        return _over(graph, "least" if kernel.fill > 0 else "greatest", args[0], step, step)
-    if isinstance(kernel, Ahead):
-        distance, _ = interval_in_steps(graph, formula)
-        kind = "greatest" if graph.domain.continuous else "held"
-        return _over(graph, kind, args[0], distance, distance)
-    if isinstance(kernel, Since):
-        return _since(graph, formula, *args)
-    if isinstance(kernel, Until):
-        return _until(graph, formula, *args)
-    raise UsageError(
-        f"the operator '{formula.op.name}' has no bounds before its value is known; "
-        f"give it an expansion into other operators, or monitor it with verdict='delayed'"
-    )
-
-
-def _add(graph: Graph, node: Node, origins: Sequence[Formula] = ()) -> int:
-    """Return the reference of a node, which is added unless there is an equal one."""
-    key = node, tuple((i, each.name) for i, each in enumerate(origins) if isinstance(each, Parameter))
-    found = graph._index.get(key)
-    if found is None:
-        found = graph._index[key] = len(graph.nodes)
-        graph.nodes.append(node)
-        graph.origins.extend(origins)
-    return 2 * found
-
-
-def _atom(graph: Graph, formula: Formula) -> int:
-    places: dict[Formula, int] = {}
-    steps: list[Step] = []
-    origins: list[Formula] = []
-    for node in postorder(formula):
-        if node in places:
-            continue
-        if isinstance(node, Const):
-            step = Step(OPCODES.index("const"), x=node.value)
-        elif isinstance(node, Var):
-            step = Step(OPCODES.index("input"), graph.inputs.index(node.name))
-        else:
-            assert isinstance(node, Apply)
-            assert isinstance(node.op.kernel, Pointwise)
-            step = Step(OPCODES.index(node.op.kernel.opcode), *(places[arg] for arg in node.args))
-        places[node] = len(steps)
-        steps.append(step)
-        origins.append(node)
-    return _add(graph, Node(KINDS.index("atom"), steps=tuple(steps)), origins)
-
-
-def _pointwise(graph: Graph, formula: Apply, kernel: Pointwise, args: list[int]) -> int:
-    if kernel.opcode == "neg":
-        return args[0] ^ 1
-    a, b = (*args, NO_OPERAND)[:2]
-    if kernel.opcode in _LATTICE:
-        return _pair(graph, _LATTICE[kernel.opcode], a, b)
-    depth = max(graph.horizon(ref) for ref in args)
-    steps = (Step(OPCODES.index(kernel.opcode)),)
-    return _add(graph, Node(KINDS.index("map"), a, b, horizon=depth, steps=steps), (formula,))
-
-
-def _pair(graph: Graph, kind: str, a: int, b: int, horizon: int | None = None) -> int:
-    if horizon is None:
-        horizon = max(graph.horizon(a), graph.horizon(b))
-    return _add(graph, Node(KINDS.index(kind), a, b, horizon=horizon))
-
-
-def _over(graph: Graph, kind: str, operand: int, low: int, high: int) -> int:
-    """Return a window [t + low, t + high] over an operand."""
-    if low == high == 0:
-        return operand
-    depth = graph.horizon(operand)
-    # Of the past too not less than its operand's: a trace that ends cuts windows as far as that.
-    horizon = FOREVER if FOREVER in (depth, high) else depth + max(0, high)
-    return _add(graph, Node(KINDS.index(kind), operand, low=low, high=high, horizon=horizon))
-
-
-def interval_in_steps(graph: Graph, formula: Apply) -> tuple[int, int]:
-    """Return the interval of an operator in steps; no interval is [0, inf)."""
-    if formula.interval is None:
-        return 0, FOREVER
-    begin, end = formula.interval.begin, formula.interval.end
-    return int(begin / graph.period), FOREVER if end is None else int(end / graph.period)
-
-
-def _window(graph: Graph, formula: Apply, kernel: Window, operand: int) -> int:
-    begin, end = interval_in_steps(graph, formula)
-    kind = "least" if kernel.reduce == "min" else "greatest"
-    if formula.op.tense is Tense.PAST:
-        return _over(graph, kind, operand, -end, -begin)
-    return _over(graph, kind, operand, begin, end)
-
-
-def _sum(graph: Graph, formula: Apply, operand: int) -> int:
-    begin, end = interval_in_steps(graph, formula)
-    depth = graph.horizon(operand)
-    value = operand
-    if begin or end:
-        steps = (Step(OPCODES.index("slide_sum" if end < FOREVER else "run_sum")),)
-        value = _add(
-            graph,
-            Node(KINDS.index("sum"), operand, low=-end, high=-begin, horizon=depth, steps=steps),
-            (formula,),
-        )
-    for opcode, factor in seconds_per_step(graph.period) if formula.op.timed else ():
-        factors = (Step(OPCODES.index("const"), x=factor),)
-        number = _add(graph, Node(KINDS.index("atom"), steps=factors), (formula,))
-        steps = (Step(OPCODES.index(opcode)),)
-        value = _add(graph, Node(KINDS.index("map"), value, number, horizon=depth, steps=steps), (formula,))
-    return value
-
-
-def _rank(graph: Graph, formula: Apply, operand: int) -> int:
-    """Return the k-th largest value of a window; in dense time it holds for whole ticks, hence in both windows.
-
-    There a window covers a part of each of the ticks at its ends: see ``core/dense/rank.hpp``.
-    """
-    begin, end = interval_in_steps(graph, formula)
-    dense = graph.domain.continuous
-    k, outside = rank_of(formula.interval, graph.period, continuous=dense)
-    order = end - begin + (0 if dense else 1) - k + 1 if outside > 0 else k
-    kind = KINDS.index("rank_least" if outside > 0 else "rank_greatest")
-    steps = (Step(OPCODES.index("const"), x=float(order)),)
-    low, high = (-end, -begin) if formula.op.tense is Tense.PAST else (begin, end)
-
-    def window(first: int, last: int) -> int:
-        depth = graph.horizon(operand)
-        horizon = FOREVER if depth == FOREVER else depth + max(0, high)
-        node = Node(kind, operand, low=first, high=last, horizon=horizon, steps=steps)
-        return _add(graph, node, (formula,))
-
-    return _pair(graph, "both", window(low, high - 1), window(low + 1, high)) if dense else window(low, high)
-
-
-def _before(graph: Graph, begin: int) -> int:
-    """Return the last step of what stands for [0, a): in dense time the closed window (SEMANTICS: until)."""
-    return begin if graph.domain.continuous else begin - 1
-
-
-def _since(graph: Graph, formula: Apply, hold: int, goal: int) -> int:
-    """φ since[a, b] ψ is once[a, b] ψ, φ on (t - a, t], and (φ since ψ) a ago."""
-    begin, end = interval_in_steps(graph, formula)
-    core = _since_core(graph, hold, goal)
-    if graph.domain.continuous and begin == 0:
-        core = _pair(graph, "either", core, goal)
-    value = _over(graph, "greatest", core, -begin, -begin)
-    if end < FOREVER:
-        value = _pair(graph, "both", value, _over(graph, "greatest", goal, -end, -begin))
-    if begin:
-        value = _pair(graph, "both", value, _over(graph, "least", hold, 1 - begin, 0))
-    return value
-
-
-def _since_core(graph: Graph, hold: int, goal: int) -> int:
-    horizon = max(graph.horizon(hold), graph.horizon(goal))
-    kind = "since_dense" if graph.domain.continuous else "since"
-    return _add(graph, Node(KINDS.index(kind), hold, goal, horizon=horizon))
-
-
-def _recursion(graph: Graph, hold: int, goal: int) -> int:
-    return _add(graph, Node(KINDS.index("until"), hold, goal, horizon=FOREVER))
-
-
-def _until(graph: Graph, formula: Apply, hold: int, goal: int) -> int:
-    """φ until[a, b] ψ is eventually[a, b] ψ, φ on [t, t + a), and (φ until ψ) from t + a on."""
-    begin, end = interval_in_steps(graph, formula)
-    past = formula.op.tense is Tense.PAST
-    core = _recursion(graph, hold, goal)
-    origin = -end if past else 0  # where it is read from
-    first = begin + origin
-    if past and first:  # before the start there is nothing, so that it is read from there
-        value = _add(graph, Node(KINDS.index("held"), core, low=first, high=first, horizon=FOREVER))
-    else:
-        value = _over(graph, "greatest", core, first, first)
-    depths = graph.horizon(hold), graph.horizon(goal)
-    horizon = FOREVER if FOREVER in (*depths, end) else max(depths) + max(0, end + origin)
-    if begin:
-        before = _over(graph, "least", hold, origin, origin + _before(graph, begin))
-        value = _pair(graph, "both", value, before, horizon if end == FOREVER else FOREVER)
-    if end < FOREVER:
-        reached = _over(graph, "greatest", goal, first, end + origin)
-        value = _pair(graph, "both", value, reached, horizon)
-    return value
+        if isinstance(node, Apply) and not graph.local[node] and id(node) not in above:
+            graph.ref(node)
 
 
 # ---- the start of the trace ------------------------------------------------------------------------------
@@ -414,9 +88,9 @@ def _splits(graph: Graph, formula: Formula) -> bool:
     """Return whether a part of unbounded future is put together from its value at the start and nothing else."""
     return (
         isinstance(formula, Apply)
-        and graph._depths[id(formula)] is None
+        and graph.depths[id(formula)] is None
         and (
-            (isinstance(formula.op.kernel, Pointwise) and formula.op.kernel.opcode in ("neg", *_LATTICE))
+            (isinstance(formula.op.kernel, Pointwise) and formula.op.kernel.opcode in ("neg", *LATTICE))
             or (isinstance(formula.op.kernel, Window | Until) and reads_unbounded_future(formula))
         )
     )
@@ -455,24 +129,24 @@ def _placed_at_start(
         return len(graph.items) - 1
 
     if not _splits(graph, formula):
-        return add("value", _ref(graph, formula))
+        return add("value", graph.ref(formula))
     assert isinstance(formula, Apply)
     kernel = formula.op.kernel
     if isinstance(kernel, Pointwise):
         if kernel.opcode == "neg":
             return _at_start(graph, formula.args[0], placed, negated=not negated)
         operands = [_at_start(graph, arg, placed, negated=False) for arg in formula.args]
-        return add(_LATTICE[kernel.opcode], *operands)
-    args = [_ref(graph, arg) for arg in formula.args]
+        return add(LATTICE[kernel.opcode], *operands)
+    args = [graph.ref(arg) for arg in formula.args]
     begin, _ = interval_in_steps(graph, formula)
     if isinstance(kernel, Window):
         return add("all" if kernel.reduce == "min" else "some", args[0], tick=begin)
     hold, goal = args
-    reached = ITEMS.index("until"), False, _recursion(graph, hold, goal), hold, goal, begin
+    reached = ITEMS.index("until"), False, graph.recursion(formula), hold, goal, begin
     if begin == 0:
         return add("until", *reached[2:5])
     graph.items.append(Item(*reached))
-    before = _over(graph, "least", hold, 0, _before(graph, begin))
+    before = over(graph, "least", hold, 0, last_before(graph, begin))
     graph.items.append(Item(ITEMS.index("value"), False, before))
     graph.starts += [None, None]
     return add("both", len(graph.items) - 2, len(graph.items) - 1)

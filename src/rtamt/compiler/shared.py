@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
-from rtamt.compiler.early import Graph, compile_graph
+from rtamt.compiler.early import compile_graph
 from rtamt.compiler.plan import Plan, compile_plan, compile_program
 from rtamt.language.formula import Formula, Parameter, postorder
 from rtamt.language.parameters import with_values
@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
     from fractions import Fraction
 
+    from rtamt.compiler.graph import Graph
     from rtamt.compiler.program import Program
     from rtamt.signals.domain_interface import TimeDomain
 

@@ -19,7 +19,7 @@ from rtamt.verdicts.discrete_early import DiscreteEarlyMonitor
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from rtamt.compiler.early import Graph
+    from rtamt.compiler.graph import Graph
     from rtamt.language.formula import Formula
     from rtamt.signals.domain_interface import TimeDomain
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from rtamt.compiler.early import FOREVER, NEVER
+from rtamt.compiler.graph import FOREVER, NEVER
 from rtamt.engine.dense.runs import compared, merged
 from rtamt.engine.native import EarlyMonitorBase
 from rtamt.engine.usage_guard import exclusive, in_use

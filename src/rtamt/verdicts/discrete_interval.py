@@ -6,7 +6,7 @@ from fractions import Fraction
 from math import floor
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from rtamt.compiler.early import FOREVER
+from rtamt.compiler.graph import FOREVER
 from rtamt.engine.native import EarlyMonitorBase
 from rtamt.engine.usage_guard import exclusive, in_use
 from rtamt.errors import TraceError, UsageError

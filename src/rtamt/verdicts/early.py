@@ -1,6 +1,6 @@
 """Online before the horizon: what the monitors of verdicts and of bounds share in all time domains.
 
-All run the same graph (``compiler/early.py``) in the core.
+All run the same graph (``compiler/graph.py``) in the core.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ from rtamt.verdicts.evidence import Evidence, span_of
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Mapping, Sequence
 
-    from rtamt.compiler.early import Graph
+    from rtamt.compiler.graph import Graph
     from rtamt.language.formula import Formula
     from rtamt.signals.domain_interface import TimeDomain
     from rtamt.signals.outcomes import Cause, Verdict, VerdictRun

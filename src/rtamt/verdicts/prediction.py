@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
-from rtamt.compiler.early import FOREVER, NEVER
+from rtamt.compiler.graph import FOREVER, NEVER
 from rtamt.errors import UsageError, did_you_mean, shown
 from rtamt.signals import arrays
 

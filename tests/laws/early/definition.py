@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rtamt import Interval, Verdict, VerdictRun
-from rtamt.compiler.early import FOREVER
+from rtamt.compiler.graph import FOREVER
 from rtamt.language.enclosures import Enclosure
 from rtamt.language.formula import variables
 from rtamt.reference import causation, dense_bounds, discrete_bounds, earliest

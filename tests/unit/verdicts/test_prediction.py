@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 
 import rtamt
 from rtamt import Interval
-from rtamt.compiler.early import NEVER
+from rtamt.compiler.graph import NEVER
 from rtamt.errors import EvaluationError
 from rtamt.reference import dense
 from rtamt.rewrite.horizon import horizon

@@ -10,7 +10,7 @@ import pickle
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, TypeAlias
 
-from rtamt.compiler.early import FOREVER, NEVER
+from rtamt.compiler.graph import FOREVER, NEVER
 from rtamt.engine.backend import RefusedError
 from rtamt.engine.dense.runs import clipped, compared, merged, without
 from rtamt.reference.dense_bounds import DenseKnowledge, StepBounds, bounds, least
