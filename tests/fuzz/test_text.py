@@ -10,9 +10,10 @@ from hypothesis import strategies as st
 
 import rtamt
 from rtamt.errors import StlError
+from rtamt.language.latex import to_latex
 from rtamt.language.operators import STL
 from rtamt.language.parser import parse_formula
-from rtamt.language.printer import to_latex, to_text
+from rtamt.language.printer import to_text
 from rtamt.language.units import UNITS
 from tests.strategies import formulas
 

@@ -15,7 +15,8 @@ from rtamt.cli import main
 from rtamt.errors import BoundError, EvaluationError, SpecificationError
 from rtamt.language.formula import COUNTLESS, size
 from rtamt.language.parser import parse_formula
-from rtamt.language.printer import LONGEST, canonical, excerpt, to_text
+from rtamt.language.printer import canonical, excerpt, to_text
+from rtamt.language.writing import LONGEST
 from rtamt.reference.discrete import evaluate_all
 from rtamt.rewrite import pastify
 

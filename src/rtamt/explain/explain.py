@@ -17,8 +17,9 @@ from rtamt.explain.report import CriticalPoint, Explanation, Stretch
 from rtamt.explain.sentences import cause, predicate_text, summary
 from rtamt.explain.signals import Signals, truths
 from rtamt.language.formula import Var, postorder, types_of
-from rtamt.language.printer import PAGE, to_text
+from rtamt.language.printer import to_text
 from rtamt.language.value_types import value_text
+from rtamt.language.writing import PAGE
 from rtamt.rewrite.semantics import boolean, no_verdict
 from rtamt.rewrite.structure import NEVER, Structure, literal, reaches
 from rtamt.signals.instants import StepFunction, two_valued

@@ -5,7 +5,8 @@ from __future__ import annotations
 from math import isinf
 from typing import TYPE_CHECKING
 
-from rtamt.language.printer import PAGE, to_text
+from rtamt.language.printer import to_text
+from rtamt.language.writing import PAGE
 
 if TYPE_CHECKING:
     from rtamt.explain.report import CriticalPoint, Stretch

@@ -38,7 +38,10 @@ parameters           values of parameters, set without parsing again
 requirements         ``require ID "text" severity WORD: formula``
 lint                 the table of warnings
 diagnostics          syntax error messages
-printer              formula to text, RTAMT's canonical text and LaTeX
+printer              formula to text and RTAMT's canonical text
+latex                formula to LaTeX
+parentheses          operands that need parentheses in a text, names that need quotes
+writing              the text of a formula from pieces, and its beginning where it is too long
 undefined_value      the error for undefined values, shared by both back ends
 ===================  =========================================================================
 """

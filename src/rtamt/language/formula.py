@@ -82,7 +82,8 @@ class Formula:
     span: Span | None
 
     def __repr__(self) -> str:
-        from rtamt.language.printer import PAGE, to_text
+        from rtamt.language.printer import to_text
+        from rtamt.language.writing import PAGE
 
         return f"<formula {to_text(self, limit=PAGE)}>"
 
@@ -105,7 +106,7 @@ class Formula:
 
     def latex(self) -> str:
         """Return the formula as LaTeX mathematics, without dollar signs."""
-        from rtamt.language.printer import to_latex
+        from rtamt.language.latex import to_latex
 
         return to_latex(self)
 

@@ -12,8 +12,9 @@ from rtamt.engine.usage_guard import exclusive
 from rtamt.errors import NameInFormulaError, StlError, UsageError
 from rtamt.language.formula import Apply, Const, Var, folds, outermost, postorder, variables
 from rtamt.language.operators import Tense
-from rtamt.language.printer import EXCERPT, canonical
+from rtamt.language.printer import canonical
 from rtamt.language.units import UNITS
+from rtamt.language.writing import EXCERPT
 from rtamt.rewrite.check import TICKS, check_bounds, check_dense, has_future
 from rtamt.rtamt_api.backends import backend, check_language, signal
 from rtamt.rtamt_api.dense_points import points_of, samples_by_name, with_points_at

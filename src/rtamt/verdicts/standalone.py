@@ -16,8 +16,9 @@ from rtamt.engine.native import core
 from rtamt.errors import UsageError
 from rtamt.language.formula import Apply, Const, Formula, Parameter, fold, variables
 from rtamt.language.parameters import bounds_of
-from rtamt.language.printer import EXCERPT, PAGE, to_text
+from rtamt.language.printer import to_text
 from rtamt.language.value_types import Enumeration
+from rtamt.language.writing import EXCERPT, PAGE
 from rtamt.rewrite.check import check_online
 from rtamt.rewrite.desugar import as_written, desugar, written
 from rtamt.verdicts.robustness_and_truth import Outputs, outputs_of

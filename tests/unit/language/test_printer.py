@@ -6,9 +6,10 @@ from math import copysign
 import pytest
 
 from rtamt.language.formula import Const, Interval, Var
+from rtamt.language.latex import to_latex
 from rtamt.language.operators import STL
 from rtamt.language.parser import parse_formula as parse
-from rtamt.language.printer import canonical, to_latex, to_text
+from rtamt.language.printer import canonical, to_text
 
 
 @pytest.mark.parametrize(
