@@ -26,7 +26,7 @@ from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
 import numpy as np
 
-from rtamt.language import definitions as d
+from rtamt.language import pointwise_definitions as p
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -124,19 +124,19 @@ def abs_(x: Enclosure) -> Enclosure:
 
 def sqrt(x: Enclosure) -> Enclosure:
     """``sqrt(x)``: of the nonnegative part."""
-    lower = d.sqrt(np.where(x.lower < 0, 0.0, x.lower))
-    return Enclosure(np.where(x.upper < 0, nan, lower), d.sqrt(x.upper))
+    lower = p.sqrt(np.where(x.lower < 0, 0.0, x.lower))
+    return Enclosure(np.where(x.upper < 0, nan, lower), p.sqrt(x.upper))
 
 
 def exp(x: Enclosure) -> Enclosure:
     """``exp(x)``: increasing, widened, never negative."""
-    return each(lambda a: _not_negative(*widened(one(d.exp, a[0]), one(d.exp, a[1]))), x)
+    return each(lambda a: _not_negative(*widened(one(p.exp, a[0]), one(p.exp, a[1]))), x)
 
 
 def _ln(a: tuple[float, float]) -> tuple[float, float]:
     if a[1] < 0:
         return nan, nan
-    return widened(one(d.ln, max(a[0], 0.0)), one(d.ln, a[1]))
+    return widened(one(p.ln, max(a[0], 0.0)), one(p.ln, a[1]))
 
 
 def ln(x: Enclosure) -> Enclosure:
@@ -149,24 +149,24 @@ def ln(x: Enclosure) -> Enclosure:
 
 def add(x: Enclosure, y: Enclosure) -> Enclosure:
     """``x + y``: inf - inf is the infinite end."""
-    lower, upper = d.add(x.lower, y.lower), d.add(x.upper, y.upper)
+    lower, upper = p.add(x.lower, y.lower), p.add(x.upper, y.upper)
     return Enclosure(_otherwise(lower, -inf), _otherwise(upper, inf))
 
 
 def sub(x: Enclosure, y: Enclosure) -> Enclosure:
     """``x - y``: inf - inf is the infinite end."""
-    lower, upper = d.sub(x.lower, y.upper), d.sub(x.upper, y.lower)
+    lower, upper = p.sub(x.lower, y.upper), p.sub(x.upper, y.lower)
     return Enclosure(_otherwise(lower, -inf), _otherwise(upper, inf))
 
 
 def mul(x: Enclosure, y: Enclosure) -> Enclosure:
     """``x · y``: the hull of the corners, where 0 · inf is 0."""
-    return _corners(d.mul, x, y, 0.0)
+    return _corners(p.mul, x, y, 0.0)
 
 
 def div(x: Enclosure, y: Enclosure) -> Enclosure:
     """``x / y``: the hull of the corners; anything where the divisor may be 0."""
-    corners = _corners(d.div, x, y, 0.0)
+    corners = _corners(p.div, x, y, 0.0)
     zero = (y.lower <= 0) & (y.upper >= 0)
     return Enclosure(np.where(zero, -inf, corners.lower), np.where(zero, inf, corners.upper))
 
@@ -176,7 +176,7 @@ def log(x: Enclosure, base: Enclosure) -> Enclosure:
     above, below = (
         Enclosure(
             *(
-                np.where(operand.lower == operand.upper, d.ln(ends), wide)
+                np.where(operand.lower == operand.upper, p.ln(ends), wide)
                 for ends, wide in zip(operand, ln(operand), strict=True)
             )
         )
@@ -194,7 +194,7 @@ def _power(a: tuple[float, float], n: float) -> tuple[float, float]:
     across = low < 0 <= high
     if not even and n < 0 and across:
         return -inf, inf  # a pole
-    ends = one(d.pow_, low, n), one(d.pow_, high, n)
+    ends = one(p.pow_, low, n), one(p.pow_, high, n)
     lower, upper = widened(min(ends), max(ends))
     if not even:
         return lower, upper
@@ -221,7 +221,7 @@ def _pow(a: tuple[float, float], b: tuple[float, float]) -> tuple[float, float]:
     if a[0] == 0 and b[0] < 0:
         return -inf, inf  # a pole
     # x^y = exp(y ln x) is bilinear in y and ln x, so that its extrema are at corners.
-    ends = [one(d.pow_, x, y) for x in a for y in b]
+    ends = [one(p.pow_, x, y) for x in a for y in b]
     low, high = hull([1.0 if math.isnan(end) else end for end in ends])
     return _not_negative(*widened(low, high))
 
@@ -233,12 +233,12 @@ def pow_(x: Enclosure, y: Enclosure) -> Enclosure:
 
 def and_(x: Enclosure, y: Enclosure) -> Enclosure:
     """``min(x, y)`` and ``φ and ψ``: bound by bound."""
-    return Enclosure(d.and_(x.lower, y.lower), d.and_(x.upper, y.upper))
+    return Enclosure(p.and_(x.lower, y.lower), p.and_(x.upper, y.upper))
 
 
 def or_(x: Enclosure, y: Enclosure) -> Enclosure:
     """``max(x, y)`` and ``φ or ψ``: bound by bound."""
-    return Enclosure(d.or_(x.lower, y.lower), d.or_(x.upper, y.upper))
+    return Enclosure(p.or_(x.lower, y.lower), p.or_(x.upper, y.upper))
 
 
 # ---- the truth of a comparison ------------------------------------------------------------------
@@ -246,12 +246,12 @@ def or_(x: Enclosure, y: Enclosure) -> Enclosure:
 
 def holds_gt(x: Enclosure, y: Enclosure) -> Enclosure:
     """+inf where x > y is certain (lower) or possible (upper), else -inf."""
-    return Enclosure(d.holds_gt(x.lower, y.upper), d.holds_gt(x.upper, y.lower))
+    return Enclosure(p.holds_gt(x.lower, y.upper), p.holds_gt(x.upper, y.lower))
 
 
 def holds_ge(x: Enclosure, y: Enclosure) -> Enclosure:
     """+inf where x ≥ y is certain (lower) or possible (upper), else -inf."""
-    return Enclosure(d.holds_ge(x.lower, y.upper), d.holds_ge(x.upper, y.lower))
+    return Enclosure(p.holds_ge(x.lower, y.upper), p.holds_ge(x.upper, y.lower))
 
 
 def holds_eq(x: Enclosure, y: Enclosure) -> Enclosure:

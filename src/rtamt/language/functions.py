@@ -1,4 +1,4 @@
-"""The meaning of the mathematical functions: one function on arrays per operator, as in ``definitions.py``.
+"""The meaning of the mathematical functions: one function on arrays per operator, as in ``pointwise_definitions.py``.
 
 Angles are in radians, and the functions are those of C; where C returns NaN of numbers that are none (the sine of
 infinity, the arc cosine of 2), so do these. Zero has no sign: ``atan2`` takes -0.0 as 0.0.

@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING
 
 from rtamt.language.formula import Apply, Const, Formula, Var
 from rtamt.language.grammar import INFINITY, is_infix, passes_on, sign
-from rtamt.language.operators import STL, TRUTH, Bounds, Fixity, Operator
+from rtamt.language.operators import STL, Bounds, Fixity, Operator
 from rtamt.language.parentheses import falls_apart, is_choice, is_member, needs_group, truth_of
 from rtamt.language.printer import number, rational_text, share_text
 from rtamt.language.units import UNITS
+from rtamt.language.unwritten import TRUTH
 from rtamt.language.writing import LONGEST, extent_of, full_text
 
 if TYPE_CHECKING:

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, TypeGuard
 from rtamt.language.formula import Apply, Const, Formula, Parameter, Var
 from rtamt.language.grammar import ELSE, INFINITY, THEN, is_infix, is_predicate, passes_on
 from rtamt.language.lexer import NAME, TOPIC, is_word, quoted
-from rtamt.language.operators import TRUTH, Fixity, Language, Operator
+from rtamt.language.operators import Fixity, Language, Operator
+from rtamt.language.unwritten import TRUTH
 from rtamt.language.value_types import Enumeration
 
 if TYPE_CHECKING:

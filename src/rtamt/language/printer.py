@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from rtamt.language.formula import Apply, Const, Formula, Interval, Parameter, Var
 from rtamt.language.grammar import ELSE, INFINITY, THEN, is_infix, sign
 from rtamt.language.lexer import is_word
-from rtamt.language.operators import STL, TRUTH, Bounds, Fixity, Language
+from rtamt.language.operators import STL, Bounds, Fixity, Language
 from rtamt.language.parentheses import (
     falls_apart,
     is_choice,
@@ -22,6 +22,7 @@ from rtamt.language.parentheses import (
     written_operand,
 )
 from rtamt.language.units import UNITS, decimal
+from rtamt.language.unwritten import TRUTH
 from rtamt.language.writing import EXCERPT, LONGEST, text_of
 
 if TYPE_CHECKING:

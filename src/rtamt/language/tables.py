@@ -19,10 +19,12 @@ from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
+from rtamt.language.expansions import choice
 from rtamt.language.formula import Const, Formula, Span
 from rtamt.language.lexer import NAME, quoted
-from rtamt.language.operators import STL, choice, reaches
+from rtamt.language.operators import STL
 from rtamt.language.records import Fixity, Operator, Sort
+from rtamt.language.unwritten import reaches
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, TypeAlias
 
 from rtamt.language.formula import Apply, Const, Formula, Parameter, Var
 from rtamt.language.grammar import is_number
-from rtamt.language.operators import STL, TRUTH, Sort
+from rtamt.language.operators import STL, Sort
+from rtamt.language.unwritten import TRUTH
 from rtamt.language.value_types import BOOLEAN, UNKNOWN, Ambiguous, Enumeration
 
 if TYPE_CHECKING:

@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rtamt.language.formula import Apply, Var, fold, postorder
-from rtamt.language.operators import TRUTH
+from rtamt.language.unwritten import TRUTH
 from rtamt.language.value_types import BOOLEAN
 from rtamt.rewrite.truth import rebuilt
 

@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING
 
 from rtamt.language.formula import Apply, Formula, fold, postorder
 from rtamt.language.grammar import is_number
-from rtamt.language.operators import Sort, holds, is_truth
+from rtamt.language.operators import Sort
+from rtamt.language.unwritten import holds, is_truth
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence

@@ -13,6 +13,7 @@ from numpy import inf, nan
 
 import rtamt
 from rtamt.language import definitions as d
+from rtamt.language import pointwise_definitions as p
 from rtamt.language.formula import Const, Interval, Var
 from rtamt.language.operators import STL, Bounds, Sort, Tense
 from rtamt.reference.discrete import evaluate
@@ -183,9 +184,9 @@ def test_the_rate_is_a_change_a_second():
 
 def test_truth_of_predicates():
     x, y = np.array([1.0, 2.0, 3.0, inf]), np.array([2.0, 2.0, 2.0, inf])
-    assert d.holds_gt(x, y).tolist() == [-inf, -inf, inf, -inf]
-    assert d.holds_ge(x, y).tolist() == [-inf, inf, inf, inf]
-    assert d.holds_eq(x, y).tolist() == [-inf, inf, -inf, inf]
+    assert p.holds_gt(x, y).tolist() == [-inf, -inf, inf, -inf]
+    assert p.holds_ge(x, y).tolist() == [-inf, inf, inf, inf]
+    assert p.holds_eq(x, y).tolist() == [-inf, inf, -inf, inf]
 
 
 @pytest.mark.parametrize("op", [pytest.param(op, id=op.name) for op in STL])

@@ -1,0 +1,95 @@
+"""Operators that no text contains: truths of predicates, and parts of expansions."""
+
+from __future__ import annotations
+
+from math import inf
+from typing import Any
+
+from rtamt.language import definitions as d
+from rtamt.language import dense_definitions as dense
+from rtamt.language import enclosures as e
+from rtamt.language import function_enclosures as fe
+from rtamt.language import functions as f
+from rtamt.language import pointwise_definitions as p
+from rtamt.language.formula import Const, Formula
+from rtamt.language.records import (
+    Fixity,
+    Operator,
+    Pointwise,
+    Shift,
+    Tense,
+)
+from rtamt.language.rows import F, N, function, infix, operator, prefix
+
+
+def _truth(code: str, spelling: str, symbol: str, definition: Any, **more: Any) -> Operator:
+    if not more:
+        slopes = e.slopes(0, 0) if code == "eq" else e.slopes(1, -1)
+        more = {
+            "kernel": Pointwise(f"holds_{code}"),
+            "extension": getattr(e, f"holds_{code}"),
+            "slopes": slopes,
+        }
+    doc, example = f"+inf where a {spelling} b, else -inf.", f"x {spelling} 3"
+    latex = f"{{0}} {symbol} {{1}}"
+    return infix(
+        f"holds_{code}",
+        spelling,
+        90,
+        doc,
+        example,
+        operands=(N, N),
+        definition=definition,
+        latex=latex,
+        **more,
+    )
+
+
+# Predicates by truth: +inf or -inf. They are not part of the language, though they are printed like the
+# predicates; semantics that need a verdict instead of a distance (rewrite/semantics.py) insert them.
+GT, GE = _truth("gt", ">", ">", p.holds_gt), _truth("ge", ">=", r"\geq", p.holds_ge)
+EQ = _truth("eq", "==", "=", p.holds_eq)
+LE = _truth("le", "<=", r"\leq", p.holds_le, expansion=lambda a, b, _i: operator("not")(GT(a, b)))
+LT = _truth("lt", "<", "<", p.holds_lt, expansion=lambda a, b, _i: operator("not")(GE(a, b)))
+NE = _truth("ne", "!=", r"\neq", p.holds_ne, expansion=lambda a, b, _i: operator("not")(EQ(a, b)))
+
+#: A Boolean (1 or 0) read as a formula: +inf where it is true, else -inf. Not written: it prints as its operand.
+TRUTH = Operator(
+    "truth", ("true",), Fixity.FUNCTION, 200, (N,), F, "+inf where a Boolean is true, else -inf.", "p", latex="{0}",
+    definition=p.true_where, expansion=lambda a, _i: holds(a),
+)  # fmt: skip
+#: Operators that are +inf or -inf, outside the table.
+_TRUTHS = (GT, GE, EQ, LE, LT, NE, TRUTH)
+
+
+# The first operand where it is at least the second, else undefined; not part of the language either.
+AT_LEAST = function(
+    "at_least", 2, "The first operand, which must be at least the second.", "at_least(x, 3) > 5",
+    definition=f.at_least, kernel=Pointwise("at_least", partial=True), extension=fe.at_least,
+    slopes=e.slopes(1, 0),
+)  # fmt: skip
+
+#: By name, for unpickling.
+UNWRITTEN = {op.name: op for op in (*_TRUTHS, AT_LEAST)}
+
+
+# The operand one step before, a sample or a tick; +inf at the start. Not part of the language.
+BEFORE = prefix(
+    "before", "before", 70, "One step ago.", "before(x >= 3)", tense=Tense.PAST, reach=1, one_tick=True,
+    definition=d.prev, dense=dense.historically, kernel=Shift(inf),
+)  # fmt: skip
+
+
+def is_truth(op: Operator) -> bool:
+    """Return whether an operator by itself is +inf or -inf."""
+    return op.presence or any(op is each for each in _TRUTHS)
+
+
+def holds(number: Formula) -> Formula:
+    """Return the formula that is +inf where ``number`` is positive, else -inf."""
+    return GT(number, Const(0.0))
+
+
+def reaches(number: Formula, least: Formula) -> Formula:
+    """Return the formula that is +inf where ``number`` is at least ``least``, else -inf."""
+    return GE(number, least)
