@@ -43,10 +43,10 @@ tuples_of(const std::vector<early::Change>& runs) {
 DenseEarlyMonitor::DenseEarlyMonitor(const early::Graph& graph,
                                      const early::DenseSettings& settings,
                                      const std::vector<nb::str>& names, const nb::object& ignored,
-                                     bool replays, Exceptions exceptions)
+                                     const nb::dict& types, bool replays, Exceptions exceptions)
     : monitor_(graph, settings), ranges_(settings.ranges), late_(settings.lateness.has_value()),
       decides_(settings.decides), replays_(replays), exceptions_(std::move(exceptions)),
-      guard_(exceptions_.refused, exceptions_.in_use), names_(names, graph.inputs, ignored),
+      guard_(exceptions_.refused, exceptions_.in_use), names_(names, graph.inputs, ignored, types),
       steps_before_(steps_before(graph)), counts_(graph.inputs) {
     ranges_.resize(graph.inputs, bounds::anything);
 }
@@ -75,7 +75,7 @@ bool DenseEarlyMonitor::takes(PyObject* time, const Named& values, Tick& tick) n
         if (!place) return names_.ignored(name, true) ? nullptr : "names";
         guess = *place + 1;
         double x = 0;
-        if (!PlainNumbers::read(value, x)) return "value";
+        if (!names_.read(PlainNumbers{}, *place, value, x)) return "value";
         const auto input = static_cast<std::uint32_t>(*place);
         const auto& samples = monitor_.samples();
         const Bounds known = late_ ? samples.known(input, tick) : ranges_[input];
@@ -293,16 +293,17 @@ void add_dense_early_monitor(const nb::module_& module, const Exceptions& except
                          std::vector<std::uint32_t> outputs, const std::vector<EarlyItem>& origin,
                          const std::vector<std::pair<double, double>>& ranges,
                          const std::vector<nb::str>& names, const nb::object& ignored,
-                         std::optional<Tick> lateness, bool verdicts, bool replays) {
+                         const nb::dict& types, std::optional<Tick> lateness, bool verdicts,
+                         bool replays) {
                 const early::DenseSettings settings{std::move(outputs), items_of(origin),
                                                     bounds_of(ranges), lateness, verdicts};
                 new (self)
                     DenseEarlyMonitor(graph_of(nodes, static_cast<std::uint32_t>(names.size())),
-                                      settings, names, ignored, replays, exceptions);
+                                      settings, names, ignored, types, replays, exceptions);
             },
             nb::arg("nodes"), nb::arg("outputs"), nb::arg("origin"), nb::arg("ranges"),
-            nb::arg("names"), nb::arg("ignored").none(), nb::arg("lateness").none(),
-            nb::arg("verdicts"), nb::arg("replays") = false)
+            nb::arg("names"), nb::arg("ignored").none(), nb::arg("types"),
+            nb::arg("lateness").none(), nb::arg("verdicts"), nb::arg("replays") = false)
         .def("set_time_scale", &DenseEarlyMonitor::set_time_scale, nb::arg("verdict"),
              nb::arg("rate"), "Let update() take numbers of so many ticks each.")
         .def("learn", &DenseEarlyMonitor::learn, nb::arg("tick"), nb::arg("values"),

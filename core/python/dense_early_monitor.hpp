@@ -27,8 +27,8 @@ class DenseEarlyMonitor : public EarlyBackend {
     using Tick = early::Tick;
 
     DenseEarlyMonitor(const early::Graph& graph, const early::DenseSettings& settings,
-                      const std::vector<nb::str>& names, const nb::object& ignored, bool replays,
-                      Exceptions exceptions);
+                      const std::vector<nb::str>& names, const nb::object& ignored,
+                      const nb::dict& types, bool replays, Exceptions exceptions);
 
     // update() takes numbers of which 1 is so many ticks, and returns objects of this class.
     void set_time_scale(const nb::object& verdict, double rate);

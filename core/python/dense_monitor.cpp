@@ -72,10 +72,10 @@ nb::list hand_over(std::vector<EventList>& lists) {
 }
 
 DenseMonitor::DenseMonitor(Program program, const std::vector<nb::str>& names,
-                           const nb::object& ignored, std::shared_ptr<Calls> calls,
-                           Exceptions exceptions)
+                           const nb::object& ignored, const nb::dict& types,
+                           std::shared_ptr<Calls> calls, Exceptions exceptions)
     : calls_(std::move(calls)), executor_(std::move(program)),
-      names_(names, executor_.program().inputs, ignored), exceptions_(std::move(exceptions)),
+      names_(names, executor_.program().inputs, ignored, types), exceptions_(std::move(exceptions)),
       usage_(exceptions_.refused, exceptions_.in_use), row_(names.size()),
       given_(std::make_unique<bool[]>(names.size())), events_(names.size()),
       results_(executor_.program().outputs.size()), spare_(results_.size()),
@@ -183,7 +183,9 @@ const char* DenseMonitor::read_values(const Values& values, const Numbers& numbe
         }
         guess = *index + 1;
         places.given[*index] = true;
-        return numbers.read(value, places.values[*index]) ? nullptr : no_number(numbers, "value");
+        return names_.read(numbers, *index, value, places.values[*index])
+                   ? nullptr
+                   : no_number(numbers, "value");
     });
 }
 

@@ -44,7 +44,7 @@ using EventColumn = std::pair<Times, Column>;
 class DenseMonitor {
   public:
     DenseMonitor(Program program, const std::vector<nb::str>& names, const nb::object& ignored,
-                 std::shared_ptr<Calls> calls, Exceptions exceptions);
+                 const nb::dict& types, std::shared_ptr<Calls> calls, Exceptions exceptions);
 
     // The unit of times of update() until the next reset(), in ticks, a whole number below 2^53;
     // `whole`: times are integers. Results are objects of this class, whose `_scale` is the given

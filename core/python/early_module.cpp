@@ -63,8 +63,8 @@ void add_early_monitor(const nb::module_& module, const Exceptions& exceptions) 
                          std::vector<std::uint32_t> outputs, const std::vector<EarlyItem>& origin,
                          const std::vector<std::pair<double, double>>& ranges,
                          const std::vector<nb::str>& names, const nb::object& ignored,
-                         double period, double tolerance, std::optional<Tick> lateness,
-                         const nb::object& verdict, bool replays,
+                         const nb::dict& types, double period, double tolerance,
+                         std::optional<Tick> lateness, const nb::object& verdict, bool replays,
                          const std::optional<EarlyCauses>& causes) {
                 EarlySettings settings{
                     period,  tolerance,   lateness.has_value(), lateness.value_or(0),
@@ -73,14 +73,15 @@ void add_early_monitor(const nb::module_& module, const Exceptions& exceptions) 
                     settings.verdict.emplace(verdict,
                                              std::array{"time", "satisfied", "decided_at"});
                 }
-                new (self) EarlyMonitor(graph_of(nodes, static_cast<std::uint32_t>(names.size())),
-                                        std::move(outputs), items_of(origin), bounds_of(ranges),
-                                        names, ignored, std::move(settings), causes, exceptions);
+                new (self)
+                    EarlyMonitor(graph_of(nodes, static_cast<std::uint32_t>(names.size())),
+                                 std::move(outputs), items_of(origin), bounds_of(ranges), names,
+                                 ignored, types, std::move(settings), causes, exceptions);
             },
             nb::arg("nodes"), nb::arg("outputs"), nb::arg("origin"), nb::arg("ranges"),
-            nb::arg("names"), nb::arg("ignored"), nb::arg("period"), nb::arg("tolerance"),
-            nb::arg("lateness").none(), nb::arg("verdict").none(), nb::arg("replays") = false,
-            nb::arg("causes").none() = nb::none())
+            nb::arg("names"), nb::arg("ignored"), nb::arg("types"), nb::arg("period"),
+            nb::arg("tolerance"), nb::arg("lateness").none(), nb::arg("verdict").none(),
+            nb::arg("replays") = false, nb::arg("causes").none() = nb::none())
         .def("take", &EarlyMonitor::take, nb::arg("time"), nb::arg("lower"), nb::arg("upper"),
              nb::arg("after"), "Take bounds of every input at one time, in order.")
         .def("learn", &EarlyMonitor::learn, nb::arg("time"), nb::arg("values"), nb::arg("after"),

@@ -43,14 +43,14 @@ constexpr std::int64_t pause = 64;
 EarlyMonitor::EarlyMonitor(const early::Graph& graph, std::vector<std::uint32_t> outputs,
                            std::vector<early::Item> origin, std::vector<Bounds> ranges,
                            const std::vector<nb::str>& names, const nb::object& ignored,
-                           EarlySettings settings, const std::optional<EarlyCauses>& causes,
-                           Exceptions exceptions)
+                           const nb::dict& types, EarlySettings settings,
+                           const std::optional<EarlyCauses>& causes, Exceptions exceptions)
     : engine_(graph, ranges, settings.late), outputs_(std::move(outputs)),
       decisions_(outputs_.size()),
       origin_(origin_of(std::move(origin), engine_, causes.has_value())),
       times_(settings.period, settings.tolerance), ranges_(std::move(ranges)),
       settings_(std::move(settings)), exceptions_(std::move(exceptions)),
-      guard_(exceptions_.refused, exceptions_.in_use), names_(names, graph.inputs, ignored),
+      guard_(exceptions_.refused, exceptions_.in_use), names_(names, graph.inputs, ignored, types),
       row_(graph.inputs), given_(graph.inputs), news_(outputs_.size()), changes_(outputs_.size()),
       open_(outputs_.size(), 0), wanted_(engine_.size()) {
     ranges_.resize(graph.inputs, bounds::anything);
@@ -90,7 +90,7 @@ PyObject* EarlyMonitor::update(PyObject* time, const Named& values) noexcept {
     const char* wrong = values.each([&](PyObject* name, PyObject* value) -> const char* {
         const auto input = names_.place(name, guess++, true);
         if (!input) return "names";
-        if (!numbers_.read(value, row_[*input])) return "value";
+        if (!names_.read(numbers_, *input, value, row_[*input])) return "value";
         const double x = row_[*input];
         if (settings_.late) {
             const Bounds known = *index < 0

@@ -50,8 +50,8 @@ class EarlyMonitor : public EarlyBackend {
     EarlyMonitor(const early::Graph& graph, std::vector<std::uint32_t> outputs,
                  std::vector<early::Item> origin, std::vector<Bounds> ranges,
                  const std::vector<nb::str>& names, const nb::object& ignored,
-                 EarlySettings settings, const std::optional<EarlyCauses>& causes,
-                 Exceptions exceptions);
+                 const nb::dict& types, EarlySettings settings,
+                 const std::optional<EarlyCauses>& causes, Exceptions exceptions);
 
     // A list of verdicts, or None; null, with a Python exception set, is a refusal.
     [[nodiscard]] PyObject* update(PyObject* time, const Named& values) noexcept override;

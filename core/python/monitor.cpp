@@ -37,11 +37,11 @@ template <bool plain>
 } // namespace
 
 Monitor::Monitor(Program program, const std::vector<nb::str>& names, double period,
-                 double tolerance, bool strict, const nb::object& ignored,
+                 double tolerance, bool strict, const nb::object& ignored, const nb::dict& types,
                  std::shared_ptr<Calls> calls, Exceptions exceptions)
     : calls_(std::move(calls)), executor_(std::move(program)),
       clock_(period, tolerance, strict, history_of(executor_.program())),
-      names_(names, executor_.program().inputs, ignored), exceptions_(std::move(exceptions)),
+      names_(names, executor_.program().inputs, ignored, types), exceptions_(std::move(exceptions)),
       usage_(exceptions_.refused, exceptions_.in_use), row_(names.size()),
       given_(std::make_unique<bool[]>(names.size())), previous_(names.size()) {
     if (!(period > 0.0) || !std::isfinite(period) || !(tolerance >= 0.0)) {
@@ -106,8 +106,9 @@ PyObject* Monitor::update(PyObject* time, const Values& values) noexcept {
                 const auto index = names_.place(name, guess++, numbers.plain);
                 if (!index) return no_name(numbers, name);
                 places.given[*index] = true;
-                return numbers.read(value, places.values[*index]) ? nullptr
-                                                                  : no_number(numbers, "value");
+                return names_.read(numbers, *index, value, places.values[*index])
+                           ? nullptr
+                           : no_number(numbers, "value");
             });
         });
 }
@@ -133,7 +134,7 @@ PyObject* Monitor::update_pairs(PyObject* time, PyObject* pairs) noexcept {
                 const auto value = held<plain>(sequence_item(pair.ptr(), 1));
                 if (const auto index = names_.place(name.ptr(), guess, plain)) {
                     places.given[*index] = true;
-                    if (!numbers.read(value.ptr(), places.values[*index])) {
+                    if (!names_.read(numbers, *index, value.ptr(), places.values[*index])) {
                         return no_number(numbers, "value");
                     }
                     guess = *index + 1;
@@ -151,7 +152,9 @@ PyObject* Monitor::step(std::span<PyObject* const> values) noexcept {
         [&](const auto& numbers, double& /*time*/, const Places& places) -> const char* {
             for (std::size_t i = 0; i < values.size(); ++i) {
                 places.given[i] = true;
-                if (!numbers.read(values[i], places.values[i])) return no_number(numbers, "value");
+                if (!names_.read(numbers, i, values[i], places.values[i])) {
+                    return no_number(numbers, "value");
+                }
             }
             return nullptr;
         });

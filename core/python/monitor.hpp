@@ -29,8 +29,8 @@ namespace rtamt::python {
 class Monitor {
   public:
     Monitor(Program program, const std::vector<nb::str>& names, double period, double tolerance,
-            bool strict, const nb::object& ignored, std::shared_ptr<Calls> calls,
-            Exceptions exceptions);
+            bool strict, const nb::object& ignored, const nb::dict& types,
+            std::shared_ptr<Calls> calls, Exceptions exceptions);
 
     // One sample each. Returns what became known of the first output, a float or None; null, with
     // a Python exception set, if the sample is rejected. update takes values by name, Named or

@@ -112,17 +112,18 @@ void add_monitors(const nanobind::module_& m, const Exceptions& exceptions) {
             "__init__",
             [exceptions](Monitor* self, const nb::bytes& program, const std::vector<nb::str>& names,
                          double period, double tolerance, bool strict, const nb::object& ignored,
-                         const nb::list& calls) {
+                         const nb::list& calls, const nb::dict& types) {
                 const auto held = std::make_shared<Calls>(calls);
                 Program parsed = parse(program, Domain::discrete, held->sites());
                 making(*held, [&] {
                     new (self) Monitor(std::move(parsed), names, period, tolerance, strict, ignored,
-                                       held, exceptions);
+                                       types, held, exceptions);
                 });
             },
             nb::arg("program"), nb::arg("names"), nb::arg("period") = 1.0,
             nb::arg("tolerance") = infinity, nb::arg("strict") = true,
-            nb::arg("ignored") = nb::none(), nb::arg("calls") = nb::list())
+            nb::arg("ignored") = nb::none(), nb::arg("calls") = nb::list(),
+            nb::arg("types") = nb::dict())
         .def("push", &Monitor::push, nb::arg("times").none(), nb::arg("columns"),
              nb::arg("after") = nb::none(),
              "Take a chunk, a column an input, unless others than `after` samples came before; "
@@ -150,15 +151,16 @@ void add_monitors(const nanobind::module_& m, const Exceptions& exceptions) {
             "__init__",
             [exceptions](DenseMonitor* self, const nb::bytes& program,
                          const std::vector<nb::str>& names, const nb::object& ignored,
-                         const nb::list& calls) {
+                         const nb::list& calls, const nb::dict& types) {
                 const auto held = std::make_shared<Calls>(calls);
                 Program parsed = parse(program, Domain::dense, held->sites());
                 making(*held, [&] {
-                    new (self) DenseMonitor(std::move(parsed), names, ignored, held, exceptions);
+                    new (self)
+                        DenseMonitor(std::move(parsed), names, ignored, types, held, exceptions);
                 });
             },
             nb::arg("program"), nb::arg("names"), nb::arg("ignored") = nb::none(),
-            nb::arg("calls") = nb::list())
+            nb::arg("calls") = nb::list(), nb::arg("types") = nb::dict())
         .def("set_time_scale", &DenseMonitor::set_time_scale, nb::arg("signal"), nb::arg("scale"),
              nb::arg("rate"), nb::arg("whole") = false,
              "Set the unit of times of update(), in ticks, and whether they are integers alone; "

@@ -1,8 +1,10 @@
-// The names of a program's inputs, looked up by the Python strings that a caller passes.
+// The inputs of a program: their names, looked up by the Python strings that a caller passes, and
+// their types.
 #pragma once
 
 #include "../values/vectors.hpp"
 #include "cpython.hpp"
+#include "value_type.hpp"
 
 #include <nanobind/nanobind.h>
 
@@ -63,8 +65,11 @@ struct InDict {
 
 class Names {
   public:
-    // `ignored` are names of variables that exist and are not read: a collection, or None.
-    Names(const std::vector<nb::str>& names, std::size_t inputs, const nb::object& ignored) {
+    // `ignored` are names of variables that exist and are not read: a collection, or None. `types`
+    // has what ValueType takes of the inputs that are no plain numbers.
+    Names(const std::vector<nb::str>& names, std::size_t inputs, const nb::object& ignored,
+          const nb::dict& types)
+        : types_(names.size()) {
         if (names.size() != inputs) {
             throw std::invalid_argument("Got " + std::to_string(names.size()) +
                                         " names for a program with " + std::to_string(inputs) +
@@ -79,6 +84,10 @@ class Names {
             PyObject* interned = nb::object(name).release().ptr();
             PyUnicode_InternInPlace(&interned);
             names_.push_back(nb::steal<nb::str>(interned));
+        }
+        for (const auto& [name, codes] : types) {
+            if (!places_.contains(name)) throw std::invalid_argument("A type has no input.");
+            types_[nb::cast<std::size_t>(places_[name])] = ValueType(codes);
         }
         ignored_ =
             nb::steal<nb::object>(PyFrozenSet_New(ignored.is_none() ? nullptr : ignored.ptr()));
@@ -110,9 +119,17 @@ class Names {
         return found > 0;
     }
 
+    // As Numbers::read, of a value of this input.
+    template <class Numbers>
+    [[nodiscard]] RTAMT_INLINE bool read(const Numbers& numbers, std::size_t input,
+                                         PyObject* object, double& value) const noexcept {
+        return types_[input].read(numbers, object, value);
+    }
+
   private:
-    std::vector<nb::str> names_; // interned, in the order of the inputs
-    nb::dict places_;            // from name to index
+    std::vector<nb::str> names_;   // interned, in the order of the inputs
+    nb::dict places_;              // from name to index
+    std::vector<ValueType> types_; // in the order of the inputs
     nb::object ignored_;
 };
 

@@ -34,7 +34,7 @@ struct PlainNumbers {
             value = float_value(object);
             return !std::isnan(value);
         }
-        if (!PyLong_CheckExact(object)) return false;
+        if (!PyLong_CheckExact(object) && !PyBool_Check(object)) return false;
         value = PyLong_AsDouble(object);
         return value != -1.0 || PyErr_Occurred() == nullptr || forget_no_number();
     }

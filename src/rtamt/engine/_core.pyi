@@ -10,6 +10,8 @@ _Events: TypeAlias = tuple[NDArray[np.int64], NDArray[np.float64]]
 # Of each call: a capsule "rtamt.kernel" or what makes a driver, its interval (-1: no end), seconds in a
 # step, and the instructions that it reads.
 _Calls: TypeAlias = list[tuple[Any, int, int, float, tuple[int, ...]]]
+# Of each input that is no plain number: the codes of an enumeration's members by name; None for a Boolean.
+_Types: TypeAlias = Mapping[str, Mapping[str, float] | None]
 
 class Refused(Exception):  # noqa: N818 - a word that reads well after except
     """An update was rejected; the monitor is unchanged."""
@@ -36,6 +38,7 @@ class Monitor:
         strict: bool = True,
         ignored: Collection[str] | None = None,
         calls: _Calls = ...,
+        types: _Types = ...,
     ) -> None: ...
     def update(self, t: float, values: Mapping[str, Any], /) -> float | None:
         """Take the sample of time t, a dict of every input; return what became known, or None."""
@@ -103,6 +106,7 @@ class DenseMonitor:
         names: Sequence[str],
         ignored: Collection[str] | None = None,
         calls: _Calls = ...,
+        types: _Types = ...,
     ) -> None: ...
     def set_time_scale(self, signal: type, scale: Any, rate: float, whole: bool = False) -> None:
         """Set the times that update() accepts: numbers of so many ticks, or only integers (``whole``).
@@ -179,6 +183,7 @@ class EarlyMonitor:
         ranges: Sequence[tuple[float, float]],
         names: Sequence[str],
         ignored: Collection[str] | None,
+        types: _Types,
         period: float,
         tolerance: float,
         lateness: int | None,
@@ -275,6 +280,7 @@ class DenseEarlyMonitor:
         ranges: Sequence[tuple[float, float]],
         names: Sequence[str],
         ignored: Collection[str] | None,
+        types: _Types,
         lateness: int | None,
         verdicts: bool,
         replays: bool = False,

@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 from rtamt.engine.native import core, culprit
 from rtamt.engine.user_operators import is_built_in
 from rtamt.errors import UsageError
-from rtamt.language.formula import postorder
+from rtamt.language.formula import postorder, types_of
 from rtamt.rewrite.desugar import desugar
+from rtamt.signals.coding import codes_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Mapping, Sequence
@@ -176,6 +177,8 @@ class CompiledSession(Session):
     def __init__(self, formulas: Sequence[Formula], program: Program) -> None:
         self.program = program
         self._formulas = tuple(formulas)
+        #: What the core converts or checks, because not every number is a value of the variable.
+        self._types = codes_of(types_of(*formulas))
         self.refused = core().Refused
         self.undefined = (core().Undefined,)
 

@@ -12,7 +12,7 @@ from rtamt.language.printer import excerpt
 from rtamt.rewrite.desugar import written
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Iterable
+    from collections.abc import Callable, Collection, Iterable, Mapping
     from types import ModuleType
 
     from rtamt.compiler.program import Program
@@ -63,17 +63,24 @@ else:
 
 
 def core_monitor(
-    program: Program, period: float, tolerance: float, strict: bool = True, ignored: Collection[str] = ()
+    program: Program,
+    period: float,
+    tolerance: float,
+    strict: bool,
+    ignored: Collection[str],
+    types: Mapping[str, Mapping[str, float] | None],
 ) -> Any:
     """Return a compiled monitor of a program; raise :class:`UsageError` where memory does not suffice.
 
     ``period`` in seconds; ``tolerance`` a fraction of it. A monitor that is not ``strict`` counts irregular
-    gaps and takes the sample; samples of ``ignored`` variables are skipped.
+    gaps and takes the sample; samples of ``ignored`` variables are skipped. ``types``: see ``coding.codes_of``.
     """
     _core = core()
     code, calls = program.code(), calls_of(program, SampleDriver)
     try:
-        return _core.Monitor(code, list(program.inputs), period, tolerance, strict, frozenset(ignored), calls)
+        return _core.Monitor(
+            code, list(program.inputs), period, tolerance, strict, frozenset(ignored), calls, types
+        )
     except RuntimeError as error:
         raise not_made(program, error) from None
     except MemoryError:

@@ -132,11 +132,6 @@ class OnlineMonitor:
         """The number of samples since the start or the last reset."""
 
     @property
-    def _checked(self) -> bool:
-        """Whether the values of some variables are checked here, because not every number is one of theirs."""
-        return bool(self._types)
-
-    @property
     def memory(self) -> int:
         """The size of the state in bytes: the contents of the windows."""
         return int(self._backend.state_bytes)

@@ -21,7 +21,24 @@ if TYPE_CHECKING:
     #: The types of the variables that are no plain numbers.
     Types = Mapping[str, ValueType]
 
+#: The classes of nearly all values that are no names.
+_NO_NAMES = {float, int, bool, type(None)}
+
 NO_TYPES: Types = MappingProxyType({})
+
+
+def codes_of(types: Types) -> dict[str, dict[str, float] | None]:
+    """Return types for the compiled core: of an enumeration the code of each member by name, None for a Boolean.
+
+    >>> codes_of({"mode": Enumeration("Mode", (("MANUAL", 0), ("AUTO", 4))), "armed": BOOLEAN})
+    {'mode': {'MANUAL': 0.0, 'AUTO': 4.0}, 'armed': None}
+    """
+    return {
+        name: {member: float(code) for member, code in type_.members}
+        if isinstance(type_, Enumeration)
+        else None
+        for name, type_ in types.items()
+    }
 
 
 def encoded(values: Any, name: str, type_: ValueType | None, first: int = 0) -> Any:
@@ -35,12 +52,15 @@ def encoded(values: Any, name: str, type_: ValueType | None, first: int = 0) -> 
     """
     if not isinstance(type_, Enumeration) or _is_numeric(values):
         return values
+    items = list(_items(values))
+    classes = set(map(type, items))
+    if classes <= _NO_NAMES:
+        return items
     codes: dict[Any, float] = {member: float(code) for member, code in type_.members}
+    if classes == {str} and codes.keys() >= set(items):
+        return [codes[item] for item in items]
     return [
-        codes[value]
-        if value.__class__ is str and value in codes
-        else encoded_value(value, name, type_, f"sample {first + i}", first + i)
-        for i, value in enumerate(_items(values))
+        encoded_value(item, name, type_, f"sample {first + i}", first + i) for i, item in enumerate(items)
     ]
 
 

@@ -17,6 +17,7 @@ from rtamt.language.units import check_unit
 from rtamt.rewrite.desugar import written
 from rtamt.rewrite.presence import tracked
 from rtamt.signals import arrays, dense_arrays
+from rtamt.signals.coding import codes_of
 from rtamt.signals.data_errors import unknown_variable
 from rtamt.signals.outcomes import VerdictRun
 from rtamt.signals.ticks import TimeScale
@@ -75,6 +76,7 @@ class DenseEarlyMonitor(EarlyMonitor):
             self._known_ranges(),
             list(self._inputs),
             self._unread,
+            codes_of(self._types),
             self._late,
             self._verdict is not None,
             self._replays,

@@ -14,6 +14,7 @@ from rtamt.errors import TraceError
 from rtamt.language.undefined_value import at_sample, undefined
 from rtamt.language.units import check_unit
 from rtamt.rewrite.desugar import written
+from rtamt.signals.coding import codes_of
 from rtamt.signals.data_errors import missing_variable, unknown_variable
 from rtamt.signals.outcomes import Causation
 from rtamt.signals.regular import irregular, not_increasing
@@ -82,6 +83,7 @@ class DiscreteEarlyMonitor(EarlyMonitor):
             self._known_ranges(),
             list(self._inputs),
             self._unread,
+            codes_of(self._types),
             float(self._step),
             self._tolerance,
             self._late,

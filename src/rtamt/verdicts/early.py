@@ -150,10 +150,6 @@ class EarlyMonitor(OnlineMonitor):
         return [self._ranges.get(name, (-inf, inf)) for name in self._inputs]
 
     @property
-    def _checked(self) -> bool:
-        return bool(self._types or self._channels)
-
-    @property
     def samples(self) -> int:
         """How many samples the monitor has taken since the start or the last reset."""
         return int(self._backend.samples)
@@ -183,7 +179,7 @@ class EarlyMonitor(OnlineMonitor):
         """Open the first monitor of the back end."""
 
     def _connect(self, backend: Any) -> None:
-        self._backend = Apart(inner_of(backend)) if self._checked or self._explained else backend
+        self._backend = Apart(inner_of(backend)) if self._channels or self._explained else backend
         self._refused = self._session.refused
         self._undefined: Any = self._session.undefined
 

@@ -113,7 +113,9 @@ class EventProgram(CompiledSession):
         program = self.program
         calls = calls_of(program, EventDriver)
         try:
-            return core().DenseMonitor(program.code(), list(program.inputs), self._ignored, calls=calls)
+            return core().DenseMonitor(
+                program.code(), list(program.inputs), self._ignored, calls, self._types
+            )
         except RuntimeError as error:
             raise not_made(program, error) from None
 

@@ -93,7 +93,7 @@ class DenseMonitor(DenseMonitorBase, OnlineMonitor):
         self._connect(self._session.open())
 
     def _connect(self, backend: Any) -> None:
-        self._backend = backend if self._episodes is None and not self._checked else Apart(backend)
+        self._backend = backend if self._episodes is None else Apart(backend)
         self._refused = self._session.refused
         self._undefined: Any = self._session.undefined
         if self._scale is not None:

@@ -114,7 +114,7 @@ class SampleProgram(CompiledSession):
 
     def open(self) -> Any:
         """See :class:`Session`."""
-        return core_monitor(self.program, *self._made_of)
+        return core_monitor(self.program, *self._made_of, self._types)
 
     def part(self, monitor: Any, formula: Formula) -> float:
         """Return the value at the last sample of a part without future operators."""

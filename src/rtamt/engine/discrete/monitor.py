@@ -97,7 +97,7 @@ class Monitor(MonitorBase, OnlineMonitor):
         self._connect(self._session.open())
 
     def _connect(self, backend: Any) -> None:
-        plain = self._times.plain and self._episodes is None and not self._checked
+        plain = self._times.plain and self._episodes is None
         self._backend = backend if plain else Apart(backend)
         self._update = backend.update
         self._step = backend.step
