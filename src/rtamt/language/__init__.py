@@ -32,7 +32,8 @@ template_order         templates that a text defines further down, and cycles am
 templates              ``def name(parameters) = formula``, and its uses
 imports                files that others import: where they may be, and what is taken from them
 sampling               the sampling rule: ``sample 100ms hold``
-declarations           what stands before the formulas of a file: imports, declarations, annotations
+import_parser          ``import "file.stl"``, ``from module import Class``
+declarations           what stands before the formulas of a file: declarations, annotations
 enumerations           ``enum Mode { MANUAL, AUTO = 4 }``
 shares                 the share of a window that an operator needs
 specfile               specification files (``.stl``) to a document, and their grammar
