@@ -8,8 +8,12 @@ from math import inf
 
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 
 import rtamt
+from rtamt.plot.scene import scene
+from rtamt.report.data import data_of
+from rtamt.report.store import Store
 
 MODES = "enum Mode { MANUAL, AUTO = 4, RTL } input Mode mode output bool p float x "
 
@@ -112,6 +116,42 @@ def test_explanations_name_members_and_booleans_instead_of_numbers():
     explanation = str(spec.evaluate({"p": [0, 1], "mode": ["AUTO", "RTL"]}).explain())
     assert "'p' holds at 1 s (p is true)" in explanation
     assert "'mode == AUTO' fails at 1 s (mode is RTL)" in explanation
+
+
+@pytest.mark.parametrize("time", ["discrete", "dense"])
+def test_a_picture_names_members_and_booleans_at_the_axis_instead_of_codes(time):
+    data = {"p": [0, 1, 1], "mode": ["AUTO", 9, "RTL"], "x": [1, 2, 3]}
+    if time == "dense":
+        data = {name: ([0, 1, 2], values) for name, values in data.items()}
+    figure = (
+        rtamt.parse(MODES + "p -> mode == AUTO or x > 2.5").evaluate(data, time=time).plot(figure=Figure())
+    )
+    labels = [[label.get_text() for label in axis.get_yticklabels()] for axis in figure.axes[:3]]
+    assert labels[:2] == [["false", "true"], ["AUTO", "RTL", "9"]]
+    assert set(labels[2]).isdisjoint({"false", "true", "AUTO"})
+    assert figure.axes[1].get_yticks().tolist() == [4, 5, 9]
+
+
+def test_signals_of_different_types_in_one_panel_have_numbers_at_the_axis():
+    figure = rtamt.parse(MODES + "p < x").evaluate({"p": [0, 1], "x": [2, 2]}).plot(figure=Figure())
+    assert "true" not in [label.get_text() for label in figure.axes[0].get_yticklabels()]
+
+
+def test_names_of_many_members_do_not_overlap_in_a_picture():
+    members = ", ".join(f"M{i}" for i in range(40))
+    spec = rtamt.parse(f"enum Many {{ {members} }} input Many m always(m != M3)")
+    figure = spec.evaluate({"m": list(range(40))}).plot(figure=Figure())
+    assert len(figure.axes[0].get_yticks()) <= 7
+
+
+def test_a_report_has_the_names_of_members():
+    store = Store()
+    result = rtamt.parse(MODES + "p -> mode == AUTO").evaluate({"p": [0, 1], "mode": ["AUTO", "RTL"]})
+    panels = data_of(scene(result), store)["panels"]
+    assert [panel["lines"][0]["names"] for panel in panels] == [
+        {"0": "false", "1": "true"},
+        {"0": "MANUAL", "4": "AUTO", "5": "RTL"},
+    ]
 
 
 def test_rtamt_classes_keep_numbers():

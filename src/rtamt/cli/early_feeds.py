@@ -12,6 +12,7 @@ from rtamt.cli.command import json_number, stamp_text
 from rtamt.cli.json_lines import STDIN
 from rtamt.cli.terminal import say
 from rtamt.errors import StlError, TraceError
+from rtamt.language.value_types import BOOLEAN, value_text
 from rtamt.signals.outcomes import VerdictRun
 from rtamt.verdicts.at_start import SAFE
 from rtamt.verdicts.discrete_early import DiscreteEarlyMonitor
@@ -20,7 +21,8 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from rtamt.cli.live_view import Live
-    from rtamt.signals.outcomes import Interval, Verdict
+    from rtamt.signals.coding import Types
+    from rtamt.signals.outcomes import Cause, Interval, Verdict
     from rtamt.verdicts.at_start import StartMonitor
     from rtamt.verdicts.causation import CausationMonitor
     from rtamt.verdicts.dense_early import DenseEagerMonitor
@@ -30,10 +32,13 @@ if TYPE_CHECKING:
 
 
 class EagerFeed:
-    """Prints each verdict once it is settled; ``explain``: with the samples that decided it."""
+    """Prints each verdict once it is settled; ``explain``: with the samples that decided it, of these types."""
 
-    def __init__(self, monitor: EagerMonitor | DenseEagerMonitor, *, explain: bool = False) -> None:
+    def __init__(
+        self, monitor: EagerMonitor | DenseEagerMonitor, types: Types, *, explain: bool = False
+    ) -> None:
         self.monitor = monitor
+        self._types = types
         self._explain = explain
 
     def take(self, stamp: Any, values: dict[str, float], line: int) -> str:
@@ -62,10 +67,18 @@ class EagerFeed:
         """Return a member of a JSON object."""
         causes = (
             f'{{"variable": {json.dumps(each.variable)}, "time": {_json(each.time)}, '
-            f'"value": {json.dumps(json_number(each.value))}}}'
+            f'"value": {self._value(each)}}}'
             for each in self.monitor.explain(verdict)
         )
         return f', "causes": [{", ".join(causes)}]'
+
+    def _value(self, cause: Cause) -> str:
+        """Return a value as input may have it: the name of a member, true or false, or a number."""
+        type_ = self._types.get(cause.variable)
+        text = value_text(cause.value, type_)
+        if text is None:
+            return json.dumps(json_number(cause.value))
+        return text if type_ is BOOLEAN else json.dumps(text)
 
 
 class StartFeed:

@@ -14,12 +14,15 @@ from rtamt.cli.command import short
 from rtamt.cli.terminal import use_color
 from rtamt.errors import escaped
 from rtamt.extras import library
+from rtamt.language.value_types import value_text
+from rtamt.signals.coding import NO_TYPES
 from rtamt.signals.trace import in_seconds
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
     from typing import TextIO
 
+    from rtamt.signals.coding import Types
     from rtamt.signals.outcomes import Interval
 
 _BLOCKS = "▁▂▃▄▅▆▇█"
@@ -33,14 +36,18 @@ _MOST = 1000
 class Live:
     """Draws on a terminal with rich, at most some times a second; a context, at whose end the last view stays.
 
-    ``units``: of variables, shown behind their values. What is printed on stderr meanwhile goes above the view.
+    ``units``: of variables, shown behind their values. ``types``: of those whose values have names. What is printed on stderr meanwhile goes above the view.
     """
 
     #: Seconds between two updates.
     PAUSE = 0.05
 
     def __init__(
-        self, title: str, stream: TextIO | None = None, units: Mapping[str, str] | None = None
+        self,
+        title: str,
+        stream: TextIO | None = None,
+        units: Mapping[str, str] | None = None,
+        types: Types = NO_TYPES,
     ) -> None:
         stream = sys.stderr if stream is None else stream
         console, text, live = (
@@ -54,6 +61,7 @@ class Live:
             redirect_stdout=False,
         )
         self.units = dict(units or {})
+        self._types = types
         self._title = title
         self._values: deque[float] = deque(maxlen=_MOST)
         self._bounds: deque[Interval] = deque(maxlen=_MOST)
@@ -96,7 +104,7 @@ class Live:
         yield self._line(self._title, "bold")
         yield from self._band(options.max_width) if self._bounds else self._robustness(options.max_width)
         values = "  ".join(
-            f"{name} = {short(value)} {self.units.get(name, '')}".rstrip()
+            f"{name} = {value_text(value, self._types.get(name)) or short(value)} {self.units.get(name, '')}".rstrip()
             for name, value in self._latest.items()
         )
         yield self._line(f"{self._samples} sample{'s' if self._samples != 1 else ''}  {values}")

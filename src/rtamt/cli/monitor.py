@@ -134,7 +134,7 @@ def run(args: argparse.Namespace) -> int:
         raise CommandError(f"the tolerance is {args.tolerance:g}; give a fraction of the period, such as 0.1")
     spec = read_specification(args, args.time)
     dense = spec.domain.continuous
-    live = _live(printed(spec.formula), spec.units) if args.live else None
+    live = _live(spec) if args.live else None
     output = Output(verdicts=spec.semantics == "boolean", live=live)
     names = tuple(spec.requirements) if len(spec.requirements) > 1 else ()
     watched: Feed
@@ -218,7 +218,7 @@ def _early(spec: Specification, args: argparse.Namespace, live: Live | None) -> 
     return (
         IntervalFeed(monitor)
         if isinstance(monitor, IntervalMonitor)
-        else EagerFeed(monitor, explain=args.explain)
+        else EagerFeed(monitor, spec.types, explain=args.explain)
     )
 
 
@@ -229,10 +229,10 @@ def _watched(
     return SampleFeed(monitor, output, names, assumed=spec.period is None and tolerance is None)
 
 
-def _live(title: str, units: Mapping[str, str]) -> Live:
+def _live(spec: Specification) -> Live:
     if not sys.stderr.isatty():
         raise CommandError("--live draws on a terminal, and stderr is none: leave it out")
-    return Live(title, units=units)
+    return Live(printed(spec.formula), units=spec.units, types=spec.types)
 
 
 @dataclass(frozen=True, slots=True)

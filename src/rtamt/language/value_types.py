@@ -95,8 +95,15 @@ def value_text(value: float, type_: ValueType | None) -> str | None:
     >>> value_text(4.0, Enumeration("Mode", (("AUTO", 4),))), value_text(0.0, BOOLEAN), value_text(4.0, None)
     ('AUTO', 'false', None)
     """
+    return value_names(type_).get(value)
+
+
+def value_names(type_: ValueType | None) -> dict[float, str]:
+    """Return the name of each value of a type: of members, or ``true`` and ``false``; none of plain numbers.
+
+    >>> value_names(BOOLEAN)
+    {0.0: 'false', 1.0: 'true'}
+    """
     if isinstance(type_, Enumeration):
-        return type_.member(value)
-    if isinstance(type_, Boolean):
-        return {1.0: "true", 0.0: "false"}.get(value)
-    return None
+        return {float(code): name for name, code in reversed(type_.members)}
+    return {0.0: "false", 1.0: "true"} if type_ is BOOLEAN else {}

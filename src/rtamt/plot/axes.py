@@ -8,17 +8,40 @@ import numpy as np
 
 from rtamt.extras import library
 from rtamt.plot import style
+from rtamt.plot.texts import shortened
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     from rtamt.plot.lines import Line
     from rtamt.signals.arrays import FloatArray
 
 
+#: Names of values that have room at an axis, and the characters of each.
+_NAMES, _LONGEST = 6, 9
+
+
 def matplotlib(module: str = "figure") -> Any:
     """Return a module of matplotlib."""
     return library(f"matplotlib.{module}", "a picture", "plot")
+
+
+def names_of(lines: Sequence[Line]) -> Mapping[float, str]:
+    """Return the names of values on an axis for some lines: none, unless all lines have the same."""
+    return lines[0].names if lines and all(line.names == lines[0].names for line in lines) else {}
+
+
+def _apart(values: Sequence[float], distance: float) -> list[float]:
+    """Return those of increasing values that are far enough from the one before.
+
+    >>> _apart([0, 1, 2, 9], 2)
+    [0, 2, 9]
+    """
+    found = [values[0]]
+    for value in values:
+        if value - found[-1] >= distance:
+            found.append(value)
+    return found
 
 
 class Edges:
@@ -33,8 +56,14 @@ class Edges:
         self.middle = (low + high) / 2
         infinite = [any((line.values == sign * np.inf).any() for line in lines) for sign in (-1, 1)]
         limits = [low - (4 if infinite[0] else 1) * pad, high + (4 if infinite[1] else 1) * pad]
-        ticks = [t for t in matplotlib("ticker").MaxNLocator(3).tick_values(low, high) if low <= t <= high]
-        labels = [style.number(t) for t in ticks]
+        names = names_of(lines)
+        if names:
+            ticks = _apart(np.unique(finite).tolist(), (high - low) / _NAMES)
+        else:
+            ticks = [
+                t for t in matplotlib("ticker").MaxNLocator(3).tick_values(low, high) if low <= t <= high
+            ]
+        labels = [shortened(names.get(t, style.number(t)), _LONGEST) for t in ticks]
         for is_above, there in enumerate(infinite):
             if there:
                 ticks.append(self._ends[is_above])

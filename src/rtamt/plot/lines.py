@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
+from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -10,6 +11,8 @@ import numpy as np
 from rtamt.signals.regular import merged
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from numpy.typing import NDArray
 
     from rtamt.signals.arrays import FloatArray
@@ -20,12 +23,16 @@ Range = tuple[float, float]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Line:
-    """Values at positions, which increase; in dense time each holds until the next."""
+    """Values at positions, which increase; in dense time each holds until the next.
+
+    ``names``: of values, such as the members of an enumeration.
+    """
 
     name: str
     positions: FloatArray
     values: FloatArray
     unit: str = ""
+    names: Mapping[float, str] = field(default_factory=lambda: MappingProxyType({}))
 
     @property
     def label(self) -> str:
@@ -49,7 +56,7 @@ class Line:
         positions, values = self.positions[first:last], self.values[first:last]
         if dense and first > 0 and (first == last or positions[0] > start):
             positions, values = np.append(start, positions), np.append(self.values[first - 1], values)
-        return Line(self.name, positions, values, self.unit)
+        return replace(self, positions=positions, values=values)
 
     def decimated(self, columns: int) -> Line:
         """Return what can be seen of the line where there is room for some columns of points.
@@ -75,7 +82,7 @@ class Line:
             self.values == np.repeat(np.maximum.reduceat(self.values, starts), sizes), starts
         )
         kept = merged([starts, stops - 1, lowest, highest])
-        return Line(self.name, self.positions[kept], self.values[kept], self.unit)
+        return replace(self, positions=self.positions[kept], values=self.values[kept])
 
     def columns(self, count: int) -> NDArray[np.int64]:
         """Return the index of the first point in each of ``count`` equal parts of the time that has points."""

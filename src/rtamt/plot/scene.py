@@ -11,6 +11,7 @@ from rtamt.errors import UsageError
 from rtamt.explain.sentences import predicate_text
 from rtamt.language.formula import Apply, Var, variables
 from rtamt.language.records import Bounds, Fixity
+from rtamt.language.value_types import value_names
 from rtamt.plot.band import Band, band
 from rtamt.plot.clock import Clock
 from rtamt.plot.lines import Line, Range, ranges
@@ -233,7 +234,8 @@ class _Painter:
         return tuple(found)
 
     def _recorded(self, name: str) -> Line:
-        return Line(name, *self._clock.recorded(name), self._result.trace.units.get(name, ""))
+        unit, names = self._result.trace.units.get(name, ""), value_names(self._spec.types.get(name))
+        return Line(name, *self._clock.recorded(name), unit, names)
 
     def _line(self, name: str, signal: Signal) -> Line:
         return Line(name, self._clock.positions(signal.times), signal.values)

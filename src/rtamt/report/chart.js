@@ -2,6 +2,14 @@
 
 const AXIS = 64;
 const COLORS = 6;
+const NAMES = 6; // of values at an axis
+const LONGEST = 10; // characters of one
+
+// Those of increasing values that are far enough from the one before.
+const apart = (values, distance) => values.reduce((found, value) => {
+  if (!found.length || value - found[found.length - 1] >= distance) found.push(value);
+  return found;
+}, []);
 
 const palette = () => {
   const style = getComputedStyle(document.documentElement);
@@ -130,7 +138,8 @@ class Chart {
 
   marksOfValues(min, max) {
     const [low, high] = this.values || (this.card.fitted ? [min, max] : this.finite);
-    const found = ticks(low, high, niceStep(high - low, 3));
+    const codes = Object.keys(this.names()).map(Number).filter((code) => code >= low && code <= high).sort((a, b) => a - b);
+    const found = codes.length ? apart(codes, (high - low) / NAMES) : ticks(low, high, niceStep(high - low, 3));
     if (!this.values && !this.card.fitted) this.infinite.forEach((there, end) => { if (there) found[end ? "push" : "unshift"](this.edges[end]); });
     return found;
   }
@@ -138,7 +147,15 @@ class Chart {
   nameOfValue(y) {
     if (this.infinite[0] && y === this.edges[0]) return "−∞";
     if (this.infinite[1] && y === this.edges[1]) return "+∞";
-    return number(y);
+    const name = this.names()[y];
+    if (name === undefined) return number(y);
+    return name.length > LONGEST ? `${name.slice(0, LONGEST - 1)}…` : name;
+  }
+
+  // The names of values, if they are the same for all lines that are shown.
+  names() {
+    const all = this.lines.filter((line) => line.shown).map((line) => line.names), [first] = all;
+    return first && all.every((names) => JSON.stringify(names) === JSON.stringify(first)) ? first : {};
   }
 
   // Samples have dots where there is room for them; what is no sample never has.
@@ -311,8 +328,8 @@ class Chart {
 
   // For those who do not see it.
   summary() {
-    const ranges = this.lines.filter((line) => line.shown).map(({ name, data }) => (
-      data.low === null ? `${name}: no finite value` : `${name} from ${number(data.low)} to ${number(data.high)}`));
+    const ranges = this.lines.filter((line) => line.shown).map((line) => (
+      line.data.low === null ? `${line.name}: no finite value` : `${line.name} from ${line.text(line.data.low)} to ${line.text(line.data.high)}`));
     const failing = [];
     for (let i = 0; i < this.fails.length && i < 10; i += 2) {
       failing.push(`${this.timeline.times.text(Math.max(this.fails[i], this.timeline.start))} to ${this.timeline.times.text(this.fails[i + 1])}`);

@@ -59,7 +59,7 @@ class Legend {
       if (timeline.cursor !== null) texts.push(at(timeline.cursor));
       if (a !== null) texts.push(`A ${at(a)}`);
       if (b !== null) texts.push(`B ${at(b)}`);
-      if (a !== null && b !== null && line.loaded) {
+      if (a !== null && b !== null && line.loaded && !line.data.names) {
         const [from, to] = [a, b].map((position) => line.y[line.nearest(position, dense)]);
         if (Number.isFinite(to - from)) texts.push(`B−A ${number(to - from)}`);
       }
@@ -217,7 +217,7 @@ class Tools {
       let next = Infinity;
       for (const { line, at, last } of columns) if (at <= last && line.x[at] < next) next = line.x[at];
       if (next === Infinity) break;
-      rows.push([next, ...columns.map((column) => (column.at <= column.last && column.line.x[column.at] === next ? column.line.y[column.at++] : ""))].join(","));
+      rows.push([next, ...columns.map((column) => (column.at <= column.last && column.line.x[column.at] === next ? column.line.written(column.at++) : ""))].join(","));
     }
     return `${rows.join("\n")}\n`;
   }

@@ -105,6 +105,8 @@ def line_data(line: Line, store: Store, share: float, panels: Iterable[Panel] = 
         "high": float(finite.max()) if len(finite) else None,
         "ends": [bool((line.values == end).any()) for end in (-np.inf, np.inf)],
     }
+    if line.names:
+        data["names"] = {f"{value:.0f}": name for value, name in line.names.items()}
     if len(line.values) <= _LARGE:
         return data | {"x": _times(line.positions, store, None), "y": _values(line, store, None, panels)}
     data["overview"] = _overview(line, store)

@@ -54,8 +54,11 @@ class Line {
     this.data = data;
     this.name = data.name;
     this.points = data.points;
+    this.names = data.names || {}; // of values: members of an enumeration, or true and false
     this.shown = true;
   }
+
+  text(value) { return this.names[value] ?? number(value); }
 
   // Whether the page holds every sample.
   get embedded() { return this.data.x !== undefined; }
@@ -78,6 +81,9 @@ class Line {
     this.x = positions;
   }
 
+  // A value as it is written to a file.
+  written(index) { return this.names[this.y[index]] ?? this.y[index]; }
+
   // The index of the sample that is meant at a position: in dense time the last one, else the nearest.
   nearest(position, dense) {
     const i = Math.max(before(this.x, position), 0), next = Math.min(i + 1, this.x.length - 1);
@@ -86,10 +92,10 @@ class Line {
 
   // The value at a position as text: a number, or the range in which it is.
   valueAt(position, dense) {
-    if (this.loaded) return position < this.x[0] ? "" : number(this.y[this.nearest(position, dense)]);
+    if (this.loaded) return position < this.x[0] ? "" : this.text(this.y[this.nearest(position, dense)]);
     if (!this.at || position < this.at[0]) return "";
     const i = Math.max(before(this.at, position), 0);
-    return `${number(this.lows[i])} … ${number(this.highs[i])}`;
+    return `${this.text(this.lows[i])} … ${this.text(this.highs[i])}`;
   }
 
   // What is drawn between two instants in so many columns: `kind` is "samples" (all of them), "extremes" (what drawing

@@ -126,6 +126,16 @@ def test_a_line_is_never_wider_than_the_terminal(monkeypatch):
     assert max(map(len, lines)) == 30
 
 
+def test_members_and_booleans_are_shown_by_name():
+    code, seen, _ = monitor(
+        "pipe",
+        '{"mode": "AUTO", "p": true}\n{"mode": 0, "p": false}\n',
+        formula="enum Mode { MANUAL, AUTO = 4 } input Mode mode input bool p always[0:1](mode == AUTO or p)",
+    )
+    assert code == 0
+    assert "mode = MANUAL  p = false" in seen
+
+
 def test_bounds_at_the_start_narrow_to_the_robustness():
     stream = Terminal()
     live = Live("always(x >= 3)", stream)

@@ -364,3 +364,10 @@ def test_samples_of_dense_time_need_their_times_for_verdicts_too(run):
     answer = run("monitor", "always(x >= 3)", "--time", "dense", stdin=jsonl({"x": 5}))
     assert answer.code == 2
     assert "line 1: in dense time every sample needs its time" in answer.err
+
+
+def test_the_samples_that_decide_a_verdict_name_members_and_booleans(run):
+    text = "enum Mode { MANUAL, AUTO = 4 } input Mode mode input bool p always[0:1](p -> mode == AUTO)"
+    stdin = jsonl({"mode": 4, "p": 1}, {"mode": 0, "p": True})
+    answer = run("monitor", text, "--verdict", "eager", "--explain", stdin=stdin).out.splitlines()[0]
+    assert [cause["value"] for cause in json.loads(answer)["causes"]] == [True, "MANUAL"]

@@ -296,3 +296,19 @@ def test_a_narrow_touch_screen_needs_no_horizontal_scrolling(page, small):
     finally:
         page.send("Emulation.setTouchEmulationEnabled", enabled=False)
         page.send("Emulation.clearDeviceMetricsOverride")
+
+
+def test_members_and_booleans_are_read_by_name(page, folder):
+    (folder / "modes.stl").write_text(
+        "enum Mode { MANUAL, AUTO = 4 } input Mode mode input bool p always(p -> mode == AUTO)"
+    )
+    (folder / "modes.csv").write_text("time,mode,p\n0,AUTO,1\n1,MANUAL,0\n2,MANUAL,1\n")
+    paths = [str(folder / name) for name in ("modes.stl", "modes.csv")]
+    assert main(["report", *paths, "-o", str(folder / "modes.html")]) == 1
+    opened(page, folder / "modes.html")
+    labels = page.run("[...document.querySelectorAll('.plot')].map(plot => plot.getAttribute('aria-label'))")
+    assert labels[:2] == ["p from false to true", "mode from MANUAL to AUTO"]
+    press(page, "violation")
+    values = page.run("[...document.querySelectorAll('.legend .value')].map(value => value.textContent)")
+    assert values[:2] == ["true", "MANUAL"]
+    assert page.errors == []
