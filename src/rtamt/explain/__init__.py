@@ -13,6 +13,7 @@ critical   the critical point
 propagate  required truth values, from the verdict down to the predicates
 necessary  intervals that every implicant contains
 witnesses  choose between several sufficient operands or times
+shares     choose instants for a share of each of many windows
 minimise   remove intervals while the verdict is still forced
 report     the explanation as data and text
 sentences  the sentences of an explanation, the same in every output

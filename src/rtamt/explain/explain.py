@@ -6,6 +6,8 @@ from itertools import islice
 from math import inf, isinf
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from rtamt.engine.engine import engine_of
 from rtamt.engine.offline import Evaluators
 from rtamt.errors import EvaluationError
@@ -13,7 +15,7 @@ from rtamt.explain.critical import Point, Walk
 from rtamt.explain.minimise import Forcing, intervals_of, minimal
 from rtamt.explain.necessary import Needs
 from rtamt.explain.propagate import Demands
-from rtamt.explain.report import CriticalPoint, Explanation, Stretch
+from rtamt.explain.report import CriticalPoint, Explanation, Listed, Stretch
 from rtamt.explain.sentences import cause, predicate_text, summary
 from rtamt.explain.signals import Signals, truths
 from rtamt.language.formula import Var, postorder, types_of
@@ -99,7 +101,7 @@ class _Explainer:
         robustness = self._signals.at(core, cell)
         implicant = self._implicant(cell, satisfied)
         critical, point = self._critical(cell, implicant)
-        stretches = [self._stretch(interval, cell, satisfied) for interval in implicant]
+        stretches = Listed(len(implicant), lambda k: self._stretch(implicant[k], cell, satisfied))
         text = to_text(self._formula, limit=PAGE)
         violation = None
         if not satisfied and cell == 0:
@@ -112,7 +114,7 @@ class _Explainer:
             robustness,
             violation,
             critical,
-            tuple(stretch for stretch, _ in stretches),
+            Listed(len(stretches), lambda k: stretches[k][0]),
             summary(
                 text,
                 "satisfied" if satisfied else "violated",
@@ -122,7 +124,7 @@ class _Explainer:
                 (critical, show(point)),
                 caused=bool(stretches),
             ),
-            tuple(cause(stretch, when) for stretch, when in stretches),
+            Listed(len(stretches), lambda k: cause(*stretches[k])),
             _ranked(implicant, point),
         )
 
@@ -290,15 +292,11 @@ def overturns(point: CriticalPoint) -> bool:
 
 def _ranked(implicant: Sequence[Interval], point: int) -> tuple[int, ...]:
     """Return the numbers of the intervals: of each predicate the closest to a cell, then the others, closest first."""
-
-    def distance(number: int) -> int:
-        interval = implicant[number]
-        return max(interval.start - point, point - interval.end + 1, 0)
-
-    order = sorted(range(len(implicant)), key=distance)
+    starts, ends = (np.array([getattr(i, end) for i in implicant], np.int64) for end in ("start", "end"))
+    order = np.argsort(np.maximum(starts - point, point - ends + 1).clip(0), kind="stable").tolist()
     closest = {(implicant[i].name, implicant[i].sign): i for i in reversed(order)}
     first = set(closest.values())
-    return tuple(sorted(order, key=lambda number: number not in first))
+    return (*(i for i in order if i in first), *(i for i in order if i not in first))
 
 
 def _infinite(steps: StepFunction) -> StepFunction:

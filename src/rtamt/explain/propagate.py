@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rtamt.explain.critical import around
+from rtamt.explain.shares import sharing
 from rtamt.explain.witnesses import blocking, reaching, witnesses
 from rtamt.language.formula import Apply, Formula, Var
 from rtamt.language.records import Rank, Shift, Since, Tense, Window
@@ -227,12 +228,14 @@ class Demands:
         return k if self.truth(sign) else nominal - k + 1, found
 
     def _deciding(self, node: Apply, sign: int, cells: Cells) -> Cells:
-        """Choose instants of the operand for a share of a window: for a single sample, as few as possible."""
+        """Choose instants of the operand for a share of a window: in discrete time as few as possible."""
         need, found = self._share(node, sign)
-        window = cells.widened(*self._offsets(node))
-        found = found & window
-        if self._dense or cells.lone is None:
+        before, after = self._offsets(node)
+        found = found & cells.widened(before, after)
+        if self._dense:
             return found
+        if cells.lone is None:
+            return sharing(cells, found, before, after, need)
         # Those that decide the value: the largest, or the smallest.
         inside = found.within(0, self._end)
         samples = np.concatenate([np.arange(*each) for each in inside] or [np.empty(0, np.int64)])

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from html import escape
 from math import isfinite
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Generic, TypeVar, overload
 
 import numpy as np
 
@@ -14,9 +15,51 @@ from rtamt.signals.datetimes import nanoseconds_of
 if TYPE_CHECKING:
     from rtamt.language.formula import Formula
 
+T = TypeVar("T")
 
 #: Causes of an explanation that is not asked for all.
 SHORT = 5
+
+
+class Listed(Sequence[T], Generic[T]):
+    """A tuple whose elements are made when they are read: a long explanation has many, and prints few.
+
+    >>> squares = Listed(10**9, lambda k: k * k)
+    >>> squares[3], squares[-1], squares[:2] == (0, 1)
+    (9, 999999998000000001, True)
+    """
+
+    def __init__(self, length: int, make: Callable[[int], T]) -> None:
+        self._length = length
+        self._make = make
+        self._made: dict[int, T] = {}
+
+    def __len__(self) -> int:
+        return self._length
+
+    @overload
+    def __getitem__(self, index: int) -> T: ...
+
+    @overload
+    def __getitem__(self, index: slice) -> tuple[T, ...]: ...
+
+    def __getitem__(self, index: int | slice) -> T | tuple[T, ...]:
+        found = range(self._length)[index]
+        return tuple(map(self._one, found)) if isinstance(found, range) else self._one(found)
+
+    def _one(self, index: int) -> T:
+        if index not in self._made:
+            self._made[index] = self._make(index)
+        return self._made[index]
+
+    def __eq__(self, other: object) -> bool:
+        return tuple(self) == tuple(other) if isinstance(other, Listed | tuple) else NotImplemented
+
+    def __hash__(self) -> int:
+        return hash(tuple(self))
+
+    def __repr__(self) -> str:
+        return repr(tuple(self))
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,6 +130,7 @@ class Explanation:
     instant than the first.
     ``summary``: the sentences before the causes; ``causes``: one for each interval of the implicant.
     ``ranking``: the numbers of the causes, those first that are closest to the critical point.
+    ``implicant`` and ``causes`` are sequences whose elements are made when they are read.
     """
 
     formula: str
@@ -95,9 +139,9 @@ class Explanation:
     robustness: float
     first_violation: Any
     critical: CriticalPoint
-    implicant: tuple[Stretch, ...]
+    implicant: Sequence[Stretch]
     summary: tuple[str, ...]
-    causes: tuple[str, ...]
+    causes: Sequence[str]
     ranking: tuple[int, ...]
 
     def __str__(self) -> str:

@@ -20,7 +20,7 @@ from rtamt.report.signals import BUDGET, signals_of
 from rtamt.report.store import Store
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterable, Mapping, Sequence
+    from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 
     from rtamt.plot.clock import Clock
     from rtamt.plot.scene import Scene
@@ -125,11 +125,11 @@ class Page:
         )
         if scene is not None:
             explanation = scene.explanation
-            card.summary, causes = _sentences(scene)
+            card.summary, cause = _sentences(scene)
             shown = explanation.shown()
-            card.causes = [causes[i] for i in shown]
+            card.causes = list(map(cause, shown))
             rest = [i for i in explanation.ranking if i not in set(shown)]
-            card.more = [causes[i] for i in sorted(rest[:_CAUSES])]
+            card.more = list(map(cause, sorted(rest[:_CAUSES])))
             card.hidden = len(rest)
             data = data_of(scene, self._store) | {"trace": row.trace}
             card.data = _json(data)
@@ -217,8 +217,8 @@ def _anchor(row: Row) -> str:
     )
 
 
-def _sentences(scene: Scene) -> tuple[list[Line], list[Line]]:
-    """Return the sentences before the causes, and those of the causes."""
+def _sentences(scene: Scene) -> tuple[list[Line], Callable[[int], Line]]:
+    """Return the sentences before the causes, and a function that returns the sentence of one cause."""
     explanation, point = scene.explanation, scene.critical
     first = None
     if explanation.first_violation is not None:
@@ -232,15 +232,17 @@ def _sentences(scene: Scene) -> tuple[list[Line], list[Line]]:
     # The headline is above, and the formula is below.
     summary = [Line(text, place) for text, place in zip(explanation.summary, places, strict=True)][1:]
     nodes = {node.formula: number for number, node in enumerate(scene.nodes)}
-    causes = []
-    for text, stretch in zip(explanation.causes, explanation.implicant, strict=True):
-        number, place = nodes.get(stretch.formula), None
-        if number is not None:
+
+    def cause(number: int) -> Line:
+        stretch = explanation.implicant[number]
+        node, place = nodes.get(stretch.formula), None
+        if node is not None:
             start = scene.clock.position(stretch.start)
             end = scene.clock.end if stretch.end is None else scene.clock.position(stretch.end)
-            place = (number, start, end)
-        causes.append(Line(text, place))
-    return summary, causes
+            place = (node, start, end)
+        return Line(explanation.causes[number], place)
+
+    return summary, cause
 
 
 def _json(data: Mapping[str, Any]) -> str:

@@ -1,0 +1,115 @@
+"""Which instants of an operand to rest the verdict of a share of its window on, for many windows at once."""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from collections import deque
+from itertools import accumulate
+
+from rtamt.signals.instants import Cells
+
+
+def sharing(asked: Cells, found: Cells, before: int, after: int, need: int) -> Cells:
+    """Return as few cells of ``found`` as possible: each k of ``asked`` has ``need`` in [k + before, k + after].
+
+    From left to right, each time those furthest to the right that are not taken yet: later windows use them, too.
+    No cell can be left out, because no smaller set exists. Cost: proportional to the number of intervals.
+    """
+    return _Sweep(found, before, after, need).over(asked)
+
+
+class _Sweep:
+    """Windows of cells from left to right; ``free`` are the cells seen so far and not taken, as intervals."""
+
+    def __init__(self, found: Cells, before: int, after: int, need: int) -> None:
+        self._starts: list[int] = found.starts.tolist()
+        self._ends: list[int] = found.ends.tolist()
+        lengths = (end - start for start, end in zip(self._starts, self._ends, strict=True))
+        self._total: list[int] = [0, *accumulate(lengths)]
+        self._before, self._after, self._need = before, after, need
+        self._free: deque[tuple[int, int]] = deque()
+        self._left = 0  # free cells in the window
+        self._seen = 0  # cells before the trace count, and are not to be taken
+        self._next = 0  # the first interval that is not seen to its end
+        self._taken: list[tuple[int, int]] = []
+
+    def over(self, asked: Cells) -> Cells:
+        for begin, end in asked:
+            k = max(begin, -self._after - 1)  # windows before the trace have what they need
+            while k < end:
+                self._see(k + self._after + 1)
+                self._expire(k + self._before)
+                inside = self._count(k + self._after + 1) - self._count(k + self._before)
+                spare = inside - self._left - self._need
+                if spare < 0:
+                    self._take(-spare)
+                    spare = 0
+                k = self._after_next(k, spare, end)
+        return Cells.of(self._taken)
+
+    def _count(self, cell: int) -> int:
+        """Return how many cells of ``found`` are before a cell."""
+        run = bisect_right(self._starts, cell)
+        return self._total[run] - (max(self._ends[run - 1] - cell, 0) if run else 0)
+
+    def _see(self, stop: int) -> None:
+        """Make the cells before ``stop`` free that were not seen."""
+        while self._next < len(self._starts) and self._starts[self._next] < stop:
+            begin, end = max(self._starts[self._next], self._seen), min(self._ends[self._next], stop)
+            if begin < end:
+                self._free.append((begin, end))
+                self._left += end - begin
+            if self._ends[self._next] > stop:
+                break
+            self._next += 1
+        self._seen = max(self._seen, stop)
+
+    def _expire(self, begin: int) -> None:
+        """Forget the free cells before the window."""
+        while self._free and self._free[0][0] < begin:
+            start, end = self._free.popleft()
+            self._left -= min(end, begin) - start
+            if end > begin:
+                self._free.appendleft((begin, end))
+
+    def _take(self, count: int) -> None:
+        """Take the free cells furthest to the right."""
+        self._left -= count
+        while count:
+            start, end = self._free.pop()
+            first = max(start, end - count)
+            if start < first:
+                self._free.append((start, first))
+            self._taken.append((first, end))
+            count -= end - first
+
+    def _after_next(self, k: int, spare: int, end: int) -> int:
+        """Return a later window, up to which every one has what it needs; it takes the cells for those it skips."""
+        left = k + self._before
+        stop = self._free[0][0] if self._free else None
+        rank = self._count(left) + spare
+        run = bisect_right(self._total, rank) - 1
+        # The taken cell whose loss leaves too few.
+        lost = self._starts[run] + rank - self._total[run] if run < len(self._starts) else None
+        if stop is not None and (lost is None or lost >= stop):
+            # Free cells come first: those before them are spare, and they themselves count for nothing.
+            return max(k + 1, self._free[0][1] - self._before)
+        if lost is None:
+            return end
+        k = lost + 1 - self._before
+        if k >= end:
+            return k
+        # One more is needed for each taken cell that is lost from here on: a whole stretch of them at once.
+        entering = k + self._after
+        self._see(entering)
+        stretch = min(self._ends[run], self._free[0][0] if self._free else self._ends[run]) - lost
+        at = bisect_right(self._starts, entering) - 1
+        if at >= 0 and entering < self._ends[at]:
+            stretch = min(stretch, end - k, self._ends[at] - entering)
+            self._taken.append((entering, entering + stretch))
+            self._seen = entering + stretch
+        else:
+            later = self._starts[at + 1] - entering if at + 1 < len(self._starts) else stretch
+            stretch = min(stretch, end - k, later, self._free[-1][1] - self._free[-1][0])
+            self._take(stretch)
+        return k + stretch - 1

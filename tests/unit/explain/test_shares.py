@@ -1,0 +1,64 @@
+"""Instants for a share of many windows: enough for each, and none to spare."""
+
+import numpy as np
+from hypothesis import given
+from hypothesis import strategies as st
+
+import rtamt
+from rtamt.explain.minimise import Forcing
+from rtamt.explain.report import Listed
+from rtamt.explain.shares import sharing
+from rtamt.signals.instants import Cells
+
+
+def cells(numbers):
+    return Cells.of((k, k + 1) for k in numbers)
+
+
+@given(
+    st.sets(st.integers(0, 30)),
+    st.booleans(),
+    st.booleans(),
+    st.integers(-6, 4),
+    st.integers(0, 7),
+    st.data(),
+)
+def test_every_window_has_what_it_needs_and_no_cell_can_be_left_out(
+    inside, earlier, later, before, width, data
+):
+    outside = set(range(-9, 0) if earlier else ()) | set(range(31, 45) if later else ())
+    found, after = inside | outside, before + width
+    need = data.draw(st.integers(1, width + 1))
+
+    def enough(having, k):
+        return len(having & set(range(k + before, k + after + 1))) >= need
+
+    asked = [k for k in range(31) if enough(found, k) and data.draw(st.integers(0, 4))]
+    given_cells = cells(found) & cells(asked).widened(before, after)
+    taken = {
+        k for begin, end in sharing(cells(asked), given_cells, before, after, need) for k in range(begin, end)
+    }
+    assert taken <= found
+    chosen = taken & inside
+    assert all(enough(chosen | outside, k) for k in asked)
+    for left_out in chosen:
+        assert not all(enough((chosen | outside) - {left_out}, k) for k in asked)
+
+
+def test_a_share_of_many_windows_is_not_tried_interval_by_interval(monkeypatch):
+    monkeypatch.delattr(Forcing, "failures")
+    x = np.random.default_rng(0).normal(size=20_000)
+    explanation = rtamt.parse("always(atleast[0:1000](50%, x > -0.5))").evaluate({"x": x}).explain()
+    assert explanation.satisfied
+    assert len(explanation.causes) > 2000
+
+
+def test_causes_are_made_when_they_are_read():
+    made = []
+    listed = Listed(1000, lambda k: made.append(k) or k)
+    assert (listed[3], listed[-1], listed[3], len(listed)) == (3, 999, 3, 1000)
+    assert made == [3, 999]
+    assert listed == tuple(range(1000))
+    assert hash(listed) == hash(tuple(range(1000)))
+    assert listed[:2] == (0, 1)
+    assert listed != tuple(range(999))
