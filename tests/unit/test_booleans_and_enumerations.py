@@ -137,6 +137,12 @@ def test_signals_of_different_types_in_one_panel_have_numbers_at_the_axis():
     assert "true" not in [label.get_text() for label in figure.axes[0].get_yticklabels()]
 
 
+def test_a_picture_of_a_time_without_samples_has_no_names():
+    result = rtamt.parse(MODES + "always p").evaluate({"p": [1, 0]})
+    figure = result.plot(start=0.25, end=0.75, figure=Figure())
+    assert [label.get_text() for label in figure.axes[0].get_yticklabels()] == []
+
+
 def test_names_of_many_members_do_not_overlap_in_a_picture():
     members = ", ".join(f"M{i}" for i in range(40))
     spec = rtamt.parse(f"enum Many {{ {members} }} input Many m always(m != M3)")

@@ -36,7 +36,8 @@ _MOST = 1000
 class Live:
     """Draws on a terminal with rich, at most some times a second; a context, at whose end the last view stays.
 
-    ``units``: of variables, shown behind their values. ``types``: of those whose values have names. What is printed on stderr meanwhile goes above the view.
+    ``units``: of variables, shown behind their values. ``types``: of those whose values have names. What is printed on
+    stderr meanwhile goes above the view.
     """
 
     #: Seconds between two updates.

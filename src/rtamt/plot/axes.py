@@ -9,6 +9,7 @@ import numpy as np
 from rtamt.extras import library
 from rtamt.plot import style
 from rtamt.plot.texts import shortened
+from rtamt.signals.regular import merged
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -37,9 +38,9 @@ def _apart(values: Sequence[float], distance: float) -> list[float]:
     >>> _apart([0, 1, 2, 9], 2)
     [0, 2, 9]
     """
-    found = [values[0]]
+    found: list[float] = []
     for value in values:
-        if value - found[-1] >= distance:
+        if not found or value - found[-1] >= distance:
             found.append(value)
     return found
 
@@ -58,7 +59,7 @@ class Edges:
         limits = [low - (4 if infinite[0] else 1) * pad, high + (4 if infinite[1] else 1) * pad]
         names = names_of(lines)
         if names:
-            ticks = _apart(np.unique(finite).tolist(), (high - low) / _NAMES)
+            ticks = _apart(merged([finite]).tolist(), (high - low) / _NAMES)
         else:
             ticks = [
                 t for t in matplotlib("ticker").MaxNLocator(3).tick_values(low, high) if low <= t <= high
