@@ -22,6 +22,16 @@ void append(Pieces& pieces, Tick begin, Tick end, double value) {
     }
 }
 
+// The values of a register at the ticks of [l, r].
+void append(Pieces& pieces, const Runs& own, Tick l, Tick r) {
+    while (l <= r) {
+        const Run run = own.at(l);
+        const Tick end = std::min(run.end, r);
+        append(pieces, l, end, run.value);
+        l = end + 1;
+    }
+}
+
 // Makes of runs that overlap their maximum, in order of time.
 void envelope(Pieces& pieces) {
     if (pieces.size() < 2) return;
@@ -194,7 +204,8 @@ Causes::Causes(std::vector<Cause> parts, std::vector<std::uint32_t> outputs,
         const bool pair =
             recursion || cause.kind == Cause::Kind::both || cause.kind == Cause::Kind::either;
         require(cause.kind <= Cause::Kind::since && cause.ref / 2 < engine.size());
-        require(cause.kind == Cause::Kind::atom || earlier(cause.a, i));
+        const bool predicate = cause.kind == Cause::Kind::atom || cause.kind == Cause::Kind::span;
+        require(predicate || earlier(cause.a, i));
         require(!pair || earlier(cause.b, i));
         require(!recursion || (cause.core / 2 < engine.size() && cause.low >= 0));
         require(cause.low <= cause.high && cause.shift >= 0 && cause.shift < forever);
@@ -241,6 +252,12 @@ void Causes::compute(const Engine& engine, std::size_t index, int reg, Tick newe
     switch (cause.kind) {
     case Cause::Kind::atom:
         append(pieces, newest, newest, own.at(newest).value);
+        return;
+    case Cause::Kind::span:
+        for (const Piece& piece : engine.news(cause.ref, reg))
+            append(pieces, own, piece.l, piece.r);
+        clip(pieces, last);
+        envelope(pieces);
         return;
     case Cause::Kind::both:
     case Cause::Kind::either:

@@ -22,7 +22,7 @@ namespace rtamt::early {
 // A part of a formula, operands first. A reference to a part is twice its index, plus one where it
 // is negated.
 struct Cause {
-    enum class Kind : std::uint8_t { atom, both, either, least, greatest, until, since };
+    enum class Kind : std::uint8_t { atom, span, both, either, least, greatest, until, since };
     Kind kind{};
     std::uint32_t ref = none; // of the graph, whose bounds are those of this part
     std::uint32_t a = none;   // references to parts

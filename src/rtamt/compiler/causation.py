@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from rtamt.compiler.graph import ITEMS, LATTICE, interval_in_steps
 from rtamt.compiler.program import NO_OPERAND
-from rtamt.language.formula import Apply, Formula, postorder
+from rtamt.language.formula import Apply, Formula, children
 from rtamt.language.operators import Pointwise, Shift, Since, Tense, Until, Window
+from rtamt.rewrite.early import connects
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -18,7 +19,7 @@ if TYPE_CHECKING:
     from rtamt.compiler.graph import Graph
 
 #: In the order of the core's enumeration.
-KINDS = ("atom", "both", "either", "least", "greatest", "until", "since")
+KINDS = ("atom", "span", "both", "either", "least", "greatest", "until", "since")
 
 
 class Cause(NamedTuple):
@@ -59,9 +60,15 @@ def compile_causes(graph: Graph, formulas: Sequence[Formula]) -> Causes:
     refs: dict[Formula, int] = {}
 
     def add(formula: Formula) -> int:
-        for node in postorder(formula):
-            if node not in refs:
-                refs[node] = _part(graph, parts, refs, node)
+        above = [formula]
+        while above:  # operands first, predicates as a whole
+            node = above[-1]
+            missing = [each for each in _operands(graph, node) if each not in refs]
+            above.extend(missing)
+            if not missing:
+                above.pop()
+                if node not in refs:
+                    refs[node] = _part(graph, parts, refs, node)
         return refs[formula]
 
     outputs = [add(formula) for formula in formulas]
@@ -85,11 +92,18 @@ def _recursive(formula: Formula) -> bool:
     return isinstance(formula, Apply) and isinstance(formula.op.kernel, Since | Until)
 
 
+def _operands(graph: Graph, formula: Formula) -> tuple[Formula, ...]:
+    """Return the parts that a part is made of, none of a predicate."""
+    return () if graph.is_atom(formula) or not connects(formula) else children(formula)
+
+
 def _part(graph: Graph, parts: list[Cause], refs: dict[Formula, int], formula: Formula) -> int:
     """Add a part whose operands have been added; return its reference."""
     if graph.is_atom(formula):
         return _add(parts, Cause(KINDS.index("atom"), graph.ref(formula)))
     assert isinstance(formula, Apply)
+    if not connects(formula):
+        return _add(parts, Cause(KINDS.index("span"), graph.ref(formula)))
     kernel = formula.op.kernel
     args = [refs[operand] for operand in formula.args]
     past = formula.op.tense is Tense.PAST

@@ -2,9 +2,10 @@
 
 Z. Zhang et al., "Online causation monitoring of signal temporal logic", CAV 2023. With b the newest sample
 and [L, U] the bounds after it, the violation causation ``viol`` at t is how bad the newest sample makes the formula
-at t, and ``sat`` how good. A predicate has its value at b; elsewhere the newest sample causes nothing, which is +inf
-and -inf. For a fixed t the minimum of ``viol`` over the samples so far, and of the upper bound before any of them,
-is U; the maximum of ``sat``, and of that lower bound, is L. In discrete time, for exact samples.
+at t, and ``sat`` how good. A predicate has its value at b; one that reads several samples (``sum``, ``ahead``) has
+its upper bound as ``viol`` where b has lowered that, and its lower bound as ``sat`` where b has raised it. Elsewhere
+the newest sample causes nothing, which is +inf and -inf. For a fixed t the minimum of ``viol`` over the samples so far,
+and of the upper bound before any of them, is U; the maximum of ``sat``, and of that lower bound, is L.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ from rtamt.language.formula import Apply, Formula, postorder
 from rtamt.language.operators import Bounds, Pointwise, Shift, Since, Tense, Window
 from rtamt.reference.discrete_bounds import bounds
 from rtamt.rewrite.desugar import desugar
-from rtamt.rewrite.early import connects
+from rtamt.rewrite.early import at_one_instant, connects
 from rtamt.rewrite.ground import ground
 from rtamt.signals.outcomes import Causation
 
@@ -37,7 +38,7 @@ NOTHING = Causation(inf, -inf)
 def causation(formula: Formula, known: Knowledge, period: Fraction, m: int) -> list[Causation]:
     """Return how the last sample of ``known`` affects the formula at samples 0 to m - 1.
 
-    The formula must be one that has causation (``rewrite.early.causeless``).
+    The formula must have causation: no share of a window (``rewrite.early.causeless``).
 
     >>> from fractions import Fraction
     >>> import numpy as np
@@ -58,10 +59,11 @@ class _Causes:
 
     def __init__(self, known: Knowledge, period: Fraction, end: int) -> None:
         self._known = known
+        self._before = known.until(known.n - 1)
         self._period = period
         self._end = end
         self._found: dict[_Part, Causation] = {}
-        self._bounds: dict[Formula, list[tuple[float, float]]] = {}
+        self._bounds: dict[tuple[Formula, int], list[tuple[float, float]]] = {}
 
     def at(self, node: Formula, t: int) -> Causation:
         found = self._found.get((node, t))
@@ -71,8 +73,12 @@ class _Causes:
 
     def _cause(self, node: Formula, t: int) -> Causation:
         lower, upper = self._limits(node, t)
-        if not isinstance(node, Apply) or not connects(node):
+        if at_one_instant(node):
             return Causation(upper, lower) if t == self._known.n - 1 else NOTHING
+        assert isinstance(node, Apply)
+        if not connects(node):
+            before = self._limits(node, t, self._before)
+            return Causation(upper if upper < before[1] else inf, lower if lower > before[0] else -inf)
         kernel, args = node.op.kernel, node.args
         if isinstance(kernel, Shift):
             there = t + (1 if node.op.tense is Tense.FUTURE else -1)
@@ -103,11 +109,12 @@ class _Causes:
             max(self.at(*part).satisfaction for part in parts), *(self._limits(*part)[0] for part in parts)
         )
 
-    def _limits(self, node: Formula, t: int) -> tuple[float, float]:
-        if node not in self._bounds:
-            found = bounds(node, self._known, self._period)
-            self._bounds[node] = list(zip(found.lower.tolist(), found.upper.tolist(), strict=True))
-        every = self._bounds[node]
+    def _limits(self, node: Formula, t: int, known: Knowledge | None = None) -> tuple[float, float]:
+        known = known or self._known
+        if (node, known.n) not in self._bounds:
+            found = bounds(node, known, self._period)
+            self._bounds[node, known.n] = list(zip(found.lower.tolist(), found.upper.tolist(), strict=True))
+        every = self._bounds[node, known.n]
         return every[min(t, len(every) - 1)]
 
     def _window(self, node: Apply, t: int) -> Iterable[int]:

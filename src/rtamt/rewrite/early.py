@@ -2,8 +2,8 @@
 
 Bounds are sound for every formula. They are tight (attained by some trace that agrees with all known samples) if
 every sample enters with one polarity: :func:`loose`. In discrete time the end of a trace clips windows, so that
-a verdict at the end may differ from one reported while the trace went on: :func:`ends_differently`. Arithmetic on
-formulas in time has no causation: :func:`causeless`.
+a verdict at the end may differ from one reported while the trace went on: :func:`ends_differently`. A share of a
+window has no causation: :func:`causeless`.
 """
 
 from __future__ import annotations
@@ -15,8 +15,9 @@ import numpy as np
 
 from rtamt.language.enclosures import Enclosure, extended
 from rtamt.language.formula import Apply, Const, Formula, Var, children, fold, postorder, variables
-from rtamt.language.operators import Ahead, Bounds, Pointwise, Rank, Shift, Since, Sum, Tense, Until, Window
-from rtamt.rewrite.desugar import desugar, written
+from rtamt.language.operators import Bounds, Pointwise, Shift, Since, Sum, Tense, Until, Window
+from rtamt.language.shares import is_share
+from rtamt.rewrite.desugar import desugar
 from rtamt.rewrite.presence import tracked
 
 if TYPE_CHECKING:
@@ -219,20 +220,16 @@ def connects(node: Formula) -> bool:
     return isinstance(kernel, Window | Shift | Since | Until)
 
 
+def at_one_instant(node: Formula) -> bool:
+    """Return whether a formula reads all its variables at the instant of its value."""
+    return not any(isinstance(each, Apply) and each.op.tense is not Tense.NONE for each in postorder(node))
+
+
 def causeless(formula: Formula) -> Formula | None:
-    """Return a part of a formula that has no causation: arithmetic on a formula in time, or a share of a window.
+    """Return a part of a formula that has no causation, which is a share of a window.
 
     >>> from rtamt.language.parser import parse_formula
-    >>> causeless(parse_formula("always((once x) + 1 >= 0)"))
-    <formula (once x) + 1>
+    >>> causeless(parse_formula("always(atleast[0:9](80%, x > 0))"))
+    <formula atleast[0:9](80%, x > 0)>
     """
-    in_time: dict[int, bool] = {}
-    core = desugar(tracked(formula))
-    for node in postorder(core):
-        below = any(in_time[id(operand)] for operand in children(node))
-        if (below and not connects(node)) or (
-            isinstance(node, Apply) and isinstance(node.op.kernel, Ahead | Rank)
-        ):
-            return written(node, [formula])
-        in_time[id(node)] = below or (isinstance(node, Apply) and node.op.tense is not Tense.NONE)
-    return None
+    return next((node for node in postorder(formula) if is_share(node)), None)

@@ -10,7 +10,6 @@ from rtamt.engine.online import time_of
 from rtamt.engine.usage_guard import exclusive
 from rtamt.errors import SpecificationError, TraceError, UsageError, shown
 from rtamt.language.printer import excerpt
-from rtamt.language.shares import is_share
 from rtamt.rewrite.check import unbounded_future
 from rtamt.rewrite.early import causeless
 from rtamt.signals.outcomes import Causation
@@ -45,9 +44,8 @@ class CausationMonitor(DiscreteEarlyMonitor, EarlyMonitorBase):
         for each, text in ((formula, settings.get("text")), *((w.formula, w.text) for w in watch)):
             culprit = causeless(each)
             if culprit is not None:
-                what = "a share of a window" if is_share(culprit) else "arithmetic on a formula in time"
                 raise SpecificationError(
-                    f"'{excerpt(culprit)}' is {what}, which has no causation; use another verdict mode",
+                    f"'{excerpt(culprit)}' is a share of a window, which has no causation; use another verdict mode",
                     text,
                     culprit.span,
                 )

@@ -26,6 +26,20 @@ def test_each_violation_is_caused_by_the_sample_that_makes_it_certain(backend):
 
 
 @BACKENDS
+@pytest.mark.parametrize(
+    ("formula", "violations"),
+    [
+        ("always[0:1](ahead[2](x) >= 3)", [inf, inf, 1, -2, inf]),  # x at 2 s and at 3 s
+        ("always[0:2](sum[0:1](x) <= 9)", [4, -1, 0, inf, inf]),  # the sums 5, 10 and 9
+        ("eventually[1:1](held(x, x > 4) >= 6)", [inf, -1, inf, inf, inf]),
+    ],
+)
+def test_predicate_over_several_samples_has_causation_where_its_bounds_change(formula, violations, backend):
+    monitor = rtamt.parse(formula, backend=backend).monitor(verdict="causation")
+    assert [monitor.update(t, x=x).violation for t, x in enumerate([5, 5, 4, 1, 9])] == violations
+
+
+@BACKENDS
 def test_formula_of_bounded_future_has_causation_at_every_sample(backend):
     monitor = rtamt.parse("always[0:1](x >= 3)", backend=backend).monitor(verdict="causation")
     for t, x in enumerate([4, 1, 2]):
