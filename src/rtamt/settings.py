@@ -15,7 +15,7 @@ from rtamt.engine.engine import engine_of
 from rtamt.errors import UsageError, choices, did_you_mean, shown
 from rtamt.language.formula import Formula, variables
 from rtamt.language.operators import Language
-from rtamt.language.value_types import BOOLEAN
+from rtamt.language.value_types import BOOLEAN, Enumeration
 from rtamt.rewrite.semantics import ROLES, PredicateSemantics
 from rtamt.signals.arrays import is_number
 
@@ -113,43 +113,72 @@ def check_constants(constants: Mapping[str, float]) -> None:
             raise UsageError(f"the constant '{name}' is {shown(value)}; give a number")
 
 
-def assignments(texts: Iterable[str]) -> dict[str, float]:
-    """Return the values of parameters that are given as texts.
+def assignments(texts: Iterable[str]) -> dict[str, float | str]:
+    """Return the values of parameters that are given as texts; what is no number is kept for :func:`parameter_value`.
 
-    >>> assignments(["limit=3", "battery.low = 3.5", "strict=true"])
-    {'limit': 3.0, 'battery.low': 3.5, 'strict': True}
+    >>> assignments(["limit=3", "battery.low = 3.5", "strict=true", "start=AUTO"])
+    {'limit': 3.0, 'battery.low': 3.5, 'strict': True, 'start': 'AUTO'}
     """
     truths = {"true": True, "false": False}
-    values: dict[str, float] = {}
+    values: dict[str, float | str] = {}
     for text in texts:
-        name, equals, value = text.rpartition("=")
+        name, equals, given = text.rpartition("=")
+        value = given.strip()
+        if not equals or not name.strip() or not value:
+            raise UsageError(f"'{text}' sets no parameter; write NAME=VALUE, such as limit=3")
+        truth = truths.get(value.lower())
         try:
-            truth = truths.get(value.strip().lower())
             values[name.strip()] = float(value) if truth is None else truth
         except ValueError:
-            equals = ""
-        if not equals or not name.strip():
-            raise UsageError(f"'{text}' sets no parameter; write NAME=VALUE with a number, such as limit=3")
+            values[name.strip()] = value
     return values
 
 
-def check_parameters(
-    values: Mapping[str, float], known: Collection[str], types: Mapping[str, ValueType] = MappingProxyType({})
-) -> None:
-    """Raise :class:`UsageError` unless every name is a known parameter and every value one of its type."""
-    for name, value in values.items():
+def require_parameters(names: Iterable[str], known: Collection[str]) -> None:
+    """Raise :class:`UsageError` unless every name is that of a known parameter."""
+    for name in names:
         if name not in known:
             declared = (
                 choices(name, known, "parameters") if known else f"; declare it: parameter float {name} = ..."
             )
             raise UsageError(f"there is no parameter '{name}'{declared}")
-        if not is_number(value) or isnan(value):
-            raise UsageError(f"the parameter '{name}' is {shown(value)}; give a number")
-        truth = isinstance(value, bool | np.bool_)
-        if types.get(name) is BOOLEAN and not truth and value not in (0, 1):
-            raise UsageError(f"the parameter '{name}' is {shown(value)}; it is a bool, so give true or false")
-        if types.get(name) is None and truth:
-            raise UsageError(f"the parameter '{name}' is {shown(value)}, and it is no bool; give a number")
+
+
+def parameter_value(name: str, given: Any, type_: ValueType | None) -> float:
+    """Return the value of a parameter as a number; raise :class:`UsageError` for what is none of its type.
+
+    >>> mode = Enumeration("Mode", (("MANUAL", 0), ("AUTO", 4)))
+    >>> parameter_value("start", "AUTO", mode), parameter_value("strict", True, BOOLEAN)
+    (4.0, 1.0)
+    """
+    if isinstance(type_, Enumeration):
+        return _code(name, given, type_)
+    if not is_number(given) or isnan(given):
+        needed = "it is a bool, so give true or false" if type_ is BOOLEAN else "give a number"
+        raise UsageError(f"the parameter '{name}' is {shown(given)}; {needed}")
+    truth = isinstance(given, bool | np.bool_)
+    if type_ is BOOLEAN and not truth and given not in (0, 1):
+        raise UsageError(f"the parameter '{name}' is {shown(given)}; it is a bool, so give true or false")
+    if type_ is None and truth:
+        raise UsageError(f"the parameter '{name}' is {shown(given)}, and it is no bool; give a number")
+    return float(given)
+
+
+def _code(name: str, given: Any, type_: Enumeration) -> float:
+    """Return the code of a member that is given by its name, as a member of a Python ``enum``, or by its code."""
+    member = given.name if isinstance(given, Enum) else given
+    if isinstance(member, str):
+        member = member.removeprefix(f"{type_.name}.")
+        code = type_.code(member)
+        if code is None:
+            raise UsageError(f"the parameter '{name}' is {shown(member)}, which is {type_.stranger(member)}")
+        return float(code)
+    if not is_number(given) or isinstance(given, bool | np.bool_) or type_.member(given) is None:
+        raise UsageError(
+            f"the parameter '{name}' is {shown(given)}, which is no member of {type_.name}; "
+            f"its members are {type_.listing}"
+        )
+    return float(given)
 
 
 def _check_mapping(what: str, given: object, example: str) -> None:

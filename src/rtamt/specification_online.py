@@ -234,7 +234,7 @@ class OnlineSpecification(SpecificationText):
 
 
 def _monitor(
-    spec: OnlineSpecification, parameters: Mapping[str, float] | None = None, **settings: Any
+    spec: OnlineSpecification, parameters: Mapping[str, Any] | None = None, **settings: Any
 ) -> OnlineMonitor:
     """Return a monitor of a specification with values of parameters; ``settings``: those of ``monitor()``."""
     monitor: OnlineMonitor = spec.with_parameters(**(parameters or {})).monitor(**settings)

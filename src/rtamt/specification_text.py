@@ -7,7 +7,7 @@ from fractions import Fraction
 from functools import cached_property
 from html import escape
 from types import MappingProxyType
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from rtamt.engine.online import Watched
 from rtamt.errors import UsageError
@@ -25,7 +25,7 @@ from rtamt.language.units import positive_period
 from rtamt.rewrite.horizon import horizon
 from rtamt.rewrite.pastify import pastify
 from rtamt.rewrite.semantics import apply_semantics, semantics_of
-from rtamt.settings import check_parameters
+from rtamt.settings import parameter_value, require_parameters
 from rtamt.signals.binding import Binding
 from rtamt.signals.discrete import DISCRETE, Discrete
 from rtamt.signals.domains import Defaults, time_domain
@@ -132,12 +132,14 @@ class SpecificationText:
         """
         return replace(self, document=self.document.select(name))
 
-    def with_parameters(self, /, **values: float) -> Self:
+    def with_parameters(self, /, **values: Any) -> Self:
         """Return the specification with these values of its parameters; the others keep theirs.
 
         Neither the text is parsed nor the formula compiled again, unless a value bounds an interval. Names that are no
-        words go in a mapping: ``with_parameters(**{"battery.low": 3.5})``. Raises :class:`UsageError` for names
-        that are no parameters and values that are no numbers, :class:`BoundError` for a bound that cannot be.
+        words go in a mapping: ``with_parameters(**{"battery.low": 3.5})``. A Boolean is set to True or False, a
+        parameter of an enumeration to a member: its name, its code, or a member of a Python ``enum`` of that name.
+        Raises :class:`UsageError` for names that are no parameters and values that are none of the type,
+        :class:`BoundError` for a bound that cannot be.
 
         >>> import rtamt
         >>> spec = rtamt.parse("input float x  parameter float limit = 4  always(x <= limit)")
@@ -147,8 +149,10 @@ class SpecificationText:
         {'limit': 3.0}
         """
         current = self.parameters
-        check_parameters(values, current, self.document.types)
-        new = {name: float(value) for name, value in values.items() if value != current[name]}
+        require_parameters(values, current)
+        types = self.document.types
+        given = {name: parameter_value(name, value, types.get(name)) for name, value in values.items()}
+        new = {name: value for name, value in given.items() if value != current[name]}
         if not new:
             return self
         if new.keys() & bounding(self.document):

@@ -96,7 +96,8 @@ DOCUMENTS = [
         "parameter complex c = 1 x > 1",
         "          ^^^^^^^",
         ParseError,
-        "a parameter is a number or a Boolean, not 'complex'; choose from float, int, long, bool",
+        "a parameter is a number, a Boolean or a member of an enumeration, not 'complex'; "
+        "choose from float, int, long, bool",
     ),
     (
         "float x = 3; x > 1",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rtamt.settings import assignments, check_parameters
+from rtamt.settings import assignments, require_parameters
 
 if TYPE_CHECKING:
     from argparse import _ActionsContainer
@@ -28,7 +28,7 @@ def assigned(specs: Sequence[Specification], given: Sequence[str]) -> list[Speci
     """Return specifications with the values that are given; each must be of a parameter of one of them."""
     values = assignments(given)
     known = dict.fromkeys(name for spec in specs for name in spec.parameters)
-    check_parameters(dict.fromkeys(values, 0.0), known)
+    require_parameters(values, known)
     return [
         spec.with_parameters(**{name: value for name, value in values.items() if name in spec.parameters})
         for spec in specs

@@ -163,7 +163,7 @@ class OnlineMonitor:
                 flat[name] = arrays.field_of(values[head], head, path, self.samples)
         return flat
 
-    def _assign(self, parameters: Mapping[str, float]) -> None:
+    def _assign(self, parameters: Mapping[str, Any]) -> None:
         """Become a new monitor with these values of parameters."""
         if not parameters:
             return

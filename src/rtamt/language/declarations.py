@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 #: The types that need no import.
 TYPES = ("float", "int", "long", "complex", "bool")
 
-#: The types of parameters.
+#: The types of parameters, besides enumerations.
 _SET_LATER = ("float", "int", "long", "bool")
 
 _Kind = Literal["var", "const", "parameter"]
@@ -107,9 +107,10 @@ class DeclarationParser(ImportParser):
                 f"{'' if hint else ', and classes that are imported'}",
                 type_name.span,
             )
-        if kind == "parameter" and type_name.text not in _SET_LATER:
+        if kind == "parameter" and type_name.text not in (*_SET_LATER, *self._enumerations):
             raise self.error(
-                f"a parameter is a number or a Boolean, not '{type_name.text}'; choose from {', '.join(_SET_LATER)}",
+                f"a parameter is a number, a Boolean or a member of an enumeration, not '{type_name.text}'; "
+                f"choose from {', '.join((*_SET_LATER, *self._enumerations))}",
                 type_name.span,
             )
         name = self._taken(f"the name of a {_CALLED[kind]}", quotes=True)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from rtamt.language.formula import Apply, Const, Formula, Var
 from rtamt.language.grammar import INFINITY, is_infix, passes_on, sign
 from rtamt.language.operators import STL, Bounds, Fixity, Operator
-from rtamt.language.parentheses import falls_apart, is_choice, is_member, needs_group, truth_of
+from rtamt.language.parentheses import falls_apart, is_choice, is_member, member_name, needs_group, truth_of
 from rtamt.language.printer import number, rational_text, share_text
 from rtamt.language.units import UNITS
 from rtamt.language.unwritten import TRUTH
@@ -46,7 +46,7 @@ def to_latex(formula: Formula) -> str:
 
     def pieces(node: Formula) -> Iterable[Piece]:
         if isinstance(node, Const):
-            yield _latex_name(str(node.name)) if is_member(node) else _latex_number(node.value)
+            yield _latex_name(member_name(node)) if is_member(node) else _latex_number(node.value)
         elif isinstance(node, Var):
             yield _latex_name(node.name)
         elif isinstance(node, Apply) and node.op is TRUTH:

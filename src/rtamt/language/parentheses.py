@@ -29,7 +29,17 @@ def truth_of(node: Apply) -> Piece:
 
 def is_member(formula: Formula) -> TypeGuard[Const]:
     """Return whether a formula is a member of an enumeration, which is written as its name."""
+    if isinstance(formula, Parameter):
+        return isinstance(formula.type, Enumeration) and formula.type.member(formula.value) is not None
     return isinstance(formula, Const) and isinstance(formula.type, Enumeration) and formula.name is not None
+
+
+def member_name(member: Const) -> str:
+    """Return the name under which a member is written; of a parameter the member that is its value."""
+    if isinstance(member, Parameter):
+        assert isinstance(member.type, Enumeration)
+        return f"{member.type.name}.{member.type.member(member.value)}"
+    return str(member.name)
 
 
 def _is_negative(formula: Formula) -> bool:
@@ -68,7 +78,7 @@ def reads_on(child: Formula, op: Operator, language: Language, *, left: bool = F
     This happens where a symbol may follow that can also begin an operand: ``G - 3`` is always(-3).
     """
     child = written_operand(child)
-    name = child.name if isinstance(child, Var) or is_member(child) else None
+    name = child.name if isinstance(child, Var) else member_name(child) if is_member(child) else None
     if name is None or name_text(name, language) != name:
         return False
     prefix, infix = language.opening(name), language.infix(name)

@@ -15,6 +15,7 @@ from rtamt.language.parentheses import (
     falls_apart,
     is_choice,
     is_member,
+    member_name,
     name_text,
     needs_group,
     reads_on,
@@ -146,7 +147,7 @@ def canonical(formula: Formula, language: Language = STL, *, limit: int = LONGES
 
 def _constant(node: Const, language: Language) -> str:
     """Return a number, or the name of a member of an enumeration."""
-    return name_text(str(node.name), language) if is_member(node) else number(node.value)
+    return name_text(member_name(node), language) if is_member(node) else number(node.value)
 
 
 def number(value: float) -> str:

@@ -124,7 +124,9 @@ def _one_type(types: Sequence[PartType], texts: Sequence[str], args: Sequence[Fo
         if each == one or (isinstance(each, Ambiguous) and one in each.choices):
             continue
         if each is None:
-            if isinstance(args[types.index(one)], Const):
+            if isinstance(args[types.index(one)], Const) and not isinstance(
+                args[types.index(one)], Parameter
+            ):
                 raise MistypedError(
                     f"'{here}' is a member of {one.name}, and '{texts[k]}' is none of its values; "
                     f"declare the variable, such as input {one.name} {texts[k]}"

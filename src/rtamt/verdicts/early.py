@@ -191,7 +191,7 @@ class EarlyMonitor(OnlineMonitor):
             self._evidence = Evidence(span, continuous=self._continuous)
 
     @exclusive
-    def reset(self, /, **parameters: float) -> None:
+    def reset(self, /, **parameters: Any) -> None:
         """Forget the trace; the next sample is the first.
 
         ``parameters``: their values from now on, as ``Specification.with_parameters`` takes them.

@@ -171,10 +171,12 @@ def _with_parameters(formula: Formula, structural: frozenset[str]) -> Formula:
     def step(node: Formula, args: tuple[Formula, ...]) -> Formula:
         if isinstance(node, Apply):
             return replace(node, args=args)
-        if isinstance(node, Const) and node.name is not None and not isinstance(node.type, Enumeration):
-            kind = Const if node.name in structural else Parameter
-            return kind(node.value, node.span, node.name, node.type)
-        return node
+        if not isinstance(node, Const) or node.name is None:
+            return node
+        if isinstance(node.type, Enumeration) and not isinstance(node, Parameter):
+            return node  # a member is no constant, although it has a name
+        kind = Const if node.name in structural else Parameter
+        return kind(node.value, node.span, node.name, node.type)
 
     return fold(formula, step)
 

@@ -61,8 +61,8 @@ def test_of_several_specifications_those_with_the_parameter_have_its_value(run, 
     ("given", "sentence"),
     [
         ("limt=3", "there is no parameter 'limt'; did you mean 'limit'? (parameters: limit, within)"),
-        ("limit", "'limit' sets no parameter; write NAME=VALUE with a number, such as limit=3"),
-        ("limit=high", "'limit=high' sets no parameter; write NAME=VALUE with a number, such as limit=3"),
+        ("limit", "'limit' sets no parameter; write NAME=VALUE, such as limit=3"),
+        ("limit=high", "the parameter 'limit' is 'high'; give a number"),
         ("limit=nan", "the parameter 'limit' is nan; give a number"),
     ],
 )
@@ -96,3 +96,27 @@ def test_a_boolean_is_set_by_its_word(run, write):
     assert run("check", spec, "log.csv").code == 0
     assert run("check", spec, "log.csv", "--set", "strict=true").code == 1
     assert "parameters strict = true  (by default false)" in run("info", spec, "--set", "strict=true").out
+
+
+MODES = """
+    enum Mode { MANUAL, AUTO = 4, "hold position" = 7 }
+    input Mode mode
+    parameter Mode start = AUTO
+    parameter bool strict = true
+    always(strict -> mode == start)
+"""
+
+
+def test_members_and_booleans_are_set_and_shown_by_name(run, write):
+    path = write("modes.stl", MODES)
+    log = write("log.csv", "time,mode\n0,MANUAL\n1,MANUAL\n")
+    assert run("check", path, log).code == 1
+    assert run("check", path, log, "--set", "start=MANUAL").code == 0
+    assert run("check", path, log, "--set", "strict=false").code == 0
+    shown = run("info", path, "--set", "start=hold position", "--set", "strict=false").out
+    assert "start = hold position  (by default AUTO)" in shown
+    assert "strict = false  (by default true)" in shown
+    assert (
+        "'start' is 'AUT', which is no member of Mode; did you mean 'AUTO'?"
+        in run("check", path, log, "--set", "start=AUT").err
+    )

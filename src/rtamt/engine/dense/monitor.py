@@ -175,7 +175,7 @@ class DenseMonitor(DenseMonitorBase, OnlineMonitor):
         return known
 
     @exclusive
-    def reset(self, /, **parameters: float) -> None:
+    def reset(self, /, **parameters: Any) -> None:
         """Forget the trace; the next sample is the first.
 
         ``parameters``: their values from now on, as ``Specification.with_parameters`` takes them.

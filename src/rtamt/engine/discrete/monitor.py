@@ -315,7 +315,7 @@ class Monitor(MonitorBase, OnlineMonitor):
         return value
 
     @exclusive
-    def reset(self, /, **parameters: float) -> None:
+    def reset(self, /, **parameters: Any) -> None:
         """Forget the trace; the next sample is the first.
 
         ``parameters``: their values from now on, as ``Specification.with_parameters`` takes them.
