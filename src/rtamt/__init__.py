@@ -2,7 +2,6 @@
 
 import ast
 from importlib import import_module
-from pathlib import Path
 from typing import Any
 
 __version__ = "1.0.0.dev0"
@@ -10,7 +9,8 @@ __version__ = "1.0.0.dev0"
 
 def _modules() -> dict[str, str]:
     """Return each public name with the module that defines it, from the stub: they are listed there alone."""
-    stub = ast.parse(Path(__file__).with_suffix(".pyi").read_text(encoding="utf-8"))
+    with open(f"{__file__}i", encoding="utf-8") as stub_file:
+        stub = ast.parse(stub_file.read())
     imports = [node for node in stub.body if isinstance(node, ast.ImportFrom)]
     return {alias.name: str(node.module) for node in imports for alias in node.names}
 

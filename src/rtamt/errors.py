@@ -22,7 +22,6 @@ from __future__ import annotations
 import copy
 import re
 import reprlib
-from difflib import get_close_matches
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -193,13 +192,19 @@ def with_article(noun: str) -> str:
     return f"{'an' if noun[:1].lower() in set('aeio') else 'a'} {noun}"
 
 
+def _near(name: object, known: Iterable[str], most: int) -> list[str]:
+    from difflib import get_close_matches
+
+    return get_close_matches(name, list(known), n=most) if isinstance(name, str) else []
+
+
 def did_you_mean(name: object, known: Iterable[str]) -> str:
     """Return ``"; did you mean 'x'?"`` for the nearest known name, else an empty string.
 
     >>> did_you_mean("gmt", ["req", "gnt"])
     "; did you mean 'gnt'?"
     """
-    close = get_close_matches(name, list(known), n=1) if isinstance(name, str) else []
+    close = _near(name, known, 1)
     return f"; did you mean '{close[0]}'?" if close else ""
 
 
@@ -212,7 +217,7 @@ def choices(name: object, known: Iterable[str], noun: str) -> str:
     '; columns: req, gnt'
     """
     names = [str(each) for each in known]
-    close = get_close_matches(name, names, n=_LISTED) if isinstance(name, str) else []
+    close = _near(name, names, _LISTED)
     names = [*close, *(each for each in names if each not in close)]
     more = f" and {len(names) - _LISTED} more" if len(names) > _LISTED else ""
     listing = f"{noun}: {', '.join(names[:_LISTED]) or 'none'}{more}"

@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import os
-import secrets
 import stat
 from contextlib import contextmanager, suppress
-from difflib import get_close_matches
 from typing import TYPE_CHECKING
 
 from rtamt.errors import readable
@@ -17,6 +15,8 @@ if TYPE_CHECKING:
 
 def nearest_file(path: str) -> str:
     """Return ``"; did you mean 'log.csv'?"`` for the nearest name in the same folder, else an empty string."""
+    from difflib import get_close_matches
+
     folder, name = os.path.split(path)
     try:
         names = os.listdir(folder or ".")
@@ -52,7 +52,7 @@ def replacing(path: str | os.PathLike[str]) -> Iterator[str]:
     target = os.path.realpath(given)
     folder, name = os.path.split(target)
     stem, suffix = os.path.splitext(name)  # plotting libraries choose the format by the extension
-    new = os.path.join(folder, f".{stem[:100]}.{secrets.token_hex(4)}{suffix}")
+    new = os.path.join(folder, f".{stem[:100]}.{os.urandom(4).hex()}{suffix}")
     if known is not None and not os.access(target, os.W_OK):
         raise PermissionError(13, "Permission denied", given)
     os.close(os.open(new, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o666))

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from html import escape
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
@@ -61,6 +60,8 @@ class Result:
         return f"<result of {of}: robustness {self.robustness} at {at}>"
 
     def _repr_html_(self) -> str:
+        from html import escape
+
         rows = []
         for name, part in self.requirements.items():
             violated = first_violation(part)

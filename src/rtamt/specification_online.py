@@ -11,7 +11,6 @@ from rtamt.errors import UsageError
 from rtamt.settings import watched_of
 from rtamt.specification_text import SpecificationText
 from rtamt.verdicts.modes import DELAYED, mode_of, monitor_of, semantics_in
-from rtamt.verdicts.standalone import bounds_program, carried_program
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -214,6 +213,8 @@ class OnlineSpecification(SpecificationText):
         >>> program.lags, len(program.to_bytes())
         ((2, 2), 463)
         """
+        from rtamt.verdicts.standalone import bounds_program, carried_program  # parsing does not wait for it
+
         domain = self._domain_for(time, period, None, resolution).online
         chosen = self._semantics(semantics)
         if mode_of(verdict, {}).name != DELAYED:

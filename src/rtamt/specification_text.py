@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property
-from html import escape
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
@@ -70,6 +69,8 @@ class SpecificationText:
         return f"<specification {f'{self.name}: ' if self.name else ''}{self.formula}>"
 
     def _repr_html_(self) -> str:
+        from html import escape
+
         name = f"<b>{escape(self.name)}</b>" if self.name else ""
         rows = [
             f"<tr><td>{escape(known.name)}</td><td><code>{escape(excerpt(known.formula))}</code></td>"

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 from dataclasses import replace
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import UsageError, shown
@@ -113,6 +112,8 @@ def load(path: str | os.PathLike[str], **settings: Unpack[Settings]) -> Specific
     ...     print(rtamt.load(path).name)
     limit
     """
+    from pathlib import Path
+
     try:
         text = Path(path).read_text(encoding="utf-8-sig")
     except TypeError:

@@ -17,7 +17,7 @@ each use the previous one twice has 10¹⁸ nodes. Every traversal must visit ea
 from __future__ import annotations
 
 from dataclasses import dataclass, field, fields
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 from rtamt.language.value_types import Boolean, Enumeration
 
@@ -38,8 +38,7 @@ COUNTLESS = 10**18
 _KEPT = 5000
 
 
-@dataclass(frozen=True, slots=True)
-class Span:
+class Span(NamedTuple):
     """A half-open range of characters of the source text."""
 
     start: int
@@ -67,6 +66,11 @@ class Interval:
     share: Share | None = None
     written: Interval | None = field(default=None, compare=False, repr=False)
     implied: bool = field(default=False, compare=False, repr=False)
+
+    def __hash__(self) -> int:
+        # Hashing fractions is slow.
+        end = self.end
+        return hash((self.begin.as_integer_ratio(), None if end is None else end.as_integer_ratio()))
 
     @property
     def is_open(self) -> bool:
@@ -152,8 +156,8 @@ class Apply(Formula):
     args: tuple[Formula, ...]
     interval: Interval | None = None
     span: Span | None = field(default=None, repr=False)
-    _hash: int = field(init=False, repr=False, default=0)
-    _size: int = field(init=False, repr=False, default=1)
+    _hash: int = field(init=False, repr=False)
+    _size: int = field(init=False, repr=False)
     #: The class of nodes that were found equal to this one.
     _class: _Class | None = field(init=False, repr=False, default=None)
     #: The nodes below in postorder, cached on first use: a formula is walked many times.
@@ -352,3 +356,8 @@ def types_of(*formulas: Formula) -> dict[str, ValueType]:
 def variables(*formulas: Formula) -> tuple[str, ...]:
     """Return the names of the variables of formulas, each once, in order of first appearance."""
     return tuple(dict.fromkeys(n.name for n in postorder(*formulas) if isinstance(n, Var)))
+
+
+def own_variables(formula: Formula, every: Sequence[str]) -> tuple[str, ...]:
+    """Return the variables that form the trace of a formula; for a constant ``every`` variable."""
+    return variables(formula) or tuple(every)

@@ -10,7 +10,6 @@ from __future__ import annotations
 import os
 import stat
 from dataclasses import dataclass, field, replace
-from pathlib import Path, PurePosixPath, PureWindowsPath
 from typing import TYPE_CHECKING
 
 from rtamt.errors import StlError, did_you_mean
@@ -23,7 +22,7 @@ if TYPE_CHECKING:
     from rtamt.language.templates import Template
 
 #: The files that are part of the package.
-PACKAGED = Path(__file__).parent.parent / "library"
+PACKAGED = os.path.join(os.path.dirname(os.path.dirname(__file__)), "library")
 #: What the files that one specification imports may have together: files, and bytes.
 MOST_FILES, MOST_BYTES = 200, 2**22
 #: How deeply imports may be nested.
@@ -79,7 +78,7 @@ class Library:
             folder = None
         place = None if folder is None else _inside(folder, path)
         if place is None:
-            packaged = _inside(str(PACKAGED), path)
+            packaged = _inside(PACKAGED, path)
             if packaged is None:
                 raise ImportedFileError(_missing(folder, path))
             place, file = packaged, _IN_PACKAGE + path
@@ -116,6 +115,8 @@ def called(file: str) -> str:
 
 def _check_path(path: str) -> None:
     """Raise unless a path is relative and leads downwards to a specification file, on every system."""
+    from pathlib import PurePosixPath, PureWindowsPath
+
     parts = PurePosixPath(path).parts
     if PurePosixPath(path).is_absolute() or PureWindowsPath(path).anchor or "\\" in path or ".." in parts:
         raise ImportedFileError(
@@ -128,6 +129,8 @@ def _check_path(path: str) -> None:
 
 def _inside(folder: str, path: str) -> str | None:
     """Return the regular file of this path in a folder, None if there is none; raise if a link leads out of it."""
+    from pathlib import Path
+
     root = os.path.realpath(folder)
     place = os.path.realpath(os.path.join(root, path))
     try:
@@ -144,7 +147,7 @@ def _inside(folder: str, path: str) -> str | None:
 
 
 def _missing(folder: str | None, path: str) -> str:
-    packaged = sorted(known.name for known in PACKAGED.glob("*.stl"))
+    packaged = sorted(name for name in os.listdir(PACKAGED) if name.endswith(".stl"))
     if folder is None:
         return (
             f"there is no file '{path}' in the package ({', '.join(packaged)}), and a text has no folder of its own: "

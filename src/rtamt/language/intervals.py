@@ -58,7 +58,7 @@ def parse_interval(parser: FormulaParser, op: Operator, token: Token) -> Interva
     if begin is None:
         what = "a duration" if op.bounds is Bounds.DURATION else "the lower bound of an interval"
         raise parser.error(f"{what} may not be infinite", begin_span, BoundError)
-    if op.positive and begin == 0:
+    if op.positive and not begin:
         raise parser.error(
             f"'{token.text}' divides by its duration, which may not be 0; write one such as {token.text}[1]",
             begin_span,
@@ -73,23 +73,23 @@ def parse_interval(parser: FormulaParser, op: Operator, token: Token) -> Interva
     if end is not None:
         if end_unit:
             end *= UNITS[end_unit]
-        written = parser.text[span.start : span.end]
-        if end == begin and (begin_open or end_open):
-            raise parser.error(
-                f"the interval {written} is empty: it excludes its only instant; close both bounds, or move one",
-                span,
-                BoundError,
-            )
-        if end < begin:
-            raise parser.error(
-                f"the interval {written} is reversed: it ends before it begins", span, BoundError
-            )
+        if end <= begin and (end < begin or begin_open or end_open):
+            raise _nothing_between(parser, span, reverse=end < begin)
     read = parser.tokens[first : parser.index]
     names = tuple(token.name for token in read if token.kind in ("name", "quoted"))
-    constants = constants_of(parser, names)
+    constants = constants_of(parser, names) if names else ()
     return Interval(
         begin, end, begin_unit, "" if end is None else end_unit, span, constants, begin_open, end_open
     )
+
+
+def _nothing_between(parser: FormulaParser, span: Span, *, reverse: bool) -> SpecificationError:
+    why = (
+        "is reversed: it ends before it begins"
+        if reverse
+        else "is empty: it excludes its only instant; close both bounds, or move one"
+    )
+    return parser.error(f"the interval {parser.text[span.start : span.end]} {why}", span, BoundError)
 
 
 def _begins_open(parser: FormulaParser, op: Operator) -> bool:
@@ -154,7 +154,7 @@ def _bound(parser: FormulaParser) -> Bound:
     else:
         raise parser.error(f"expected a bound (a number or a constant), got {token}", token.span)
     span = Span(first.start, parser.tokens[parser.index - 1].end)
-    if negative or (value is not None and value < 0):
+    if negative or (value is not None and value.numerator < 0):
         raise parser.error("a bound may not be negative; for the past use a past operator", span, BoundError)
     name, after = parser.token, parser.tokens[min(parser.index + 1, len(parser.tokens) - 1)]
     if name.text in UNITS and unit:

@@ -179,11 +179,13 @@ class NameParser:
 
         ``G`` may be a variable, and so may ``next`` in ``next >= 3``; ``next`` with nothing after it may not.
         """
-        opening, follows = self.language.opening(name), self.token
+        opening, infix = self.language.opening(name), self.language.infix(name) is not None and len(name) > 1
         prefix = opening is not None and opening.fixity is Fixity.PREFIX and len(name) > 2
-        infix = self.language.infix(name) is not None and len(name) > 1
+        if not (prefix or infix):
+            return
+        follows = self.token
         compared = follows.kind == "symbol" and self.language.infix(follows.text) is not None
-        if not (prefix or infix) or (compared and self.scope.variables is None):
+        if compared and self.scope.variables is None:
             return
         if infix:
             raise self.error(*diagnostics.no_operand(self.tokens, self.index - 1))

@@ -93,25 +93,25 @@ class FormulaParser(TypedParser):
                 continue
             if op is None or op.power < power:
                 break
-            left_end = self.tokens[self.index - 1].end
+            left_place = Span(start, self.tokens[self.index - 1].end)
             self.index += 1
             timed = op.bounds is not Bounds.NONE or self.tokens[self.index].text == "["
             interval = parse_interval(self, op, token) if timed else None
             right_start = self.token.start
             right = self.compared(op, left)
             end = self.tokens[self.index - 1].end
+            place = Span(right_start, end)
             if last is not None and is_predicate(op) and is_predicate(last[0]):
                 _, middle, span = last
                 both = self.language.get("and")
                 if both is None or not chains(last[0], op):
                     whole, link = Span(start, end), Span(token.start, token.end)
                     raise self.error(diagnostics.no_chain(self.text, whole, span, link), whole)
-                comparison = self.apply(op, (middle, right), (span, Span(right_start, end)))
+                comparison = self.apply(op, (middle, right), (span, place))
                 left = Apply(both, (left, comparison), None, Span(start, end))
             else:
-                places = Span(start, left_end), Span(right_start, end)
-                left = self.apply(op, (left, right), places, interval)
-            last = (op, right, Span(right_start, end))
+                left = self.apply(op, (left, right), (left_place, place), interval)
+            last = (op, right, place)
         self._depth -= 1
         return left
 

@@ -287,14 +287,17 @@ class Language:
     #: Every spelling of every operator.
     spellings: tuple[str, ...]
     _by_name: Mapping[str, Operator]
-    _by_spelling: Mapping[tuple[str, bool], Operator]
+    #: By their spellings: operators at the begin of an operand, and after one.
+    _opening: Mapping[str, Operator]
+    _infix: Mapping[str, Operator]
 
     @classmethod
     def of(cls, operators: Iterable[Operator]) -> Language:
         """Build a language; duplicate names or spellings are errors."""
         table = tuple(operators)
         names: dict[str, Operator] = {}
-        spellings: dict[tuple[str, bool], Operator] = {}
+        opening: dict[str, Operator] = {}
+        infix: dict[str, Operator] = {}
         for op in table:
             if not isinstance(op, Operator):
                 raise UsageError(f"{shown(op)} is no operator; give an Operator")
@@ -302,13 +305,13 @@ class Language:
             if op.name in names:
                 raise UsageError(f"two operators are named '{op.name}': give each a name of its own")
             names[op.name] = op
+            spelled = infix if op.fixity in (Fixity.LEFT, Fixity.RIGHT) else opening
             for spelling in op.spellings:
-                key = (spelling, op.fixity in (Fixity.LEFT, Fixity.RIGHT))
-                if key in spellings:
-                    raise UsageError(f"'{spelling}' spells both '{spellings[key].name}' and '{op.name}'")
-                spellings[key] = op
-        words = tuple(spelling for spelling, _ in spellings)
-        return cls(table, words, MappingProxyType(names), MappingProxyType(spellings))
+                if spelling in spelled:
+                    raise UsageError(f"'{spelling}' spells both '{spelled[spelling].name}' and '{op.name}'")
+                spelled[spelling] = op
+        words = (*opening, *infix)
+        return cls(table, words, *map(MappingProxyType, (names, opening, infix)))
 
     def extend(self, *operators: Operator) -> Language:
         """Return a new language with these operators added.
@@ -333,11 +336,11 @@ class Language:
 
     def opening(self, spelling: str) -> Operator | None:
         """Return the operator that ``spelling`` means where an operand can begin."""
-        return self._by_spelling.get((spelling, False))
+        return self._opening.get(spelling)
 
     def infix(self, spelling: str) -> Operator | None:
         """Return the operator that ``spelling`` means after an operand."""
-        return self._by_spelling.get((spelling, True))
+        return self._infix.get(spelling)
 
     def __iter__(self) -> Iterator[Operator]:
         return iter(self.operators)

@@ -51,15 +51,20 @@ class TypedParser(NameParser):
                 raise self.error(
                     error.message, whole if error.operand is None else places[error.operand]
                 ) from None
-        for k, (sort, operand) in enumerate(zip(op.operands, args, strict=False)):
+        if Sort.CONDITION in op.operands:
+            self._check_conditions(op, args, places)
+        return Apply(op, args, interval, span or Span(places[0].start, places[-1].end))
+
+    def _check_conditions(self, op: Operator, args: Sequence[Formula], places: Sequence[Span]) -> None:
+        """Reject numbers where an operator takes a condition."""
+        for sort, operand, place in zip(op.operands, args, places, strict=False):
             if sort is Sort.CONDITION and is_number(operand) and type_of(operand) is None:
-                written = self._written(places[k])
+                written = self._written(place)
                 raise self.error(
                     f"'{written}' is a number, and '{op.spellings[0]}' needs a condition, which is true or false; "
                     f"compare it, such as {written} > 0",
-                    places[k],
+                    place,
                 )
-        return Apply(op, args, interval, span or Span(places[0].start, places[-1].end))
 
     def standing_alone(self, formula: Formula, span: Span, *, named: bool = False) -> Formula:
         """Return a formula that is no operand: a Boolean is its truth there. ``named``: it may be one later on."""
@@ -73,9 +78,10 @@ class TypedParser(NameParser):
 
     def _begins_set(self, power: int) -> bool:
         """Return whether ``in {`` follows, which binds as ``==`` does; elsewhere ``in`` is a name."""
+        if self.tokens[self.index].text != "in" or self.tokens[self.index + 1].text != "{":
+            return False
         equal = self.language.get("eq")
-        braced = self.token.text == "in" and self.tokens[self.index + 1].text == "{"
-        return braced and equal is not None and power <= equal.power
+        return equal is not None and power <= equal.power
 
     def membership(self, left: Formula, place: Span) -> Formula:
         """``operand , "in" , "{" , expression , { "," , expression } , "}"``: equal to one of them."""

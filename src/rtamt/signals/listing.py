@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from fractions import Fraction
-from html import escape
 from itertools import groupby
 from typing import TYPE_CHECKING, Any
 
@@ -28,6 +27,8 @@ def listing(trace: Trace) -> str:
 
 def html(trace: Trace) -> str:
     """Return what Jupyter shows: the notes, and a table of the signals, topic by topic."""
+    from html import escape
+
     lines = [f"<p>{escape(line)}</p>" for line in (heading(trace), *notes(trace))]
     rows = [
         f"<tr><td>{escape(name)}</td><td>{escape(channel.unit)}</td><td>{escape(extent(channel))}</td></tr>"

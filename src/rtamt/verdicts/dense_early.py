@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from rtamt.engine.dense.early_python_backend import PythonDenseEarlyMonitor
-from rtamt.engine.dense.groups import own_variables
 from rtamt.engine.native import EarlyMonitorBase
 from rtamt.engine.online import time_of
 from rtamt.engine.usage_guard import exclusive, in_use
 from rtamt.errors import TraceError
+from rtamt.language.formula import own_variables
 from rtamt.language.undefined_value import undefined
 from rtamt.language.units import check_unit
 from rtamt.rewrite.desugar import written

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from rtamt.engine.dense.groups import own_variables
 from rtamt.errors import EvaluationError
+from rtamt.language.formula import own_variables
 from rtamt.rewrite.desugar import desugar
 from rtamt.rewrite.horizon import reach
 from rtamt.rewrite.semantics import no_verdict

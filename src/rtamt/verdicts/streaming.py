@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rtamt.engine.dense.groups import own_variables
 from rtamt.engine.dense.monitor import finish_ticks, known_ticks, push_ticks
 from rtamt.engine.discrete.monitor import push_samples
 from rtamt.errors import TraceError, UsageError
+from rtamt.language.formula import own_variables
 from rtamt.language.units import check_unit
 from rtamt.rewrite.semantics import semantics_of
 from rtamt.signals import arrays, dense_arrays

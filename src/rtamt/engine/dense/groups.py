@@ -18,7 +18,7 @@ from rtamt.engine.backend import RefusedError, Session
 from rtamt.engine.online import depth_of
 from rtamt.engine.usage_guard import UsageGuard, exclusive
 from rtamt.errors import UsageError
-from rtamt.language.formula import variables
+from rtamt.language.formula import own_variables
 from rtamt.rewrite.check import always_has_a_value
 from rtamt.signals.dense_arrays import changes, minimum
 
@@ -37,11 +37,6 @@ if TYPE_CHECKING:
 Place: TypeAlias = tuple[int, int]
 
 _NOTHING: Samples = (np.empty(0, np.int64), np.empty(0))
-
-
-def own_variables(formula: Formula, every: Sequence[str]) -> tuple[str, ...]:
-    """Return the variables that form the trace of a formula; for a constant ``every`` variable."""
-    return variables(formula) or tuple(every)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

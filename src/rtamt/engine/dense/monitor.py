@@ -7,12 +7,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rtamt.engine.dense.backends import BACKENDS
-from rtamt.engine.dense.groups import GroupSession, own_variables
+from rtamt.engine.dense.groups import GroupSession
 from rtamt.engine.discrete.apart import Apart
 from rtamt.engine.native import DenseMonitorBase
 from rtamt.engine.online import OnlineMonitor, Watched, depth_of, grounded, time_of
 from rtamt.engine.usage_guard import exclusive, in_use
 from rtamt.errors import TraceError, UsageError
+from rtamt.language.formula import own_variables
 from rtamt.language.undefined_value import undefined
 from rtamt.language.units import check_unit
 from rtamt.rewrite.check import check_online
