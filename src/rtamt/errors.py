@@ -120,10 +120,26 @@ class STLParseException(RTAMTException):
     """Raised by the paper's API for text that cannot be parsed."""
 
 
-def caret(text: str, span: Span) -> str:
-    r"""Return the line of ``text`` in which ``span`` starts, with carets under the span.
+def line_and_column(text: str, offset: int) -> tuple[int, int]:
+    r"""Return the line and the column of a character of ``text``, both from 1.
 
     A line ends at ``\n``, ``\r\n`` or ``\r``.
+
+    >>> line_and_column("a >= 3\nb", 7)
+    (2, 1)
+    """
+    start = _line_start(text, offset)
+    return 1 + sum(text.count(end, 0, start) for end in "\r\n") - text.count(
+        "\r\n", 0, start
+    ), offset - start + 1
+
+
+def _line_start(text: str, offset: int) -> int:
+    return max(text.rfind("\n", 0, offset), text.rfind("\r", 0, offset)) + 1
+
+
+def caret(text: str, span: Span) -> str:
+    """Return the line of ``text`` in which ``span`` starts, with carets under the span.
 
     >>> from rtamt.language.formula import Span
     >>> print(caret("a >= ) b", Span(5, 6)))
@@ -132,10 +148,10 @@ def caret(text: str, span: Span) -> str:
              ^
     """
     start = min(span.start, len(text))
-    line_start = max(text.rfind("\n", 0, start), text.rfind("\r", 0, start)) + 1
+    line_start = _line_start(text, start)
     ends = [end for end in (text.find("\n", start), text.find("\r", start)) if end >= 0]
     line_end = min(ends, default=len(text))
-    number = 1 + sum(text.count(end, 0, line_start) for end in "\r\n") - text.count("\r\n", 0, line_start)
+    number, column = line_and_column(text, start)
     # Generated lines may have a million characters: show only the surroundings of the position.
     shown_from = max(line_start, start - _SHOWN) if start - line_start > _SHOWN + 10 else line_start
     shown_to = min(line_end, start + _SHOWN) if line_end - start > _SHOWN + 10 else line_end
@@ -145,7 +161,7 @@ def caret(text: str, span: Span) -> str:
     # Tabs are kept, so that the caret is aligned with its character.
     pad = "".join("\t" if c == "\t" else " " for c in before + text[shown_from:start])
     width = max(1, min(span.end, shown_to) - start)
-    return f"  line {number}, column {start - line_start + 1}:\n    {line}\n    {pad}{'^' * width}"
+    return f"  line {number}, column {column}:\n    {line}\n    {pad}{'^' * width}"
 
 
 def placed(error: StlError, where: str) -> StlError:

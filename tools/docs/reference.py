@@ -144,15 +144,19 @@ def _productions(module: object) -> str:
 
 def warnings() -> str:
     """Return the page of the warnings of ``rtamt lint``, from the table of its rules."""
-    rows = [f"| {rule.code} | {_cell(rule.about)} | `{_cell(rule.example)}` |" for rule in RULES]
+    rows = [
+        f"| {rule.code} | {rule.severity} | {_cell(rule.about)} | `{_cell(rule.example)}` |" for rule in RULES
+    ]
     return "\n".join(
         [
             "# Warnings\n",
             "Warnings report valid but suspicious specifications. `rtamt lint` and `rtamt check` print them on ",
-            "stderr, with the line and a caret; `--ignore CODE` silences a warning. Warnings do not change the exit ",
-            "code of `rtamt check`; that of `rtamt lint --strict` is 1. In Python: `rtamt.parse(...).warnings`.\n",
-            "| code | meaning | example |",
-            "|---|---|---|",
+            "stderr, with the line and a caret; `--ignore CODE` silences a warning. They never prevent an ",
+            "evaluation and do not change the exit code of `rtamt check`. That of `rtamt lint` is 2 for those of ",
+            "severity error, and with `--strict` 1 for all others; `--json` prints them for programs. In Python: ",
+            "`rtamt.parse(...).warnings`.\n",
+            "| code | severity | meaning | example |",
+            "|---|---|---|---|",
             *rows,
             "",
         ]

@@ -19,6 +19,7 @@ from rtamt.cli.command import (
     options,
     stamp_text,
     warn,
+    warnings_of,
     write_output,
 )
 from rtamt.cli.parser import ERROR, OK, VIOLATED, complain
@@ -143,7 +144,7 @@ def run(args: argparse.Namespace) -> int:
     color = use_color(args.color, sys.stdout)
     given, traces = requirements_and_traces(args, "check")
     for each in [] if args.quiet else given:
-        warn(each.spec, each.given, args.ignore)
+        warn(warnings_of(each.spec, args.ignore), each.given)
     _check_output(args.output, given, traces)
     requirements = each_requirement(given)
     rows = {requirement.label: requirement for requirement in requirements}

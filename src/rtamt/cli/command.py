@@ -30,8 +30,9 @@ from rtamt.texts import load, parse
 
 if TYPE_CHECKING:
     import argparse
-    from collections.abc import Sequence
+    from collections.abc import Iterable, Sequence
 
+    from rtamt.language.lint import LintWarning
     from rtamt.settings import Settings
     from rtamt.specification import Specification
 
@@ -94,7 +95,7 @@ def add_time_option(parser: argparse.ArgumentParser) -> None:
 
 
 def add_ignore_option(parser: argparse.ArgumentParser) -> None:
-    """Add which warnings are silenced; see :func:`warn`."""
+    """Add which warnings are silenced; see :func:`warnings_of`."""
     options(parser, OUTPUT).add_argument(
         "--ignore",
         metavar="CODE",
@@ -105,13 +106,16 @@ def add_ignore_option(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def warn(spec: Specification, given: str, ignored: Sequence[str]) -> int:
-    """Print the warnings about a specification that are not silenced on stderr; return how many there are."""
+def warnings_of(spec: Specification, ignored: Sequence[str]) -> list[LintWarning]:
+    """Return the warnings about a specification that are not silenced."""
+    return [warning for warning in spec.warnings if warning.code not in ignored]
+
+
+def warn(found: Iterable[LintWarning], given: str) -> None:
+    """Print warnings about the specification that was given on stderr."""
     place = f"{given}: " if os.path.isfile(given) else ""
-    found = [warning for warning in spec.warnings if warning.code not in ignored]
     for warning in found:
-        complain(f"{place}warning {warning}")
-    return len(found)
+        complain(f"{place}{warning.severity} {warning}")
 
 
 def add_verdict_option(parser: argparse.ArgumentParser) -> None:

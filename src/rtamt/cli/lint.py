@@ -11,12 +11,14 @@ from rtamt.cli.command import (
     add_ignore_option,
     add_specification_options,
     add_time_option,
+    json_text,
     read_specification,
     warn,
+    warnings_of,
 )
 from rtamt.cli.parser import ERROR, OK, VIOLATED, complain
 from rtamt.cli.terminal import say
-from rtamt.errors import StlError
+from rtamt.errors import SpecificationError, StlError, line_and_column
 from rtamt.language.lint import RULES
 from rtamt.rewrite.check import check_online
 from rtamt.signals.discrete import Discrete
@@ -24,13 +26,18 @@ from rtamt.signals.discrete import Discrete
 if TYPE_CHECKING:
     import argparse
 
+    from rtamt.language.formula import Span
     from rtamt.specification import Specification
 
 _DESCRIPTION = """\
 Check specification files and report each error: what, where (line, column and a caret) and how
-to fix it; and warn of legal but probably unintended formulas. Nothing is evaluated.
+to fix it; and warn of legal but probably unintended formulas, such as a sum of a speed and a
+distance. Nothing is evaluated.
 
-Exit code: 0 all files are valid, 2 some are not; with --strict 1 if there are only warnings."""
+Exit code: 0 all files are valid, 2 some have errors; with --strict 1 if there are only warnings.
+--json prints one object a line: {"file", "severity", "code", "message", "line", "column", "end_line",
+"end_column"}; end_column is that of the first character after it, code is null where the text is
+no specification."""
 
 _EPILOG = """\
 With --period the bounds must be whole numbers of it; with --online no operator may need the whole
@@ -54,29 +61,57 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add_ignore_option(parser)
     parser.add_argument("--strict", action="store_true", help="exit with 1 where there are warnings")
     parser.add_argument("--quiet", action="store_true", help="print errors only")
+    parser.add_argument("--json", action="store_true", help="print JSON, one object a line")
 
 
 def run(args: argparse.Namespace) -> int:
     """Read every file; report each that is wrong."""
     files = [args.spec, *args.more]
-    warnings = [_warnings(file, args) for file in files]
-    if None in warnings:
-        return ERROR
-    if any(warnings) and args.strict:
-        return VIOLATED
-    if not args.quiet and not any(warnings):
+    codes = [_lint(file, args) for file in files]
+    if not args.quiet and not args.json and not any(codes):
         say(f"{len(files)} {'file is' if len(files) == 1 else 'files are'} right")
-    return OK
+    worst = max(codes)
+    return OK if worst == VIOLATED and not args.strict else worst
 
 
-def _warnings(file: str, args: argparse.Namespace) -> int | None:
-    """Check a file, print what is wrong with it; return the number of warnings, None where there is an error."""
+def _lint(file: str, args: argparse.Namespace) -> int:
+    """Check a file and print what is wrong with it; return 2 where there are errors, 1 where there are warnings."""
     try:
-        spec = _check(file, args)
+        found = warnings_of(_check(file, args), args.ignore)
     except StlError as error:
-        complain(error)
-        return None
-    return 0 if args.quiet and not args.strict else warn(spec, file, args.ignore)
+        if args.json:
+            say(_as_json(file, "error", None, *_place(error)))
+        else:
+            complain(error)
+        return ERROR
+    if args.quiet and not args.strict:
+        found = [each for each in found if each.severity == "error"]
+    if args.json:
+        for each in found:
+            say(_as_json(file, each.severity, each.code, each.message, each.text, each.span))
+    else:
+        warn(found, file)
+    if any(each.severity == "error" for each in found):
+        return ERROR
+    return VIOLATED if found else OK
+
+
+def _place(error: StlError) -> tuple[str, str | None, Span | None]:
+    """Return the message of an error, and its position if it is one in the text."""
+    cause = error.__cause__ or error
+    if isinstance(cause, SpecificationError):
+        return cause.message, cause.text, cause.span
+    return str(cause), None, None
+
+
+def _as_json(
+    file: str, severity: str, code: str | None, message: str, text: str | None, span: Span | None
+) -> str:
+    row: dict[str, object] = {"file": file, "severity": severity, "code": code, "message": message}
+    if text is not None and span is not None:
+        begin, end = line_and_column(text, span.start), line_and_column(text, span.end)
+        row |= dict(zip(("line", "column", "end_line", "end_column"), (*begin, *end), strict=True))
+    return json_text(row)
 
 
 def _check(file: str, args: argparse.Namespace) -> Specification:

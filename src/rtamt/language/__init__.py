@@ -23,6 +23,10 @@ parser                 tokens to a formula, and the grammar of formulas
 grammar                rules shared by parser and printer: chaining, signs, nesting depth
 intervals              bounds of temporal operators: units, exact values, errors
 units                  durations with units
+unit_library           physical units by pint
+dimensions             the units of numbers, and whether they fit together
+unit_rules             how the unit of a result follows from those of the operands
+unit_check             dimensional analysis: declared units through the formulas of a text
 names                  a position in a text, and what a name there stands for
 value_types            the types of variables that are no plain numbers: Booleans, enumerations
 type_rules             what Booleans and enumerations may stand in

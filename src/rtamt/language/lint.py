@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING
 
 from rtamt.errors import caret
+from rtamt.language.dimensions import DIMENSION, SCALE, UNCHECKED
 from rtamt.language.formula import Apply, Const, Var, postorder, variables
 from rtamt.language.grammar import is_number, is_predicate
 from rtamt.language.records import Fixity, Sort
+from rtamt.language.unit_check import unit_findings
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-    from rtamt.language.document import Assertion, Document
+    from rtamt.language.document import Assertion, Document, Severity
     from rtamt.language.formula import Formula, Span
 
     Found = Iterator[tuple[Span | None, str]]
@@ -21,22 +24,30 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Rule:
-    """One kind of warning: its code, its summary, an example, and the function that finds it in a document."""
+    """One kind of warning: its code, its summary, an example, and the function that finds it in a document.
+
+    ``severity``: "error" for what is certainly a mistake, though the text is legal.
+    """
 
     code: str
     about: str
     example: str
     find: Callable[[Document], Found]
+    severity: Severity = "warning"
 
 
 @dataclass(frozen=True, slots=True)
 class LintWarning:
-    """A legal but probably unintended part of a specification; ``str()`` shows the line and a caret."""
+    """A legal but probably unintended part of a specification; ``str()`` shows the line and a caret.
+
+    ``severity``: "warning", or "error" for what is certainly a mistake.
+    """
 
     code: str
     message: str
     text: str
     span: Span | None
+    severity: Severity = "warning"
 
     def __str__(self) -> str:
         where = "" if self.span is None else f"\n{caret(self.text, self.span)}"
@@ -55,7 +66,7 @@ def warnings_of(document: Document) -> tuple[LintWarning, ...]:
     """
     document = document.origin or document
     found = {
-        LintWarning(rule.code, message, document.text, span)
+        LintWarning(rule.code, message, document.text, span, rule.severity)
         for rule in RULES
         for span, message in rule.find(document)
     }
@@ -162,6 +173,12 @@ def _not_required(document: Document) -> Found:
             )
 
 
+def _units(document: Document, *, kind: str) -> Found:
+    for found in unit_findings(document):
+        if found.kind == kind:
+            yield found.span, found.message
+
+
 RULES: tuple[Rule, ...] = (
     Rule("RT101", "a number where a formula is expected", "x and y >= 3", _number_as_formula),
     Rule("RT102", "a formula where a number is expected", "(x >= 3) + 1 > 2", _formula_as_number),
@@ -179,6 +196,26 @@ RULES: tuple[Rule, ...] = (
         "a formula that is no requirement, because the text uses 'require'",
         "require R1: x >= 3; y >= 2",
         _not_required,
+    ),
+    Rule(
+        "RT301",
+        "different quantities in a sum or comparison, or in a function of angles or plain numbers",
+        "input float speed [m/s]  input float gap [m]  speed + gap > 3",
+        partial(_units, kind=DIMENSION),
+        "error",
+    ),
+    Rule(
+        "RT302",
+        "the same quantity in different units, such as degrees and radians",
+        "input float heading [deg]  sin(heading) > 0",
+        partial(_units, kind=SCALE),
+        "error",
+    ),
+    Rule(
+        "RT303",
+        "units that cannot be checked",
+        "input float v [kmh]  parameter float limit = 30 [m/s]  v < limit",
+        partial(_units, kind=UNCHECKED),
     ),
 )
 CODES = tuple(rule.code for rule in RULES)

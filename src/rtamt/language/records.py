@@ -17,6 +17,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping
     from fractions import Fraction
 
+    from rtamt.language.unit_rules import UnitRule
+
     Expansion = Callable[..., Formula]
     #: From delayed operands, the interval, and what is true from the delay (and some seconds more) on.
     Pastification = Callable[[tuple[Formula, ...], Interval | None, Callable[[Fraction], Formula]], Formula]
@@ -195,6 +197,8 @@ class Operator:
     # the operands, and the monotonicity of the result in each operand.
     extension: Callable[..., Any] | None = None
     slopes: Callable[..., tuple[int | None, ...]] | None = None
+    # The unit of the result from those of the operands (unit_rules.py); None: unknown.
+    units: UnitRule | None = None
     # Of an operator that a text declares: what makes it again, a function and its arguments.
     maker: tuple[Callable[..., Operator], tuple[Any, ...]] | None = None
 

@@ -6,7 +6,6 @@ not a number of hertz, although radians have no dimension.
 
 from __future__ import annotations
 
-import re
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache
@@ -17,20 +16,11 @@ import numpy as np
 
 from rtamt.errors import TraceError
 from rtamt.extras import library
+from rtamt.language.unit_library import parsed, registry, same_text
 
 if TYPE_CHECKING:
     from rtamt.signals.arrays import FloatArray
 
-#: Products of powers of units: nothing that a library of units would have to compute for long.
-_UNIT = re.compile(r"(?:[^\W\d]|[°%µμΩ_])+")
-_POWER = r"(?:(?:\^|\*\*)?-?\d|[⁻]?[⁰¹²³⁴-⁹])?"
-_TEXT = re.compile(
-    rf"\(*(?:1|{_UNIT.pattern}){_POWER}\)*(?:\s*[*/·⋅ ]\s*\(*(?:1|{_UNIT.pattern}){_POWER}\)*)*"
-)
-#: The longest unit that is looked up.
-_LONGEST = 60
-#: Ways of writing that a number has no unit.
-_NONE = ("-", "1", "[-]", "none")
 _EXACT = 2**53
 
 
@@ -80,12 +70,12 @@ def conversion_of(name: str, recorded: str, declared: str) -> Conversion | None:
     Raises :class:`TraceError` for units that are unknown or differ in more than factor and offset, and
     :class:`UsageError` where the library is missing.
     """
-    if _plain(recorded) == _plain(declared):
+    if same_text(recorded, declared):
         return None
     library("pint", f"converting '{name}' from {recorded} to {declared}", "units")
     kinds = {"recorded": recorded, "declared": declared}
     for kind, other in (("recorded", "declared"), ("declared", "recorded")):
-        if _parsed(kinds[kind]) is None:
+        if parsed(kinds[kind]) is None:
             raise TraceError(
                 f"the {kind} unit '{kinds[kind]}' of '{name}' is unknown, so that it cannot be converted ({other}: "
                 f"{kinds[other]}); declare the recorded unit, or give another one to rtamt.read(units=...)",
@@ -100,36 +90,14 @@ def conversion_of(name: str, recorded: str, declared: str) -> Conversion | None:
     return None if found == Conversion(Fraction(1), Fraction(0)) else found
 
 
-def _plain(unit: str) -> str:
-    return "".join(unit.split())
-
-
-@lru_cache(maxsize=1)
-def _registry() -> Any:
-    return library("pint", "converting units", "units").UnitRegistry(non_int_type=Fraction)
-
-
-@lru_cache(maxsize=512)
-def _parsed(unit: str) -> Any:
-    """Return a unit of the library; None for a text that is no unit."""
-    registry = _registry()
-    text = "" if unit.strip().lower() in _NONE else unit.strip()
-    if len(text) > _LONGEST or (text and _TEXT.fullmatch(text) is None):
-        return None
-    try:
-        return registry.parse_units(text)
-    except Exception:  # noqa: BLE001 - a library's own: undefined units, syntax, tokens
-        return None
-
-
 @lru_cache(maxsize=512)
 def _conversion(recorded: str, declared: str) -> Conversion | None:
     """Return the conversion between two known units; None where there is none."""
-    registry, first, second = _registry(), _parsed(recorded), _parsed(declared)
+    units, first, second = registry(), parsed(recorded), parsed(declared)
     try:
-        if registry.get_root_units(first)[1] != registry.get_root_units(second)[1]:
+        if units.get_root_units(first)[1] != units.get_root_units(second)[1]:
             return None
-        at = [Fraction(registry.Quantity(Fraction(i), first).to(second).magnitude) for i in range(3)]
+        at = [Fraction(units.Quantity(Fraction(i), first).to(second).magnitude) for i in range(3)]
     except Exception:  # noqa: BLE001 - a library's own: logarithmic units, offsets inside a product
         return None
     scale = at[1] - at[0]

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+
 
 def test_files_that_are_right(run, write):
     write("a.stl", "specification a\nalways(x >= 3)\n")
@@ -90,3 +92,42 @@ def test_check_prints_warnings_and_keeps_its_exit_code(run, write):
     )
     assert run("check", "prev(x) - x <= 3", "a.csv", "--json", "--ignore", "RT105").err == ""
     assert run("check", "prev(x) - x <= 3", "a.csv", "--quiet").err == ""
+
+
+SPEED = "input float speed [m/s]\ninput float gap [m]\nalways(speed + gap > 3) and speed\n"
+
+
+def test_units_that_do_not_fit_are_errors_and_block_no_check(run, write):
+    write("speed.stl", SPEED)
+    write("log.csv", "speed,gap\n2,3\n")
+    answer = run("lint", "speed.stl", "--quiet")
+    assert answer == (
+        2,
+        "",
+        "rtamt: speed.stl: error RT301: 'speed' is in m/s and 'gap' is in m, which are different quantities; correct a "
+        "declaration, or multiply 'speed' by a constant in s\n"
+        "  line 3, column 8:\n"
+        "    always(speed + gap > 3) and speed\n"
+        "           ^^^^^^^^^^^\n",
+    )
+    assert run("lint", "speed.stl", "--ignore", "RT301").code == 0
+    checked = run("check", "speed.stl", "log.csv", "--ignore", "RT101")
+    assert (checked.code, checked.err) == (0, answer.err)
+
+
+def test_findings_as_json_for_editors(run, write):
+    write("speed.stl", SPEED)
+    write("wrong.stl", "always(\n  x >= )\n")
+    answer = run("lint", "speed.stl", "wrong.stl", "none.stl", "--json")
+    rows = [json.loads(line) for line in answer.out.splitlines()]
+    places = [tuple(row.get(key) for key in ("line", "column", "end_line", "end_column")) for row in rows]
+    assert (answer.code, answer.err) == (2, "")
+    assert [(row["file"], row["severity"], row["code"]) for row in rows] == [
+        ("speed.stl", "error", "RT301"),
+        ("speed.stl", "warning", "RT101"),
+        ("wrong.stl", "error", None),
+        ("none.stl", "error", None),
+    ]
+    assert places == [(3, 8, 3, 19), (3, 29, 3, 34), (2, 8, 2, 9), (None,) * 4]
+    assert rows[2]["message"] == "expected an operand after '>=', got ')'"
+    assert run("lint", "speed.stl", "--json", "--ignore", "RT301", "--ignore", "RT101") == (0, "", "")

@@ -1,0 +1,146 @@
+"""Physical units by pint, with exact factors: what a text means as a unit, and what a product of units amounts to.
+
+Angles are base units here, as in pint: radians have no dimension, but one rpm is 6 deg/s and no number of hertz.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import lru_cache
+from math import inf
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+from rtamt.errors import StlError
+from rtamt.extras import library
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+#: Products of powers of units: nothing that a library of units would have to compute for long.
+_UNIT = re.compile(r"(?:[^\W\d]|[°%µμΩ_])+")
+_POWER = r"(?:(?:\^|\*\*)?-?\d|[⁻]?[⁰¹²³⁴-⁹])?"
+_TEXT = re.compile(
+    rf"\(*(?:1|{_UNIT.pattern}){_POWER}\)*(?:\s*[*/·⋅ ]\s*\(*(?:1|{_UNIT.pattern}){_POWER}\)*)*"
+)
+#: The longest unit that is looked up.
+_LONGEST = 60
+#: Ways of writing that a number has no unit.
+_NONE = ("-", "1", "[-]", "none")
+
+#: A product of powers of units, each as it is written in a text.
+Powers: TypeAlias = "tuple[tuple[str, Fraction], ...]"
+
+
+class UnknownUnitError(StlError):
+    """A text is no unit; ``unit``: the text."""
+
+    def __init__(self, unit: str) -> None:
+        super().__init__(f"pint does not know the unit '{unit}'; correct its spelling, such as km/h or m/s^2")
+        self.unit = unit
+
+
+@dataclass(frozen=True)
+class Resolved:
+    """A product of units in terms of base units: ``scale`` times them, where angles are left out.
+
+    ``bases``: the exponents of the base units. ``angle``: that of radians. ``units``: the exponents of the units
+    themselves, by their names. ``offset``: where zero lies, in base units; None of units that have no scale of their
+    own, such as dB.
+    """
+
+    bases: frozenset[tuple[str, Fraction]]
+    angle: Fraction
+    scale: float
+    offset: float | None
+    units: Mapping[str, Fraction]
+
+
+def same_text(first: str, second: str) -> bool:
+    """Return whether two units are written alike, apart from spaces."""
+    return "".join(first.split()) == "".join(second.split())
+
+
+def is_none(unit: str) -> bool:
+    """Return whether a text declares that a number has no unit."""
+    return unit.strip().lower() in _NONE
+
+
+@lru_cache(maxsize=1)
+def registry() -> Any:
+    """Return the units of pint, with exact factors."""
+    return library("pint", "converting units", "units").UnitRegistry(non_int_type=Fraction)
+
+
+@lru_cache(maxsize=512)
+def parsed(unit: str) -> Any:
+    """Return a unit of the library; None for a text that is no unit."""
+    units = registry()
+    text = "" if is_none(unit) else unit.strip()
+    if len(text) > _LONGEST or (text and _TEXT.fullmatch(text) is None):
+        return None
+    try:
+        return units.parse_units(text)
+    except Exception:  # noqa: BLE001 - a library's own: undefined units, syntax, tokens
+        return None
+
+
+def product(powers: Powers) -> Any:
+    """Return a product of units; raise :class:`UnknownUnitError` for a text that is none."""
+    found = registry().parse_units("")
+    for text, exponent in powers:
+        unit = parsed(text)
+        if unit is None:
+            raise UnknownUnitError(text)
+        found = found * unit**exponent
+    return found
+
+
+@lru_cache(maxsize=512)
+def resolved(powers: Powers) -> Resolved:
+    """Return what a product of units amounts to; raise :class:`UnknownUnitError` for a text that is no unit.
+
+    >>> kmh = resolved((("km/h", Fraction(1)), ("rad", Fraction(1))))
+    >>> sorted(kmh.bases), round(kmh.scale, 6)
+    ([('meter', Fraction(1, 1)), ('second', Fraction(-1, 1))], 0.277778)
+    """
+    unit = product(powers)
+    try:
+        factor, root = registry().get_root_units(unit)
+        scale = float(factor)
+    except OverflowError:
+        scale = inf
+    if not 0 < scale < inf:
+        raise UnknownUnitError("*".join(text for text, _ in powers))
+    bases = _exponents(root)
+    angle = bases.pop("radian", Fraction(0))
+    try:
+        offset = float(registry().Quantity(Fraction(0), unit).to_root_units().magnitude)
+    except Exception:  # noqa: BLE001 - a library's own: logarithmic units, offsets inside a product
+        offset = None
+    return Resolved(frozenset(bases.items()), angle, scale, offset, _exponents(unit))
+
+
+def unit_text(powers: Powers) -> str:
+    """Return a product of units as it is written after a declaration.
+
+    >>> unit_text((("m/s", Fraction(2)), ("s", Fraction(1))))
+    'm^2/s'
+    """
+    if len(powers) == 1 and powers[0][1] == 1:
+        return powers[0][0]
+    exponents = _exponents(product(powers))
+    above, below = (
+        [
+            registry().get_symbol(name) + (f"^{abs(exponent)}" if abs(exponent) != 1 else "")
+            for name, exponent in exponents.items()
+            if exponent * sign > 0
+        ]
+        for sign in (1, -1)
+    )
+    return "/".join(["*".join(above) or "1", *below])
+
+
+def _exponents(unit: Any) -> dict[str, Fraction]:
+    return {name: Fraction(exponent) for name, exponent in unit._units.items()}
