@@ -195,7 +195,7 @@ def roles_of(document: Document, given: Mapping[str, str]) -> Mapping[str, str]:
     """
     _check_mapping("roles", given, "{'req': 'input'}")
     declared = {d.name: d.role for d in document.declarations if d.role is not None}
-    read = set(variables(*(assertion.formula for assertion in document.assertions)))
+    read = set(variables(*(assertion.formula for assertion in document.assertions))) if given else set()
     known = read | {name.split(".")[0] for name in read} | {d.name for d in document.declarations}
     for name, role in given.items():
         if name not in known:

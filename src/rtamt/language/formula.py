@@ -166,7 +166,10 @@ class Apply(Formula):
     def __post_init__(self) -> None:
         # Children carry their own hash and size, so that this takes O(1) per node and needs no recursion.
         object.__setattr__(self, "_hash", hash((self.op, self.args, self.interval)))
-        object.__setattr__(self, "_size", min(1 + sum(map(size, self.args)), COUNTLESS))
+        count = 1
+        for operand in self.args:
+            count += operand._size if isinstance(operand, Apply) else 1
+        object.__setattr__(self, "_size", count if count < COUNTLESS else COUNTLESS)
 
     def __hash__(self) -> int:
         return self._hash
@@ -303,6 +306,8 @@ def outermost(formulas: Sequence[Formula]) -> list[Formula]:
     >>> outermost([x, STL["not"](x)])
     [<formula not x>]
     """
+    if len(formulas) < 2:
+        return list(formulas)
     found: list[Formula] = []
     seen: set[int] = set()
     for formula in reversed(formulas):

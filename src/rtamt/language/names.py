@@ -30,11 +30,13 @@ class NameParser:
         self.scope = scope
         self.tokens = tokenize(text, language)
         self.index = 0
+        #: The texts of all tokens: most texts have no definitions, no templates and no slashes.
+        self.words = {token.text for token in self.tokens}
         #: The names of the definitions that have been used so far.
         self.used: set[str] = set()
         self._depth = 0
         self._sign = sign(language)
-        self._slashes = scope.slashes  # as many as any declared name has
+        self._slashes = scope.slashes if "/" in self.words else 0  # as many as any declared name has
         #: The uses of templates so far.
         self.uses = Uses()
         #: Where the template is used whose formula is being read; None outside templates.

@@ -87,7 +87,7 @@ class FormulaParser(TypedParser):
         while True:
             token = self.tokens[self.index]
             op = self.language.infix(token.text)
-            if op is None and self._begins_set(power):
+            if op is None and token.text == "in" and self._begins_set(power):
                 left = self.membership(left, Span(start, self.tokens[self.index - 1].end))
                 last = None
                 continue
@@ -97,8 +97,8 @@ class FormulaParser(TypedParser):
             self.index += 1
             timed = op.bounds is not Bounds.NONE or self.tokens[self.index].text == "["
             interval = parse_interval(self, op, token) if timed else None
-            right_start = self.token.start
-            right = self.compared(op, left)
+            right_start = self.tokens[self.index].start
+            right = self.compared(op, left) if self.scope.enumerations else self._right(op)
             end = self.tokens[self.index - 1].end
             place = Span(right_start, end)
             if last is not None and is_predicate(op) and is_predicate(last[0]):

@@ -137,16 +137,13 @@ class _DocumentParser(DeclarationParser):
         """``assertion , { separator , assertion } , [ ";" ]``."""
         pending = self._names_to_come() | templates_to_come(self)
         names = dict.fromkeys(variables) or None  # a dict for fast lookup
-        self._slashes = self._scope(names).slashes
+        self._slashes = self._scope(names).slashes if "/" in self.words else 0
         found: list[Assertion] = []
         while self.token.kind != "end":
             required = self._requires()
             if self._imports_file():
                 raise self.error("imports stand at the beginning, before declarations", self.token.span)
-            declares = self.token.text == "@" or self._declares()
-            declares = declares or begins_enumeration(self) or begins_table(self)
-            declares = declares or begins_sampling(self)
-            if (found or self._templates) and not required and declares:
+            if (found or self._templates) and not required and self._begins_declaration():
                 raise self.error(
                     "declarations and annotations stand before the first formula", self.token.span
                 )
@@ -175,8 +172,10 @@ class _DocumentParser(DeclarationParser):
                     self._definitions[name] = formula
                     self._slashes = max(self._slashes, name.count("/"))
             # A formula without a name may continue on the next line, so it needs a semicolon.
-            ended = self._begins_a_line(self.index) and (name or self._requires() or begins_template(self))
-            if self.token.kind != "end" and not (self.accept(";") or ended):
+            if self.token.kind != "end" and not (
+                self.accept(";")
+                or (self._begins_a_line(self.index) and (name or self._requires() or begins_template(self)))
+            ):
                 raise self._not_finished()
             while self.accept(";"):
                 pass
@@ -206,6 +205,16 @@ class _DocumentParser(DeclarationParser):
         self._templates[name] = template
         return name
 
+    def _begins_declaration(self) -> bool:
+        """Return whether a declaration or annotation begins here."""
+        return (
+            self.token.text == "@"
+            or self._declares()
+            or begins_enumeration(self)
+            or begins_table(self)
+            or begins_sampling(self)
+        )
+
     def _begins_a_line(self, at: int) -> bool:
         between = self.text[self.tokens[at - 1].end : self.tokens[at].start]
         return "\n" in between or "\r" in between
@@ -225,6 +234,8 @@ class _DocumentParser(DeclarationParser):
 
     def _names_to_come(self) -> dict[str, str]:
         """Return the names that later assertions define, each with the error message for an earlier use."""
+        if "=" not in self.words:
+            return {}
         # Except where an assertion may begin, '=' is a mistaken comparison: always(x = 3), or names an argument.
         depth = accumulate((token.text == "(") - (token.text == ")") for token in self.tokens)
         names = [

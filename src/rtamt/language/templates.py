@@ -124,6 +124,8 @@ class Uses:
 
 def begins_template(parser: FormulaParser) -> bool:
     """Return whether a template is defined here: ``def``, a name and a parenthesis, which no formula begins with."""
+    if parser.token.text != "def":
+        return False
     first, second, third = (*parser.tokens[parser.index : parser.index + 3], *[parser.tokens[-1]] * 2)[:3]
     named = second.kind == "name" and parser.language.infix(second.text) is None
     return first.kind == "name" and first.text == "def" and named and third.text == "("

@@ -38,6 +38,10 @@ def type_of(formula: Formula) -> PartType:
     >>> from rtamt.language.parser import parse_formula
     >>> type_of(parse_formula("x + 1"))
     """
+    if isinstance(formula, Var | Const):
+        return formula.type
+    if isinstance(formula, Apply) and not formula.op.keeps:
+        return None
     leaves: list[PartType] = []
     stack, seen = [formula], set()
     while stack:  # what an operator keeps may be nested through thousands of definitions

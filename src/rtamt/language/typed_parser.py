@@ -77,11 +77,10 @@ class TypedParser(NameParser):
         return as_formula(formula)
 
     def _begins_set(self, power: int) -> bool:
-        """Return whether ``in {`` follows, which binds as ``==`` does; elsewhere ``in`` is a name."""
-        if self.tokens[self.index].text != "in" or self.tokens[self.index + 1].text != "{":
-            return False
+        """Return whether ``{`` follows ``in``, which binds as ``==`` does; elsewhere ``in`` is a name."""
         equal = self.language.get("eq")
-        return equal is not None and power <= equal.power
+        braced = self.tokens[self.index + 1].text == "{"
+        return braced and equal is not None and power <= equal.power
 
     def membership(self, left: Formula, place: Span) -> Formula:
         """``operand , "in" , "{" , expression , { "," , expression } , "}"``: equal to one of them."""
@@ -114,7 +113,7 @@ class TypedParser(NameParser):
     def compared(self, op: Operator, left: Formula) -> Formula:
         """Parse the right operand of an infix operator; what is compared to an enumeration may be a member."""
         before = self._against
-        found = type_of(left) if op.equates and self.scope.enumerations else None
+        found = type_of(left) if op.equates else None
         self._against = found if isinstance(found, Enumeration) else None
         right = self._right(op)
         self._against = before
