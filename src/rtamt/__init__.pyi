@@ -102,6 +102,7 @@ from rtamt.signals.trace import Channel as Channel
 from rtamt.signals.trace import Trace as Trace
 from rtamt.specification import Specification as Specification
 from rtamt.texts import load as load
+from rtamt.texts import pack as pack
 from rtamt.texts import parse as parse
 from rtamt.texts import robustness as robustness
 from rtamt.verdicts.chunks import StreamResult as StreamResult

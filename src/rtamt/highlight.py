@@ -28,6 +28,7 @@ DECLARING = (
     "specification",
     "from",
     "import",
+    "optional",
     "input",
     "output",
     "const",

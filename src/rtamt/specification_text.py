@@ -32,7 +32,7 @@ from rtamt.signals.ticks import NANOSECOND
 from rtamt.verdicts.robustness_and_truth import Outputs, outputs_of
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Collection, Mapping
 
     from typing_extensions import Self
 
@@ -343,20 +343,65 @@ class SpecificationText:
         >>> dict(spec.recorded), spec.evaluate({"setpoint.position[2]": [1, 2]}).robustness
         ({'z': 'setpoint.position[2]'}, 1.0)
         """
-        declared = {d.name: d.column for d in self.document.declarations if d.column} | {**self.columns}
+        return MappingProxyType({name: columns[0] for name, columns in self._recorded_names.items()})
+
+    @cached_property
+    def _recorded_names(self) -> dict[str, tuple[str, ...]]:
+        """Every recorded name of the variables that the formula reads, the preferred one first."""
+        declared = {d.name: d.columns for d in self.document.declarations if d.columns}
+        declared |= {name: (column,) for name, column in self.columns.items()}
         found = {}
         for name in self.input_names:
             head, dot, field_of = name.partition(".")
             if name in declared:
                 found[name] = declared[name]
             elif dot and head in declared:
-                found[name] = f"{declared[head]}.{field_of}"
-        return MappingProxyType(found)
+                found[name] = tuple(f"{column}.{field_of}" for column in declared[head])
+        return found
+
+    @cached_property
+    def optional(self) -> frozenset[str]:
+        """The variables that the formula reads and recordings may lack."""
+        declared = {d.name for d in self.document.declarations if d.optional}
+        return frozenset(
+            name for name in self.input_names if name in declared or name.split(".")[0] in declared
+        )
+
+    def unchecked(self, names: Collection[str]) -> dict[str, str]:
+        """Return the requirements that cannot be checked on a recording with these signals, each with the reason.
+
+        These are the requirements that read an ``optional`` variable of which the recording has no recorded name.
+
+        >>> import rtamt
+        >>> spec = rtamt.parse('''
+        ...     optional input float v [V] = "battery_status.voltage_v" or "battery.voltage"
+        ...     input float z
+        ...     require BAT: always(v >= 14)
+        ...     require ALT: always(z <= 50)''')
+        >>> spec.unchecked(["z", "battery.voltage"])
+        {}
+        >>> spec.unchecked(["z"])
+        {'BAT': "no 'battery_status.voltage_v' or 'battery.voltage'"}
+        """
+        known = set(names)
+        lacking = {}
+        for name in sorted(self.optional - known):
+            columns = self._recorded_names.get(name, (name,))
+            if known.isdisjoint(columns):
+                lacking[name] = "no " + " or ".join(f"'{column}'" for column in columns)
+        return {
+            name: "; ".join(lacking[each] for each in one.input_names if each in lacking)
+            for name, one in self.requirements.items()
+            if not lacking.keys().isdisjoint(one.input_names)
+        }
 
     @cached_property
     def binding(self) -> Binding:
         """Where recordings have the variables that the formula reads, and in which units they are declared."""
-        return Binding(self.input_names, tuple(self.recorded.items()), tuple(self.units.items()))
+        others = {name: columns[1:] for name, columns in self._recorded_names.items() if len(columns) > 1}
+        return Binding(
+            self.input_names, tuple(self.recorded.items()), tuple(self.units.items()), tuple(others.items())
+        )
 
     @cached_property
     def _declared(self) -> tuple[str, ...]:

@@ -6,8 +6,8 @@ import os
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from rtamt.errors import UsageError, shown
-from rtamt.language.imports import Library
+from rtamt.errors import UsageError, choices, shown
+from rtamt.language.imports import PACKAGED, Library
 from rtamt.language.operators import STL, Language
 from rtamt.language.specfile import parse_document
 from rtamt.language.units import positive_period
@@ -29,6 +29,10 @@ if TYPE_CHECKING:
     from rtamt.language.units import Duration
     from rtamt.settings import Semantics, Settings
     from rtamt.signals.domain_interface import TimeDomain
+
+
+#: The folder of the packs.
+_PACKS = os.path.join(PACKAGED, "packs")
 
 
 def parse(
@@ -125,6 +129,26 @@ def load(path: str | os.PathLike[str], **settings: Unpack[Settings]) -> Specific
             f"'{path}' is not UTF-8 text (byte {error.start}); is it a specification?"
         ) from error
     return parse(text, folder=Path(path).parent, **settings)
+
+
+def packs() -> tuple[str, ...]:
+    """Return the names of the packs, see :func:`pack`."""
+    return tuple(sorted(name[:-4] for name in os.listdir(_PACKS) if name.endswith(".stl")))
+
+
+def pack(name: str, **settings: Unpack[Settings]) -> Specification:
+    """Load a pack of requirements that is part of the package; settings and errors are those of :func:`parse`.
+
+    Recordings need not have all signals of a pack: :meth:`Specification.unchecked` lists what cannot be checked.
+
+    >>> import rtamt
+    >>> spec = rtamt.pack("driving")
+    >>> spec.name, "LIMIT-1" in spec.requirements
+    ('driving', True)
+    """
+    if name not in packs():
+        raise UsageError(f"there is no pack '{name}'{choices(name, packs(), 'packs')}")
+    return load(os.path.join(_PACKS, f"{name}.stl"), **settings)
 
 
 def _folder(folder: str | os.PathLike[str]) -> str:

@@ -186,7 +186,7 @@ def command_line() -> str:
 #: The tasks, in the order in which a user meets them: what the page says of each, and what belongs to it. Of a
 #: class, members that are named themselves are left out where the class is shown.
 TASKS: dict[str, tuple[str, tuple[str, ...]]] = {
-    "Parse and load": ("", ("parse", "load", "Specification")),
+    "Parse and load": ("", ("parse", "load", "pack", "Specification")),
     "Evaluate": (
         "",
         (

@@ -1,8 +1,9 @@
 """The command line ``rtamt``: every error is one sentence on stderr, never a traceback.
 
 Each command is a module with the name of the command: ``check``, ``explain``, ``plot``, ``report``,
-``monitor``, ``ros2``, ``falsify``, ``info``, ``lint``, ``compile``, ``fmu``, ``operators``, ``completion``. It has
-the functions ``configure`` and ``run``, and is imported when the command is used. The other modules are shared:
+``monitor``, ``ros2``, ``falsify``, ``info``, ``lint``, ``compile``, ``fmu``, ``packs``, ``operators``,
+``completion``. It has the functions ``configure`` and ``run``, and is imported when the command is used. The other
+modules are shared:
 
 ===============  =============================================================
 module           purpose
@@ -57,6 +58,7 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             ("lint", "report what is wrong with specification files"),
             ("compile", "requirement to a program that runs without Python"),
             ("fmu", "requirement to a unit that simulators import"),
+            ("packs", "list the packs of requirements, or print one"),
             ("operators", "list the operators of the language"),
             ("completion", "print the completion for bash, zsh or fish"),
         )

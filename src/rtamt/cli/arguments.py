@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
+import os
 from collections import Counter
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from rtamt.cli.command import CommandError, read_specifications
+from rtamt.cli.command import PACK, CommandError, read_specifications
 from rtamt.cli.outcome import Requirement
 from rtamt.cli.parser import complain
 from rtamt.cli.reading_options import names_of, reading_of
 from rtamt.cli.runner import evaluate
 from rtamt.language.units import positive_period
 from rtamt.readers.sql import shown
+from rtamt.texts import packs
 
 if TYPE_CHECKING:
     from argparse import Namespace
@@ -109,13 +111,22 @@ def each_requirement(given: list[Requirement]) -> list[Requirement]:
 
 def _split(args: Namespace) -> tuple[list[str], list[str]]:
     given, traces = [args.spec], list(args.traces)
-    while traces and traces[0].lower().endswith(".stl") and given[-1].lower().endswith(".stl"):
+    while traces and _is_specification(traces[0]) and _is_specification(given[-1]):
         given.append(traces.pop(0))
     if args.sql is not None:
         if traces:
             raise CommandError(f"--sql reads a database; leave out the trace '{traces[0]}', or --sql")
         return given, [args.sql]
     return given, traces
+
+
+def _is_specification(text: str) -> bool:
+    """Return whether an argument is a specification file or a pack, by its name."""
+    return (
+        text.lower().endswith(".stl")
+        or text.startswith(PACK)
+        or (text in packs() and not os.path.exists(text))
+    )
 
 
 def result_of_one(args: Namespace, command: str) -> tuple[str, Result]:
@@ -145,7 +156,14 @@ def _results(requirements: list[Requirement], trace: str, reading: Reading) -> d
     for row, outcome in zip(
         each_requirement(requirements), evaluate(requirements, trace, reading), strict=True
     ):
+        if outcome.unchecked:
+            complain(f"{row.label}, {outcome.trace}: {outcome.unchecked}")
+            continue
         if outcome.result is None:
             raise CommandError(outcome.error)
         found[row.written.name] = outcome.result
+    if not found:
+        raise CommandError(
+            f"{shown(trace)}: nothing was checked, since the recording has none of the signals"
+        )
     return found

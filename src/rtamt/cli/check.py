@@ -22,7 +22,8 @@ from rtamt.cli.command import (
     warnings_of,
     write_output,
 )
-from rtamt.cli.parser import ERROR, OK, VIOLATED, complain
+from rtamt.cli.outcome import counted, exit_code
+from rtamt.cli.parser import complain
 from rtamt.cli.reading_options import add_reading_options, reading_of
 from rtamt.cli.reports import REPORTS, HtmlReport, write_report
 from rtamt.cli.reports.messages import episodes_members, robustness_members
@@ -45,11 +46,13 @@ Evaluate recordings against requirements, every requirement over every recording
 first instant (how far the recording is from violating the requirement, or below 0 from satisfying it)
 and the verdict.
 
-Exit code: 0 all satisfied, 1 some violated, 2 some could not be evaluated."""
+Exit code: 0 all satisfied, 1 some violated, 2 some could not be evaluated. Requirements that a recording does
+not have the signals for are unchecked, and change nothing."""
 
 _EPILOG = """\
-SPEC is a file (.stl) or a formula in quotes; more .stl files may follow. A trace is a CSV, Parquet,
-Arrow, Excel, PX4 ULog or MDF file, a ROS bag (.bag, .db3, .mcap, or the folder that ROS 2 records), or
+SPEC is a file (.stl), a pack of requirements ('rtamt packs' lists them) or a formula in quotes; more files
+and packs may follow. A trace is a CSV, Parquet, Arrow, Excel, PX4 ULog or MDF file, a ROS bag (.bag, .db3,
+.mcap, or the folder that ROS 2 records), or
 the rows of a query (--sql URL --query TEXT). Timestamps are in the column called time, t, timestamp,
 stamp or datetime; without one, samples are one period apart. They are dates (ISO 8601) or numbers:
 seconds, or the unit in the header ('t [ms]') or of --time-unit; numbers too large for seconds
@@ -69,6 +72,10 @@ is written again, with the topics of robustness and verdicts that SPEC names.
 Each requirement has a row of its own: the formulas after 'require ID "text" severity WORD:' in SPEC, and
 without any of these the formulas that no other one uses.
 
+A requirement is unchecked if it reads an optional variable ('optional input float v') that a trace does not
+have; its row shows what is missing. That does not change the exit code, unless nothing of a trace was
+checked: then it is 2.
+
 Legal but probably unintended formulas in SPEC cause a warning on stderr, with a code for --ignore; they do
 not change the exit code. 'rtamt lint' prints the same.
 
@@ -83,7 +90,8 @@ these are checked over the whole recording.
 
 --json prints one object a line: {"requirement", "trace", "satisfied", "robustness", "first_violation",
 "samples", "period", "episodes"}, of what was written with 'require' also "description" and "severity", or
-{"requirement", "trace", "error"}. "episodes" is an object {"count", "worst", "first"}: how many maximal runs of
+{"requirement", "trace", "error"}, or {"requirement", "trace", "unchecked"} with the reason.
+"episodes" is an object {"count", "worst", "first"}: how many maximal runs of
 violation there are, the worst, and the first 100 as [{"begin", "end", "worst", "at"}]; of 'always f' those of f.
 It is left out where chunks, or --early, do not give them. The first violation of 'always f' is the first instant
 at which f does not hold, of a conjunction the first of its parts, of anything else the first instant of the trace:
@@ -99,13 +107,14 @@ examples:
   rtamt check examples/request_grant/spec.stl examples/request_grant/b_vacuous.csv --semantics input_vacuity
   rtamt check specs/*.stl logs/*.csv --junit report.xml --html report.html
   rtamt check "always(v >= 14)" flight.ulg --time dense --name "v=battery_status[1].voltage_v"
+  rtamt check px4 flight.ulg --set tilt_error=10
   rtamt check limits.stl --sql sqlite:///log.db --query "select time, speed from log"
 """
 
 
-_KINDS = {"satisfied": "good", "violated": "bad", "error": "error"}
-#: Of a verdict, the exit code.
-CODES = {"satisfied": OK, "violated": VIOLATED, "error": ERROR}
+#: Notes below a table.
+_NOTES = 10
+_KINDS = {"satisfied": "good", "violated": "bad", "unchecked": "error", "error": "error"}
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -192,7 +201,7 @@ def run(args: argparse.Namespace) -> int:
             write_report(make, path, requirements, found)
     if page is not None:
         page.write(args.html)
-    return max(CODES[outcome.verdict] for outcome in found)
+    return exit_code(found)
 
 
 def _check_output(output: str | None, given: Sequence[Requirement], traces: Sequence[str]) -> None:
@@ -216,6 +225,8 @@ def _as_json(outcome: Outcome, requirement: Requirement) -> str:
     more = {"description": written.description, "severity": written.severity} if written.explicit else {}
     if outcome.error:
         return json_text({**row, "error": outcome.error})
+    if outcome.unchecked:
+        return json_text({**row, "unchecked": outcome.unchecked, **more})
     row |= {
         "satisfied": outcome.verdict == "satisfied",
         **robustness_members(outcome),
@@ -234,7 +245,7 @@ def _as_table(requirements: Sequence[Requirement], found: Sequence[Outcome], col
     rows = [("requirement", "trace", "samples", "period", "robustness", "first violation", "verdict")]
     for outcome in found:
         cells = ("-", "-", "-", "-")
-        if not outcome.error:
+        if outcome.result_known:
             period = requirements[0].spec.time if outcome.period is None else format_duration(outcome.period)
             cells = (str(outcome.samples), period, outcome.robustness_text, outcome.moment or "-")
         rows.append((outcome.requirement, outcome.trace, *cells, outcome.verdict))
@@ -253,13 +264,22 @@ def _as_table(requirements: Sequence[Requirement], found: Sequence[Outcome], col
     ]
     if episodes:
         text += "\n\n" + "\n".join(episodes)
-    notes = dict.fromkeys(f"note: {outcome.trace}: {note}" for outcome in found for note in outcome.notes)
+    unchecked = [
+        f"{outcome.requirement}, {outcome.trace}: {outcome.unchecked}"
+        for outcome in found
+        if outcome.unchecked
+    ]
+    if unchecked:
+        text += "\n\n" + "\n".join(unchecked)
+    notes = list(
+        dict.fromkeys(f"note: {outcome.trace}: {note}" for outcome in found for note in outcome.notes)
+    )
     if notes:
-        text += "\n\n" + "\n".join(notes)
+        text += "\n\n" + "\n".join(notes[:_NOTES])
+    if len(notes) > _NOTES:
+        text += f"\nnote: {len(notes) - _NOTES} more notes are in the output of --json"
     if len(found) > 1:
-        verdicts = [outcome.verdict for outcome in found]
-        counts = [f"{verdicts.count(verdict)} {verdict}" for verdict in CODES if verdict in verdicts]
-        text += f"\n\n{', '.join(counts)}"
+        text += f"\n\n{counted([outcome.verdict for outcome in found])}"
     return text
 
 

@@ -26,7 +26,7 @@ from rtamt.rewrite.semantics import SEMANTICS
 from rtamt.settings import check_backend, require_backend
 from rtamt.signals.datetimes import nanoseconds_of
 from rtamt.signals.domains import DEFAULT, DOMAINS, time_domain
-from rtamt.texts import load, parse
+from rtamt.texts import load, pack, packs, parse
 
 if TYPE_CHECKING:
     import argparse
@@ -39,6 +39,8 @@ if TYPE_CHECKING:
 
 NO_STAMPS = "dense time needs a column of timestamps: call it 'time', or name it with --time-column"
 
+#: What may stand before the name of a pack.
+PACK = "pack:"
 _SPECIFICATION_SUFFIXES = (".stl",)
 #: Titles under which the help lists options.
 SPECIFICATION, READING, OUTPUT = "the specification", "reading recordings", "output"
@@ -58,7 +60,10 @@ def options(parser: argparse.ArgumentParser, title: str) -> argparse._ArgumentGr
 def add_specification_options(parser: argparse.ArgumentParser, nargs: str | None = None) -> None:
     """Add SPEC and the options for reading it; ``nargs``: "?" where it may be left out."""
     parser.add_argument(
-        "spec", metavar="SPEC", nargs=nargs, help="a specification file (.stl), or a formula in quotes"
+        "spec",
+        metavar="SPEC",
+        nargs=nargs,
+        help="a specification file (.stl), a pack ('rtamt packs' lists them), or a formula in quotes",
     )
     group = options(parser, SPECIFICATION)
     group.add_argument(
@@ -191,6 +196,12 @@ def _read(args: argparse.Namespace, time: str, spec: str) -> Specification:
     }
     if is_trace(spec):
         raise CommandError(f"'{spec}' is a trace; the specification comes before the traces")
+    name = pack_named(spec)
+    if name is not None:
+        try:
+            return pack(name, **options)
+        except SpecificationError as error:
+            raise CommandError(f"{spec}: {error}") from error
     if not os.path.exists(spec) and NAME.fullmatch(spec) and os.path.isfile(f"{spec}.stl"):
         raise CommandError(
             f"there is no file '{spec}'; did you mean {spec}.stl? (if a formula is meant, put it in parentheses)"
@@ -210,6 +221,19 @@ def _read(args: argparse.Namespace, time: str, spec: str) -> Specification:
     if not spec.strip():
         raise CommandError("the specification is empty; give a file or a formula, such as 'always(x >= 3)'")
     return parse(spec, **options)
+
+
+def pack_named(spec: str) -> str | None:
+    """Return the pack that SPEC names, None if it names none; a file of the same name is an error."""
+    if spec.startswith(PACK):
+        return spec.removeprefix(PACK)
+    if spec not in packs():
+        return None
+    if os.path.exists(spec):
+        raise CommandError(
+            f"'{spec}' is a pack and a file in this folder; write {PACK}{spec} for the pack, or ./{spec} for the file"
+        )
+    return spec
 
 
 def write_output(path: str, content: str | bytes) -> None:

@@ -12,16 +12,23 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rtamt.cli.command import short, stamp_text
+from rtamt.cli.parser import ERROR, OK, VIOLATED, complain
 from rtamt.readers.sql import shown
 from rtamt.signals.datetimes import nanoseconds_of
 from rtamt.signals.epoch import is_epoch, moment_text
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from rtamt.language.document import Requirement as Written
     from rtamt.results import Result
     from rtamt.signals.episodes import Episodes
     from rtamt.signals.outcomes import Interval
     from rtamt.specification import Specification
+
+
+#: Of a verdict, the exit code.
+CODES = {"satisfied": OK, "violated": VIOLATED, "unchecked": OK, "error": ERROR}
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,13 +66,15 @@ class Outcome:
 
     requirement: str
     trace: str
-    verdict: str  # satisfied, violated or error
+    verdict: str  # satisfied, violated, unchecked or error
     robustness: float = float("nan")
     first_violation: float | str | Decimal | None = None
     moment: str = ""
     samples: int = 0
     period: Fraction | None = None
     error: str = ""
+    #: Why it was not checked: what the recording lacks.
+    unchecked: str = ""
     notes: tuple[str, ...] = ()
     decided_at: float | str | Decimal | None = None
     bounds: Interval | None = None
@@ -74,6 +83,11 @@ class Outcome:
     explanation: str = ""
     seconds: float = 0.0
     result: Result | None = None
+
+    @property
+    def result_known(self) -> bool:
+        """Whether it was evaluated."""
+        return not self.error and not self.unchecked
 
     @property
     def robustness_text(self) -> str:
@@ -91,6 +105,26 @@ def failed(requirement: Requirement, trace: str, error: str, begin: float) -> Ou
     return Outcome(
         requirement.label, shown(trace), "error", error=error, seconds=clock.perf_counter() - begin
     )
+
+
+def skipped(requirement: Requirement, trace: str, reason: str) -> Outcome:
+    """Return the outcome of a requirement that a recording does not have the signals for."""
+    return Outcome(requirement.label, shown(trace), "unchecked", unchecked=f"not checked: {reason}")
+
+
+def exit_code(outcomes: Sequence[Outcome]) -> int:
+    """Return the exit code of a check: the gravest verdict, and an error where nothing of a recording was checked."""
+    checked = {outcome.trace for outcome in outcomes if not outcome.unchecked}
+    for trace in dict.fromkeys(outcome.trace for outcome in outcomes):
+        if trace not in checked:
+            complain(f"{trace}: nothing was checked, since the recording has none of the signals")
+    unchecked = any(outcome.trace not in checked for outcome in outcomes)
+    return max(ERROR if unchecked else OK, *(CODES[outcome.verdict] for outcome in outcomes))
+
+
+def counted(verdicts: Sequence[str]) -> str:
+    """Return how many there are of each verdict, as text."""
+    return ", ".join(f"{verdicts.count(verdict)} {verdict}" for verdict in CODES if verdict in verdicts)
 
 
 def moment_of(time: Any, start: Any) -> str:

@@ -183,8 +183,10 @@ def choice_for(specs: Sequence[Specification], trace: str, reading: Reading) -> 
 
         for spec in specs:
             names.update(columns_of(spec))
+    others: dict[str, tuple[str, ...]] = {}
     for spec in specs:
         names.update(spec.recorded)
+        others.update(spec.binding.others)
     # A value that is held in new samples is too old in these, wherever it is missing.
     held, skips_nan = _sampling_of(specs[0])
     anew = reading.how == "hold" and (held or reading.resample is not None)
@@ -194,6 +196,7 @@ def choice_for(specs: Sequence[Specification], trace: str, reading: Reading) -> 
     return replace(
         choice(reading.time, columns or None, names, None, skipped, hold_for, reading.unit, types),
         gaps=gaps,
+        others=others,
     )
 
 

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rtamt.cli.arguments import each_requirement, requirements_and_traces, variables_of
-from rtamt.cli.check import CODES
 from rtamt.cli.command import add_specification_options, add_time_option
+from rtamt.cli.outcome import counted, exit_code
 from rtamt.cli.parser import complain
 from rtamt.cli.reading_options import add_instant_option, add_reading_options, reading_of
 from rtamt.cli.reports import HtmlReport
@@ -15,6 +16,8 @@ from rtamt.cli.terminal import Progress, say
 
 if TYPE_CHECKING:
     import argparse
+
+    from rtamt.cli.outcome import Outcome
 
 _DESCRIPTION = """\
 Write one HTML file about every requirement on every trace: a matrix of verdicts, and for each cell the
@@ -55,16 +58,16 @@ def run(args: argparse.Namespace) -> int:
     requirements = each_requirement(given)
     reading = reading_of(args, variables_of(requirements), whole=True)
     page = HtmlReport("rtamt report", given, requirements, traces, reading, args.at)
-    verdicts: list[str] = []
+    found: list[Outcome] = []
     pairs = len(requirements) * len(traces)
     with Progress() as progress:
         for outcome in outcomes(given, traces, reading):
-            progress.bar(len(verdicts), pairs, outcome.trace)
+            progress.bar(len(found), pairs, outcome.trace)
             if outcome.error:
                 progress.clear()
                 complain(outcome.error)
             page.add(outcome)
-            verdicts.append(outcome.verdict)
+            found.append(replace(outcome, result=None))
     page.write(args.output)
-    say(f"{args.output}: " + ", ".join(f"{verdicts.count(v)} {v}" for v in CODES if v in verdicts))
-    return max(CODES[verdict] for verdict in verdicts)
+    say(f"{args.output}: {counted([outcome.verdict for outcome in found])}")
+    return exit_code(found)

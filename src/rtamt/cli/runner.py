@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from rtamt.batch import evaluate_requirements
 from rtamt.cli.command import NO_STAMPS
-from rtamt.cli.outcome import Outcome, episodes_of, failed, moment_of, plain_time
+from rtamt.cli.outcome import Outcome, episodes_of, failed, moment_of, plain_time, skipped
 from rtamt.cli.reading_options import (
     choice_for,
     how_to_mend,
@@ -23,7 +23,7 @@ from rtamt.cli.reading_options import (
     read_for,
 )
 from rtamt.errors import BoundError, StlError, TraceError
-from rtamt.readers.assemble import chunks_of
+from rtamt.readers.assemble import chunks_of, trace_of
 from rtamt.readers.read import opened
 from rtamt.readers.sql import is_url, shown
 from rtamt.results import first_violation
@@ -34,7 +34,7 @@ from rtamt.verdicts.early_check import holds_at_end
 from rtamt.verdicts.streaming import check_stream, check_streamable
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping, Sequence
+    from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
     from fractions import Fraction
 
     from rtamt.cli.outcome import Requirement
@@ -107,6 +107,48 @@ def _processes(traces: Sequence[str]) -> int:
 
 def evaluate(requirements: Sequence[Requirement], trace: str, reading: Reading) -> list[Outcome]:
     """Check requirements over one recording, which is read once if that goes well; an outcome for each row."""
+    if not any(requirement.spec.optional for requirement in requirements):
+        return _checked(requirements, trace, reading)
+    try:
+        with opened(trace, reading.sheet, reading.query, reading.recover) as source:
+            kept, unchecked = _applicable(requirements, source.signals, trace)
+            # A source that is read in chunks is opened quickly; any other is not opened a second time.
+            if kept and not source.in_chunks:
+                whole = trace_of(
+                    source, choice_for([requirement.spec for requirement in kept], trace, reading)
+                )
+                rest = [o for requirement in kept for o in _check(requirement, trace, whole, reading)]
+            else:
+                rest = None
+    except StlError:  # the check reports what is wrong
+        kept, unchecked, rest = list(requirements), [], None
+    found = _checked(kept, trace, reading) if rest is None else rest
+    of = {outcome.requirement: outcome for outcome in (*found, *unchecked)}
+    return [of[row.label] for requirement in requirements for row in requirement.rows or (requirement,)]
+
+
+def _applicable(
+    requirements: Sequence[Requirement], signals: Collection[str], trace: str
+) -> tuple[list[Requirement], list[Outcome]]:
+    """Return the requirements that a recording has the signals for, and outcomes of the others."""
+    kept: list[Requirement] = []
+    unchecked: list[Outcome] = []
+    for requirement in requirements:
+        rows = requirement.rows or (requirement,)
+        reasons = [row.spec.unchecked(signals) for row in rows]
+        if not any(reasons):
+            kept.append(requirement)
+            continue
+        for row, reason in zip(rows, reasons, strict=True):
+            if reason:
+                unchecked.append(skipped(row, trace, "; ".join(dict.fromkeys(reason.values()))))
+            else:
+                kept.append(row)
+    return kept, unchecked
+
+
+def _checked(requirements: Sequence[Requirement], trace: str, reading: Reading) -> list[Outcome]:
+    """Check requirements over one recording that has the signals for them."""
     early = {
         requirement.label: _early(requirement, trace, reading) if reading.early else None
         for requirement in requirements

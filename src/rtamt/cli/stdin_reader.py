@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from rtamt.cli.json_lines import (
@@ -43,7 +44,7 @@ from rtamt.signals.trace import in_seconds
 from rtamt.signals.unit_conversion import conversion_of
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+    from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 
     from rtamt.readers.assemble import Selection
     from rtamt.readers.source import Field, Raw
@@ -79,7 +80,13 @@ class Samples:
         self._names = tuple(names)
         self._binding = Binding(self._names) if binding is None else binding
         units = {} if unit is None else {TIME: unit}
-        self._choice = Choice(time=time_name, names=dict(self._binding.columns), units=units)
+        self._choice = Choice(
+            time=time_name, names=dict(self._binding.columns), units=units, others=dict(self._binding.others)
+        )
+        self._recorded = {
+            *self._choice.names.values(),
+            *(c for more in self._choice.others.values() for c in more),
+        }
         self._dense = dense
         self._read: Callable[[str, int], Sample] | None = None
         #: The units that the header of CSV gives.
@@ -103,7 +110,7 @@ class Samples:
                 return self._read(text, number)
             stamps = _Stamps(self._names, self._choice, self._dense)
             if text.lstrip().startswith("{"):
-                reader = JsonSamples(self._names, stamps, self._dense, self._choice.names, self._types)
+                reader = JsonSamples(self._names, stamps, self._dense, self._choice, self._types)
                 sample = reader.read(text, number)
                 self._read = reader.read
                 return sample
@@ -113,7 +120,7 @@ class Samples:
                 self._dense,
                 text,
                 number,
-                self._choice.names,
+                self._recorded,
                 self._types,
                 skip_nan=self._skip_nan,
             )
@@ -192,12 +199,12 @@ class _Stamps:
         fields = tuple(field_of(column, kind) for column, kind in self._kinds.items())
         source = Source(STDIN, (Table(fields, _load),))
         known = {name for field in fields for name in (field.name, field.column)}
-        columns = self._choice.names
-        names = tuple(name for name in self._names if all_named or columns.get(name, name) in known)
+        columns = {name: self._choice.column_of(name, known.__contains__) for name in self._names}
+        names = tuple(name for name in self._names if all_named or columns[name] in known)
         time = self._choice.time
         if time is None and not any(self._kinds.values()) and not any(is_stamps(f.name) for f in fields):
             time = ""  # the columns' names do not decide, and no row has been seen yet
-        read = {name: column for name, column in columns.items() if name in names}
+        read = {name: columns[name] for name in names}
         choice = Choice(time=time, columns=names, names=read, units=self._choice.units)
         (selection,) = select(source, choice)
         self.clock = clock_of(source, selection, choice)
@@ -239,14 +246,15 @@ class JsonSamples:
         names: tuple[str, ...],
         stamps: _Stamps,
         dense: bool,
-        columns: Mapping[str, str],
+        choice: Choice,
         types: Types,
     ) -> None:
         self._names = names
         self._types = types
         self._stamps = stamps
         self._dense = dense
-        self._columns = {name: columns.get(name, name) for name in names}
+        self._choice = choice
+        self._columns = {name: choice.names.get(name, name) for name in names}
 
     def read(self, text: str, number: int) -> Sample:
         """Return the sample in one line."""
@@ -256,6 +264,8 @@ class JsonSamples:
         clock = self._stamps.clock
         names = [name for name in self._names if clock is None or name != TIME]
         columns = self._columns
+        for name in self._choice.others:
+            columns[name] = self._choice.column_of(name, partial(has_value, data))
         names = [name for name in names if not self._dense or has_value(data, columns[name])]
         for name in names:
             self._stamps.require(columns[name], given_in(data, columns[name], number, name), number)
@@ -274,7 +284,7 @@ class CsvSamples:
         dense: bool,
         text: str,
         number: int,
-        recorded: Mapping[str, str],
+        recorded: Collection[str],
         types: Types,
         *,
         skip_nan: bool,
@@ -284,7 +294,7 @@ class CsvSamples:
         self._stamps = stamps
         self._header, _ = read_header(iter([text]), STDIN, number - 1)
         columns = [*self._header.names, *(split_unit(column)[0] for column in self._header.names)]
-        known = {*names, *recorded.values()}
+        known = {*names, *recorded}
         if names and not any(is_stamps(c) or may_be_stamps(c) or c in known for c in columns):
             shown = text if len(text) <= 60 else f"{text[:60]}..."
             raise line_error(

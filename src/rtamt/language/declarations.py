@@ -88,9 +88,17 @@ class DeclarationParser(ImportParser):
         )
 
     def _declaration(self) -> bool:
-        """``declaration = ( [ role ] , type , name | kind , type , name , "=" , value ) , [ unit ] , [ ";" ]``."""
+        """``declaration = ( [ "optional" ] , [ role ] , type , name | kind , type , name , "=" , value ) , ...``."""
         if not self._declares():
             return False
+        optional = self._is_optional()
+        if optional:
+            self.next()
+            if self.token.text in _KINDS:
+                raise self.error(
+                    f"only variables are optional: a {_CALLED[_KINDS[self.token.text]]} is not recorded",
+                    self.tokens[self.index - 1].span,
+                )
         kind: _Kind = "var"
         role = None
         if self._plain_type(1) and self.token.text not in self._imports:
@@ -115,12 +123,17 @@ class DeclarationParser(ImportParser):
             )
         name = self._taken(f"the name of a {_CALLED[kind]}", quotes=True)
         name = self._with_slashes(name)
-        self._declare(name, type_name.text, role, kind)
+        self._declare(name, type_name.text, role, kind, optional)
         self.accept(";")
         return True
 
     def _declare(
-        self, token: Token, type_name: str, role: Literal["input", "output"] | None, kind: _Kind
+        self,
+        token: Token,
+        type_name: str,
+        role: Literal["input", "output"] | None,
+        kind: _Kind,
+        optional: bool,
     ) -> None:
         name, constant = token.name, kind != "var"
         self._check_nameable(token)
@@ -132,10 +145,11 @@ class DeclarationParser(ImportParser):
         taken = name in self._declarations or name in self._constants or name in self._tables
         if taken or (constant and name in self._given):
             raise self.error(f"'{name}' is declared twice{self._from(name)}", token.span)
-        value, column = None, ""
+        value: float | None = None
+        columns: tuple[str, ...] = ()
         unit = "" if constant else self._unit(token)
         if not constant and self.accept("="):
-            column = self._column(name, type_name)
+            columns = self._columns(name, type_name)
         elif self.accept("="):
             value = self._value(type_)
             self._constants[name] = value
@@ -150,10 +164,29 @@ class DeclarationParser(ImportParser):
         if type_ is not None:
             self._types[name] = type_
         unit = unit or self._unit(token)
-        self._declarations[name] = Declaration(name, type_name, kind, role, value, unit, column, token.span)
+        self._declarations[name] = Declaration(
+            name, type_name, kind, role, value, unit, columns, optional, token.span
+        )
 
-    def _column(self, name: str, type_name: str) -> str:
-        """``'"' , characters , '"'``: the recorded name of a variable, of a message its topic."""
+    def _columns(self, name: str, type_name: str) -> tuple[str, ...]:
+        """``column , { "or" , column }``: the recorded names of a variable, of a message its topic."""
+        found = [self._column(name)]
+        while self.token.text == "or" and self._at(1).kind == "quoted":
+            token = self.next()
+            if type_name in self._imports:
+                raise self.error(f"'{name}' is a message, which has one topic", token.span)
+            span = self.token.span
+            column = self._column(name)
+            if column in found:
+                raise self.error(f"the recorded name '{column}' is given twice", span)
+            found.append(column)
+        if type_name not in self._imports:
+            return tuple(found)
+        (self._topics[name],) = found
+        return ()
+
+    def _column(self, name: str) -> str:
+        """``'"' , characters , '"'``: a recorded name."""
         token = self.token
         if token.kind != "quoted":
             raise self.error(
@@ -168,10 +201,7 @@ class DeclarationParser(ImportParser):
             raise self.error(
                 f"the unit stands before the recorded name: {name} [...] = {token.text}", self.token.span
             )
-        if type_name not in self._imports:
-            return token.name
-        self._topics[name] = token.name
-        return ""
+        return token.name
 
     def _unit(self, name: Token) -> str:
         """``[ "[" , unit , "]" ]``: the unit of what is called ``name``, "" where none is written."""
@@ -275,7 +305,7 @@ class DeclarationParser(ImportParser):
         first = self.token
         if first.kind != "name" or self._requires() or self._imports_file():
             return False
-        if (first.text in _ROLES or first.text in _KINDS) and self._plain_type(1):
+        if self._is_optional() or ((first.text in _ROLES or first.text in _KINDS) and self._plain_type(1)):
             return True
         if self._is_type(first):
             return self._at(1).kind in ("name", "quoted")
@@ -284,6 +314,13 @@ class DeclarationParser(ImportParser):
             return False
         third = self._at(2)
         return third.text in ("@", "=") or (third.kind == "name" and self.language.infix(third.text) is None)
+
+    def _is_optional(self) -> bool:
+        """Return whether the declaration of a variable that recordings may lack begins here."""
+        if not self._word("optional") or "optional" in self._imports or "optional" in self._enumerations:
+            return False
+        role = self._at(1).text in (*_ROLES, *_KINDS) and self._plain_type(2)
+        return role or (self._is_type(self._at(1)) and self._plain_type(1))
 
     def _with_slashes(self, token: Token) -> Token:
         """Consume a slash and a name that directly follow a name: ``robot/speed`` is one name."""

@@ -36,7 +36,8 @@ class Import:
 class Declaration:
     """A declared variable (with its role, if any), constant or parameter (with its value as written).
 
-    ``unit``: as written, such as m/s. ``column``: the name under which recordings have the variable.
+    ``unit``: as written, such as m/s. ``columns``: the recorded names of the variable, the preferred one first.
+    ``optional``: whether recordings may lack it; requirements that read it are then not checked.
     """
 
     name: str
@@ -45,7 +46,8 @@ class Declaration:
     role: Literal["input", "output"] | None = None
     value: float | None = None
     unit: str = ""
-    column: str = ""
+    columns: tuple[str, ...] = ()
+    optional: bool = False
     span: Span | None = field(default=None, compare=False, repr=False)
 
 

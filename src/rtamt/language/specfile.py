@@ -9,8 +9,10 @@
     separator   = ";" | after a named assertion, a requirement or a template, as in RTAMT's files: the end of the line
     statement   = assertion | requirement | template, see templates.py
     import      = ( "from" , module , "import" , word | "import" , '"' , path , '"' ) , [ ";" ]
-    declaration = ( [ "input" | "output" ] , type , name , [ "[" , unit , "]" ] , [ "=" , '"' , recorded name , '"' ] |
+    declaration = ( [ "optional" ] , [ "input" | "output" ] , type , name , [ "[" , unit , "]" ] ,
+                  [ "=" , recorded , { "or" , recorded } ] |
                   ( "const" | "parameter" ) , type , name , "=" , value , [ "[" , unit , "]" ] ) , [ ";" ]
+    recorded    = '"' , characters , '"'
     annotation  = "@" , "topic" , "(" , name , "," , topic , ")" , [ ";" ]
     assertion   = [ name , "=" ] , expression
     requirement = "require" , id , [ '"' , characters , '"' ] ,

@@ -21,7 +21,7 @@ from rtamt.signals.ticks import NANOSECOND, TimeScale
 from rtamt.signals.trace import Channel, Trace, in_seconds
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
+    from collections.abc import Callable, Iterator, Mapping, Sequence
     from fractions import Fraction
 
     from rtamt.readers.source import Field, Raw, Source, Table
@@ -43,6 +43,13 @@ class Choice:
     hold_for: Fraction | None = None
     #: Whether a value may be missing; discrete time needs one of every signal at every sample.
     gaps: bool = True
+    #: Further columns of signals, for sources without the one in ``names``.
+    others: Mapping[str, tuple[str, ...]] = dataclasses.field(default_factory=dict)
+
+    def column_of(self, name: str, has: Callable[[str], bool]) -> str:
+        """Return the column of a signal: the first of its columns that the source has, else the preferred one."""
+        column = self.names.get(name, name)
+        return next((each for each in (column, *self.others.get(name, ())) if has(each)), column)
 
 
 @dataclass(frozen=True, slots=True)
@@ -168,7 +175,7 @@ def _wanted(source: Source, choice: Choice) -> list[tuple[str, Table, Field]]:
     for name in dict.fromkeys(choice.columns):
         if name == TIME and name not in choice.names and _has_clock_called_otherwise(source, choice):
             continue
-        found.append((name, *columns.find(choice.names.get(name, name), name)))
+        found.append((name, *columns.find(choice.column_of(name, columns.__contains__), name)))
     _check_skipped(source, found, choice)
     return found
 
@@ -210,6 +217,9 @@ class _Columns:
         for table, field in everything:
             self._by_column[field.column].append((table, field))
             self._by_name[field.name].append((table, field))
+
+    def __contains__(self, column: str) -> bool:
+        return column in self._by_column or column in self._by_name
 
     def find(self, column: str, name: str = "") -> tuple[Table, Field]:
         """Return the one column that is called so; raise :class:`TraceError` where there is none, or are several.

@@ -28,6 +28,8 @@ if TYPE_CHECKING:
 
 #: Elements of an array that become columns of their own; longer ones are images and clouds of points.
 _ELEMENTS = 1000
+#: Scans have a column for the nearest thing: the least of the ranges that are valid, inf where none is.
+_SCAN, _NEAREST = "sensor_msgs/msg/LaserScan", "ranges[min]"
 #: Messages that are read at a time where a bag is read in chunks.
 _MESSAGES = 4096
 
@@ -39,8 +41,9 @@ def open_bag(path: str, recover: bool = False) -> Source:
     """Open a bag. ``recover``: read a damaged MCAP file as far as possible.
 
     A column is called ``/topic.field.path``, elements of arrays ``/topic.ranges[0]``: what the first
-    message of the topic holds. The time of a message is the stamp in its header, in nanoseconds; where
-    there is none, or it was left at 0, the time at which it was recorded.
+    message of the topic holds. A laser scan also has the column ``/topic.ranges[min]``, its least valid range. The
+    time of a message is the stamp in its header, in nanoseconds; where there is none, or it was left at 0, the time
+    at which it was recorded.
     """
     with ExitStack() as stack:
         reader, losses = stack.enter_context(open_reader(path, recover))
@@ -143,6 +146,8 @@ def _topic(reader: Any, topic: str, connections: list[Any]) -> _Topic | None:
         raise TraceError(f"the topic {topic} carries several types of messages: {', '.join(sorted(kinds))}")
     connection, _, raw = first
     steps = {f"{topic}{_text(path)}": path for path in _numbers(_message(reader, connection, raw))}
+    if connection.msgtype == _SCAN:
+        steps[f"{topic}.{_NEAREST}"] = (_NEAREST,)
     clock = Field(f"{topic} stamp", f"{topic} stamp", "ns", "number")
     made: list[_Topic] = []
 
@@ -287,6 +292,9 @@ def _text(path: Steps) -> str:
 def _at(message: Any, path: Steps) -> Any:
     """Return a number in a message; None where its array is shorter."""
     for step in path:
+        if step == _NEAREST:
+            ranges = np.asarray(message.ranges)
+            return ranges[(ranges >= message.range_min) & (ranges <= message.range_max)].min(initial=np.inf)
         if isinstance(step, int):
             if step >= len(message):
                 return None

@@ -86,6 +86,13 @@ class Source:
     together: Callable[[Sequence[tuple[int, Sequence[Field]]]], Iterator[list[list[Raw]]]] | None = None
 
     @property
+    def signals(self) -> set[str]:
+        """The names of all columns."""
+        return {
+            name for table in self.tables for field in table.fields for name in (field.column, field.name)
+        }
+
+    @property
     def in_chunks(self) -> bool:
         """Whether it can be read in chunks."""
         return self.together is not None or (len(self.tables) == 1 and self.tables[0].chunks is not None)

@@ -1,6 +1,6 @@
 // The overview and the page as a whole: filter, sort, search, deep links, themes, printing.
 
-const ORDER = ["violated", "error", "satisfied"];
+const ORDER = ["violated", "error", "unchecked", "satisfied"];
 const opened = new Map();
 
 const cardOf = (section) => {

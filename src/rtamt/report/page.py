@@ -27,8 +27,8 @@ if TYPE_CHECKING:
     from rtamt.report.signals import Signals
     from rtamt.signals.trace import Trace
 
-_VERDICTS = ("violated", "error", "satisfied")
-_SIGNS = {"satisfied": "✓", "violated": "✗", "error": "!"}
+_VERDICTS = ("violated", "error", "unchecked", "satisfied")
+_SIGNS = {"satisfied": "✓", "violated": "✗", "error": "!", "unchecked": "–"}
 #: Sentences about causes that a card holds.
 _CAUSES = 200
 #: In the order in which they are run.

@@ -16,7 +16,7 @@ from rtamt.signals.trace import Trace
 from rtamt.signals.unit_conversion import converted
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Container, Iterable, Mapping
 
     from rtamt.signals.trace import Channel
 
@@ -30,11 +30,21 @@ class Binding:
     columns: tuple[tuple[str, str], ...] = ()
     #: Pairs of a variable and its declared unit.
     units: tuple[tuple[str, str], ...] = ()
+    #: Pairs of a variable and further recorded names: the first that a recording has is read.
+    others: tuple[tuple[str, tuple[str, ...]], ...] = ()
 
     def places(self) -> dict[str, tuple[str, str]]:
         """Return the recorded name and the unit of each variable."""
         columns, units = dict(self.columns), dict(self.units)
         return {name: (columns.get(name, name), units.get(name, "")) for name in self.names}
+
+    def found_in(self, known: Container[Any]) -> dict[str, str]:
+        """Return the recorded name of each variable in a recording with these signals."""
+        others = dict(self.others)
+        return {
+            name: next((each for each in (column, *others.get(name, ())) if each in known), column)
+            for name, column in self.columns
+        }
 
     def applied(self, data: Any, *, partial: bool = False) -> Any:
         """Return data with the variables under their own names, in their declared units.
@@ -54,7 +64,7 @@ class Binding:
         channels = {name: trace.channel(name) for name in trace}
         by_column = {split_unit(channel.column)[0]: name for name, channel in reversed(channels.items())}
         by_column |= {channel.column: name for name, channel in reversed(channels.items())}
-        columns = dict(self.columns)
+        columns = self.found_in({*by_column, *channels})
         source = {}
         for name in self.names:
             column = columns.get(name)
@@ -85,16 +95,17 @@ class Binding:
 
     def _mapping(self, data: Mapping[Any, Any], partial: bool) -> dict[Any, Any]:
         found = {}
-        for name, column in self.columns:
+        columns = self.found_in(data)
+        for name, column in columns.items():
             if column in data:
                 found[name] = data[column]
             elif name not in data and name.split(".")[0] not in data and not partial:
                 raise missing("the data", name, column, [str(key) for key in data if key != TIME])
-        used = {column for name, column in self.columns if name in found} - set(self.names)
+        used = {column for name, column in columns.items() if name in found} - set(self.names)
         return {**{key: value for key, value in data.items() if key not in used}, **found}
 
     def _frame(self, data: Any) -> dict[Any, Any]:
-        columns = dict(self.columns)
+        columns = self.found_in(set(map(str, data.columns)))
         check_frame(data, TIME, (*self.names, *columns.values()))
         return self._mapping({name: data[name] for name in data.columns}, partial=False)
 
@@ -102,11 +113,11 @@ class Binding:
 def union(bindings: Iterable[Binding]) -> Binding:
     """Combine several bindings, which do not contradict each other."""
     bindings = list(bindings)
-    names, columns, units = (
+    names, columns, units, others = (
         tuple(dict.fromkeys(each for binding in bindings for each in getattr(binding, part)))
-        for part in ("names", "columns", "units")
+        for part in ("names", "columns", "units", "others")
     )
-    return Binding(names, columns, units)
+    return Binding(names, columns, units, others)
 
 
 def missing(source: str, name: str, column: str, known: Any) -> TraceError:

@@ -2,6 +2,7 @@
 
 import datetime as dt
 import os
+import re
 import struct
 import zipfile
 from pathlib import Path
@@ -95,7 +96,7 @@ def test_a_small_workbook_that_unpacks_to_more_than_the_limit_is_refused(tmp_pat
 
 
 def ulog(path, topics, dropouts=()):
-    """Write a flight log: ``topics`` are (name, instance, fields, rows)."""
+    """Write a flight log: ``topics`` are (name, instance, fields, rows), fields floats: "float x;float[2] q"."""
     out = bytearray(b"ULog\x01\x12\x35\x01" + struct.pack("<Q", 0))
 
     def message(kind, payload):
@@ -106,7 +107,8 @@ def ulog(path, topics, dropouts=()):
     for number, (name, instance, _, _) in enumerate(topics):
         message("A", struct.pack("<BH", instance, number) + name.encode())
     for number, (_, _, fields, rows) in enumerate(topics):
-        code = "<HQ" + {"float x": "f", "float[2] q": "ff"}[fields]
+        counts = [int(re.search(r"\[(\d+)\]", field + "[1]")[1]) for field in fields.split(";")]
+        code = f"<HQ{sum(counts)}f"
         for row in rows:
             message("D", struct.pack(code, number, *row))
     for milliseconds in dropouts:

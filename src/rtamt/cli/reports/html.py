@@ -7,7 +7,7 @@ from dataclasses import replace
 from datetime import datetime, timezone
 from typing import TYPE_CHECKING, Any
 
-from rtamt.cli.command import CommandError, short, write_output
+from rtamt.cli.command import CommandError, pack_named, short, write_output
 from rtamt.cli.reading_options import instant, whole_recording
 from rtamt.cli.runner import LARGE
 from rtamt.cli.terminal import printed
@@ -113,7 +113,10 @@ class HtmlReport:
     def _files(self) -> Iterator[File]:
         for requirement in self._given:
             text = requirement.spec.text or printed(requirement.spec.formula)
-            if not os.path.isfile(requirement.given):
+            name = pack_named(requirement.given)
+            if name is not None:
+                yield File("Pack", name, text=_cut(text))
+            elif not os.path.isfile(requirement.given):
                 yield File("Formula", "", text=_cut(requirement.given))
             else:
                 yield File("Specification", requirement.given, text=_cut(text))
@@ -146,8 +149,9 @@ def _band(result: Result) -> Band | None:
 
 def _row(outcome: Outcome) -> Row:
     """Return what came of one requirement over one trace, as text."""
-    if outcome.error:
-        return Row(outcome.requirement, outcome.trace, outcome.verdict, error=outcome.error)
+    if not outcome.result_known:
+        reason = outcome.error or outcome.unchecked
+        return Row(outcome.requirement, outcome.trace, outcome.verdict, error=reason)
     return Row(
         outcome.requirement,
         outcome.trace,

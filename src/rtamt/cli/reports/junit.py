@@ -19,7 +19,10 @@ _FORBIDDEN = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\ufffe\uffff]")
 
 
 def as_junit(requirements: Sequence[Requirement], outcomes: Sequence[Outcome]) -> str:
-    """Return the report; a violation is a failure, what could not be evaluated an error."""
+    """Return the report; a violation is a failure, what could not be evaluated an error.
+
+    What a recording does not have the signals for is skipped.
+    """
     root = ET.Element("testsuites", {"name": "rtamt", **_counts(outcomes)})
     for requirement in requirements:
         mine = [outcome for outcome in outcomes if outcome.requirement == requirement.label]
@@ -32,7 +35,9 @@ def as_junit(requirements: Sequence[Requirement], outcomes: Sequence[Outcome]) -
                 name=_text(outcome.trace),
                 time=f"{outcome.seconds:.6f}",
             )
-            if outcome.verdict != "satisfied":
+            if outcome.unchecked:
+                ET.SubElement(case, "skipped", message=_text(outcome.unchecked))
+            elif outcome.verdict != "satisfied":
                 kind = "failure" if outcome.verdict == "violated" else "error"
                 problem = ET.SubElement(
                     case, kind, type=outcome.verdict, message=_text(sentence(outcome, requirement))
@@ -50,6 +55,7 @@ def _counts(outcomes: Sequence[Outcome]) -> dict[str, str]:
         "tests": str(len(verdicts)),
         "failures": str(verdicts.count("violated")),
         "errors": str(verdicts.count("error")),
+        "skipped": str(verdicts.count("unchecked")),
         "time": f"{sum(outcome.seconds for outcome in outcomes):.6f}",
     }
 

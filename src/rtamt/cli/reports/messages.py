@@ -15,6 +15,8 @@ def sentence(outcome: Outcome, requirement: Requirement) -> str:
     """Return what came of one requirement over one recording, as a sentence."""
     if outcome.error:
         return outcome.error
+    if outcome.unchecked:
+        return f"{outcome.requirement}, {outcome.trace}: {outcome.unchecked}"
     description = requirement.written.description
     name = f"{outcome.requirement} ({description})" if description else outcome.requirement
     text = f"{name} is {outcome.verdict} by {outcome.trace}: robustness {outcome.robustness_text}"

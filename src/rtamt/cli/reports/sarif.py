@@ -61,16 +61,13 @@ def _result(outcome: Outcome, number: int, requirements: Sequence[Requirement]) 
     result = {
         "ruleId": outcome.requirement,
         "ruleIndex": number,
-        "kind": "fail" if violated else "pass",
+        "kind": "notApplicable" if outcome.unchecked else "fail" if violated else "pass",
         "level": requirements[number].written.severity if violated else "none",
         "message": {
             "text": "\n".join(filter(None, (sentence(outcome, requirements[number]), outcome.explanation)))
         },
         "locations": [_location(outcome.trace)],
-        "properties": {
-            **robustness_members(outcome),
-            "firstViolation": when,
-        },
+        "properties": {} if outcome.unchecked else {**robustness_members(outcome), "firstViolation": when},
     }
     if os.path.isfile(requirements[number].given):
         result["relatedLocations"] = [_location(requirements[number].given)]

@@ -1,0 +1,45 @@
+"""What is in the packs: every requirement is satisfied by one made trace and violated by another."""
+
+import pytest
+
+import rtamt
+from rtamt.texts import packs
+from tests.unit.cli.packs.traces import PACKS, made
+
+EACH = [(pack, requirement) for pack, (_, violated) in PACKS.items() for requirement in violated]
+
+
+@pytest.fixture(scope="module")
+def specs():
+    return {name: rtamt.pack(name) for name in packs()}
+
+
+def test_every_requirement_of_every_pack_has_its_traces(specs):
+    assert {name: list(spec.requirements) for name, spec in specs.items()} == {
+        name: list(PACKS[name][1]) for name in specs
+    }
+
+
+def test_packs_have_no_warnings_and_every_requirement_and_limit_is_described(specs):
+    for spec in specs.values():
+        assert spec.warnings == ()
+        assert all(known.description for known in spec.document.requirements)
+        limits = [line for line in spec.text.splitlines() if line.startswith("parameter")]
+        assert limits
+        assert all("// [" in line for line in limits), "a limit states its source"
+
+
+@pytest.mark.parametrize("pack", PACKS)
+def test_a_good_trace_satisfies_a_pack(specs, pack):
+    spec = specs[pack]
+    data = made(PACKS[pack][0])
+    assert spec.unchecked(data) == {}
+    found = {name: one.evaluate(data) for name, one in spec.requirements.items()}
+    assert {name: result.robustness for name, result in found.items() if not result.satisfied} == {}
+
+
+@pytest.mark.parametrize(("pack", "requirement"), EACH)
+def test_a_bad_trace_violates_a_requirement_of_a_pack(specs, pack, requirement):
+    good, violated = PACKS[pack]
+    result = specs[pack].requirements[requirement].evaluate(made(good, **violated[requirement]))
+    assert result.satisfied is False
