@@ -20,7 +20,7 @@ from rtamt.cli import main
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 from tests.unit.report.browser import chromium
-from tools import patterns, walkthrough
+from tools import patterns, signal_patterns, walkthrough
 
 IMAGES = Path(__file__).parents[1] / "docs" / "images"
 
@@ -42,6 +42,7 @@ def draw() -> None:
     save(discrete.plot_tree(figure=Figure()), "tree.png")
     walkthrough.draw(IMAGES / "early.gif")
     patterns.draw(IMAGES)
+    signal_patterns.draw(IMAGES)
     gallery()
     reports()
 

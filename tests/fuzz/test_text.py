@@ -36,7 +36,7 @@ WORDS += [
     "table t = {(0, 1), (2, 3)}",
     "parameter float p = 2",
     "f(",
-    'import "control.stl"',
+    'import "signals.stl"',
     "stays(x, 1, y = 2)",
     "float",
     "int",

@@ -125,7 +125,7 @@ def test_specifications_with_and_without_a_rule_read_one_recording(run, write):
 def test_imports_templates_types_parameters_bindings_units_and_sampling_work_together(run, write):
     write("all.stl", """\
         specification all
-        import "control.stl"
+        import "signals.stl"
         enum Mode { MANUAL, AUTO }
         input float z [m] = "sp.z"
         input Mode mode

@@ -85,10 +85,11 @@ def test_a_declared_name_and_a_formula_may_be_called_import(folder):
 
 def test_the_package_has_templates():
     spec = rtamt.parse(
-        'import "control.stl" require R: settles(v, 10, band=1, within=2s) and stays(v, 0, 12)'
+        'import "signals.stl" require R: settles(v, 10, band=1, within=2s) and stays(v, 0, 12)'
     )
     assert spec.evaluate({"v": [0, 5, 10, 10.5]}).satisfied
-    other = rtamt.parse('import "control.stl" tracks(v, 10, 1, 2) and responds(a > 0, b > 0, within=1)')
+    both = 'import "signals.stl" import "patterns.stl" '
+    other = rtamt.parse(both + "tracks(v, 10, 1, 2) and response_within(a > 0, b > 0, 1)")
     assert not other.evaluate({"v": [0, 5, 9, 10], "a": [0, 1, 0, 0], "b": [0, 0, 0, 1]}).satisfied
 
 
@@ -120,8 +121,8 @@ CONTENTS = "root:x:0:0:secret"
         ("bytes.stl", "'bytes.stl' is not UTF-8 text (byte 0)"),
         ("lib/pattern.stl", "there is no file 'lib/pattern.stl' in the folder of this file, nor in the package; "
          "did you mean 'patterns.stl'?"),
-        ("controls.stl", "there is no file 'controls.stl' in the folder of this file, nor in the package; "
-         "did you mean 'control.stl'?"),
+        ("signal.stl", "there is no file 'signal.stl' in the folder of this file, nor in the package; "
+         "did you mean 'signals.stl'?"),
         ("one.stl", "two.stl: files cannot import each other, but one.stl -> two.stl -> one.stl"),
     ],
 )  # fmt: skip
