@@ -87,6 +87,7 @@ costs: $(VENV)/.core $(VENV)/.extras ## what a sample costs us, beside the figur
 	$(RUN) benchmarks/early.py
 	$(RUN) benchmarks/early.py 100000 dense
 	$(RUN) benchmarks/stream.py
+	$(RUN) benchmarks/packs.py
 
 peers: $(VENV)/.made ## install the tools that we are compared with, each into an environment of its own
 	@tools/apt-packages flex bison libfl-dev || echo "A tool whose build needs them is left out."

@@ -45,6 +45,10 @@ if TYPE_CHECKING:
     from rtamt.signals.domain_interface import TimeDomain
 
 
+#: Missing signals that are named.
+_NAMED = 3
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class SpecificationText:
     """The text of one requirement or several, with the settings under which it is read."""
@@ -388,9 +392,9 @@ class SpecificationText:
         for name in sorted(self.optional - known):
             columns = self._recorded_names.get(name, (name,))
             if known.isdisjoint(columns):
-                lacking[name] = "no " + " or ".join(f"'{column}'" for column in columns)
+                lacking[name] = " or ".join(f"'{column}'" for column in columns)
         return {
-            name: "; ".join(lacking[each] for each in one.input_names if each in lacking)
+            name: _listed([lacking[each] for each in one.input_names if each in lacking])
             for name, one in self.requirements.items()
             if not lacking.keys().isdisjoint(one.input_names)
         }
@@ -427,3 +431,9 @@ class SpecificationText:
 
     def __str__(self) -> str:
         return to_text(self.formula, self.language)
+
+
+def _listed(missing: list[str]) -> str:
+    """Return what is missing as part of a sentence."""
+    more = len(missing) - _NAMED
+    return f"no {', '.join(missing[:_NAMED])}{f' and {more} more' if more > 0 else ''}"

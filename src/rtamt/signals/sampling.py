@@ -65,7 +65,12 @@ def _without_nan(trace: Trace) -> Trace:
     channels, losses = {}, []
     for name in trace:
         channel = channels[name] = trace.channel(name)
-        bad = np.array([isinstance(value, float) and isnan(value) for value in channel.values.tolist()], bool)
+        if channel.values.dtype.kind == "f":
+            bad = np.isnan(channel.values)
+        else:
+            bad = np.array(
+                [isinstance(value, float) and isnan(value) for value in channel.values.tolist()], bool
+            )
         if not bad.any() or channel.times is None:
             continue
         first, count = int(bad.argmax()), int(bad.sum())
