@@ -98,6 +98,16 @@ double Monitor::parameter(std::size_t index) const noexcept {
     return program().instructions[metadata_.parameters[index].instructions.front()].x;
 }
 
+std::size_t Monitor::parameter_called(std::string_view name) const {
+    std::string known;
+    for (std::size_t i = 0; i < metadata_.parameters.size(); ++i) {
+        if (metadata_.parameters[i].name == name) return i;
+        known += (i == 0 ? "" : ", ") + metadata_.parameters[i].name;
+    }
+    refuse("There is no parameter '" + std::string(name) + "': the program has " +
+           (known.empty() ? "none" : known) + ".");
+}
+
 void Monitor::set_parameter(std::size_t index, double value) {
     const std::vector<Parameter>& parameters = metadata_.parameters;
     if (index >= parameters.size()) {

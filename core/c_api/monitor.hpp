@@ -12,6 +12,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace rtamt::c_api {
@@ -34,6 +35,8 @@ class Monitor {
     [[nodiscard]] double parameter(std::size_t index) const noexcept;
 
     void set_parameter(std::size_t index, double value);
+    // Its index; throws std::invalid_argument if there is none of this name.
+    [[nodiscard]] std::size_t parameter_called(std::string_view name) const;
     void step(std::span<const double> row, std::span<rtamt_value> known);
 
     // The same sample `count` times, all of them or none; what the last one made known.

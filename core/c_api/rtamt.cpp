@@ -205,6 +205,13 @@ rtamt_status rtamt_set_parameter(rtamt_monitor* monitor, uint32_t parameter, dou
     return error_boundary(monitor, [&](Monitor& self) { self.set_parameter(parameter, value); });
 }
 
+rtamt_status rtamt_set_parameter_by_name(rtamt_monitor* monitor, const char* name, double value) {
+    return error_boundary(monitor, [&](Monitor& self) {
+        if (name == nullptr) throw std::invalid_argument("The name of the parameter is null.");
+        self.set_parameter(self.parameter_called(name), value);
+    });
+}
+
 rtamt_status rtamt_step(rtamt_monitor* monitor, const double* values, size_t count,
                         rtamt_value* results, size_t outputs) {
     return error_boundary(monitor, [&](Monitor& self) {

@@ -121,9 +121,14 @@ RTAMT_API int64_t rtamt_lag(const rtamt_monitor* monitor, uint32_t output);
 RTAMT_API rtamt_status rtamt_parameter_value(const rtamt_monitor* monitor, uint32_t parameter,
                                              double* value);
 
-/* Only before the first sample, or after rtamt_reset. */
+/* Only before the first sample, or after rtamt_reset. A Boolean is 1 or 0, a member of an
+ * enumeration its code. */
 RTAMT_API rtamt_status rtamt_set_parameter(rtamt_monitor* monitor, uint32_t parameter,
                                            double value);
+
+/* The same by the name of the parameter, as rtamt_parameter returns it. */
+RTAMT_API rtamt_status rtamt_set_parameter_by_name(rtamt_monitor* monitor, const char* name,
+                                                   double value);
 
 /* ---- a trace --------------------------------------------------------------------------------- */
 

@@ -233,7 +233,14 @@ double Component::real(std::uint32_t reference) const {
     refuse("There is no real variable with the reference " + std::to_string(reference) + ".");
 }
 
-std::int32_t Component::integer(std::uint32_t reference) const {
+std::int64_t Component::integer(std::uint32_t reference) const {
+    constexpr double most = 9e15;
+    if (is_settable(reference)) {
+        const double value = real(reference);
+        if (value == std::trunc(value) && std::abs(value) < most) {
+            return static_cast<std::int64_t>(value);
+        }
+    }
     if (!is_output(reference) || output_of(reference - outputs(), is_early()) != Output::verdict) {
         refuse("There is no integer variable with the reference " + std::to_string(reference) +
                ".");
@@ -243,6 +250,7 @@ std::int32_t Component::integer(std::uint32_t reference) const {
 }
 
 bool Component::boolean(std::uint32_t reference) const {
+    if (is_settable(reference)) return real(reference) != 0.0;
     if (!is_output(reference) || output_of(reference - outputs(), is_early()) != Output::known) {
         refuse("There is no Boolean variable with the reference " + std::to_string(reference) +
                ".");
@@ -250,13 +258,13 @@ bool Component::boolean(std::uint32_t reference) const {
     return outcome(reference).known;
 }
 
-void Component::set_real(std::uint32_t reference, double value) {
+void Component::set(std::uint32_t reference, double value) {
     if (reference < outputs()) {
         now_.inputs[reference] = value; // NaN is refused when it becomes a sample
         return;
     }
     const std::uint32_t first = parameters();
-    if (reference < first || reference - first >= monitor_->metadata().parameters.size()) {
+    if (!is_settable(reference)) {
         refuse("The variable with the reference " + std::to_string(reference) + " cannot be set.");
     }
     if (now_.phase != Phase::setting) {

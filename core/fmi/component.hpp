@@ -5,7 +5,8 @@
 // Value references: the inputs from 0 on, then robustness, verdict, known, known_since of all
 // requirements together, where there are several these four of each, then the parameters. A program
 // of bounds has lower, upper, verdict, decided_since instead. src/rtamt/fmi/variables.py counts in
-// the same way.
+// the same way. An input or parameter is a number here, which a declared type lets simulators read
+// and set as a Boolean or an integer.
 //
 // Discrete time: sample k is what the inputs are at start + k periods, and a step from t to t + h
 // takes the samples in [t, t + h), with the inputs held. Dense time: every communication point
@@ -41,9 +42,10 @@ class Component {
     [[nodiscard]] double reached() const noexcept { return now_.reached; }
 
     [[nodiscard]] double real(std::uint32_t reference) const;
-    [[nodiscard]] std::int32_t integer(std::uint32_t reference) const;
+    [[nodiscard]] std::int64_t integer(std::uint32_t reference) const;
     [[nodiscard]] bool boolean(std::uint32_t reference) const;
-    void set_real(std::uint32_t reference, double value);
+    // Of an input or a parameter, whatever its type: Booleans are 1 or 0, members are their codes.
+    void set(std::uint32_t reference, double value);
 
     [[nodiscard]] std::vector<std::uint8_t> save();
     void restore(std::span<const std::uint8_t> state);
@@ -87,6 +89,12 @@ class Component {
     }
     [[nodiscard]] std::uint32_t parameters() const noexcept { // the first reference of one
         return outputs() + static_cast<std::uint32_t>(now_.outcomes.size()) * fields;
+    }
+    // Whether an input or a parameter has this reference.
+    [[nodiscard]] bool is_settable(std::uint32_t reference) const noexcept {
+        const std::size_t count = monitor_->metadata().parameters.size();
+        return reference < outputs() ||
+               (reference >= parameters() && reference - parameters() < count);
     }
     [[nodiscard]] bool is_output(std::uint32_t reference) const noexcept {
         return reference >= outputs() && reference < parameters();

@@ -68,7 +68,6 @@ fmi2Status refuse(fmi2Component handle, const char* sentence) noexcept {
 }
 
 constexpr const char* no_strings = "This unit has no variables that are text.";
-constexpr const char* only_reals_are_set = "Only real variables of this unit can be set.";
 constexpr const char* no_derivatives = "This unit neither takes nor gives derivatives.";
 constexpr const char* never_pending = "A step of this unit is never pending.";
 
@@ -158,7 +157,7 @@ RTAMT_FMI2_EXPORT fmi2Status fmi2GetInteger(fmi2Component instance,
                                             std::size_t count, fmi2Integer values[]) {
     return with(instance, fmi2Error, [&](Component& component) {
         for (std::size_t i = 0; i < count; ++i)
-            values[i] = component.integer(references[i]);
+            values[i] = static_cast<fmi2Integer>(component.integer(references[i]));
     });
 }
 
@@ -181,23 +180,31 @@ RTAMT_FMI2_EXPORT fmi2Status fmi2SetReal(fmi2Component instance,
                                          const fmi2Real values[]) {
     return with(instance, fmi2Discard, [&](Component& component) {
         for (std::size_t i = 0; i < count; ++i)
-            component.set_real(references[i], values[i]);
+            component.set(references[i], values[i]);
     });
 }
 
-RTAMT_FMI2_EXPORT fmi2Status fmi2SetInteger(fmi2Component instance, const fmi2ValueReference[],
-                                            std::size_t count, const fmi2Integer[]) {
-    return count == 0 ? fmi2OK : refuse(instance, only_reals_are_set);
+RTAMT_FMI2_EXPORT fmi2Status fmi2SetInteger(fmi2Component instance,
+                                            const fmi2ValueReference references[],
+                                            std::size_t count, const fmi2Integer values[]) {
+    return with(instance, fmi2Discard, [&](Component& component) {
+        for (std::size_t i = 0; i < count; ++i)
+            component.set(references[i], values[i]);
+    });
 }
 
-RTAMT_FMI2_EXPORT fmi2Status fmi2SetBoolean(fmi2Component instance, const fmi2ValueReference[],
-                                            std::size_t count, const fmi2Boolean[]) {
-    return count == 0 ? fmi2OK : refuse(instance, only_reals_are_set);
+RTAMT_FMI2_EXPORT fmi2Status fmi2SetBoolean(fmi2Component instance,
+                                            const fmi2ValueReference references[],
+                                            std::size_t count, const fmi2Boolean values[]) {
+    return with(instance, fmi2Discard, [&](Component& component) {
+        for (std::size_t i = 0; i < count; ++i)
+            component.set(references[i], values[i] != 0 ? 1.0 : 0.0);
+    });
 }
 
 RTAMT_FMI2_EXPORT fmi2Status fmi2SetString(fmi2Component instance, const fmi2ValueReference[],
                                            std::size_t count, const fmi2String[]) {
-    return count == 0 ? fmi2OK : refuse(instance, only_reals_are_set);
+    return count == 0 ? fmi2OK : refuse(instance, no_strings);
 }
 
 // ---- state --------------------------------------------------------------------------------------

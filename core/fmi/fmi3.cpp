@@ -45,6 +45,17 @@ void require(bool equal) {
     if (!equal) throw std::invalid_argument(wrong_count);
 }
 
+// Sets inputs and parameters of any type.
+template <class Value>
+fmi3Status set(fmi3Instance instance, const fmi3ValueReference references[], std::size_t count,
+               const Value values[], std::size_t room) noexcept {
+    return with(instance, fmi3Discard, [&](Component& component) {
+        require(count == room);
+        for (std::size_t i = 0; i < count; ++i)
+            component.set(references[i], static_cast<double>(values[i]));
+    });
+}
+
 } // namespace
 
 // ---- life ---------------------------------------------------------------------------------------
@@ -120,6 +131,17 @@ RTAMT_FMI3_EXPORT fmi3Status fmi3GetInt32(fmi3Instance instance,
     return with(instance, fmi3Error, [&](Component& component) {
         require(count == room);
         for (std::size_t i = 0; i < count; ++i)
+            values[i] = static_cast<fmi3Int32>(component.integer(references[i]));
+    });
+}
+
+// Of enumerations.
+RTAMT_FMI3_EXPORT fmi3Status fmi3GetInt64(fmi3Instance instance,
+                                          const fmi3ValueReference references[], std::size_t count,
+                                          fmi3Int64 values[], std::size_t room) {
+    return with(instance, fmi3Error, [&](Component& component) {
+        require(count == room);
+        for (std::size_t i = 0; i < count; ++i)
             values[i] = component.integer(references[i]);
     });
 }
@@ -139,11 +161,26 @@ RTAMT_FMI3_EXPORT fmi3Status fmi3SetFloat64(fmi3Instance instance,
                                             const fmi3ValueReference references[],
                                             std::size_t count, const fmi3Float64 values[],
                                             std::size_t room) {
-    return with(instance, fmi3Discard, [&](Component& component) {
-        require(count == room);
-        for (std::size_t i = 0; i < count; ++i)
-            component.set_real(references[i], values[i]);
-    });
+    return set(instance, references, count, values, room);
+}
+
+RTAMT_FMI3_EXPORT fmi3Status fmi3SetInt32(fmi3Instance instance,
+                                          const fmi3ValueReference references[], std::size_t count,
+                                          const fmi3Int32 values[], std::size_t room) {
+    return set(instance, references, count, values, room);
+}
+
+RTAMT_FMI3_EXPORT fmi3Status fmi3SetInt64(fmi3Instance instance,
+                                          const fmi3ValueReference references[], std::size_t count,
+                                          const fmi3Int64 values[], std::size_t room) {
+    return set(instance, references, count, values, room);
+}
+
+RTAMT_FMI3_EXPORT fmi3Status fmi3SetBoolean(fmi3Instance instance,
+                                            const fmi3ValueReference references[],
+                                            std::size_t count, const fmi3Boolean values[],
+                                            std::size_t room) {
+    return set(instance, references, count, values, room);
 }
 
 // ---- state --------------------------------------------------------------------------------------

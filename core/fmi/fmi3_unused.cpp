@@ -17,7 +17,6 @@ fmi3Instance no_instance(fmi3InstanceEnvironment environment,
 }
 
 constexpr const char* wrong_type = "This unit has no variables of this type.";
-constexpr const char* only_reals_are_set = "Only variables of type Float64 can be set.";
 constexpr const char* no_derivatives = "This unit gives no derivatives.";
 constexpr const char* no_events = "This unit has neither events nor clocks.";
 constexpr const char* no_structure = "This unit has no structural parameters.";
@@ -49,7 +48,7 @@ RTAMT_FMI3_EXPORT fmi3Instance fmi3InstantiateScheduledExecution(
     RTAMT_FMI3_EXPORT fmi3Status fmi3Set##Name(fmi3Instance instance, const fmi3ValueReference[],  \
                                                std::size_t count, const fmi3##Name[],              \
                                                std::size_t) {                                      \
-        return count == 0 ? fmi3OK : refuse(instance, only_reals_are_set);                         \
+        return count == 0 ? fmi3OK : refuse(instance, wrong_type);                                 \
     }
 RTAMT_FMI3_NO_GET(Float32)
 RTAMT_FMI3_NO_GET(Int8)
@@ -57,7 +56,6 @@ RTAMT_FMI3_NO_GET(UInt8)
 RTAMT_FMI3_NO_GET(Int16)
 RTAMT_FMI3_NO_GET(UInt16)
 RTAMT_FMI3_NO_GET(UInt32)
-RTAMT_FMI3_NO_GET(Int64)
 RTAMT_FMI3_NO_GET(UInt64)
 RTAMT_FMI3_NO_GET(String)
 RTAMT_FMI3_NO_SET(Float32)
@@ -65,11 +63,8 @@ RTAMT_FMI3_NO_SET(Int8)
 RTAMT_FMI3_NO_SET(UInt8)
 RTAMT_FMI3_NO_SET(Int16)
 RTAMT_FMI3_NO_SET(UInt16)
-RTAMT_FMI3_NO_SET(Int32)
 RTAMT_FMI3_NO_SET(UInt32)
-RTAMT_FMI3_NO_SET(Int64)
 RTAMT_FMI3_NO_SET(UInt64)
-RTAMT_FMI3_NO_SET(Boolean)
 RTAMT_FMI3_NO_SET(String)
 #undef RTAMT_FMI3_NO_GET
 #undef RTAMT_FMI3_NO_SET
@@ -82,7 +77,7 @@ RTAMT_FMI3_EXPORT fmi3Status fmi3GetBinary(fmi3Instance instance, const fmi3Valu
 RTAMT_FMI3_EXPORT fmi3Status fmi3SetBinary(fmi3Instance instance, const fmi3ValueReference[],
                                            std::size_t, const std::size_t[], const fmi3Binary[],
                                            std::size_t) {
-    return refuse(instance, only_reals_are_set);
+    return refuse(instance, wrong_type);
 }
 
 RTAMT_FMI3_EXPORT fmi3Status fmi3GetClock(fmi3Instance instance, const fmi3ValueReference[],

@@ -181,7 +181,7 @@ def test_program(drawn: tuple[str, list[Formula]], columns: dict[str, Any]) -> N
     assert program.metadata.outputs == tuple(
         f"{o}{n}" for n in ("", *names) for o in ("robustness", "verdict")
     )
-    declared = [variable.name for variable in variables_of(program, {})]
+    declared = [variable.name for variable in variables_of(program, {}, {})]
     assert all(f"known_since{name}" in declared for name in names)
     monitor = c_api.Monitor(program.to_bytes())
     known: list[list[float]] = [[] for _ in program.metadata.outputs]

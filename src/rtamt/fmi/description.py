@@ -11,9 +11,10 @@ from xml.etree.ElementTree import Element, SubElement, indent, tostring
 from rtamt.fmi.variables import Variable, convention, variables_of
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Callable, Mapping
 
     from rtamt.compiler.program import Program
+    from rtamt.language.value_types import ValueType
 
 #: The log category by which a simulator filters; the runtime has no other.
 _LOG = {
@@ -26,7 +27,7 @@ _LOG = {
 class Unit:
     """What a model description is about. ``token`` names the program, so that they cannot be mixed up.
 
-    ``units``: the declared units of inputs and parameters, by name.
+    ``units`` and ``types``: those that are declared of inputs and parameters, by name.
     """
 
     program: Program
@@ -35,11 +36,12 @@ class Unit:
     token: str
     tool: str
     units: Mapping[str, str]
+    types: Mapping[str, ValueType]
 
     @property
     def variables(self) -> tuple[Variable, ...]:
         """The variables of the unit."""
-        return variables_of(self.program, self.units)
+        return variables_of(self.program, self.units, self.types)
 
 
 def identifier(name: str) -> str:
@@ -73,13 +75,18 @@ def _fmi2(unit: Unit) -> Element:
         canSerializeFMUstate="true",
     )
     _units(root, variables)
+    _types(
+        root,
+        variables,
+        lambda definitions, name: _add(_add(definitions, "SimpleType", name=name), "Enumeration"),
+    )
     _logs(root)
     _experiment(root, unit)
     listed = _add(root, "ModelVariables")
-    tags = {"real": "Real", "integer": "Integer", "boolean": "Boolean"}
+    tags = {"real": "Real", "integer": "Integer", "boolean": "Boolean", "enumeration": "Enumeration"}
     for variable in variables:
         scalar = _add(listed, "ScalarVariable", **_common(variable))
-        _add(scalar, tags[variable.type], start=_start(variable), **_unit(variable))
+        _add(scalar, tags[variable.type], **_declared(variable), start=_start(variable), **_unit(variable))
     outputs = _add(_add(root, "ModelStructure"), "Outputs")
     for variable in variables:
         if variable.causality == "output":  # counted from 1; nothing depends on an input directly
@@ -99,12 +106,14 @@ def _fmi3(unit: Unit) -> Element:
         canSerializeFMUState="true",
     )
     _units(root, variables)
+    _types(root, variables, lambda definitions, name: _add(definitions, "EnumerationType", name=name))
     _logs(root)
     _experiment(root, unit)
     listed = _add(root, "ModelVariables")
-    tags = {"real": "Float64", "integer": "Int32", "boolean": "Boolean"}
+    tags = {"real": "Float64", "integer": "Int32", "boolean": "Boolean", "enumeration": "Enumeration"}
     for variable in variables:
-        _add(listed, tags[variable.type], **_common(variable), start=_start(variable), **_unit(variable))
+        attributes = _common(variable) | _declared(variable) | {"start": _start(variable)} | _unit(variable)
+        _add(listed, tags[variable.type], **attributes)
     reference = str(len(variables))
     _add(
         listed,
@@ -152,6 +161,22 @@ def _unit(variable: Variable) -> dict[str, str]:
     return {"unit": variable.unit} if variable.unit else {}
 
 
+def _types(root: Element, variables: tuple[Variable, ...], define: Callable[[Element, str], Element]) -> None:
+    """Declare the enumerations of variables; ``define`` adds one of a name, which takes its items."""
+    used = dict.fromkeys(each.enumeration for each in variables if each.enumeration is not None)
+    if not used:
+        return
+    definitions = _add(root, "TypeDefinitions")
+    for known in used:
+        items = define(definitions, known.name)
+        for name, code in known.members:
+            _add(items, "Item", name=name, value=str(code))
+
+
+def _declared(variable: Variable) -> dict[str, str]:
+    return {} if variable.enumeration is None else {"declaredType": variable.enumeration.name}
+
+
 def _logs(root: Element) -> None:
     categories = _add(root, "LogCategories")
     for name, meaning in _LOG.items():
@@ -179,8 +204,8 @@ def _common(variable: Variable) -> dict[str, str]:
 
 def _start(variable: Variable) -> str:
     if variable.type == "boolean":
-        return "false"
-    if variable.type == "integer":
+        return "true" if variable.start else "false"
+    if variable.type in ("integer", "enumeration"):
         return str(int(variable.start))
     if isinf(variable.start):
         return "INF" if variable.start > 0 else "-INF"

@@ -71,7 +71,9 @@ def export(
     # A program ends in its checksum; the runtime looks at the same four bytes.
     token = f"rtamt-{int.from_bytes(code[-4:], 'little'):08x}"
     units = {declared.name: declared.unit for declared in spec.document.declarations if declared.unit}
-    unit = Unit(program, name, identifier(name), token, f"rtamt {rtamt.__version__}", units)
+    unit = Unit(
+        program, name, identifier(name), token, f"rtamt {rtamt.__version__}", units, spec.document.types
+    )
     library = runtime.library()
     parts = {
         "modelDescription.xml": description(unit, version),

@@ -13,11 +13,16 @@ from typing import TYPE_CHECKING
 
 from rtamt.errors import UsageError
 from rtamt.language.units import format_duration
+from rtamt.language.value_types import Enumeration
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from rtamt.compiler.program import Program
+    from rtamt.language.value_types import ValueType
+
+#: The largest integer of a unit.
+_LARGEST = 2**31 - 1
 
 #: The grammar of the naming convention "structured": names with dots, or anything in single quotes.
 _STRUCTURED = re.compile(r"[A-Za-z_]\w*(\.[A-Za-z_]\w*)*", re.ASCII)
@@ -25,9 +30,9 @@ _STRUCTURED = re.compile(r"[A-Za-z_]\w*(\.[A-Za-z_]\w*)*", re.ASCII)
 
 @dataclass(frozen=True, slots=True)
 class Variable:
-    """One variable of a unit. ``type``: real, integer or boolean; ``causality``: input, output, parameter.
+    """One variable of a unit. ``type``: real, integer, boolean or enumeration; ``causality``: input, output, parameter.
 
-    ``unit``: of the value, such as m/s; empty if none is declared.
+    ``unit``: of the value, such as m/s; empty if none is declared. ``enumeration``: the declared one.
     """
 
     name: str
@@ -37,10 +42,13 @@ class Variable:
     start: float
     description: str
     unit: str
+    enumeration: Enumeration | None = None
 
 
-def variables_of(program: Program, units: Mapping[str, str]) -> tuple[Variable, ...]:
-    """Return the variables of the FMU that carries a program; ``units``: the declared ones, by name.
+def variables_of(
+    program: Program, units: Mapping[str, str], types: Mapping[str, ValueType]
+) -> tuple[Variable, ...]:
+    """Return the variables of the FMU that carries a program; ``units`` and ``types``: the declared ones, by name.
 
     Raises :class:`UsageError` where two would have the same name.
     """
@@ -56,7 +64,11 @@ def variables_of(program: Program, units: Mapping[str, str]) -> tuple[Variable, 
                 f"the {causality} '{name}' has the name that {taken} of the unit has already: rename it in the "
                 f"specification"
             )
-        found.append(Variable(name, len(found), kind, causality, start, description, unit))
+        type_ = types.get(name) if causality != "output" else None
+        if type_ is not None:
+            kind = _kind(type_, start)
+        listed = type_ if isinstance(type_, Enumeration) and kind == "enumeration" else None
+        found.append(Variable(name, len(found), kind, causality, start, description, unit, listed))
 
     for name in program.inputs:
         add(name, "real", "input", 0.0, "a variable of the requirement", units.get(name, ""))
@@ -78,6 +90,15 @@ def variables_of(program: Program, units: Mapping[str, str]) -> tuple[Variable, 
             units.get(name, ""),
         )
     return tuple(found)
+
+
+def _kind(type_: ValueType, start: float) -> str:
+    """Return the type of a variable in a unit: the standard starts an enumeration with one of its items."""
+    if not isinstance(type_, Enumeration):
+        return "boolean"
+    if any(abs(code) > _LARGEST for _, code in type_.members):
+        return "real"
+    return "integer" if type_.member(start) is None else "enumeration"
 
 
 #: Of a program of bounds: names, types, start values, units and descriptions of its outputs.

@@ -156,6 +156,7 @@ TEST_CASE("null pointers and wrong sizes are refused by every function") {
         [](auto* self) { return rtamt_finish(self); },
         [](auto* self) { return rtamt_reset(self); },
         [](auto* self) { return rtamt_set_parameter(self, 0, 1.0); },
+        [](auto* self) { return rtamt_set_parameter_by_name(self, "limit", 1.0); },
     };
     for (const Call& call : without)
         CHECK((call(monitor.get()) == RTAMT_OK && call(nullptr) == RTAMT_REFUSED));
@@ -260,6 +261,19 @@ TEST_CASE("parameters are set before the first sample") {
     rtamt_reset(monitor.get());
     CHECK(parameter(monitor) == 2.0);
     CHECK(rtamt_set_parameter(monitor.get(), 0, 1.0) == RTAMT_OK);
+}
+
+TEST_CASE("parameters are set by name") {
+    const Handle monitor = example();
+    CHECK(rtamt_set_parameter_by_name(monitor.get(), "limit", 2.0) == RTAMT_OK);
+    CHECK(parameter(monitor) == 2.0);
+    const auto refusal = [&](const char* name) {
+        CHECK(rtamt_set_parameter_by_name(monitor.get(), name, 1.0) == RTAMT_REFUSED);
+        return std::string(rtamt_message(monitor.get()));
+    };
+    CHECK(refusal("limt") == "There is no parameter 'limt': the program has limit.");
+    CHECK(refusal(nullptr) == "The name of the parameter is null.");
+    CHECK(parameter(monitor) == 2.0);
 }
 
 TEST_CASE("a state is saved restored and cloned anywhere in a trace") {

@@ -51,8 +51,8 @@ struct Folder {
 };
 
 void set(Component& component, double first, double second) {
-    component.set_real(a, first);
-    component.set_real(b, second);
+    component.set(a, first);
+    component.set(b, second);
 }
 
 std::string refusal(Component& component, double from, double length) {
@@ -79,7 +79,7 @@ TEST_CASE("a step takes the samples in it") {
     Component component = folder.component();
     component.begin(2.0);
     CHECK(component.real(limit) == 1.5);
-    component.set_real(limit, 1.0);
+    component.set(limit, 1.0);
     component.settle();
     set(component, 6.0, 2.0);
     component.advance(2.0, 0.3);
@@ -112,23 +112,34 @@ TEST_CASE("what cannot be a step is refused and nothing has changed") {
           "The step begins at 0.3 s, but the last one ended at 0.1 s.");
     CHECK(refusal(component, 0.1, -0.1) == "A step from 0.1 s of -0.1 s is none: both must be "
                                            "finite, and the length not negative.");
-    component.set_real(b, std::numeric_limits<double>::quiet_NaN());
+    component.set(b, std::numeric_limits<double>::quiet_NaN());
     CHECK(refusal(component, 0.1, 0.1) ==
           "'b' is NaN at sample 1, time 0.1 s: fill the gap or leave the sample out.");
     set(component, 0.0, 0.0);
     CHECK(refusal(component, 0.1, 0.5).starts_with("'a / b' has no value at sample 1, time 0.1 s"));
     set(component, 3.0, 1.0);
     CHECK(refusal(component, 0.1, 0.1) == "done");
-    CHECK(thrown<std::invalid_argument>([&] { component.set_real(limit, 2.0); }) ==
+    CHECK(thrown<std::invalid_argument>([&] { component.set(limit, 2.0); }) ==
           "The parameter 'limit' can only be set before the end of the initialisation.");
-    CHECK(thrown<std::invalid_argument>([&] { component.set_real(known, 2.0); }) ==
+    CHECK(thrown<std::invalid_argument>([&] { component.set(known, 2.0); }) ==
           "The variable with the reference 4 cannot be set.");
     CHECK(thrown<std::invalid_argument>([&] { (void)component.real(99); }) ==
           "There is no real variable with the reference 99.");
+    CHECK(thrown<std::invalid_argument>([&] { (void)component.integer(robustness); }) ==
+          "There is no integer variable with the reference 2.");
+    CHECK(thrown<std::invalid_argument>([&] { (void)component.boolean(verdict); }) ==
+          "There is no Boolean variable with the reference 3.");
+}
+
+TEST_CASE("inputs and parameters are numbers whatever their type") {
+    const Folder folder(Domain::discrete);
+    Component component = folder.component();
+    component.set(a, 1.0);
+    component.set(limit, 4.0);
+    CHECK((component.boolean(a) && component.integer(limit) == 4 && !component.boolean(b)));
+    component.set(a, 0.5);
     CHECK(thrown<std::invalid_argument>([&] { (void)component.integer(a); }) ==
           "There is no integer variable with the reference 0.");
-    CHECK(thrown<std::invalid_argument>([&] { (void)component.boolean(a); }) ==
-          "There is no Boolean variable with the reference 0.");
 }
 
 TEST_CASE("in dense time communication points are samples") {
@@ -153,7 +164,7 @@ TEST_CASE("a state goes to another unit and a damaged one nowhere") {
         const Folder folder(domain);
         Component component = folder.component();
         component.begin(0.0);
-        component.set_real(limit, 0.5);
+        component.set(limit, 0.5);
         component.settle();
         for (int i = 0; i < 7; ++i) {
             set(component, 3.0 + i % 3, 1.0 + i % 2);

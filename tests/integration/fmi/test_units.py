@@ -268,3 +268,31 @@ def test_bounds_and_verdict_at_the_start_are_outputs_with_units(unit, version):
         since = 0.0 if start.decided_at is None else 5.0 + start.decided_at
         assert there.get("decided_since") == pytest.approx(since)
     assert start.satisfied is False
+
+
+@BOTH
+def test_a_unit_takes_booleans_and_members_as_the_monitor_does(exported, tmp_path, version):
+    text = """enum Mode { MANUAL, AUTO = 4 }  input Mode mode  input bool armed
+        parameter Mode start = MANUAL  parameter bool strict = false  strict -> armed and mode == start"""
+    there = Unit(exported(text, version, period=PERIOD), tmp_path / "unit")
+    slave, reference = there.slave, there.reference
+    set_member = slave.setInteger if version == 2 else slave.setInt64
+    get_member = slave.getInteger if version == 2 else slave.getInt64
+
+    there.begin()
+    slave.reset()
+    if version == 2:
+        slave.setupExperiment()
+    slave.enterInitializationMode()
+    set_member([reference["start"]], [4])
+    slave.setBoolean([reference["strict"]], [True])
+    slave.exitInitializationMode()
+    monitor = rtamt.parse(text).with_parameters(start="AUTO", strict=True).monitor(period=PERIOD)
+    for i, (mode, armed) in enumerate([("AUTO", True), ("AUTO", False), ("MANUAL", True), (4, 1)]):
+        code = {"AUTO": 4, "MANUAL": 0}.get(mode, mode)
+        set_member([reference["mode"]], [code])
+        slave.setBoolean([reference["armed"]], [bool(armed)])
+        there.step(i * PERIOD)
+        assert there.get("robustness") == monitor.update(i * PERIOD, mode=mode, armed=armed)
+        assert list(get_member([reference["mode"], reference["start"]])) == [code, 4]
+        assert [bool(value) for value in slave.getBoolean([reference["armed"]])] == [bool(armed)]

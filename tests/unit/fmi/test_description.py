@@ -27,3 +27,29 @@ def test_declared_units_are_in_the_model_description(exported, version):
     assert [unit.name for unit in described.unitDefinitions] == ["m/s", "rad", "s"]
     (limit,) = [variable for variable in described.modelVariables if variable.name == "limit"]
     assert (limit.causality, limit.variability, float(limit.start)) == ("parameter", "fixed", 3.0)
+
+
+TYPED = """enum Mode { MANUAL, AUTO = 4 }  enum Far { NEAR, FAR = 3000000000 }  enum Late { LATE = 2 }
+    input Mode mode  input bool armed  input Far far  input Late late  input float x
+    parameter Mode start = AUTO  parameter bool strict = true
+    always[0:1s](armed and mode == start and far == FAR and late == LATE and (strict -> x <= 3))"""
+
+
+@BOTH
+def test_booleans_and_enumerations_have_their_types(exported, version):
+    described = fmpy.read_model_description(str(exported(TYPED, version, period="1s")))
+    real, integer = ("Real", "Integer") if version == 2 else ("Float64", "Int32")
+    found = {v.name: v for v in described.modelVariables}
+    assert {name: found[name].type for name in ("mode", "armed", "far", "late", "x", "start", "strict")} == {
+        "mode": "Enumeration",
+        "armed": "Boolean",
+        "far": real,  # a code is no integer of 32 bits
+        "late": integer,  # no item is 0, with which inputs start
+        "x": real,
+        "start": "Enumeration",
+        "strict": "Boolean",
+    }
+    assert [found[name].start for name in ("mode", "armed", "start", "strict")] == ["0", "false", "4", "true"]
+    assert found["mode"].declaredType.name == "Mode"
+    (mode,) = described.typeDefinitions
+    assert [(item.name, int(item.value)) for item in mode.items] == [("MANUAL", 0), ("AUTO", 4)]
