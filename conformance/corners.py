@@ -17,6 +17,29 @@ X5 = {"x": [5.0, 4.0, 3.0, 9.0]}
 XY = {"x": [9.0, 2.0, 8.0], "y": [5.0, 1.0, 0.0]}
 ZERO = {"x": [3.0, 2.5, 3.5, 3.0]}
 
+_TABLE = "table curve = {(0, 1), (4, 3), (6, -1)};"
+
+# Booleans are 1 or 0 in a trace, members their codes.
+_TYPES = "enum Mode { MANUAL, AUTO = 4, RTL }  input Mode mode  input bool p  float x  "
+_MODES = {"mode": [0.0, 4.0, 5.0, 4.0, 7.0], "p": [0.0, 1.0, 1.0, 0.0, 1.0], "x": [3.0, 1.0, 2.5, 4.0, 0.0]}
+
+
+def _with(*names: str) -> dict[str, list[float]]:
+    return {name: _MODES[name] for name in names}
+
+
+_TYPED = (
+    ("a-boolean-is-infinite", "always[0:1](p or x > 2)", _with("p", "x")),
+    ("a-boolean-is-a-number-in-arithmetic", "2 * p >= x or p == 1", _with("p", "x")),
+    ("a-boolean-implies-a-member", "p -> mode == AUTO", _with("p", "mode")),
+    ("members-of-a-set", "once[0:1](mode in {AUTO, RTL})", _with("mode")),
+    ("an-unknown-code-is-no-member", "mode != MANUAL and mode != AUTO and mode != RTL", _with("mode")),
+    ("a-member-beside-a-margin", "eventually[0:2](mode == RTL and x > 2)", _with("mode", "x")),
+    ("the-member-before", "delay[1](mode, RTL) == AUTO", _with("mode")),
+    ("the-member-that-is-held", "held(mode, p) == RTL", _with("mode", "p")),
+    ("a-choice-of-members", "(if p then mode else RTL) == AUTO", _with("mode", "p")),
+)
+
 # name, formula, signals, and the period where it is not 1 s
 DISCRETE = (
     ("until-does-not-ask-for-the-first-at-the-end", "x until y", {"x": [-1.0] * 3, "y": [3.0] * 3}),
@@ -74,6 +97,13 @@ DISCRETE = (
     ("period-half-in-units", "eventually[500ms:1s] x", {"x": [5.0, 4.0, 3.5, 9.0, 7.0]}, "1/2"),
     ("true-and-false", "(true until[1:2] x) or false", X5),
     ("a-number-is-a-formula", "always[0:1] (x - 4)", X5),
+    ("beyond-the-ends-of-a-table", f"{_TABLE} curve(x) >= 2", {"x": [-inf, -1.0, 0.0, 2.0, 4.0, 9.0, inf]}),
+    (
+        "between-the-points-of-a-table",
+        f"{_TABLE} always[0:1](curve(x) >= y)",
+        {"x": [1.0, 3.0], "y": [0.0, 2.0]},
+    ),
+    *((name, _TYPES + formula, signals) for name, formula, signals in _TYPED),
 )
 
 # The same of dense time: a signal is (tick, value) pairs, and last comes the length of a tick in seconds.
@@ -147,6 +177,11 @@ DENSE = (
     ("half-open-and-unbounded", "x since(1:inf) y", TWO, "1/2"),
     ("infinite-input", "always[0:1](x >= 3)", {"x": [(0, inf), (2, -inf), (3, 4.0)]}),
     ("negative-times", "once[1:2] x", {"x": [(-9, 1.0), (-7, 5.0), (-3, 0.0)]}),
+    ("between-the-points-of-a-table", f"{_TABLE} always[0:1](curve(x) >= y)", TWO),
+    *(
+        (name, _TYPES + formula, {signal: list(enumerate(values)) for signal, values in signals.items()})
+        for name, formula, signals in _TYPED
+    ),
 )
 
 # Values at which the semantics differ.

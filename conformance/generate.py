@@ -13,19 +13,20 @@ import random
 import sys
 from fractions import Fraction
 from math import inf
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
 import rtamt
 from conformance import cases, corners, early
 from conformance.cases import SEMANTICS, Case
-from conformance.trees import in_steps, tree
+from conformance.trees import in_steps, table_of, tree
 from rtamt.errors import EvaluationError
 from rtamt.language.formula import Apply, Const, Formula, Interval, Var, postorder, variables
 from rtamt.language.operators import STL
 from rtamt.language.records import Bounds, Operator, Sort
 from rtamt.language.shares import Share, ShareKind
+from rtamt.language.tables import Table, table_operator
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -99,9 +100,15 @@ class Drawing:
             return Interval(begin * self.step, (begin + width) * self.step, share=self.random.choice(counts))
         return Interval(begin * self.step, (begin + width) * self.step)
 
+    def table(self) -> Operator:
+        """Draw a lookup table; the lines between its points are exact at multiples of 1/2."""
+        gaps = self.random.choices((0.5, 1, 1, 2, 4), k=self.random.randint(1, 4))
+        xs = tuple(itertools.accumulate(gaps, initial=self.half()))
+        return table_operator("curve", Table(xs, tuple(self.half() for _ in xs)))
+
     def alone(self, op: Operator) -> Formula:
         """Draw a formula with one operator over plain predicates or, for a number's, in one."""
-        if op in self.numbers or op in self.comparisons:
+        if op in self.numbers or op in self.comparisons or table_of(op) is not None:
             given: list[Formula] = []
             for sort in op.operands:
                 if sort is not Sort.NUMBER:
@@ -210,17 +217,19 @@ def settled(formula: Formula) -> bool:
     return not (names & {"min", "max"} and names & {"div", "pow"})
 
 
-def drawn(name: str, time: str, semantics: str, op: Operator | None = None) -> Case:
+def drawn(name: str, time: str, semantics: str, op: Operator | Literal["table"] | None = None) -> Case:
     """Draw a case that has an answer; ``op`` is the operator to ask, None for a nested formula."""
     step = random.Random(f"{SEED} {name}").choice(STEPS)  # noqa: S311 - no secret
     for attempt in itertools.count():
         draw = Drawing(f"{SEED} {name} {attempt}", time, step)
-        formula = draw.nested(draw.random.choice((2, 2, 3, 4))) if op is None else draw.alone(op)
+        asked = draw.table() if op == "table" else op
+        formula = draw.nested(draw.random.choice((2, 2, 3, 4))) if asked is None else draw.alone(asked)
         names = variables(formula)
         if not names or not settled(formula):
             continue
         inputs = [] if semantics in ("standard", "boolean") else [draw.random.choice(names)]
-        case = Case(name, time, str(formula), step, draw.signals(names), semantics, inputs)
+        text = f"{declared(asked)}{formula}"
+        case = Case(name, time, text, step, draw.signals(names), semantics, inputs)
         try:
             return answered(case)
         except EvaluationError:
@@ -228,12 +237,23 @@ def drawn(name: str, time: str, semantics: str, op: Operator | None = None) -> C
     raise AssertionError
 
 
-def names_of(time: str) -> Iterator[tuple[str, str, Operator | None]]:
+def declared(op: Operator | None) -> str:
+    """Return what declares an operator in the text of a case: that of a table."""
+    table = None if op is None else table_of(op)
+    if op is None or table is None:
+        return ""
+    points = ", ".join(f"({x:g}, {y:g})" for x, y in zip(table.xs, table.ys, strict=True))
+    return f"table {op.name} = {{{points}}}; "
+
+
+def names_of(time: str) -> Iterator[tuple[str, str, Operator | Literal["table"] | None]]:
     """Yield of each case in a time domain its name, its semantics and the operator it asks, if it is one."""
     for op in STL:
         if time == "discrete" or not op.discrete_only:
             for k in range(ALONE):
                 yield f"{time}/{op.name}/{k:02}", "standard", op
+    for k in range(ALONE):
+        yield f"{time}/table/{k:02}", "standard", "table"
     for semantics in SEMANTICS:
         for k in range(NESTED if semantics == "standard" else NESTED_OTHERWISE):
             yield f"{time}/nested/{semantics}/{k:03}", semantics, None

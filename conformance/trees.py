@@ -6,10 +6,13 @@ from typing import TYPE_CHECKING, Any
 
 from rtamt.language.formula import Apply, Const, Formula, Interval, Var, fold
 from rtamt.language.shares import Share, ShareKind
+from rtamt.language.tables import Table
 from rtamt.rewrite.ground import ground
 
 if TYPE_CHECKING:
     from fractions import Fraction
+
+    from rtamt.language.records import Operator
 
 
 def in_steps(formula: Formula, step: Fraction) -> Formula:
@@ -36,6 +39,12 @@ def tree(formula: Formula) -> dict[str, Any]:
     return whole
 
 
+def table_of(op: Operator) -> Table | None:
+    """Return the lookup table that an operator is, if it is one."""
+    table = op.maker[1][-1] if op.maker is not None else None
+    return table if isinstance(table, Table) else None
+
+
 def _node(node: Formula, args: tuple[Any, ...]) -> dict[str, Any]:
     if isinstance(node, Var):
         return {"var": node.name}
@@ -44,7 +53,10 @@ def _node(node: Formula, args: tuple[Any, ...]) -> dict[str, Any]:
     assert isinstance(node, Apply)
     bounds = node.interval
     ends = None if bounds is None else [int(bounds.begin), None if bounds.end is None else int(bounds.end)]
-    whole = {"op": node.op.name, "args": list(args), "interval": ends}
+    table = table_of(node.op)
+    whole = {"op": node.op.name if table is None else "table", "args": list(args), "interval": ends}
+    if table is not None:
+        whole["points"] = [list(point) for point in zip(table.xs, table.ys, strict=True)]
     if bounds is not None and bounds.share is not None:
         whole["share"] = [bounds.share.kind.value, str(bounds.share.amount)]
     return whole
