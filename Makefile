@@ -15,7 +15,7 @@ CXX_FILES := find core tests/cpp tests/fuzz benchmarks -name
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help run test test-python test-cpp test-install lint format docs pictures paper bench bench-ros field costs peers conformance soak fuzz clean
+.PHONY: help run test test-python test-cpp test-install lint format docs images paper bench bench-ros field costs peers conformance soak fuzz clean
 
 help: ## list the tasks
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-13s %s\n", $$1, $$2 }' Makefile
@@ -61,11 +61,11 @@ format: $(VENV)/.group-lint ## format Python and C++
 	$(RUN) -m ruff format
 	$(CXX_FILES) '*.[ch]pp' | xargs $(VENV)/bin/clang-format -i
 
-docs: $(VENV)/.core $(VENV)/.group-docs ## build the site into build/site: pages, reference and pictures, links checked
+docs: $(VENV)/.core $(VENV)/.group-docs ## build the site into build/site: pages, reference and diagrams, links checked
 	NO_MKDOCS_2_WARNING=1 $(VENV)/bin/mkdocs build --quiet
 
-pictures: $(VENV)/.core $(VENV)/.extras ## draw docs/images anew
-	$(RUN) tools/pictures.py
+images: $(VENV)/.core $(VENV)/.extras ## draw docs/images anew
+	$(RUN) tools/images.py
 
 paper: $(VENV)/.core $(VENV)/.extras peers ## the paper's listings, tables and figures, run again beside its claims: build/paper
 	$(RUN) examples/paper/reproduce.py

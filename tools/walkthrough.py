@@ -1,4 +1,4 @@
-"""Draw docs/images/early.gif: bounds and verdicts of a formula while its samples arrive (`make pictures`)."""
+"""Draw docs/images/early.gif: bounds and verdicts of a formula while its samples arrive (`make images`)."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ FORMULA = "req >= 3 -> eventually[0:4](gnt >= 3)"
 REQ = [0, 1, 5, 2, 0, 0, 1, 6, 4, 1, 0, 0, 0, 0]
 GNT = [0, 0, 1, 2, 4, 3, 1, 0, 0, 1, 2, 1, 0, 0]
 RANGES = {"req": (0, 6), "gnt": (0, 6)}
-#: Milliseconds that a picture stays, and the last one.
+#: Milliseconds that an image stays, and the last one.
 PACE, REST = 900, 3500
 EDGE = 4.0
 
@@ -42,7 +42,7 @@ def draw(path: Path) -> None:
 
 
 def frame(now: int, known: dict[int, rtamt.Interval]) -> Image.Image:
-    """Return the picture after the sample at ``now``."""
+    """Return the image after the sample at ``now``."""
     figure = Figure(figsize=(7.2, 4.2), facecolor="white")
     top, below = figure.subplots(2, 1, sharex=True, height_ratios=(1, 1.3))
     for axis in (top, below):

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from rtamt.engine.offline import Evaluators, Query
 from rtamt.errors import TraceError, UsageError
-from rtamt.language.imports import again
+from rtamt.language.imports import library_of
 from rtamt.language.printer import to_text
 from rtamt.language.specfile import parse_document
 from rtamt.language.units import check_unit
@@ -185,7 +185,7 @@ class Specification(OnlineSpecification):
         settings = {name: getattr(self, name) for name in names}
         replaced = self.document.replaced
         formula = to_text(self.formula, self.language, parameters=True) if replaced else None
-        values = self._given, dict(self.parameters), again(self.document)
+        values = self._given, dict(self.parameters), library_of(self.document)
         return _factory, (
             self.text,
             values,

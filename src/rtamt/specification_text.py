@@ -12,7 +12,7 @@ from rtamt.engine.online import Watched
 from rtamt.errors import UsageError
 from rtamt.language.formula import Formula, outermost, types_of, variables
 from rtamt.language.grammar import is_number
-from rtamt.language.imports import again
+from rtamt.language.imports import library_of
 from rtamt.language.lint import LintWarning, warnings_of
 from rtamt.language.operators import STL, Language
 from rtamt.language.parameters import assigned, bounding, with_values
@@ -177,7 +177,7 @@ class SpecificationText:
             unit=self.unit,
             constants=self._given,
             parameters=values,
-            library=again(self.document),
+            library=library_of(self.document),
         )
         if self.document.selected is not None:
             document = document.select(self.document.selected)

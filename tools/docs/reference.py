@@ -9,8 +9,8 @@ from pathlib import Path
 from textwrap import dedent
 from typing import TYPE_CHECKING
 
+import diagram
 import messages
-import picture
 
 import rtamt
 from rtamt.cli import COMMANDS, overview, parser_of
@@ -40,9 +40,9 @@ def spelled() -> list[Operator]:
     return list(STL)
 
 
-def pictures() -> dict[str, str]:
+def diagrams() -> dict[str, str]:
     """Return the plot of each operator as SVG, by its path in the site."""
-    return {f"reference/operators/{op.name}.svg": picture.of(op.example) for op in spelled()}
+    return {f"reference/operators/{op.name}.svg": diagram.of(op.example) for op in spelled()}
 
 
 # ---- the language -----------------------------------------------------------------------------------

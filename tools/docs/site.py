@@ -81,7 +81,7 @@ def on_files(files: Files, config: MkDocsConfig) -> Files:
         files.append(File.generated(config, page, content=text))
     for page, make in reference.PAGES.items():
         files.append(File.generated(config, page, content=make()))
-    for name, content in reference.pictures().items():
+    for name, content in reference.diagrams().items():
         files.append(File.generated(config, name, content=content))
     for target in sorted(_copied(files)):
         files.append(File.generated(config, f"files/{target}", abs_src_path=str(ROOT / target)))

@@ -325,7 +325,7 @@ def _lines(facts: Facts) -> Iterator[str]:
     if spec.domain.continuous:
         yield "memory     that of the changes inside the windows, whatever the length of the trace"
     elif facts.memory is None:
-        yield "memory     only the compiled core can tell (leave out --backend python)"
+        yield "memory     only the compiled core reports it (leave out --backend python)"
     else:
         doubles = round(facts.memory / 8)
         yield f"memory     {facts.memory:,} bytes ({doubles:,} doubles), whatever the length of the trace"

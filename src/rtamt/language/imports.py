@@ -178,6 +178,6 @@ def moved(document: Document, span: Span) -> tuple[dict[str, Formula], dict[str,
     return definitions, templates
 
 
-def again(document: Document) -> Library:
+def library_of(document: Document) -> Library:
     """Return a library of the files that a document imports, which are not read again."""
     return Library(None, dict(document.imported))

@@ -97,10 +97,10 @@ def typed(op: Operator, args: Sequence[Formula], texts: Texts) -> tuple[Operator
                 f"compare it with == or !=, such as {_comparison(texts(k), types[k])}",
                 k,
             )
-    together = range(len(args)) if op.equates else [k for k in op.keeps if k < len(args)]
-    one = _one_type([types[k] for k in together], [texts(k) for k in together], args)
+    same_type = range(len(args)) if op.equates else [k for k in op.keeps if k < len(args)]
+    one = _one_type([types[k] for k in same_type], [texts(k) for k in same_type], args)
     meant = [
-        _resolved(operand, one) if k in together else as_formula_at(op, k, operand)
+        _resolved(operand, one) if k in same_type else as_formula_at(op, k, operand)
         for k, operand in enumerate(args)
     ]
     if op.equates:

@@ -24,7 +24,7 @@ _NAMES, _LONGEST = 6, 9
 
 def matplotlib(module: str = "figure") -> Any:
     """Return a module of matplotlib."""
-    return library(f"matplotlib.{module}", "a picture", "plot")
+    return library(f"matplotlib.{module}", "a plot", "plot")
 
 
 def names_of(lines: Sequence[Line]) -> Mapping[float, str]:

@@ -91,6 +91,6 @@ def replay_ticks(trace: DenseTrace, monitor: StartMonitor) -> Iterator[Any]:
         for each in (monitor.bounds, monitor.truth):
             assert isinstance(each, DenseEarlyMonitor)
             push_tick(each, tick, rows[tick])
-        monitor.look(tick)
+        monitor.refresh(tick)
         if tick >= trace.start:
             yield trace.time(tick - trace.start)

@@ -68,7 +68,7 @@ class Node:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Scene:
-    """Everything that a picture or a report of one result shows; positions are those of ``clock``.
+    """Everything that a plot or a report of one result shows; positions are those of ``clock``.
 
     ``nodes``: the formula first, then its sub-formulas, those next to the top first; equal ones are one.
     ``critical``: the node and the position of the critical point, if a predicate decides.

@@ -18,7 +18,7 @@ INFINITE = {True: "+∞", False: "−∞"}
 
 
 def number(value: float) -> str:
-    """Return a number as it is written in a picture.
+    """Return a number as it is written in a plot.
 
     >>> number(-2.5), number(float("inf"))
     ('−2.5', '+∞')

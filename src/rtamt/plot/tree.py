@@ -102,7 +102,7 @@ def _row_width(boxes: Sequence[_Box]) -> float:
 
 
 def _draw(root: _Box, axis: Any, critical: Node | None) -> None:
-    patches = library("matplotlib.patches", "a picture", "plot")
+    patches = library("matplotlib.patches", "a plot", "plot")
     stack = [root]
     while stack:
         box = stack.pop()

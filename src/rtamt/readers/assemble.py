@@ -120,9 +120,9 @@ def chunks_of(source: Source, choice: Choice) -> Iterator[Trace]:
 
 
 def _raw_chunks(source: Source, selections: Sequence[Selection]) -> Iterator[list[list[Raw]]]:
-    if source.together is not None:
+    if source.in_one_pass is not None:
         places = {id(table): place for place, table in enumerate(source.tables)}
-        yield from source.together([(places[id(each.table)], each.fields) for each in selections])
+        yield from source.in_one_pass([(places[id(each.table)], each.fields) for each in selections])
         return
     (selection,) = selections
     assert selection.table.chunks is not None

@@ -54,11 +54,11 @@ def open_bag(path: str, recover: bool = False) -> Source:
         ]
         found = [topic for topic in topics if topic is not None]
 
-        def together(wanted: Sequence[tuple[int, Sequence[Field]]]) -> Iterator[list[list[Raw]]]:
+        def in_one_pass(wanted: Sequence[tuple[int, Sequence[Field]]]) -> Iterator[list[list[Raw]]]:
             return _together(reader, [(found[place], fields) for place, fields in wanted])
 
         tables = tuple(topic.table for topic in found)
-        return Source(path, tables, losses=losses, close=stack.pop_all().close, together=together)
+        return Source(path, tables, losses=losses, close=stack.pop_all().close, in_one_pass=in_one_pass)
 
 
 @contextmanager

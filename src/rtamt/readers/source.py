@@ -83,7 +83,7 @@ class Source:
     close: Callable[[], None] | None = None
     #: Places of tables, with fields of each, to the values of all of them, some at a time, in the order in which they
     #: were recorded; None where tables cannot be read side by side.
-    together: Callable[[Sequence[tuple[int, Sequence[Field]]]], Iterator[list[list[Raw]]]] | None = None
+    in_one_pass: Callable[[Sequence[tuple[int, Sequence[Field]]]], Iterator[list[list[Raw]]]] | None = None
 
     @property
     def signals(self) -> set[str]:
@@ -95,7 +95,7 @@ class Source:
     @property
     def in_chunks(self) -> bool:
         """Whether it can be read in chunks."""
-        return self.together is not None or (len(self.tables) == 1 and self.tables[0].chunks is not None)
+        return self.in_one_pass is not None or (len(self.tables) == 1 and self.tables[0].chunks is not None)
 
 
 def library(module: str, what: str) -> Any:
@@ -145,17 +145,17 @@ def missing_file(path: str) -> TraceError:
 
 def guarded(source: Source, guard: Callable[[], AbstractContextManager[None]]) -> Source:
     """Return a source that reads its tables under ``guard``: libraries read most of a file only then."""
-    together = source.together
+    in_one_pass = source.in_one_pass
 
     def side_by_side(wanted: Sequence[tuple[int, Sequence[Field]]]) -> Iterator[list[list[Raw]]]:
-        assert together is not None
+        assert in_one_pass is not None
         with guard():
-            yield from together(wanted)
+            yield from in_one_pass(wanted)
 
     return replace(
         source,
         tables=tuple(_guarded(table, guard) for table in source.tables),
-        together=None if together is None else side_by_side,
+        in_one_pass=None if in_one_pass is None else side_by_side,
     )
 
 

@@ -121,8 +121,8 @@ def _add(finding: Finding, writer: Any, store: Any, taken: set[str]) -> None:
         writer.write(numbers, at, store.serialize_cdr(message, FLOAT_STAMPED))
     verdicts = writer.add_connection(_free(f"{topic}/verdict", taken), VERDICT, typestore=store)
     for at, truth in _points(finding.truth):
-        judged = SATISFIED if truth > 0 else VIOLATED
-        message = verdict(header=_header(store, at), name=finding.name, verdict=judged, horizon=0.0)
+        reported = SATISFIED if truth > 0 else VIOLATED
+        message = verdict(header=_header(store, at), name=finding.name, verdict=reported, horizon=0.0)
         writer.write(verdicts, at, store.serialize_cdr(message, VERDICT))
 
 

@@ -196,7 +196,7 @@ class _Reporting(Watch):
         records = self._reports.take(stamp, {name: values[name] for name in self.names if name in values})
         return [] if wanted is not None and self._reports.output.bounds not in wanted else list(records)
 
-    def look(self) -> None:
+    def refresh(self) -> None:
         """Bring the standings up to date: they always are."""
 
     def reset(self) -> None:

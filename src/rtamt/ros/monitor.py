@@ -361,7 +361,7 @@ class RosMonitor:
     def conditions(self, now: int) -> list[Condition]:
         """Return the condition of every output, for ``/diagnostics``."""
         for watch in self.watches:
-            watch.look()
+            watch.refresh()
         conditions = {
             standing.output.name: self._condition(watch, standing, now)
             for watch in self.watches

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 
 class Standing:
-    """One output, and how it stood at the last :meth:`Watch.look`: ``latest`` robustness, whether it was ``satisfied``.
+    """One output, as of the last :meth:`Watch.refresh`: ``latest`` robustness, whether it was ``satisfied``.
 
     ``horizon``: seconds. ``lag``: the same in samples, in dense time in nanoseconds.
     """
@@ -147,7 +147,7 @@ class DiscreteWatch(SampledWatch):
     def _held(self, standing: Standing, truth: Formula) -> bool | None:
         return self._value(truth) > 0 if self._monitor.samples > standing.lag else None
 
-    def look(self) -> None:
+    def refresh(self) -> None:
         """Bring the standings up to date."""
         if not self._monitor.samples:
             return
@@ -222,7 +222,7 @@ class DenseWatch(MessageWatch):
         assert self._start is not None
         return truth > 0 if at >= self._start + standing.lag else None
 
-    def look(self) -> None:
+    def refresh(self) -> None:
         """Bring the standings up to date."""
         if not self._points:
             return

@@ -74,7 +74,7 @@ class Watch(ABC):
         """
 
     @abstractmethod
-    def look(self) -> None:
+    def refresh(self) -> None:
         """Bring the standings up to date."""
 
     @abstractmethod

@@ -30,8 +30,8 @@ def merged(times: Sequence[NDArray[Any]]) -> NDArray[Any]:
     >>> merged([np.array([0, 3, 4]), np.array([3, 3, 5])])
     array([0, 3, 4, 5])
     """
-    together = np.sort(np.concatenate(times), kind="stable")
-    return together[np.concatenate(([True], together[1:] != together[:-1]))[: len(together)]]
+    joined = np.sort(np.concatenate(times), kind="stable")
+    return joined[np.concatenate(([True], joined[1:] != joined[:-1]))[: len(joined)]]
 
 
 def check_tolerance(tolerance: Any) -> None:

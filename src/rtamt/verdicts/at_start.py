@@ -60,21 +60,21 @@ class StartMonitor:
         """Take a sample; errors and arguments as for :class:`IntervalMonitor`."""
         self.bounds.update(time, **values)  # fails where the other would
         self.truth.update(time, **values)
-        self.look(time)
+        self.refresh(time)
 
     def finish(self) -> None:
         """End the trace."""
         self.bounds.finish()
         self.truth.finish()
         self.finished = True
-        self.look(None)
+        self.refresh(None)
 
     def interval(self) -> Interval:
         """Return the bounds."""
         return self.bounds.interval()
 
-    def look(self, time: Any) -> None:
-        """Look at the verdict after a sample, which both monitors have taken."""
+    def refresh(self, time: Any) -> None:
+        """Update the verdict after a sample, which both monitors have taken."""
         truth = self.truth.interval()
         satisfied = True if truth.lower > 0 else False if truth.upper < 0 else None
         if satisfied != self.satisfied:

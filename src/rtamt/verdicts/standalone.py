@@ -63,8 +63,8 @@ def carried_program(
     domain.check_inputs(inputs)
     structural = bounds_of(formula)
     pairs = {"": outputs_of(formula, applied)} | {f".{name}": pair for name, pair in (parts or {}).items()}
-    judged = domain.ground(*(output for pair in pairs.values() for output in pair))
-    cores = [_with_parameters(desugar(each), structural) for each in judged]
+    grounded = domain.ground(*(output for pair in pairs.values() for output in pair))
+    cores = [_with_parameters(desugar(each), structural) for each in grounded]
     program = compile_program(cores, domain.step, inputs, domain=type(domain))
     # What delays a parameter comes from it, too.
     constants = [
@@ -76,7 +76,7 @@ def carried_program(
         to_text(formula, limit=PAGE),
         tuple(f"{output}{suffix}" for suffix in pairs for output in OUTPUTS),
         _places(constants, 0),
-        MappingProxyType(_meanings(program, [_with_parameters(each, structural) for each in judged])),
+        MappingProxyType(_meanings(program, [_with_parameters(each, structural) for each in grounded])),
     )
     return replace(program, metadata=metadata)
 

@@ -198,7 +198,7 @@ class DiscreteStream(Stream):
     def _time(self, position: int) -> Any:
         if position in self._kept:
             return self._kept[position]
-        # The last one, which was judged at the end: there all outputs stand alike.
+        # The last one, whose verdict was given at the end: there all outputs stand alike.
         return next(iter(self._group.outputs.values())).last
 
     def finish(self) -> StreamResult:

@@ -132,7 +132,7 @@ def test_latex_alone(run):
 
 def test_without_the_core_everything_but_memory_is_told(run):
     answer = run("info", "always[0:5](x >= 3)", "--backend", "python")
-    assert "memory     only the compiled core can tell (leave out --backend python)\n" in answer.out
+    assert "memory     only the compiled core reports it (leave out --backend python)\n" in answer.out
     assert "slide_min" in answer.out
 
 

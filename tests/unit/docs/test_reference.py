@@ -91,8 +91,8 @@ def test_examples_and_tables_become_markdown(tool):
 
 
 def test_the_example_of_every_operator_has_a_value_on_the_signals_of_its_plot(tool):
-    picture = tool("picture")
+    diagram = tool("diagram")
     for operator in rtamt.STL:
         spec = rtamt.parse(operator.example)
-        read = {name: values for name, values in picture.SIGNALS.items() if name in spec.input_names}
-        assert len(spec.evaluate({"time": picture.TIME, **read}).signal.values) == len(picture.TIME)
+        read = {name: values for name, values in diagram.SIGNALS.items() if name in spec.input_names}
+        assert len(spec.evaluate({"time": diagram.TIME, **read}).signal.values) == len(diagram.TIME)

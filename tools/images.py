@@ -1,4 +1,4 @@
-"""Create the images of README.md and the documentation in docs/images: `make pictures`."""
+"""Create the images of README.md and the documentation in docs/images: `make images`."""
 
 from __future__ import annotations
 
