@@ -22,6 +22,7 @@ ERRORS = (
     "BoundError",
     "CommandError",
     "EvaluationError",
+    "MisfitError",
     "NameInFormulaError",
     "ParseError",
     "RTAMTException",

@@ -14,7 +14,7 @@ import messages
 
 import rtamt
 from rtamt.cli import COMMANDS, overview, parser_of
-from rtamt.language import enumerations, parser, specfile, tables, templates
+from rtamt.language import dimensions, enumerations, parser, specfile, tables, templates
 from rtamt.language.lint import RULES
 from rtamt.language.operators import STL, Bounds, Fixity, Tense
 
@@ -283,7 +283,7 @@ def _messages() -> Iterator[str]:
         "position. On the command line every message is one line on stderr, with exit code 2.\n"
     )
     for kind, found in messages.by_kind(ROOT / "src/rtamt").items():
-        error = getattr(rtamt, kind, None)
+        error = getattr(rtamt, kind, None) or getattr(dimensions, kind, None)
         doc = (error.__doc__ or "").strip().partition("\n")[0] if error else ""
         yield f"## {kind}\n\n{doc}\n"
         yield "\n".join(f"- {text}" for text in found) + "\n"

@@ -46,15 +46,16 @@ _RAD_IN_DEG = 180 / pi
 
 
 class MisfitError(Exception):
-    """Operands whose units do not fit: what kind of finding it is, the message, and whose fault.
+    """What ``rtamt lint`` reports about units: RT301, RT302 and RT303.
 
-    ``{0}``, ``{1}``, … in the message stand for the operands of these numbers.
+    ``kind``: of the finding. ``operand``: whose fault it is, None for all. ``{0}``, ``{1}``, … in the message stand for
+    the operands of these numbers.
     """
 
-    def __init__(self, kind: str, message: str, operand: int | None = None) -> None:
+    def __init__(self, message: str, kind: str, operand: int | None = None) -> None:
         super().__init__(message)
-        self.kind = kind
         self.message = message
+        self.kind = kind
         self.operand = operand
 
 
@@ -99,7 +100,7 @@ def resolve(*quantities: Quantity) -> list[Resolved]:
         library("pint", "comparing units", "units")
         return [resolved(each.powers) for each in quantities]
     except (UsageError, UnknownUnitError) as error:
-        raise MisfitError(UNCHECKED, f"the units are not checked here: {error}") from None
+        raise MisfitError(f"the units are not checked here: {error}", UNCHECKED) from None
 
 
 def _scales(quantity: Quantity, known: Resolved) -> list[tuple[float, float]] | None:
@@ -128,44 +129,46 @@ def joined(a: int, first: Quantity, b: int, second: Quantity, *, zeros: bool) ->
         return Quantity(first.powers, shared, difference)
     one, other = resolve(first, second)
     if one.bases != other.bases:
-        raise MisfitError(DIMENSION, _different(a, first, b, second))
+        raise _different(a, first, b, second)
     ones, others = _scales(first, one), _scales(second, other)
     if zeros and not difference and one.offset != other.offset and None not in (one.offset, other.offset):
+        mine, its = f"'{{{a}}}' {first}", f"'{{{b}}}' {second}"
         raise MisfitError(
-            SCALE,
-            f"'{{{a}}}' {first} and '{{{b}}}' {second}, which count from different zeros; declare both in one unit",
+            f"{mine} and {its}, which count from different zeros; declare both in one unit", SCALE
         )
     if ones is None or others is None:
         return Quantity(first.powers, None, difference)
     fitting = [pair[0] for pair in ones if any(_same_scale(pair, each) for each in others)]
     if fitting:
         return Quantity(first.powers, tuple(fitting), difference)
-    raise MisfitError(SCALE, _scaled(a, first, b, second, one, other))
+    raise _scaled(a, first, b, second, one, other)
 
 
-def _different(a: int, first: Quantity, b: int, second: Quantity) -> str:
+def _different(a: int, first: Quantity, b: int, second: Quantity) -> MisfitError:
     ratios = [(a, times(second, power(first, Fraction(-1)))), (b, times(first, power(second, Fraction(-1))))]
     texts = [(k, unit_text(ratio.powers)) for k, ratio in ratios if isinstance(ratio, Quantity)]
     texts.sort(key=lambda each: each[1].startswith("1/"))
-    return (
-        f"'{{{a}}}' {first} and '{{{b}}}' {second}, which are different quantities; correct a declaration"
-        + "".join(f", or multiply '{{{k}}}' by a constant in {text}" for k, text in texts[:1])
+    more = "".join(f", or multiply '{{{k}}}' by a constant in {text}" for k, text in texts[:1])
+    one, other = f"'{{{a}}}' {first}", f"'{{{b}}}' {second}"
+    return MisfitError(
+        f"{one} and {other}, which are different quantities; correct a declaration{more}", DIMENSION
     )
 
 
-def _scaled(a: int, first: Quantity, b: int, second: Quantity, one: Resolved, other: Resolved) -> str:
+def _scaled(a: int, first: Quantity, b: int, second: Quantity, one: Resolved, other: Resolved) -> MisfitError:
     factor = one.scale / other.scale
-    begin = f"'{{{a}}}' {first} and '{{{b}}}' {second}, two units of one quantity"
     if isclose(factor, 1 / _RAD_IN_DEG, rel_tol=_EXACT):
-        return f"{begin}; declare both in one unit, or write radians({{{a}}})"
-    if isclose(factor, _RAD_IN_DEG, rel_tol=_EXACT):
-        return f"{begin}; declare both in one unit, or write radians({{{b}}})"
-    if one.angle != other.angle:
-        return f"{begin}; declare both in one unit"
-    how = f"multiply '{{{a}}}' by {factor:.6g}"
-    if len(f"{1 / factor:.6g}") < len(f"{factor:.6g}"):
-        how = f"divide '{{{a}}}' by {1 / factor:.6g}"
-    return f"{begin}; declare both in one unit, or {how}"
+        how = f", or write radians({{{a}}})"
+    elif isclose(factor, _RAD_IN_DEG, rel_tol=_EXACT):
+        how = f", or write radians({{{b}}})"
+    elif one.angle != other.angle:
+        how = ""
+    elif len(f"{1 / factor:.6g}") < len(f"{factor:.6g}"):
+        how = f", or divide '{{{a}}}' by {1 / factor:.6g}"
+    else:
+        how = f", or multiply '{{{a}}}' by {factor:.6g}"
+    mine, its = f"'{{{a}}}' {first}", f"'{{{b}}}' {second}"
+    return MisfitError(f"{mine} and {its}, two units of one quantity; declare both in one unit{how}", SCALE)
 
 
 def agree(measures: Sequence[Measure], which: Sequence[int] | None = None, *, zeros: bool = True) -> Measure:

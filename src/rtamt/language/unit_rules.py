@@ -129,7 +129,8 @@ def _expect(expected: Quantity, called: str, measures: Sequence[Measure], *which
                 fix = f"write radians({{{k}}})"
             elif error.kind == SCALE:
                 fix = f"divide it by {1 / resolve(measure)[0].scale:.6g}"
-            raise MisfitError(error.kind, f"'{{{k}}}' {measure}, and this takes {called}; {fix}", k) from None
+            operand = f"'{{{k}}}' {measure}"
+            raise MisfitError(f"{operand}, and this takes {called}; {fix}", error.kind, k) from None
 
 
 def of_ratio(measures: Sequence[Measure]) -> Measure:
@@ -182,12 +183,11 @@ def _turned(measure: Measure, wrong: str, why: str, to: Quantity, from_: Quantit
     if not isinstance(measure, Quantity):
         return measure
     (known,) = resolve(measure)
+    operand = f"'{{0}}' {measure}"
     if wrong in known.units:
-        raise MisfitError(SCALE, f"'{{0}}' {measure}, which is {why}; leave out the conversion", 0)
+        raise MisfitError(f"{operand}, which is {why}; leave out the conversion", SCALE, 0)
     if any(name != "second" for name, _ in known.bases):
-        raise MisfitError(
-            DIMENSION, f"'{{0}}' {measure}, which is no angle; correct the declaration of its unit", 0
-        )
+        raise MisfitError(f"{operand}, which is no angle; correct the declaration of its unit", DIMENSION, 0)
     return times(measure, times(to, power(from_, Fraction(-1))))
 
 
@@ -218,9 +218,10 @@ def _check_turn(measure: Measure, turn: float) -> None:
             continue
         known, own = resolve(measure, unit)
         if known.units == own.units and measure.factors == (1.0,):
+            operand, write = f"'{{0}}' {measure}", f"{name}({{0}})"
             raise MisfitError(
-                SCALE,
-                f"'{{0}}' {measure}, and {turn:.6g} is a full turn in {name}; write {name}({{0}}), "
+                f"{operand}, and {turn:.6g} is a full turn in {name}; write {write}, "
                 f"or a full turn in {unit.powers[0][0]}",
+                SCALE,
                 0,
             )

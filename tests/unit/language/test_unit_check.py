@@ -5,6 +5,7 @@ import sys
 import pytest
 
 import rtamt
+from rtamt.language.operators import STL, Sort
 
 DECLARED = """
 input float v [m/s]
@@ -231,3 +232,8 @@ def test_units_of_imported_declarations_are_checked(tmp_path):
     text = 'import "car.stl"\nalways(v <= most)'
     (finding,) = rtamt.parse(text, folder=tmp_path).warnings
     assert (finding.code, text[finding.span.start : finding.span.end]) == ("RT302", "v <= most")
+
+
+def test_every_operator_of_numbers_has_a_rule_for_units():
+    numeric = [op for op in STL if Sort.NUMBER in (*op.operands, op.result) and not op.presence]
+    assert [op.name for op in numeric if op.units is None] == []
