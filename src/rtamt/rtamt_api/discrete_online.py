@@ -5,7 +5,6 @@ from __future__ import annotations
 from numbers import Real
 from typing import TYPE_CHECKING, Any
 
-from rtamt.engine.discrete.samples import read_time, read_values
 from rtamt.engine.usage_guard import exclusive, in_use
 from rtamt.errors import TraceError
 from rtamt.language.formula import Formula, Var
@@ -18,6 +17,7 @@ from rtamt.rtamt_api.online import OnlineSpecification, require_past
 from rtamt.rtamt_api.options import Language, Semantics
 from rtamt.signals import arrays
 from rtamt.signals.data_errors import unknown_variable
+from rtamt.signals.samples import read_time, read_values
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping

@@ -22,8 +22,9 @@ arrays            data (lists, arrays, frames, objects) to float64 arrays
 data_errors       errors for missing variables and samples, and for NaN
 coding            names of members to their codes; Booleans are 1 or 0
 recoding          codes that a recording has under other numbers: constants of messages
-binding           variables of a specification to recorded names and units
-unit_conversion   from the unit of a recording to the declared one
+samples           read and check the numbers and the time of one sample
+caller_times      timestamps of samples as the caller gives them
+runs              runs of ticks
 dense_arrays      dense-time data to int64 ticks and float64 values
 regular           infer the sampling period; check order and distance of timestamps
 ticks             times to int64 ticks and back

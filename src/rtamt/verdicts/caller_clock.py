@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from rtamt.engine.discrete.caller_times import CallerTimes
 from rtamt.signals import arrays
+from rtamt.signals.caller_times import CallerTimes
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

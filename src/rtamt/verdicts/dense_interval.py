@@ -5,13 +5,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from rtamt.compiler.graph import FOREVER, NEVER
-from rtamt.engine.dense.runs import compared, merged
 from rtamt.engine.native import EarlyMonitorBase
 from rtamt.engine.usage_guard import exclusive, in_use
 from rtamt.errors import TraceError, UsageError
 from rtamt.language.units import format_duration
 from rtamt.signals import arrays, dense_arrays
 from rtamt.signals.outcomes import Interval
+from rtamt.signals.runs import compared, merged
 from rtamt.verdicts.dense_early import DenseEarlyMonitor
 from rtamt.verdicts.interval import Change, IntervalMonitor
 from rtamt.verdicts.prediction import later_steps
@@ -19,7 +19,7 @@ from rtamt.verdicts.prediction import later_steps
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from rtamt.engine.dense.runs import Run
+    from rtamt.signals.runs import Run
     from rtamt.signals.ticks import TimeScale
     from rtamt.verdicts.prediction import Step
 

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from rtamt.engine.discrete.apart import Apart, inner_of
 from rtamt.engine.discrete.early_python_backend import PythonEarlyMonitor
-from rtamt.engine.discrete.samples import read_time
 from rtamt.engine.native import EarlyMonitorBase
 from rtamt.engine.usage_guard import in_use
 from rtamt.errors import TraceError
@@ -18,6 +17,7 @@ from rtamt.signals.coding import codes_of
 from rtamt.signals.data_errors import missing_variable, unknown_variable
 from rtamt.signals.outcomes import Causation
 from rtamt.signals.regular import irregular, not_increasing
+from rtamt.signals.samples import read_time
 from rtamt.verdicts.caller_clock import CallerClock, Stamp
 from rtamt.verdicts.early import DefinitionSession, EarlyMonitor, GraphSession
 

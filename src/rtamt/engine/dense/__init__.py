@@ -7,10 +7,9 @@ backends              the back ends: the compiled core and the definition
 evaluate              offline evaluation by the compiled core
 monitor               the monitor
 groups                several requirements, each with the trace of its own variables
-time_axis              a recording in ticks, as explanations evaluate it
+time_axis             a recording in ticks, as explanations evaluate it
 python_backend        the definition behind the interface of the compiled monitor
 early_python_backend  the definition of bounds behind the interface of monitors before the horizon
-runs                  runs of ticks
 ====================  =====================================================================
 """
 

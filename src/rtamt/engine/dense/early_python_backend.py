@@ -12,16 +12,16 @@ from typing import TYPE_CHECKING, TypeAlias
 
 from rtamt.compiler.graph import FOREVER, NEVER
 from rtamt.engine.backend import RefusedError
-from rtamt.engine.dense.runs import clipped, compared, merged, without
 from rtamt.reference.dense_bounds import DenseKnowledge, StepBounds, bounds, least
+from rtamt.signals.runs import clipped, compared, merged, without
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
     from fractions import Fraction
 
-    from rtamt.engine.dense.runs import Decided, Pair, Run
     from rtamt.language.formula import Formula
     from rtamt.reference.dense_bounds import Samples
+    from rtamt.signals.runs import Decided, Pair, Run
 
 #: The minimum of formulas, each over the trace of some variables.
 Output: TypeAlias = "Sequence[tuple[Formula, tuple[str, ...]]]"

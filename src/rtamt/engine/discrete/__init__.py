@@ -6,9 +6,7 @@ module                purpose
 backends              the back ends: the compiled core and the definition
 evaluate              offline evaluation by the compiled core
 monitor               the monitor
-samples               read and check the numbers and the time of one sample
-caller_times          timestamps of samples as the caller gives them
-time_axis              a recording in samples, as explanations evaluate it
+time_axis             a recording in samples, as explanations evaluate it
 python_backend        the definition behind the interface of the compiled monitor
 early_python_backend  the definition of bounds behind the interface of the core's EarlyMonitor
 ====================  =====================================================================

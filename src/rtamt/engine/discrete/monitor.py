@@ -9,8 +9,6 @@ import numpy as np
 
 from rtamt.engine.discrete.apart import Apart, inner_of
 from rtamt.engine.discrete.backends import BACKENDS
-from rtamt.engine.discrete.caller_times import CallerTimes
-from rtamt.engine.discrete.samples import read_time, read_values
 from rtamt.engine.native import MonitorBase
 from rtamt.engine.online import OnlineMonitor, Watched, depth_of, grounded, time_of
 from rtamt.engine.usage_guard import exclusive, in_use
@@ -20,6 +18,7 @@ from rtamt.language.units import check_unit
 from rtamt.rewrite.check import check_online
 from rtamt.signals import arrays
 from rtamt.signals.arrays import Stamps
+from rtamt.signals.caller_times import CallerTimes
 from rtamt.signals.discrete import DISCRETE, Discrete
 from rtamt.signals.episodes import plain_times
 from rtamt.signals.regular import (
@@ -27,6 +26,7 @@ from rtamt.signals.regular import (
     check_regular,
     irregular,
 )
+from rtamt.signals.samples import read_time, read_values
 from rtamt.signals.signal import Signal
 
 if TYPE_CHECKING:
