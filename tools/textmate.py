@@ -11,7 +11,7 @@ import json
 import re
 from pathlib import Path
 
-from rtamt.highlight import DECLARING, functions, logical, symbols, temporal
+from rtamt.highlight import DECLARING, QUANTIFYING, functions, logical, symbols, temporal
 from rtamt.language.declarations import TYPES
 from rtamt.language.units import UNITS
 
@@ -38,6 +38,10 @@ def grammar() -> dict[str, object]:
         {"name": "keyword.control.temporal.stl", "match": rf"\b(?:{_any(short)})(?=\s*[\[(])"},
         {"name": "support.function.stl", "match": rf"\b(?:{_any(functions())})(?=\s*[\[(])"},
         {"name": "keyword.operator.word.stl", "match": rf"\b(?:{_any(logical())})\b(?!\.)|\bin\b(?=\s*\{{)"},
+        {
+            "name": "keyword.control.quantifier.stl",
+            "match": rf"\b(?:{_any(QUANTIFYING)})(?=\s+\w+\s+in\b|\s+\w+\s*!=)|\bin(?=\s+\w+\s*(?::|where\b))",
+        },
         {"name": "keyword.operator.stl", "match": _any(symbols())},
         {"name": "variable.other.stl", "match": r"[^\W\d][\w$]*(?:\.[^\W\d][\w$]*)*"},
     ]

@@ -12,6 +12,7 @@ from pygments.token import Comment, Keyword, Name, Number, Operator, Punctuation
 
 from rtamt.language.declarations import TYPES
 from rtamt.language.grammar import ELSE, THEN
+from rtamt.language.groups import QUANTIFIERS
 from rtamt.language.lexer import is_word
 from rtamt.language.operators import STL, Fixity, Tense
 from rtamt.language.units import UNITS
@@ -21,7 +22,7 @@ if TYPE_CHECKING:
 
     from rtamt.language import operators
 
-__all__ = ["DECLARING", "StlLexer", "functions", "logical", "symbols", "temporal"]
+__all__ = ["DECLARING", "QUANTIFYING", "StlLexer", "functions", "logical", "symbols", "temporal"]
 
 #: The keywords of specification files that are not operators.
 DECLARING = (
@@ -40,7 +41,11 @@ DECLARING = (
     "severity",
     "def",
     "sample",
+    "group",
 )
+
+#: The words of quantifiers, before a name and `in`.
+QUANTIFYING = (*QUANTIFIERS, "where")
 
 
 def temporal() -> list[str]:
@@ -119,6 +124,8 @@ class StlLexer(RegexLexer):
             (words(functions(), suffix=r"(?=\s*[\[(])"), Name.Builtin),
             (words(logical(), suffix=r"\b(?!\.)"), Operator.Word),
             (r"in(?=\s*\{)", Operator.Word),
+            (words(QUANTIFYING, suffix=r"(?=\s+\w+\s+in\b|\s+\w+\s*!=)"), Keyword),
+            (r"in(?=\s+\w+\s*(?::|where\b))", Keyword),
             (r"inf\b", Number),
             (words(symbols()), Operator),
             (r"[()\[\]{},:;=]", Punctuation),

@@ -13,8 +13,10 @@ from rtamt.language.printer import to_text
 from rtamt.language.specfile import parse_document
 from rtamt.language.units import check_unit
 from rtamt.results import Result, requirements_of
+from rtamt.signals import members
 from rtamt.signals.inexact import Uncertainty, fill_gaps
 from rtamt.signals.sampling import sampled
+from rtamt.signals.trace import Trace
 from rtamt.specification_online import OnlineSpecification
 from rtamt.verdicts.offline import by_start, findings_apart
 
@@ -24,6 +26,7 @@ if TYPE_CHECKING:
     from rtamt.language.formula import Formula
     from rtamt.language.imports import Library
     from rtamt.language.units import Duration
+    from rtamt.rewrite.members import Members
     from rtamt.settings import Semantics
     from rtamt.signals.domain_interface import DomainTrace, TimeDomain
     from rtamt.signals.signal import Signal
@@ -87,11 +90,35 @@ class Specification(OnlineSpecification):
         >>> spec.evaluate({"x": [5, None, 4]}, uncertainty={"x": 0.5}, ranges={"x": (0, 120)}).interval
         Interval(lower=-3.0, upper=1.5)
         """
+        if self.groups:
+            query = self._query(time, period, tolerance, resolution, semantics, time_unit)
+            spec, data = self._over_data(query, data)
+            return spec.evaluate(
+                data,
+                time=query.domain,
+                semantics=semantics,
+                time_unit=time_unit,
+                uncertainty=uncertainty,
+                ranges=ranges,
+            )
         query = self._query(time, period, tolerance, resolution, semantics, time_unit)
         data = self._sampled(query, self.binding.applied(data))
         recording = self._with_units(self._recorded(query, data, uncertainty, ranges))
         self._check(query, recording)
         return self._result(query, recording)
+
+    def _over_data(self, query: Query, data: Any) -> tuple[Specification, Any]:
+        """Return the specification over the members of groups that data has, and data with their presence."""
+        rule = self.sampling
+        own_clocks = query.domain.continuous or (rule is not None and rule.hold)
+        found = members.bound(
+            self.binding.applied(data),
+            self.groups,
+            self.input_names,
+            own_clocks=own_clocks,
+            source=data.source if isinstance(data, Trace) else "the data",
+        )
+        return self.over(found.members), found.data
 
     def _sampled(self, query: Query, data: Any) -> Any:
         """Return data with the samples that the sampling rule takes of it."""
@@ -102,6 +129,7 @@ class Specification(OnlineSpecification):
 
     def _result(self, query: Query, recording: DomainTrace) -> Result:
         """Return the result on a normalised recording; the formula must have been checked."""
+        self.require_no_groups("this check")
         if len(self.requirements) > 1 and recording.domain.continuous:
             outputs = [one._outputs(query.semantics) for one in self.requirements.values()]
             if len(by_start(outputs, recording)) > 1:
@@ -118,9 +146,15 @@ class Specification(OnlineSpecification):
     def _recorded(self, query: Query, data: Any, uncertainty: Any, ranges: Any) -> DomainTrace:
         """Return a recording that may have missing and uncertain samples."""
         declared = Uncertainty.of(uncertainty, ranges, self.input_names)
-        missing: dict[str, Any] = {}
+        recording, missing = self._normalised(query, data)
+        if self.resolved is not None:
+            recording = recording.ended_by(self.resolved[0].input_names)
+        return declared.applied(recording, missing)
+
+    def _normalised(self, query: Query, data: Any) -> tuple[DomainTrace, dict[str, Any]]:
+        """Return a recording, and which samples of its variables are missing."""
         try:
-            recording = query.record(data, self.input_names, self.types)
+            return query.record(data, self.input_names, self.types), {}
         except TraceError as error:
             if error.variable not in self.input_names:
                 raise
@@ -128,8 +162,7 @@ class Specification(OnlineSpecification):
             filled, missing = fill_gaps(data, self.input_names, own_clocks=own_clocks)
             if not missing:
                 raise
-            recording = query.record(filled, self.input_names, self.types)
-        return declared.applied(recording, missing)
+            return query.record(filled, self.input_names, self.types), missing
 
     def _with_units(self, recording: DomainTrace) -> DomainTrace:
         """Return a recording with the declared units of the variables whose source names none."""
@@ -180,6 +213,9 @@ class Specification(OnlineSpecification):
         return Evaluators(self.backend)
 
     def __reduce__(self) -> tuple[Any, ...]:
+        if self.resolved is not None:
+            other = self.formula if self.document.replaced else None
+            return _over, (*self.resolved, dict(self.parameters), self.document.selected, other)
         # The text is sufficient, and is parsed without recursion at any length.
         names = ("domain", "period", "resolution", "unit", "backend", "language", "semantics", "sampling")
         settings = {name: getattr(self, name) for name in names}
@@ -198,6 +234,18 @@ class Specification(OnlineSpecification):
 def result_of(spec: Specification, recording: DomainTrace) -> Result:
     """Return the result of a specification on a normalised recording."""
     return spec._result(spec._query(), recording)
+
+
+def _over(
+    spec: Specification,
+    members: Members,
+    parameters: Mapping[str, float],
+    selected: str | None,
+    replaced: Formula | None,
+) -> Specification:
+    made = spec.with_parameters(**parameters).over(members)
+    chosen = made if selected is None else made.select(selected)
+    return chosen if replaced is None else chosen.with_formula(replaced)
 
 
 def _factory(

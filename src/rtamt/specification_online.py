@@ -9,7 +9,7 @@ from rtamt.engine.engine import engine_of
 from rtamt.engine.online import OnlineMonitor
 from rtamt.errors import UsageError
 from rtamt.settings import watched_of
-from rtamt.specification_text import SpecificationText
+from rtamt.specification_groups import QuantifiedText
 from rtamt.verdicts.modes import DELAYED, mode_of, monitor_of, semantics_in
 
 if TYPE_CHECKING:
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from rtamt.verdicts.interval import IntervalMonitor
 
 
-class OnlineSpecification(SpecificationText):
+class OnlineSpecification(QuantifiedText):
     """One requirement or several, which can be monitored and compiled."""
 
     @overload
@@ -148,6 +148,7 @@ class OnlineSpecification(SpecificationText):
         >>> print(monitor.update(0.0, req=5, gnt=2), monitor["asked"], monitor["gnt - req"])
         None 2.0 -3.0
         """
+        self.require_no_groups("a monitor")
         given = {"at": at, "ranges": ranges, "lateness": lateness, "on_correction": on_correction}
         given |= {"episodes": episodes or None, "explain": explain or None}
         settings: dict[str, Any] = {name: setting for name, setting in given.items() if setting is not None}
@@ -215,6 +216,7 @@ class OnlineSpecification(SpecificationText):
         """
         from rtamt.verdicts.standalone import bounds_program, carried_program  # parsing does not wait for it
 
+        self.require_no_groups("a compiled program")
         domain = self._domain_for(time, period, None, resolution).online
         chosen = self._semantics(semantics)
         if mode_of(verdict, {}).name != DELAYED:

@@ -22,6 +22,7 @@ from rtamt.language.specfile import parse_document
 from rtamt.language.type_rules import as_formula
 from rtamt.language.units import positive_period
 from rtamt.rewrite.horizon import horizon
+from rtamt.rewrite.members import resolve
 from rtamt.rewrite.pastify import pastify
 from rtamt.rewrite.semantics import apply_semantics, semantics_of
 from rtamt.settings import parameter_value, require_parameters
@@ -40,9 +41,11 @@ if TYPE_CHECKING:
     from rtamt.language.sampling import Sampling
     from rtamt.language.units import Duration
     from rtamt.language.value_types import ValueType
+    from rtamt.rewrite.members import Members
     from rtamt.rewrite.semantics import PredicateSemantics
     from rtamt.settings import Semantics
     from rtamt.signals.domain_interface import TimeDomain
+    from rtamt.specification_groups import QuantifiedText
 
 
 #: Missing signals that are named.
@@ -68,6 +71,8 @@ class SpecificationText:
     columns: Mapping[str, str] = field(default_factory=dict)
     #: How recordings are sampled in discrete time: the sampling rule of the text, unless others replace it.
     sampling: Sampling | None = None
+    #: The specification whose quantifiers were replaced, and by which members; see ``specification_groups.py``.
+    resolved: tuple[QuantifiedText, Members] | None = None
 
     def __repr__(self) -> str:
         return f"<specification {f'{self.name}: ' if self.name else ''}{self.formula}>"
@@ -161,8 +166,16 @@ class SpecificationText:
         if not new:
             return self
         if new.keys() & bounding(self.document):
+            if self.resolved is not None:
+                original, members = self.resolved
+                return self._selected_from(original.with_parameters(**{**current, **new}).over(members))
             return self._parsed_with({**current, **new})
         return replace(self, document=assigned(self.document, new))
+
+    def _selected_from(self, whole: Any) -> Self:
+        """Return the same requirement of another specification."""
+        found: Self = whole if self.document.selected is None else whole.select(self.document.selected)
+        return found
 
     def _parsed_with(self, values: Mapping[str, float]) -> Self:
         """Return the specification with values of parameters of which some bound an interval."""
@@ -305,7 +318,10 @@ class SpecificationText:
             unit=self.unit,
             parameters=self.parameters,
             templates=self.document.templates,
+            groups=self.document.groups,
         )
+        if self.resolved is not None:
+            formula = resolve(formula, self.resolved[1])
         return with_values([formula], self.parameters)[0]
 
     def _watched(self, given: str | Formula, semantics: Semantics | None) -> Watched:

@@ -247,7 +247,10 @@ CORPUS = sorted({case.formula for name in FILES for case in read(name)})
 
 
 #: The words that files have gained; the corpus has none of them as an operator.
-WORDS = ("require", "severity", "def", "import", "sample", "hold", "parameter", "table", "enum")
+WORDS = (
+    *("require", "severity", "def", "import", "sample", "hold", "parameter", "table", "enum"),
+    *("group", "forall", "exists", "count", "where"),
+)
 
 
 @pytest.mark.parametrize("word", WORDS)

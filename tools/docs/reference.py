@@ -14,7 +14,8 @@ import messages
 
 import rtamt
 from rtamt.cli import COMMANDS, overview, parser_of
-from rtamt.language import dimensions, enumerations, parser, specfile, tables, templates
+from rtamt.language import dimensions, enumerations, groups, parser, specfile, tables, templates
+from rtamt.language.groups import QUANTIFIERS
 from rtamt.language.lint import RULES
 from rtamt.language.operators import STL, Bounds, Fixity, Tense
 
@@ -73,7 +74,12 @@ def language() -> str:
         lines += [_operator(op) for op in left if belongs(op)]
         left = [op for op in left if not belongs(op)]
     assert not left
-    return "\n".join(lines)
+    lines.append(
+        "## Quantifiers\n\nOver the members of a [group](specification-files.md#groups).\n\n"
+        "| quantifier | example | meaning |\n|---|---|---|"
+    )
+    lines += [f"| `{op.name}` | `{op.example}` | {_cell(op.doc)} |" for op in QUANTIFIERS.values()]
+    return "\n".join((*lines, ""))
 
 
 def _operator(op: Operator) -> str:
@@ -124,6 +130,7 @@ def grammar() -> str:
         f"## A formula\n\n{_productions(parser)}\n\n```ebnf\n{listing}\n```\n\n"
         f"## A specification file\n\n{_productions(specfile)}\n\n"
         f"## Enumerations\n\n{_productions(enumerations)}\n\n"
+        f"## Groups and quantifiers\n\n{_productions(groups)}\n\n"
         f"## Lookup tables\n\n{_productions(tables)}\n\n"
         f"## Templates\n\n{_productions(templates)}\n"
     )

@@ -11,6 +11,7 @@ from rtamt.cli.language import add_language_option, read_language
 from rtamt.cli.parser import OK
 from rtamt.cli.terminal import say, table, use_color, width_of
 from rtamt.errors import UsageError, did_you_mean
+from rtamt.language.groups import QUANTIFIERS
 from rtamt.language.operators import Bounds, Fixity
 from rtamt.language.units import UNITS
 
@@ -38,7 +39,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     """Print the operators asked for."""
     language = read_language(args.language)
-    tightest_first = sorted(language, key=lambda op: -op.power)
+    tightest_first = sorted((*language, *QUANTIFIERS.values()), key=lambda op: -op.power)
     chosen = (
         tightest_first if not args.names else [op for name in args.names for op in _called(name, language)]
     )
@@ -72,7 +73,7 @@ def _notes(language: Language) -> str:
 
 
 def _called(name: str, language: Language) -> list[Operator]:
-    found = [op for op in language if name == op.name or name in op.spellings]
+    found = [op for op in (*language, *QUANTIFIERS.values()) if name == op.name or name in op.spellings]
     if not found:
         known = sorted({word for op in language for word in (op.name, *op.spellings)})
         raise UsageError(f"there is no operator '{name}'{did_you_mean(name, known)}; see 'rtamt operators'")

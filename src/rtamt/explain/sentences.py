@@ -5,6 +5,7 @@ from __future__ import annotations
 from math import isinf
 from typing import TYPE_CHECKING
 
+from rtamt.language.formula import Var, postorder
 from rtamt.language.printer import to_text
 from rtamt.language.writing import PAGE
 
@@ -25,13 +26,19 @@ _NO_CAUSE = "the verdict depends on no predicate"
 def predicate_text(predicate: Formula, text: str | None) -> str:
     """Return a predicate as it was written in ``text``, if it was on one line, else as it is printed."""
     span = predicate.span
-    if text is not None and span is not None:
+    if text is not None and span is not None and not _of_members(predicate, text):
         written = text[span.start : span.end]
         # A comparison with one member of a set, `mode in {AUTO, RTL}`, is not written as a text of its own.
         whole = written.count("{") == written.count("}")
         if written and whole and "\n" not in written and "/*" not in written and len(written) <= PAGE:
             return written
     return to_text(predicate, limit=PAGE)
+
+
+def _of_members(predicate: Formula, text: str) -> bool:
+    """Return whether a predicate reads fields of members, which the text calls by the variable of a quantifier."""
+    signals = (node for node in postorder(predicate) if isinstance(node, Var) and node.span is not None)
+    return any(node.name not in text[node.span.start : node.span.end] for node in signals if node.span)
 
 
 def summary(

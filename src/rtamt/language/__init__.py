@@ -42,6 +42,7 @@ enumerations           ``enum Mode { MANUAL, AUTO = 4 }``
 shares                 the share of a window that an operator needs
 specfile               specification files (``.stl``) to a document, and their grammar
 document               the content of a specification file
+groups                 ``group cars = "car_*"``, and the quantifiers over its members
 tables                 ``table name = {(x, y), ...}``, a function of one number
 parameters             values of parameters, set without parsing again
 requirements           ``require ID "text" severity WORD: formula``

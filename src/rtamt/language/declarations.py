@@ -6,11 +6,12 @@ from math import inf
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Literal
 
-from rtamt.errors import NameInFormulaError, did_you_mean
+from rtamt.errors import NameInFormulaError, choices, did_you_mean
 from rtamt.language.document import Declaration
 from rtamt.language.enumerations import begins_enumeration, parse_enumeration
 from rtamt.language.formula import Span
 from rtamt.language.grammar import INFINITY
+from rtamt.language.groups import Field, Group, begins_group, begins_quantifier
 from rtamt.language.import_parser import ImportParser
 from rtamt.language.lexer import Token, quoted
 from rtamt.language.operators import Fixity
@@ -69,9 +70,65 @@ class DeclarationParser(ImportParser):
         self._tables[table.name] = table
         return True
 
+    def _group(self) -> bool:
+        """Take the declaration of a group of signals, if there is one here; see ``groups.py``."""
+        if not begins_group(self) or "group" in self._imports:
+            return False
+        role = _ROLES.get(self.token.text)
+        if role:
+            self.next()
+        self.next()
+        name = self.next()
+        if "." in name.text:
+            raise self.error(f"the name of a group is one word, and '{name.text}' has a dot", name.span)
+        if name.text in (*self._declarations, *self._given, *self._taken_names()):
+            raise self.error(f"'{name.text}' is declared twice{self._from(name.text)}", name.span)
+        self.next()
+        pattern = self.next()
+        if pattern.name.count("*") != 1 or not pattern.name.isprintable():
+            raise self.error(
+                f"the pattern of a group has one star, which stands for what tells its members apart, such as "
+                f'"{name.text}_*"; got {pattern}',
+                pattern.span,
+            )
+        fields = self._fields(name.text) if self.token.text == "{" else ()
+        self.accept(";")
+        span = Span(name.start, pattern.end)
+        self._groups[name.text] = Group(name.text, pattern.name, fields, role, span)
+        return True
+
+    def _fields(self, group: str) -> tuple[Field, ...]:
+        """``"{" , { type , field , [ "[" , unit , "]" ] , [ ";" ] } , "}"``."""
+        opening = self.next()
+        found: dict[str, Field] = {}
+        while not self.accept("}"):
+            type_name = self.next()
+            if type_name.kind == "end":
+                raise self.error("this '{' is never closed", opening.span)
+            if type_name.text not in TYPES and type_name.text not in self._enumerations:
+                types = (*TYPES, *self._enumerations)
+                raise self.error(
+                    f"expected the type of a field of '{group}', got {type_name}"
+                    f"{choices(type_name.text, types, 'types')}",
+                    type_name.span,
+                )
+            token = self._taken(f"the name of a field of '{group}'", quotes=True)
+            if token.name in found:
+                raise self.error(f"'{group}' has two fields called '{token.name}'", token.span)
+            unit = self._unit(token)
+            found[token.name] = Field(token.name, type_name.text, self._type(type_name.text), unit)
+            self.accept(";")
+        if not found:
+            raise self.error(
+                f"the braces of '{group}' are empty; declare its fields, such as {{ float x [m] }}, or leave "
+                f"them out: its fields are then those that formulas read",
+                opening.span,
+            )
+        return tuple(found.values())
+
     def _taken_names(self) -> set[str]:
         """Return the names of what a text declares or defines, apart from variables."""
-        return {*self._constants, *self._tables, *self._definitions, *self._templates}
+        return {*self._constants, *self._tables, *self._definitions, *self._templates, *self._groups}
 
     def _scope(self, variables: Collection[str] | None, pending: Mapping[str, str] | None = None) -> Scope:
         """Return what names mean by now."""
@@ -85,6 +142,7 @@ class DeclarationParser(ImportParser):
             types=self._types,
             enumerations=self._enumerations,
             tables=self._tables,
+            groups=self._groups,
         )
 
     def _declaration(self) -> bool:
@@ -142,7 +200,7 @@ class DeclarationParser(ImportParser):
         message = head in self._declarations and self._declarations[head].type in self._imports
         if head != name and head in self._declarations and not (message and type_ is not None):
             raise self.error(f"'{name}' is a field of '{head}', which is declared", token.span)
-        taken = name in self._declarations or name in self._constants or name in self._tables
+        taken = any(name in e for e in (self._declarations, self._constants, self._tables, self._groups))
         if taken or (constant and name in self._given):
             raise self.error(f"'{name}' is declared twice{self._from(name)}", token.span)
         value: float | None = None
@@ -303,7 +361,7 @@ class DeclarationParser(ImportParser):
     def _declares(self) -> bool:
         """Return whether a declaration begins here, of a known or unknown type."""
         first = self.token
-        if first.kind != "name" or self._requires() or self._imports_file():
+        if first.kind != "name" or self._requires() or self._imports_file() or begins_quantifier(self):
             return False
         if self._is_optional() or ((first.text in _ROLES or first.text in _KINDS) and self._plain_type(1)):
             return True

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from rtamt.language.formula import Formula, Span
+    from rtamt.language.groups import Group
     from rtamt.language.records import Operator
     from rtamt.language.sampling import Sampling
     from rtamt.language.templates import Template
@@ -111,6 +112,8 @@ class Document:
     )
     #: The tables that formulas may use, by name.
     tables: Mapping[str, Operator] = field(default_factory=lambda: MappingProxyType({}))
+    #: The groups of signals that quantifiers range over, by name.
+    groups: Mapping[str, Group] = field(default_factory=lambda: MappingProxyType({}))
     #: The sampling rule; None if there is none.
     sampling: Sampling | None = None
     #: The name of the assertion or requirement selected by :meth:`select`.

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from fractions import Fraction
 from functools import partial
-from math import inf, nan
+from math import inf
 from typing import TYPE_CHECKING, Any
 
 from rtamt.language.formula import Const, Formula, Interval
@@ -13,7 +13,7 @@ from rtamt.language.rows import operator
 from rtamt.language.unwritten import AT_LEAST, BEFORE, GE, GT
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from rtamt.language.records import Known
 
 
 def iff(a: Formula, b: Formula, _i: Interval | None) -> Formula:
@@ -87,29 +87,24 @@ def diff(x: Formula, interval: Interval | None) -> Formula:
 
 def rate(x: Formula, interval: Interval | None) -> Formula:
     """``diff[d](x) / d``."""
-    # Without a duration it is expanded only to see what it reads.
-    seconds = float(interval.begin) if interval is not None else nan
-    return operator("div")(diff(x, interval), Const(seconds))
+    if interval is not None:
+        return operator("div")(diff(x, interval), Const(float(interval.begin)))
+    one_sample = Interval(Fraction(0), Fraction(0))
+    return operator("div")(diff(x, interval), operator("integral")(Const(1.0), interval=one_sample))
 
 
-def past_held(
-    args: tuple[Formula, ...], _i: Interval | None, known: Callable[[Fraction], Formula]
-) -> Formula:
-    """Return ``held`` of operands that pastification delayed, which are read once they are known."""
+def past_held(args: tuple[Formula, ...], _i: Interval | None, known: Known) -> Formula:
+    """Return ``held`` of operands that are read where they are known."""
     x, condition, *init = args
-    given = known(Fraction(0))
-    instead = init[0] if init else _since_when(x, given)
-    return operator("held")(x, operator("and")(condition, given), instead)
+    instead = init[0] if init else _since_when(x, known.begun)
+    return operator("held")(x, operator("and")(condition, known.now), instead)
 
 
-def past_delay(
-    args: tuple[Formula, ...], i: Interval | None, known: Callable[[Fraction], Formula]
-) -> Formula:
-    """Return ``delay`` of operands that pastification delayed, which are read once they are known."""
+def past_delay(args: tuple[Formula, ...], i: Interval | None, known: Known) -> Formula:
+    """Return ``delay`` of operands that are read where they are known."""
     x, *init = args
-    assert i is not None
-    instead = init[0] if init else _since_when(x, known(Fraction(0)))
-    return operator("if")(known(i.begin), operator("delay")(x, interval=i), instead)
+    instead = init[0] if init else _since_when(x, known.begun)
+    return operator("if")(known.before(i), operator("delay")(x, interval=i), instead)
 
 
 def _since_when(x: Formula, given: Formula) -> Formula:
@@ -134,17 +129,16 @@ def wrap(x: Formula, lo: Formula, hi: Formula, _i: Interval | None) -> Formula:
 
 def _first(x: Formula) -> Formula:
     """Return the number that is the first value of ``x`` for ever."""
-    return operator("sum")(operator("if")(operator("prev")(operator("false")()), x, Const(0.0)))
+    return operator("held")(x, operator("false")())
 
 
 def mean(x: Formula, *rest: Any) -> Formula:
     """``sum(x) / sum(1)``, and ``init`` where the window is empty."""
     *init, i = rest
     total, count = (operator("sum")(each, interval=i) for each in (x, Const(1.0)))
-    begin, unit = (Fraction(0), "") if i is None else (i.begin, i.begin_unit)
-    if begin == 0 and not init:
+    if (i is None or i.begin == 0) and not init:
         return operator("div")(total, count)
-    begun = operator("once")(operator("true")(), interval=Interval(begin, begin, unit, unit))
+    begun = GT(count, Const(0.0))
     mean = operator("div")(total, operator("max")(count, Const(1.0)))
     return operator("if")(begun, mean, *(init or (_first(x),)))
 

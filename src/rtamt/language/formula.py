@@ -17,7 +17,7 @@ each use the previous one twice has 10¹⁸ nodes. Every traversal must visit ea
 from __future__ import annotations
 
 from dataclasses import dataclass, field, fields
-from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, TypeVar
 
 from rtamt.language.value_types import Boolean, Enumeration
 
@@ -142,6 +142,9 @@ class Var(Formula):
 
     ``type``: as declared; None for numbers. A text declares each name once, so equality ignores it.
     """
+
+    #: Whether a quantifier determines what it is: see ``groups.py``.
+    bound: ClassVar[bool] = False
 
     name: str
     span: Span | None = field(default=None, compare=False, repr=False)
@@ -353,14 +356,14 @@ def types_of(*formulas: Formula) -> dict[str, ValueType]:
     """Return the types of the variables of formulas that are no plain numbers."""
     found: dict[str, ValueType] = {}
     for node in postorder(*formulas):
-        if isinstance(node, Var) and isinstance(node.type, Boolean | Enumeration):
+        if isinstance(node, Var) and not node.bound and isinstance(node.type, Boolean | Enumeration):
             found[node.name] = node.type
     return found
 
 
 def variables(*formulas: Formula) -> tuple[str, ...]:
-    """Return the names of the variables of formulas, each once, in order of first appearance."""
-    return tuple(dict.fromkeys(n.name for n in postorder(*formulas) if isinstance(n, Var)))
+    """Return the names of the variables of formulas, each once, in order of first appearance; no fields of members."""
+    return tuple(dict.fromkeys(n.name for n in postorder(*formulas) if isinstance(n, Var) and not n.bound))
 
 
 def own_variables(formula: Formula, every: Sequence[str]) -> tuple[str, ...]:

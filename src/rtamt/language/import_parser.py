@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from rtamt.language.document import Document
+    from rtamt.language.groups import Group
     from rtamt.language.lexer import Token
     from rtamt.language.operators import Language
     from rtamt.language.records import Operator
@@ -53,6 +54,7 @@ class ImportParser(RequirementParser):
         self._topics: dict[str, str] = {}
         self._templates: dict[str, Template] = {}
         self._tables: dict[str, Operator] = {}
+        self._groups: dict[str, Group] = dict(scope.groups)
 
     @abstractmethod
     def document(self, *, imported: bool = False) -> Document:
@@ -104,6 +106,7 @@ class ImportParser(RequirementParser):
                 *document.variables,
                 *document.enumerations,
                 *document.tables,
+                *document.groups,
             )
             library.documents[file] = document, {**dict.fromkeys(names, file), **other.origins}
         document, origins = library.documents[file]
@@ -121,6 +124,7 @@ class ImportParser(RequirementParser):
         self._templates.update(templates)
         self._enumerations.update(document.enumerations)
         self._tables.update(document.tables)
+        self._groups.update(document.groups)
         self._types.update(document.types)
         self._topics.update(document.topics)
         self._imports.update({each.name: each for each in document.imports})

@@ -9,16 +9,25 @@ from typing import TYPE_CHECKING
 from rtamt.language.formula import Apply, Const, Formula, Var
 from rtamt.language.grammar import INFINITY, is_infix, passes_on, sign
 from rtamt.language.operators import STL, Bounds, Fixity, Operator
-from rtamt.language.parentheses import falls_apart, is_choice, is_member, member_name, needs_group, truth_of
+from rtamt.language.parentheses import (
+    falls_apart,
+    is_choice,
+    is_member,
+    member_name,
+    needs_group,
+    truth_of,
+    written_operand,
+)
 from rtamt.language.printer import number, rational_text, share_text
 from rtamt.language.units import UNITS
-from rtamt.language.unwritten import TRUTH
+from rtamt.language.unwritten import PRESENT, TRUTH, WHERE_PRESENT
 from rtamt.language.writing import LONGEST, extent_of, full_text
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
     from fractions import Fraction
 
+    from rtamt.language.groups import Binder
     from rtamt.language.writing import Piece
 
 
@@ -52,6 +61,11 @@ def to_latex(formula: Formula) -> str:
         elif isinstance(node, Apply) and node.op is TRUTH:
             truth = truth_of(node)
             yield STL[truth].latex if isinstance(truth, str) else truth
+        elif isinstance(node, Apply) and node.op in (PRESENT, WHERE_PRESENT):
+            yield written_operand(node)
+        elif isinstance(node, Apply) and node.op.binder is not None:
+            yield _latex_binder(node.op.latex, node.op.binder)
+            yield from node.args
         elif isinstance(node, Apply):
             for literal, operand, exposed in _template(
                 _latex_of(node.op, len(node.args)), node.interval is not None
@@ -69,6 +83,11 @@ def to_latex(formula: Formula) -> str:
 
     text = full_text(formula, pieces, LONGEST)
     return rf"\text{{a formula of {extent_of(formula)}}}" if text is None else text
+
+
+def _latex_binder(symbol: str, binder: Binder) -> str:
+    apart = "".join(rf", {_latex_name(one)} \neq {_latex_name(other)}" for one, other in binder.apart)
+    return rf"{symbol} {_latex_name(binder.variable)} \in {_latex_name(binder.group.name)}{apart}:\ "
 
 
 def _latex_of(op: Operator, operands: int) -> str:

@@ -10,6 +10,7 @@ from rtamt.errors import NameInFormulaError, ParseError, SpecificationError
 from rtamt.language import diagnostics
 from rtamt.language.formula import Const, Formula, Parameter, Span, Var
 from rtamt.language.grammar import INFINITY, sign
+from rtamt.language.groups import field_of
 from rtamt.language.lexer import Token, quoted, tokenize, unquoted
 from rtamt.language.operators import Fixity, Language
 from rtamt.language.templates import Use, Uses, meaning
@@ -122,6 +123,8 @@ class NameParser:
     def _meaning(self, name: str, span: Span, *, plain: bool = True) -> Formula:
         """Return the formula that a name stands for."""
         scope = self.scope
+        if scope.groups and (found := field_of(self, name, span)) is not None:
+            return found
         argument = meaning(self, name, span) if scope.arguments else None
         if argument is not None:
             return argument

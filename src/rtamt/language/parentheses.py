@@ -9,7 +9,7 @@ from rtamt.language.formula import Apply, Const, Formula, Parameter, Var
 from rtamt.language.grammar import ELSE, INFINITY, THEN, is_infix, is_predicate, passes_on
 from rtamt.language.lexer import NAME, TOPIC, is_word, quoted
 from rtamt.language.operators import Fixity, Language, Operator
-from rtamt.language.unwritten import TRUTH
+from rtamt.language.unwritten import PRESENT, TRUTH, WHERE_PRESENT
 from rtamt.language.value_types import Enumeration
 
 if TYPE_CHECKING:
@@ -17,8 +17,10 @@ if TYPE_CHECKING:
 
 
 def written_operand(formula: Formula) -> Formula:
-    """Return what stands in the text: a Boolean itself, not its truth."""
-    return formula.args[0] if isinstance(formula, Apply) and formula.op is TRUTH else formula
+    """Return what stands in the text: a Boolean itself, not its truth; a number, not the guard around it."""
+    while isinstance(formula, Apply) and formula.op in (TRUTH, WHERE_PRESENT, PRESENT):
+        formula = formula.args[-1]
+    return formula
 
 
 def truth_of(node: Apply) -> Piece:
@@ -47,8 +49,9 @@ def _is_negative(formula: Formula) -> bool:
 
 
 def is_choice(formula: Formula) -> bool:
-    """Return whether a formula is ``if ... then ... else ...``."""
-    return isinstance(formula, Apply) and formula.op.fixity is Fixity.CONDITIONAL
+    """Return whether a formula is ``if ... then ... else ...`` or a quantifier: what follows would belong to it."""
+    formula = written_operand(formula)
+    return isinstance(formula, Apply) and formula.op.fixity in (Fixity.CONDITIONAL, Fixity.QUANTIFIER)
 
 
 def needs_group(operand: Formula, op: Operator) -> bool:

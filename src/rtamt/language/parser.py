@@ -4,7 +4,7 @@
 
     expression = operand , { infix operator , [ interval ] , expression | "in" , set }
     set        = "{" , expression , { "," , expression } , "}"
-    operand    = number | name | atom | group | call | prefix | choice | use of a template
+    operand    = number | name | atom | group | call | prefix | choice | use of a template | quantifier, see groups.py
     group      = "(" , expression , ")"
     call       = function , [ interval ] , "(" , [ share , "," ] , expression , { "," , expression } , ")"
     share      = number , [ "/" , number ] , [ "%" | unit ]
@@ -41,6 +41,7 @@ from rtamt.language.grammar import (
     is_predicate,
     passes_on,
 )
+from rtamt.language.groups import QUANTIFIERS, begins_quantifier, parse_quantifier
 from rtamt.language.intervals import parse_interval
 from rtamt.language.operators import STL, Bounds, Fixity, Language, Operator, Sort
 from rtamt.language.scope import Scope
@@ -52,6 +53,7 @@ if TYPE_CHECKING:
     from collections.abc import Collection, Mapping
 
     from rtamt.errors import SpecificationError
+    from rtamt.language.groups import Group
     from rtamt.language.lexer import Token
     from rtamt.language.value_types import Enumeration, ValueType
 
@@ -124,6 +126,8 @@ class FormulaParser(TypedParser):
         token = self.tokens[self.index]
         if token.kind == "number":
             return self.number()
+        if token.text in QUANTIFIERS and begins_quantifier(self):
+            return parse_quantifier(self)
         op = self.language.opening(token.text)
         if op is not None:
             if op.fixity is Fixity.PREFIX and (token.kind != "name" or self._applies(self.index)):
@@ -369,6 +373,7 @@ def parse_formula(
     unit: str = "s",
     parameters: Collection[str] = (),
     templates: Mapping[str, Template] | None = None,
+    groups: Mapping[str, Group] | None = None,
 ) -> Formula:
     """Parse the text of a formula.
 
@@ -377,7 +382,7 @@ def parse_formula(
     names; with None, every other name is a variable. ``types``: of those that are Booleans or of one of the
     ``enumerations``. ``unit``: the unit of bounds without one; a lower bound without a unit has that of the
     upper bound, as in RTAMT. ``parameters``: which of the constants are parameters. ``templates``: those of a
-    document (:attr:`Document.templates`), by name.
+    document (:attr:`Document.templates`), by name. ``groups``: those of a document, by name.
 
     Raises :class:`ParseError`, :class:`NameInFormulaError` or :class:`BoundError`, each with a caret
     under the position, and :class:`UsageError` for an unknown unit. Source: the paper's
@@ -397,6 +402,7 @@ def parse_formula(
         types=types or {},
         enumerations=enumerations or {},
         tables=tables or {},
+        groups=groups or {},
     )
     parser = FormulaParser(text, language, unit, scope)
     formula = parser.formula()

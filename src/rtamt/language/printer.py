@@ -23,7 +23,7 @@ from rtamt.language.parentheses import (
     written_operand,
 )
 from rtamt.language.units import UNITS, decimal
-from rtamt.language.unwritten import TRUTH
+from rtamt.language.unwritten import PRESENT, TRUTH, WHERE_PRESENT
 from rtamt.language.writing import EXCERPT, LONGEST, text_of
 
 if TYPE_CHECKING:
@@ -66,8 +66,14 @@ def to_text(
         if node.op is TRUTH:
             return (written_operand(node),) if parameters else (truth_of(node),)
         op, word = node.op, node.op.spellings[0] + _bounds(node)
+        if op is PRESENT and isinstance(node.args[0], Var):
+            return (node.args[0].name,)  # of a channel, which no text contains
+        if op is WHERE_PRESENT:
+            return (written_operand(node),)
         if op.fixity is Fixity.ATOM:
             return (word,)
+        if op.fixity is Fixity.QUANTIFIER:
+            return (f"{word} {op.binder}: ", *node.args)
         if op.fixity is Fixity.FUNCTION:
             return (f"{word}({share_text(node, ', ')}", *_joined(_operands(node), ", "), ")")
         if op.fixity is Fixity.CONDITIONAL:
@@ -133,11 +139,15 @@ def canonical(formula: Formula, language: Language = STL, *, limit: int = LONGES
         op = node.op
         if op is TRUTH:
             return (truth_of(node),)
+        if op in (PRESENT, WHERE_PRESENT):
+            return (written_operand(node),)
         word = _longest(op.spellings) + _bounds(node, ",", str)
         if op.fixity is Fixity.ATOM:
             return (word,)
         if is_infix(op):
             return ("(", node.args[0], ")", word, "(", node.args[1], ")")
+        if op.fixity is Fixity.QUANTIFIER:
+            return (f"{word} {op.binder}:(", *node.args, ")")
         if op.fixity is Fixity.CONDITIONAL:
             return (f"{word}(", node.args[0], f"){THEN}(", node.args[1], f"){ELSE}(", node.args[2], ")")
         return (f"{word}({share_text(node, ',')}", *_joined(node.args, ","), ")")

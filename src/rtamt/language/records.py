@@ -5,6 +5,7 @@ The table of the built-in operators is in ``operators.py``.
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from enum import Enum
 from types import MappingProxyType
@@ -15,13 +16,13 @@ from rtamt.language.formula import Apply, Formula, Interval
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping
-    from fractions import Fraction
 
+    from rtamt.language.groups import Binder
     from rtamt.language.unit_rules import UnitRule
 
     Expansion = Callable[..., Formula]
-    #: From delayed operands, the interval, and what is true from the delay (and some seconds more) on.
-    Pastification = Callable[[tuple[Formula, ...], Interval | None, Callable[[Fraction], Formula]], Formula]
+    #: From operands that are not known everywhere, the interval, and where they are known.
+    Pastification = Callable[[tuple[Formula, ...], Interval | None, "Known"], Formula]
 
 
 class Fixity(Enum):
@@ -33,6 +34,7 @@ class Fixity(Enum):
     FUNCTION = "function"  # abs(x)
     CONDITIONAL = "conditional"  # if φ then x else y
     ATOM = "atom"  # true
+    QUANTIFIER = "quantifier"  # forall v in cars: φ
 
 
 class Sort(Enum):
@@ -58,6 +60,24 @@ class Bounds(Enum):
     OPTIONAL = "optional"  # left out: [0, inf)
     REQUIRED = "required"  # and bounded
     DURATION = "duration"  # one duration, [d]; left out: one sampling period
+
+
+class Known(ABC):
+    """Where operands are known: from the delay of pastification on, or where the member of a group is present."""
+
+    @property
+    @abstractmethod
+    def now(self) -> Formula:
+        """True where they are known."""
+
+    @property
+    @abstractmethod
+    def begun(self) -> Formula:
+        """True from the first instant on at which they are known."""
+
+    @abstractmethod
+    def before(self, interval: Interval | None) -> Formula:
+        """True where they were known the duration of an interval ago, by default one sample."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -150,6 +170,8 @@ class Operator:
     an operand that was delayed by d from being read before its first value:
     ``"and"`` (the operand counts as false there), ``"implies"`` (as true), ``"zero"`` (as 0), None (not necessary).
     Of an operator that needs more than this, ``pastified`` returns the formula in the past.
+    ``absent``: what counts in place of an operand where a member of a group is absent (by default ``guards``); there
+    also ``"held"``, the last value before.
     ``twin`` names the past operator that a future one becomes ("" if the operand itself does).
     ``dual`` names the operator for which ``not op(x) == dual(not x)``.
     """
@@ -184,6 +206,7 @@ class Operator:
     dual: str | None = None
     twin: str | None = None
     guards: tuple[str | None, ...] = ()
+    absent: tuple[str, ...] = ()
     pastified: Pastification | None = None
     optional: int = 0  # how many of the last operands may be left out
     positive: bool = False  # its duration is longer than zero
@@ -197,6 +220,7 @@ class Operator:
     # the operands, and the monotonicity of the result in each operand.
     extension: Callable[..., Any] | None = None
     slopes: Callable[..., tuple[int | None, ...]] | None = None
+    binder: Binder | None = None  # of a quantifier in a formula
     # The unit of the result from those of the operands (unit_rules.py); None: unknown.
     units: UnitRule | None = None
     # Of an operator that a text declares: what makes it again, a function and its arguments.

@@ -10,6 +10,7 @@ if TYPE_CHECKING:
     from collections.abc import Collection, Mapping
 
     from rtamt.language.formula import Formula
+    from rtamt.language.groups import Group
     from rtamt.language.records import Operator
     from rtamt.language.templates import Argument, Template
     from rtamt.language.value_types import Enumeration, ValueType
@@ -21,7 +22,8 @@ class Scope:
 
     ``pending`` holds names that cannot be used here, each with an explanation; ``arguments`` what the parameters
     of a template stand for, in its formula. ``types``: of variables and constants that are Booleans or of an
-    enumeration. ``enumerations`` and ``tables``: by name.
+    enumeration. ``enumerations``, ``tables`` and ``groups``: by name; ``members``: the groups of the variables of
+    quantifiers.
     """
 
     constants: Mapping[str, float] = field(default_factory=lambda: MappingProxyType({}))
@@ -35,6 +37,8 @@ class Scope:
     types: Mapping[str, ValueType] = field(default_factory=lambda: MappingProxyType({}))
     enumerations: Mapping[str, Enumeration] = field(default_factory=lambda: MappingProxyType({}))
     tables: Mapping[str, Operator] = field(default_factory=lambda: MappingProxyType({}))
+    groups: Mapping[str, Group] = field(default_factory=lambda: MappingProxyType({}))
+    members: Mapping[str, Group] = field(default_factory=lambda: MappingProxyType({}))
 
     def __reduce__(self) -> tuple[Any, ...]:
         # A read-only view can be neither pickled nor copied; the mapping behind it can.

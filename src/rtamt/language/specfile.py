@@ -4,7 +4,7 @@
 
     document    = [ "specification" , word ] , { import } ,
                   { declaration | annotation | enumeration, see enumerations.py | table, see tables.py |
-                  sampling, see sampling.py } ,
+                  group, see groups.py | sampling, see sampling.py } ,
                   statement , { separator , statement } , [ ";" ]
     separator   = ";" | after a named assertion, a requirement or a template, as in RTAMT's files: the end of the line
     statement   = assertion | requirement | template, see templates.py
@@ -41,6 +41,7 @@ from rtamt.language.declarations import DeclarationParser
 from rtamt.language.document import Assertion, Document
 from rtamt.language.enumerations import begins_enumeration
 from rtamt.language.formula import Formula, Span, Var, postorder
+from rtamt.language.groups import begins_group
 from rtamt.language.imports import Library
 from rtamt.language.operators import STL, Language
 from rtamt.language.sampling import begins_sampling, parse_sampling
@@ -104,7 +105,13 @@ class _DocumentParser(DeclarationParser):
                 if sampling is not None:
                     raise self.error("the sampling rule is given twice", word.span)
                 sampling = parse_sampling(self)
-            elif not (self._enumeration() or self._table() or self._declaration() or self._annotation()):
+            elif not (
+                self._enumeration()
+                or self._table()
+                or self._group()
+                or self._declaration()
+                or self._annotation()
+            ):
                 break
         declared = tuple(d.name for d in self._declarations.values() if d.kind == "var")
         variables = tuple(dict.fromkeys((*self._given, *declared)))
@@ -130,6 +137,7 @@ class _DocumentParser(DeclarationParser):
             frozenset(self.used),
             imported=MappingProxyType(self.library.found),
             tables=MappingProxyType(self._tables),
+            groups=MappingProxyType(self._groups),
             sampling=sampling,
         )
 
@@ -215,6 +223,7 @@ class _DocumentParser(DeclarationParser):
             or begins_enumeration(self)
             or begins_table(self)
             or begins_sampling(self)
+            or begins_group(self)
         )
 
     def _begins_a_line(self, at: int) -> bool:

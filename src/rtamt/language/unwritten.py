@@ -19,7 +19,7 @@ from rtamt.language.records import (
     Shift,
     Tense,
 )
-from rtamt.language.rows import F, N, function, infix, operator, prefix
+from rtamt.language.rows import C, F, N, function, infix, operator, prefix
 
 
 def _truth(code: str, spelling: str, symbol: str, definition: Any, **more: Any) -> Operator:
@@ -69,8 +69,22 @@ AT_LEAST = function(
     slopes=e.slopes(1, 0),
 )  # fmt: skip
 
+#: Whether the member of a group is present, from its channel: +inf or -inf under every semantics.
+PRESENT = Operator(
+    "present", ("valid",), Fixity.FUNCTION, 200, (C,), F, "+inf where a member is present, else -inf.", "p",
+    latex="{0}", definition=p.true_where, expansion=lambda a, _i: a,
+)  # fmt: skip
+#: The third operand where a member is present, else the second, which saves the operation that reads it from
+#: having no value. Not written: it prints as its third operand.
+WHERE_PRESENT = Operator(
+    "where_present", ("if",), Fixity.FUNCTION, 200, (C, N, N), N, "The third operand where a member is present.", "x",
+    latex="{2}", definition=lambda c, b, a: p.if_(c, a, b), expansion=lambda c, b, a, _i: operator("if")(c, a, b),
+    keeps=(2,),
+)  # fmt: skip
+
+
 #: By name, for unpickling.
-UNWRITTEN = {op.name: op for op in (*_TRUTHS, AT_LEAST)}
+UNWRITTEN = {op.name: op for op in (*_TRUTHS, AT_LEAST, PRESENT, WHERE_PRESENT)}
 
 
 # The operand one step before, a sample or a tick; +inf at the start. Not part of the language.

@@ -8,6 +8,7 @@ desugar    expand derived operators
 early      whether bounds are tight, and whether early verdicts hold at the end
 ground     half-open bounds to closed ones, once the length of a period or tick is known
 horizon    how far a formula looks ahead (the paper's Definition 3)
+members    quantifiers to formulas over the members of groups
 pastify    bounded future to past (the paper's Definition 4)
 presence   ``valid(x)`` where samples may be missing
 semantics  replace predicates according to a semantics; the table of semantics

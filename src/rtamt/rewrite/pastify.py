@@ -18,6 +18,7 @@ from rtamt.errors import BoundError, SpecificationError
 from rtamt.language.formula import Apply, Const, Formula, Interval, fold, postorder
 from rtamt.language.grammar import is_number
 from rtamt.language.operators import STL, Bounds, Sort, Tense
+from rtamt.language.records import Known
 from rtamt.language.shares import ShareKind
 from rtamt.rewrite.check import has_future, unbounded_future
 from rtamt.rewrite.horizon import horizon
@@ -76,6 +77,28 @@ def expand_future_shorthand(formula: Formula) -> Formula:
     return fold(formula, step)[0]
 
 
+class _Delayed(Known):
+    """Operands that are known from a delay on."""
+
+    def __init__(self, pastifier: _Pastifier, delay: Fraction) -> None:
+        self._pastifier, self._delay = pastifier, delay
+
+    @property
+    def now(self) -> Formula:
+        return self._from(self._delay)
+
+    @property
+    def begun(self) -> Formula:
+        return self.now
+
+    def before(self, interval: Interval | None) -> Formula:
+        assert interval is not None
+        return self._from(self._delay + interval.begin)
+
+    def _from(self, delay: Fraction) -> Formula:
+        return self._pastifier.shifted(STL["true"](), delay)
+
+
 class _Pastifier:
     """One pastification: the properties of each node, and the results so far (shared nodes once)."""
 
@@ -126,7 +149,7 @@ class _Pastifier:
 
     def _build(self, node: Formula, delay: Fraction, args: tuple[Formula, ...]) -> Formula:
         if not self.has_future[id(node)]:
-            return self._shifted(node, delay)
+            return self.shifted(node, delay)
         assert isinstance(node, Apply)
         if node.op.strict:
             args = tuple(map(_as_number, node.op.operands, node.args, args))
@@ -143,7 +166,7 @@ class _Pastifier:
             )
         return Apply(node.op, args, node.interval, node.span)
 
-    def _shifted(self, formula: Formula, delay: Fraction) -> Formula:
+    def shifted(self, formula: Formula, delay: Fraction) -> Formula:
         if delay == 0:
             return formula
         return Apply(STL["once"], (formula,), Interval(delay, delay, self.unit, self.unit), formula.span)
@@ -155,12 +178,12 @@ class _Pastifier:
         interval = node.interval
         if interval is None and node.op.bounds is Bounds.DURATION:
             interval = Interval(self.period, self.period, implied=True)
-        return node.op.pastified(args, interval, lambda more: self._shifted(STL["true"](), delay + more))
+        return node.op.pastified(args, interval, _Delayed(self, delay))
 
     def _guarded(self, operand: Formula, how: str | None, delay: Fraction, sort: Sort) -> Formula:
         if how is None or delay == 0:
             return operand
-        meant = self._shifted(STL["true"](), delay)
+        meant = self.shifted(STL["true"](), delay)
         if sort is Sort.NUMBER:
             return Apply(STL["if"], (meant, operand, Const(_INSTEAD[how])), None, operand.span)
         pair = (meant, operand) if how == "implies" else (operand, meant)

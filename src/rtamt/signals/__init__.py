@@ -13,6 +13,7 @@ instants          sets of times as intervals, and step functions of them
 outcomes          bounds and verdicts that are known before the whole trace is
 episodes          the maximal runs of violation
 trace             ``Trace``: named signals, each with its own time base; resampling
+members           the members of groups in recorded data, and where each is present
 binding           variables under their recorded names, in their declared units
 unit_conversion   from the unit of a recording to the declared one
 sampling          the latest values of variables as samples one period apart

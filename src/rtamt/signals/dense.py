@@ -113,6 +113,8 @@ class DenseTrace(DomainTrace):
     bounds: Mapping[str, Bounds] = field(default_factory=dict)
     #: Which samples of a variable are missing.
     missing: Mapping[str, Mask] = field(default_factory=dict)
+    #: The variables that end the recording; empty if all do.
+    ending: frozenset[str] = frozenset()
 
     @property
     def start(self) -> int:
@@ -122,7 +124,9 @@ class DenseTrace(DomainTrace):
     @property
     def end(self) -> int:
         """The latest last tick."""
-        return max(int(ticks[-1]) for ticks, _ in self.columns.values())
+        return max(
+            int(self.columns[name][0][-1]) for name in self.ending & self.columns.keys() or self.columns
+        )
 
     @property
     def domain(self) -> Dense:
@@ -174,11 +178,16 @@ class DenseTrace(DomainTrace):
         """See :class:`DomainTrace`."""
         return self.select(name for name in self.columns if name in names)
 
+    def ended_by(self, names: Collection[str]) -> DenseTrace:
+        """See :class:`DomainTrace`."""
+        return replace(self, ending=frozenset(names))
+
     def held_until(self, end: int) -> DenseTrace:
         """See :class:`DomainTrace`: every variable holds its last value for ever."""
         if end <= self.end:
             return self
-        name, (ticks, values) = next(iter(self.columns.items()))
+        name = next(iter(self.ending & self.columns.keys() or self.columns))
+        ticks, values = self.columns[name]
         held = np.append(ticks, end), np.append(values, values[-1])
         return replace(self, columns={**self.columns, name: held})
 

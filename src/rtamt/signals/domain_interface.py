@@ -201,6 +201,10 @@ class DomainTrace(ABC):
     def started(self, names: Collection[str]) -> Self:
         """Return the recording for formulas of these variables: it starts when all of them have started."""
 
+    def ended_by(self, names: Collection[str]) -> Self:  # noqa: ARG002
+        """Return the recording that ends with the last sample of these variables, whatever the others have later."""
+        return self
+
     @abstractmethod
     def held_until(self, end: int) -> Self:
         """Return the recording up to a later end, as far as variables have values after their last samples."""

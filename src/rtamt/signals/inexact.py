@@ -140,14 +140,14 @@ def _values(recording: DomainTrace, name: str) -> FloatArray:
 
 def _filled(values: Any, name: str, missing: dict[str, Mask]) -> Any:
     """Return values with zeros in the gaps, which are put into ``missing``."""
-    mask = _gaps(values)
+    mask = gaps_of(values)
     if mask is None or not mask.any():
         return values
     missing[name] = mask
-    return [0.0 if gap else value for value, gap in zip(_items_of(values), mask, strict=True)]
+    return [0.0 if gap else value for value, gap in zip(items_of(values), mask, strict=True)]
 
 
-def _gaps(values: Any) -> Mask | None:
+def gaps_of(values: Any) -> Mask | None:
     """Return where samples are missing; None for containers that cannot have gaps."""
     if isinstance(values, np.ma.MaskedArray):
         return np.ma.getmaskarray(values)
@@ -161,7 +161,8 @@ def _gaps(values: Any) -> Mask | None:
     return None
 
 
-def _items_of(values: Any) -> list[Any]:
+def items_of(values: Any) -> list[Any]:
+    """Return the values of a container one by one, missing ones as whatever it has in their place."""
     if isinstance(values, np.ma.MaskedArray):
         return list(values.filled(0))
     return list(values.to_pylist() if hasattr(values, "to_pylist") else values)

@@ -1,0 +1,316 @@
+"""The members of groups in recorded data: which there are, and where each of them is present.
+
+A member is present where all its fields have a sample. A sample that is missing (``None``, a null of Arrow or polars,
+``pandas.NA``, a masked value) ends its presence. Where it is absent its fields are 1, which nothing reads, and
+a channel that is 1 where it is present and 0 where it is not stands beside them.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from rtamt.errors import TraceError
+from rtamt.language.value_types import Enumeration
+from rtamt.rewrite.members import Members
+from rtamt.rewrite.presence import channel_of
+from rtamt.signals import dense_arrays
+from rtamt.signals.arrays import TIME, Clocked, field_of, is_frame, is_mapping, not_a_mapping
+from rtamt.signals.inexact import gaps_of, items_of
+from rtamt.signals.regular import merged
+from rtamt.signals.time_columns import check_frame
+from rtamt.signals.trace import Channel, Trace
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Iterable, Mapping, Sequence
+
+    from numpy.typing import NDArray
+
+    from rtamt.language.groups import Group
+    from rtamt.signals.inexact import Mask
+
+    #: The fields of the members of a group that formulas read.
+    Fields = Mapping[str, tuple[Group, tuple[str, ...]]]
+
+
+class Bound(NamedTuple):
+    """Data in which each member is a set of ordinary variables, and the members."""
+
+    data: Any
+    members: Members
+
+
+def members_of(groups: Fields, names: Iterable[str]) -> dict[str, tuple[str, ...]]:
+    """Return the members of each group among recorded names, in their order.
+
+    Raises :class:`TraceError` for a member that lacks a field.
+    """
+    names = list(names)
+    found: dict[str, tuple[str, ...]] = {}
+    for group, fields in groups.values():
+        having: dict[str, set[str] | None] = {}
+        for name in names:
+            if group.matches(name):
+                having[name] = None  # values with fields
+            elif (parts := group.member(name)) is not None:
+                known = having.setdefault(parts[0], set())
+                if known is not None:
+                    known.add(parts[1])
+        for member, recorded in having.items():
+            missing = [] if recorded is None else [name for name in fields if name not in recorded]
+            if missing:
+                raise TraceError(
+                    f"'{member}' is a member of the group '{group.name}' and has no '{missing[0]}'; record "
+                    f"'{member}.{missing[0]}', or narrow the pattern \"{group.pattern}\"",
+                    variable=f"{member}.{missing[0]}",
+                )
+        found[group.name] = tuple(having)
+    return found
+
+
+def bound(
+    data: Any, groups: Fields, names: Collection[str], *, own_clocks: bool, source: str = "the data"
+) -> Bound:
+    """Return finished data with the members of groups as ordinary variables.
+
+    ``names``: the variables that formulas read beside those of members. Raises :class:`TraceError` for a group
+    without members.
+    """
+    known = _names(data)
+    members = members_of(groups, known)
+    for name, found in members.items():
+        if not found:
+            group = groups[name][0]
+            recorded = ", ".join(known[:8]) or "none"
+            raise TraceError(
+                f"{source} has no member of the group '{name}': no name matches \"{group.pattern}\" and a field, "
+                f"such as {group.pattern.replace('*', '1')}.{(*groups[name][1], 'x')[0]}; names: {recorded}"
+            )
+    read = _trace if isinstance(data, Trace) else _on_own_clocks if own_clocks else _on_one_clock
+    made, throughout = read(data, _columns(members, groups), names)
+    return Bound(made, Members(members, frozenset(throughout)))
+
+
+class _Member(NamedTuple):
+    """A member with its fields: the type of each, None for numbers."""
+
+    name: str
+    fields: Mapping[str, Any]
+
+    def column(self, field: str) -> str:
+        return f"{self.name}.{field}"
+
+
+def _columns(members: Mapping[str, tuple[str, ...]], groups: Fields) -> list[_Member]:
+    """Return each member once, with the fields of all groups that it is a member of."""
+    found: dict[str, dict[str, Any]] = {}
+    for name, (group, fields) in groups.items():
+        for member in members[name]:
+            found.setdefault(member, {}).update({field: group.values(field) for field in fields})
+    return [_Member(member, fields) for member, fields in found.items()]
+
+
+def _names(data: Any) -> list[str]:
+    if isinstance(data, Clocked) or is_mapping(data):
+        return [str(name) for name in data if name != TIME]
+    if not is_frame(data):
+        raise not_a_mapping(data, "values, such as {'time': [...], 'car_1.x': [...]}")
+    return [str(name) for name in data.columns if name != TIME]
+
+
+# ---- samples that all have the same timestamps ---------------------------------------------------
+
+
+def _on_one_clock(
+    data: Any, members: Sequence[_Member], _names: Collection[str]
+) -> tuple[dict[str, Any], list[str]]:
+    if not is_mapping(data):
+        check_frame(data, TIME, [each.column(field) for each in members for field in each.fields])
+        data = {name: data[name] for name in data.columns}
+    made, throughout = dict(data), []
+    for each in members:
+        columns = {field: _recorded(data, each, field) for field in each.fields}
+        absent = _union([gaps_of(values) for values in columns.values()])
+        if absent is None or not absent.any():
+            throughout.append(each.name)
+            absent = None
+        else:
+            made[channel_of(each.name)] = np.where(absent, 0.0, 1.0)
+        made |= {
+            each.column(field): filled(values, absent, each.fields[field])
+            for field, values in columns.items()
+        }
+    return made, throughout
+
+
+def _recorded(data: Mapping[str, Any], member: _Member, field: str) -> Any:
+    """Return the values of a field: a column of its own, or in the objects that the member's column has."""
+    column = member.column(field)
+    return data[column] if column in data else _in_objects(data[member.name], member.name, field)
+
+
+def _in_objects(objects: Any, member: str, field: str) -> list[Any]:
+    path = field.split(".")
+    return [None if each is None else field_of(each, member, path, i) for i, each in enumerate(objects)]
+
+
+def _union(masks: Iterable[Mask | None]) -> Mask | None:
+    absent: Mask | None = None
+    for mask in masks:
+        if mask is None:
+            continue
+        if absent is not None and len(absent) != len(mask):
+            return None  # columns of different lengths, which is an error elsewhere
+        absent = mask if absent is None else absent | mask
+    return absent
+
+
+def filled(values: Any, absent: Mask | None, type_: Any) -> Any:
+    """Return values with a number in place of those that nothing reads."""
+    if absent is None:
+        return values
+    instead = filler(type_)
+    return [
+        instead if gone else value for value, gone in zip(items_of(values), absent.tolist(), strict=False)
+    ]
+
+
+def filler(type_: Any) -> float:
+    """Return what the field of an absent member is: any value of its type, of numbers 1."""
+    return float(type_.members[0][1]) if isinstance(type_, Enumeration) else 1.0
+
+
+# ---- samples with their own timestamps -----------------------------------------------------------
+
+
+def _on_own_clocks(
+    data: Any, members: Sequence[_Member], names: Collection[str]
+) -> tuple[dict[str, Any], list[str]]:
+    fields = {each.column(field): each for each in members for field in each.fields}
+    if not is_mapping(data):
+        check_frame(data, TIME, list(fields))
+        data = {name: data[name] for name in data.columns}
+    shared = data.get(TIME) if TIME not in names else None
+    made = dict(data) if shared is None else {}
+    columns = dict(
+        dense_arrays.columns_of(data, [name for name in names if name.split(".")[0] in data or name in data])
+    )
+    if shared is not None:
+        made |= columns
+    recorded: dict[str, tuple[Any, Any]] = {}
+    for each in members:
+        for field in each.fields:
+            column = each.column(field)
+            if column in data:
+                recorded |= dense_arrays.columns_of(data, [column])
+                continue
+            ((times, objects),) = dense_arrays.columns_of(data, [each.name]).values()
+            recorded[column] = times, _in_objects(objects, each.name, field)
+    start = _start(columns, recorded)
+    throughout = []
+    for each in members:
+        own = {field: recorded[each.column(field)] for field in each.fields}
+        times, present, values = _in_steps(own, start, each.fields)
+        if present is None:
+            throughout.append(each.name)
+        else:
+            made[channel_of(each.name)] = times, present
+        made |= {each.column(field): (times, column) for field, column in values.items()}
+    return made, throughout
+
+
+def _start(columns: Mapping[str, tuple[Any, Any]], recorded: Mapping[str, tuple[Any, Any]]) -> Any:
+    """Return the start of a trace, which members do not move: where there are only members, their first sample."""
+    firsts = [times[0] for times, _ in columns.values() if len(times)]
+    if firsts:
+        return max(firsts)
+    return min((times[0] for times, _ in recorded.values() if len(times)), default=None)
+
+
+def _in_steps(
+    recorded: Mapping[str, tuple[Any, Any]], start: Any, types: Mapping[str, Any]
+) -> tuple[NDArray[Any], NDArray[np.float64] | None, dict[str, list[Any]]]:
+    """Return the times at which a member changes, whether it is present there, and its fields there.
+
+    The presence is None where it is present from the start of the trace on, and never absent.
+    """
+    clocks = {field: np.asarray(times) for field, (times, _) in recorded.items()}
+    times = merged(list(clocks.values()))
+    if not len(times):
+        times = np.asarray([start])
+    present = np.ones(len(times), bool)
+    places = {}
+    for field, clock in clocks.items():
+        at = clock.searchsorted(times, "right") - 1
+        mask = gaps_of(recorded[field][1])
+        has = at >= 0
+        if mask is not None and len(mask) == len(clock) and len(clock):
+            has &= ~mask[at]
+        present &= has
+        places[field] = at
+    if start is not None and times[0] > start:
+        times = np.concatenate((np.asarray([start], times.dtype), times))
+        present = np.concatenate(([False], present))
+        places = {field: np.concatenate(([-1], at)) for field, at in places.items()}
+    values = {}
+    for field, at in places.items():
+        given, instead = items_of(recorded[field][1]), filler(types[field])
+        values[field] = [
+            given[place] if here else instead
+            for place, here in zip(at.tolist(), present.tolist(), strict=True)
+        ]
+    return times, None if present.all() else present.astype(float), values
+
+
+# ---- traces that were read ----------------------------------------------------------------------
+
+
+def _trace(trace: Trace, members: Sequence[_Member], names: Collection[str]) -> tuple[Trace, list[str]]:
+    """Return a trace whose members have a sample at each timestamp of their table."""
+    made = {name: trace.channel(name) for name in trace}
+    throughout = []
+    own = [made[each.column(field)] for each in members for field in each.fields]
+    start = max(_firsts([made[name] for name in names if name in made]), default=None)
+    if start is None:
+        start = min(_firsts(own), default=None)
+    for each in members:
+        channels = {field: made[each.column(field)] for field in each.fields}
+        if all(channel.first_gap is None and _begins(channel, start) for channel in channels.values()):
+            throughout.append(each.name)
+            continue
+        recorded = {field: _with_gaps(channel, trace) for field, channel in channels.items()}
+        times, present, values = _in_steps(recorded, start, each.fields)
+        if present is None:
+            throughout.append(each.name)
+            continue
+        made[channel_of(each.name)] = Channel(times, present)
+        for field, column in values.items():
+            full = np.array(column, float)
+            made[each.column(field)] = replace(channels[field], times=times, values=full, first_gap=None)
+    return trace.with_channels(made), throughout
+
+
+def _firsts(channels: Iterable[Channel]) -> list[Any]:
+    return [channel.times[0] for channel in channels if channel.times is not None and len(channel.times)]
+
+
+def _begins(channel: Channel, start: Any) -> bool:
+    return channel.times is None or (len(channel.times) > 0 and bool(channel.times[0] <= start))
+
+
+def _with_gaps(channel: Channel, trace: Trace) -> tuple[NDArray[Any], list[Any]]:
+    """Return the times of a channel's table, and its values there, None where it has none."""
+    assert channel.times is not None
+    if channel.first_gap is None:
+        return channel.times, channel.values.tolist()
+    tables = [other.times for other in map(trace.channel, trace) if other.times is not None]
+    around = [
+        times for times in tables if len(times) > len(channel.times) and np.isin(channel.times, times).all()
+    ]
+    table = min(around, key=len) if around else merged(tables)
+    values: list[Any] = [None] * len(table)
+    for place, value in zip(table.searchsorted(channel.times).tolist(), channel.values.tolist(), strict=True):
+        values[place] = value
+    return table, values
