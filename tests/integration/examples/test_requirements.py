@@ -1,0 +1,35 @@
+"""Requirement sets in ``examples/requirements``: one made trace satisfies each requirement, another violates it."""
+
+from functools import cache
+from pathlib import Path
+
+import pytest
+
+import rtamt
+from tests.integration.examples.requirement_traces import TRACES
+
+FOLDER = Path(__file__).parents[3] / "examples" / "requirements"
+EACH = [(file, requirement) for file, traces in TRACES.items() for requirement in traces.cases]
+
+
+@cache
+def loaded(file):
+    return rtamt.load(FOLDER / f"{file}.stl")
+
+
+def test_every_requirement_of_every_file_has_its_traces():
+    files = sorted(path.relative_to(FOLDER).with_suffix("").as_posix() for path in FOLDER.rglob("*.stl"))
+    assert files == sorted(TRACES)
+    for file, traces in TRACES.items():
+        assert list(loaded(file).requirements) == list(traces.cases)
+        assert loaded(file).warnings == ()
+
+
+@pytest.mark.parametrize(("file", "requirement"), EACH)
+def test_a_requirement_separates_a_good_trace_from_a_bad_one(file, requirement):
+    traces, spec = TRACES[file], loaded(file).requirements[requirement]
+    good, bad = (spec.evaluate(traces.made(changed)) for changed in traces.cases[requirement])
+    assert good.satisfied is True
+    assert good.robustness >= 0
+    assert bad.satisfied is False
+    assert bad.robustness <= 0
