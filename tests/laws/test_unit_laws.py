@@ -1,8 +1,9 @@
-"""Formulas whose units fit have no finding; one mismatch put into them is found once, at its place."""
+"""Formulas whose units fit have no finding, and depend on no unit; one mismatch in them is found once, at its place."""
 
 from hypothesis import given
 from hypothesis import strategies as st
 
+import rtamt
 from rtamt.language.lint import warnings_of
 from rtamt.language.specfile import parse_document
 
@@ -84,10 +85,20 @@ DECLARED = "".join(f"input float {name} [{unit}]\n" for name, unit in UNITS.item
 DECLARED += "input float p\ninput float unknown\nconst float untyped = 2\n"
 
 
+#: Patterns that mean something else in another unit of length, or are rounded otherwise.
+IN_UNITS = {
+    "({x} - 2)", "min({x}, {x}, 3)", "floor({x})", "mean[0:2]({x}, 1)", "unknown", "untyped * {x}", "{x} == 3",
+    "3 >= {x}", "hypot({gap}, {gap})", "sqrt(pow({v}, 2))",
+}  # fmt: skip
+
+
 @st.composite
-def texts(draw, *, broken=False):
+def texts(draw, *, broken=False, without=()):
     """Return a formula whose units fit, and the mismatch that was put into it: its text and its finding."""
     mismatch = []
+
+    def pattern_of(patterns):
+        return draw(st.sampled_from([pattern for pattern in patterns if pattern not in without]))
 
     def number(unit, depth, hole):
         if depth == 0:
@@ -96,11 +107,11 @@ def texts(draw, *, broken=False):
             code = CODES.get((unit, OTHER[unit]), "RT301")
             mismatch.append((draw(st.sampled_from(SITES)).format(x=unit, y=OTHER[unit]), code))
             return f"({mismatch[0][0]})"
-        return fill(draw(st.sampled_from(MADE[unit] + KEPT)), unit, depth, hole)
+        return fill(pattern_of(MADE[unit] + KEPT), unit, depth, hole)
 
     def formula(depth, hole):
         known = FORMULAS if depth else FORMULAS[:1]
-        return fill(draw(st.sampled_from(known)), draw(st.sampled_from(sorted(UNITS))), depth, hole)
+        return fill(pattern_of(known), draw(st.sampled_from(sorted(UNITS))), depth, hole)
 
     def fill(pattern, unit, depth, hole):
         places = pattern.count("{")
@@ -142,3 +153,23 @@ def test_a_formula_whose_units_fit_has_no_finding(case):
 def test_one_mismatch_has_one_finding_at_its_place(case):
     text, ((mismatch, code),) = case
     assert found(text) == [(code, mismatch)]
+
+
+LENGTHS = {"gap", "v", "acc", "kmh"}
+DATA = st.lists(st.tuples(*[st.integers(-4, 4)] * (len(UNITS) + 2)), min_size=1, max_size=6)
+
+
+@given(texts(without=IN_UNITS), DATA)
+def test_a_verdict_does_not_depend_on_the_unit_of_length(case, rows):
+    spec = rtamt.parse(DECLARED + case[0])
+    columns = dict(zip((*UNITS, "p", "unknown"), map(list, zip(*rows, strict=True)), strict=True))
+    # Sixteen of the new unit are one of the old one: products with 16, and with its root, are exact.
+    scaled = {name: [16 * x if name in LENGTHS else x for x in values] for name, values in columns.items()}
+    assert verdict(spec, scaled) == verdict(spec, columns)
+
+
+def verdict(spec, columns):
+    try:
+        return spec.evaluate(columns).satisfied
+    except rtamt.EvaluationError:
+        return "undefined"
