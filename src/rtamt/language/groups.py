@@ -21,6 +21,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, ClassVar, Literal
 
 from rtamt.errors import NameInFormulaError, choices, did_you_mean
+from rtamt.language import unit_rules
 from rtamt.language.formula import Apply, Const, Formula, Span, Var, postorder
 from rtamt.language.records import Fixity, Operator, Sort
 from rtamt.language.rows import C, F, N, operator
@@ -108,7 +109,7 @@ class FieldOf(Var):
 def _row(name: str, symbol: str, doc: str, sort: Sort, result: Sort, expansion: Expansion) -> Operator:
     example = f"{name} v in cars: v.x >= 3"
     row = Operator(name, (name,), Fixity.QUANTIFIER, 5, (sort,), result, doc, example, symbol)
-    return replace(row, expansion=expansion)
+    return replace(row, expansion=expansion, units=unit_rules.plain if result is N else None)
 
 
 #: The quantifiers by their words. Those of a formula have a binder, see :func:`quantified`.

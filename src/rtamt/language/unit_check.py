@@ -9,6 +9,7 @@ import numpy as np
 
 from rtamt.language.dimensions import UNCHECKED, MisfitError, Number, Quantity, declared
 from rtamt.language.formula import Apply, Const, Var, postorder
+from rtamt.language.groups import FieldOf
 from rtamt.language.printer import excerpt
 from rtamt.language.records import Tense
 
@@ -40,6 +41,8 @@ def unit_findings(document: Document) -> Iterator[UnitFinding]:
 constant in s"
     """
     units = {each.name: declared(each.unit) for each in document.declarations if each.unit}
+    for group in document.groups.values():
+        units |= {f"{group.name}.{each.name}": declared(each.unit) for each in group.fields if each.unit}
     if not units:
         return
     measures: dict[int, Measure] = {}
@@ -72,6 +75,8 @@ def _called(operand: Formula) -> str:
 
 
 def _leaf(node: Formula, units: Mapping[str, Quantity]) -> Measure:
+    if isinstance(node, FieldOf) and node.group is not None:
+        return units.get(f"{node.group.name}.{node.field}")
     if isinstance(node, Var):
         return units.get(node.name)
     assert isinstance(node, Const)

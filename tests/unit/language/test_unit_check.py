@@ -234,6 +234,23 @@ def test_units_of_imported_declarations_are_checked(tmp_path):
     assert (finding.code, text[finding.span.start : finding.span.end]) == ("RT302", "v <= most")
 
 
+@pytest.mark.parametrize(
+    ("formula", "expected"),
+    [
+        ("forall c in cars: c.x > gap and c.v * 2 > 3", []),
+        ("forall a in cars: forall b in cars where a != b: abs(a.x - b.x) > 2 * a.x", []),
+        ("(count c in cars: c.x > 3) > 2 and (count c in cars: c.v > 3) * gap > gap", []),
+        ("forall c in cars: c.v > gap", ["c.v > gap"]),
+        ("exists c in cars: c.x > 3 and c.x + c.v > 3", ["c.x + c.v"]),
+        ("(count c in cars: c.x > 3) > gap", ["(count c in cars: c.x > 3) > gap"]),
+    ],
+)
+def test_fields_of_groups_have_units(formula, expected):
+    text = 'group cars = "car_*" { float x [m]; float v [m/s] }  input float gap [m]  '
+    spans = [finding.span for finding in rtamt.parse(text + formula).warnings]
+    assert [(text + formula)[span.start : span.end] for span in spans] == expected
+
+
 def test_every_operator_of_numbers_has_a_rule_for_units():
     numeric = [op for op in STL if Sort.NUMBER in (*op.operands, op.result) and not op.presence]
     assert [op.name for op in numeric if op.units is None] == []
