@@ -155,7 +155,8 @@ def evaluate_all(
     alike: dict[Hashable, list[tuple[list[int], dict[str, tuple[str, str]]]]] = {}
     results: dict[int, Result] = {}
     for number, (spec, query) in enumerate(zip(specs, queries, strict=True)):
-        if spec.sampling is not None and spec.sampling.hold and not query.domain.continuous:
+        rule = query.domain.sampling(spec.sampling)
+        if rule is not None and rule.hold:
             results[number] = spec.evaluate(data, tolerance=tolerance, **reading)  # it has samples of its own
             continue
         groups = alike.setdefault((query.domain, query.unit, spec.backend), [])

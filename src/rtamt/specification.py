@@ -122,8 +122,8 @@ class Specification(OnlineSpecification):
 
     def _sampled(self, query: Query, data: Any) -> Any:
         """Return data with the samples that the sampling rule takes of it."""
-        rule = self.sampling
-        if rule is None or not rule.hold or query.domain.continuous:
+        rule = query.domain.sampling(self.sampling)
+        if rule is None or not rule.hold:
             return data
         return sampled(data, self.input_names, rule, query.domain.period or rule.period, query.unit)
 

@@ -87,8 +87,7 @@ def parse(
     rule = document.sampling
     if rule is not None and exact is None:
         exact = rule.period
-        if not domain.continuous:
-            domain = type(domain).of(exact, domain.tolerance, domain.resolution)
+        domain = type(domain).of(exact, domain.tolerance, domain.resolution)
     spec = Specification(
         document,
         domain,

@@ -66,8 +66,8 @@ def _renamed(spec: Specification, names: Mapping[str, str]) -> Specification:
 
 def _resampled(spec: Specification, args: Namespace) -> Specification:
     """Return a specification that is sampled as the command line says, which replaces its own sampling rule."""
-    rule = spec.sampling
-    if rule is None or spec.domain.continuous:
+    rule = spec.domain.sampling(spec.sampling)
+    if rule is None:
         return spec
     if args.resample is not None:
         period = positive_period(args.resample)

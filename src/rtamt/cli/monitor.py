@@ -146,8 +146,8 @@ def run(args: argparse.Namespace) -> int:
         watched = EventFeed(monitor, output, names)
     else:
         watched = _watched(spec, args.tolerance, output, names)
-    rule = spec.sampling
-    held = rule is not None and rule.hold and not dense
+    rule = spec.domain.sampling(spec.sampling)
+    held = rule is not None and rule.hold
     if rule is not None and held:
         sampler = HeldSampler(watched.monitor.input_names, rule, spec.period or rule.period)
         watched = HeldFeed(watched, sampler)

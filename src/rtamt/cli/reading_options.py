@@ -213,7 +213,7 @@ def _check_places(specs: Sequence[Specification]) -> None:
 
 def _sampling_of(spec: Specification) -> tuple[bool, bool]:
     """Return whether a sampling rule holds values, and whether it leaves out NaN."""
-    rule = None if spec.domain.continuous else spec.sampling
+    rule = spec.domain.sampling(spec.sampling)
     return rule is not None and rule.hold, rule is not None and rule.skip_nan
 
 
@@ -245,7 +245,7 @@ def on_clock(data: Trace, spec: Specification, trace: str, reading: Reading) -> 
     samples topics, the latest message every period; without a period only where the messages are samples.
     """
     bag = not spec.domain.continuous and is_bag(trace)
-    rule = None if spec.domain.continuous or reading.resample is not None else spec.sampling
+    rule = None if reading.resample is not None else spec.domain.sampling(spec.sampling)
     held = rule is not None and rule.hold
     period = spec.period if (bag or held) and reading.resample is None else reading.resample
     if period is None and not bag:

@@ -58,7 +58,7 @@ class Options:
                 "discrete time samples the topics once a period: give it, such as --period 100ms (the parameter "
                 "period), or use --time dense, which reads every message at its own time"
             )
-        rule = None if dense else spec.sampling
+        rule = spec.domain.sampling(spec.sampling)
         stale = self._duration(self.stale) if self.stale else None if rule is None else rule.limit
         sampled = None if dense else spec.period
         monitor = RosMonitor(

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from typing_extensions import Self
 
     from rtamt.language.formula import Formula
+    from rtamt.language.sampling import Sampling
     from rtamt.language.units import Duration
     from rtamt.rewrite.check import BoundUnit
     from rtamt.signals.arrays import FloatArray
@@ -101,6 +102,10 @@ class TimeDomain(ABC):
         if self.step is None:
             return formulas
         return grounds(formulas, self.step, continuous=self.continuous)
+
+    def sampling(self, rule: Sampling | None) -> Sampling | None:
+        """Return the sampling rule if it applies: signals with values between their samples are not sampled."""
+        return None if self.continuous else rule
 
     @abstractmethod
     def check_inputs(self, names: Collection[str]) -> None:

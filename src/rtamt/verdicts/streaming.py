@@ -67,9 +67,10 @@ def check_stream(
     """
     kind = spec.domain if time is None else time_domain(time)
     domain = type(kind).of(spec.period if period is None else period, tolerance, spec.resolution)
-    if spec.sampling is not None and spec.sampling.hold and not domain.continuous:
+    rule = domain.sampling(spec.sampling)
+    if rule is not None and rule.hold:
         raise UsageError(
-            f"'{spec.sampling}' samples the whole recording; evaluate it, or sample the chunks and leave out 'hold'"
+            f"'{rule}' samples the whole recording; evaluate it, or sample the chunks and leave out 'hold'"
         )
     stream = _stream_of(domain)(spec, semantics, time_unit, domain)
     for chunk in chunks:
