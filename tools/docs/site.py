@@ -53,7 +53,7 @@ SECTIONS = {
     ),
     "Explanation": (
         "explanation",
-        ["semantics", "horizon", "interface-aware", "engine", "architecture", "rtamt", "choosing"],
+        ["semantics", "horizon", "interface-aware", "engine", "architecture", "rtamt", "choosing", "expressiveness"],
     ),
 }
 
