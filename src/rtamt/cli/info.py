@@ -23,7 +23,7 @@ from rtamt.errors import BoundError, SpecificationError, UsageError, choices
 from rtamt.language.lexer import quoted
 from rtamt.language.printer import excerpt
 from rtamt.language.units import format_duration
-from rtamt.language.value_types import value_text
+from rtamt.language.value_types import BOOLEAN, value_text
 from rtamt.rewrite.check import check_online
 from rtamt.rewrite.desugar import desugar
 from rtamt.rewrite.early import ends_differently, loose
@@ -38,6 +38,7 @@ if TYPE_CHECKING:
     from fractions import Fraction
 
     from rtamt.compiler.program import Program
+    from rtamt.language.document import Declaration
     from rtamt.language.formula import Formula
     from rtamt.signals.trace import Trace
     from rtamt.specification import Specification
@@ -218,13 +219,29 @@ def _parameters(spec: Specification) -> list[dict[str, Any]]:
     return [
         {
             "name": declaration.name,
-            "value": spec.parameters[declaration.name],
-            "default": declaration.value,
+            "type": declaration.type,
+            "value": _named(spec, declaration, spec.parameters[declaration.name]),
+            "default": _named(spec, declaration, declaration.value),
             "unit": declaration.unit or None,
         }
         for declaration in spec.document.declarations
         if declaration.kind == "parameter"
     ]
+
+
+def _named(spec: Specification, declaration: Declaration, value: float | None) -> float | str | bool | None:
+    """Return the value of a parameter as JSON has it: a number, the name of a member, or a Boolean."""
+    type_ = spec.document.types.get(declaration.name)
+    if value is None or type_ is None:
+        return value
+    return bool(value) if type_ is BOOLEAN else value_text(value, type_)
+
+
+def _shown(value: float | str | bool) -> str:
+    """Return such a value as text."""
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    return value if isinstance(value, str) else f"{value:g}"
 
 
 def _requirements(facts: Facts) -> list[dict[str, Any]]:
@@ -302,10 +319,7 @@ def _lines(facts: Facts) -> Iterator[str]:
         yield f"{'' if i else 'types':<11}enum {known.name} {{ {members} }}"
     for i, parameter in enumerate(_parameters(spec)):
         unit = f" [{parameter['unit']}]" if parameter["unit"] else ""
-        type_ = spec.document.types.get(parameter["name"])
-        value, default = (
-            value_text(parameter[each], type_) or f"{parameter[each]:g}" for each in ("value", "default")
-        )
+        value, default = (_shown(parameter[each]) for each in ("value", "default"))
         other = f"  (by default {default})" if value != default else ""
         yield f"{'' if i else 'parameters':<11}{parameter['name']} = {value}{unit}{other}"
     yield f"{spec.domain.setting:<11}{format_duration(facts.step)}{_about_step(spec)}"

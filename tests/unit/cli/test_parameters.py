@@ -46,8 +46,8 @@ def test_info_lists_parameters(run, files):
     assert listed[at : at + 2] == ["parameters limit = 9 [m]  (by default 4)", "           within = 2"]
     told = json.loads(run("info", files[0], "--set", "limit=inf", "--json").out)
     assert told["parameters"] == [
-        {"name": "limit", "value": "inf", "default": 4.0, "unit": "m"},
-        {"name": "within", "value": 2.0, "default": 2.0, "unit": None},
+        {"name": "limit", "type": "float", "value": "inf", "default": 4.0, "unit": "m"},
+        {"name": "within", "type": "float", "value": 2.0, "default": 2.0, "unit": None},
     ]
 
 
@@ -116,6 +116,8 @@ def test_members_and_booleans_are_set_and_shown_by_name(run, write):
     shown = run("info", path, "--set", "start=hold position", "--set", "strict=false").out
     assert "start = hold position  (by default AUTO)" in shown
     assert "strict = false  (by default true)" in shown
+    parameters = json.loads(run("info", path, "--json", "--set", "strict=false").out)["parameters"]
+    assert [(each["type"], each["value"]) for each in parameters] == [("Mode", "AUTO"), ("bool", False)]
     assert (
         "'start' is 'AUT', which is no member of Mode; did you mean 'AUTO'?"
         in run("check", path, log, "--set", "start=AUT").err

@@ -147,3 +147,12 @@ def test_parameters_of_the_requirement_are_set(problem, capsys):
     assert main(["falsify", str(problem), "--set", "limit=6"]) == 1
     assert main(["falsify", str(problem), "--set", "lim=6"]) == 2
     assert "there is no parameter 'lim'; did you mean 'limit'?" in capsys.readouterr().err
+
+
+def test_members_and_booleans_of_the_requirement_are_set_by_name(problem):
+    typed = "enum Mode { LOW, HIGH } parameter Mode mode = LOW parameter bool strict = true always"
+    text = PROBLEM.replace("always", typed).replace("<= 6", "<= (if strict and mode == HIGH then 9 else 6)")
+    problem.write_text(text + '[parameters]\nmode = "HIGH"\nstrict = true\n')
+    assert main(["falsify", str(problem)]) == 0
+    assert main(["falsify", str(problem), "--set", "mode=LOW"]) == 1
+    assert main(["falsify", str(problem), "--set", "strict=false"]) == 1
