@@ -110,6 +110,22 @@ def online_named(k: int) -> Callable[[], float]:
     return lambda: per(calls, run)
 
 
+def online_typed() -> float:
+    """``monitor.update(t, mode="AUTO", p=True)``: ns a call."""
+    text = "enum Mode { MANUAL, AUTO = 4 } input Mode mode input bool p always[0:10](p -> mode == AUTO)"
+    update = rtamt.parse(text).monitor().update
+    calls = 20_000
+    at = [0]
+
+    def run() -> None:
+        first = at[0]
+        for i in range(first, first + calls):
+            update(i, mode="AUTO", p=True)
+        at[0] = first + calls
+
+    return per(calls, run)
+
+
 def online_watched() -> float:
     """A step with two formulas watched, and their values asked for: ns for the three."""
     monitor = rtamt.parse("always[0:1000](a + b >= -2)").monitor(watch=("a + b >= -2", "a"))
@@ -231,6 +247,7 @@ def rows() -> list[Row]:
             for k in WINDOWS
         ),
         *(Row(f"online update(t, a=x, b=y), k={k}", "ns/call", 250, online_named(k)) for k in WINDOWS),
+        Row("online update(t, mode='AUTO', p=True), members and Booleans", "ns/call", 250, online_typed),
         *(Row(f"online step(x, y), k={k}", "ns/call", 150, online_positional(k)) for k in WINDOWS),
         Row("online step(x, y), and two watched formulas read", "ns/call", None, online_watched),
         *(
