@@ -87,7 +87,7 @@ FORMULAS = [
         "             ^^^^^^",
         ParseError,
         "'minimum' takes a number, and 'once x' is a formula, true or false; write a signal or arithmetic, "
-        "such as (if once x then 1 else 0)",
+        "such as (if once x then 1 else 0), or duration(once x) for how long it holds",
     ),
     (
         "if x > 3",
@@ -121,7 +121,7 @@ FORMULAS = [
         "         ^^^^^^",
         ParseError,
         "'sum' takes a number, and 'x >= 3' is a formula, true or false; write a signal or arithmetic, "
-        "such as (if x >= 3 then 1 else 0) or count(x >= 3)",
+        "such as (if x >= 3 then 1 else 0), or duration(x >= 3) for how long it holds",
     ),
     (
         "delay[1:2](x) > 1",
@@ -134,7 +134,7 @@ FORMULAS = [
         "         ^^^^^",
         ParseError,
         "'delay' takes a number, and 'x > 2' is a formula, true or false; write a signal or arithmetic, "
-        "such as (if x > 2 then 1 else 0)",
+        "such as (if x > 2 then 1 else 0), or duration(x > 2) for how long it holds",
     ),
     ("held(x) > 1", "^^^^^^^", ParseError, "'held' takes 2 or 3 operands, got 1"),
     (

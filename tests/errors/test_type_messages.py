@@ -30,7 +30,7 @@ TEXTS = [
      "'x + 1' is a number, and 'duration' needs a condition, which is true or false; compare it, such as x + 1 > 0"),
     ("minimum(x > 3) > 1", "        ^^^^^", ParseError,
      "'minimum' takes a number, and 'x > 3' is a formula, true or false; write a signal or arithmetic, such as "
-     "(if x > 3 then 1 else 0)"),
+     "(if x > 3 then 1 else 0), or duration(x > 3) for how long it holds"),
     ("(if mode then 1 else 2) > 1", "    ^^^^", ParseError, NO_FORMULA),
     ("(if p then mode else 3) == AUTO", " ^^^^^^^^^^^^^^^^^^^^^", ParseError,
      "'mode' is of the enumeration Mode, and '3' is none of its members; write one of them: MANUAL, AUTO"),

@@ -30,7 +30,8 @@ robustness. Of a cause with many intervals those closest to the critical point a
 
 --json prints one object: {"trace", "formula", "time", "satisfied", "robustness", "first_violation", "critical",
 "implicant"}. For SPEC with several requirements it prints one a line, with the key "requirement" before the
-others. An interval of the implicant that never ends has the end null; its end belongs to it if "closed".
+others. An interval of the implicant that never ends has the end null; its end belongs to it if "closed". "reads"
+are the samples of signals that a predicate depends on.
 JSON has no infinities: they are the strings "inf" and "-inf".
 
 examples:

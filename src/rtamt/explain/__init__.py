@@ -4,20 +4,23 @@ An explanation has two parts. The *critical point* is the predicate and the time
 The *implicant* is a set of intervals of predicates that is sufficient for the verdict, independent of all other
 samples; no interval can be removed.
 
-=========  ===================================================================
-module     purpose
-=========  ===================================================================
-explain    a formula and a recording to an explanation
-signals    values of sub-formulas, and where they hold
-critical   the critical point
-propagate  required truth values, from the verdict down to the predicates
-necessary  intervals that every implicant contains
-witnesses  choose between several sufficient operands or times
-shares     choose instants for a share of each of many windows
-minimise   remove intervals while the verdict is still forced
-report     the explanation as data and text
-sentences  the sentences of an explanation, the same in every output
-=========  ===================================================================
+===========  =======================================================================
+module       purpose
+===========  =======================================================================
+explain      a formula and a recording to an explanation
+signals      values of sub-formulas, and where they hold
+critical     the critical point
+propagate    required truth values, from the verdict down to the predicates
+necessary    intervals that every implicant contains
+witnesses    choose between several sufficient operands or times
+shares       choose instants for a share of each of many windows
+minimise     remove intervals while the verdict is still forced
+readings     the samples that a predicate depends on
+attained     where windows attain their values
+description  intervals of predicates and the samples they read, as data and in words
+report       the explanation as data and text
+sentences    the sentences of an explanation, the same in every output
+===========  =======================================================================
 
 Exact properties, which the tests verify by experiment:
 
@@ -29,5 +32,8 @@ Exact properties, which the tests verify by experiment:
 - The implicant alone forces the verdict even if every predicate opposes it everywhere else; without any one of the
   intervals it does not. A predicate that occurs both with and without negation counts as two: for ``p or not p``
   the truth of p is reported, although either operand is sufficient.
+- The samples that the implicant reads (``Stretch.reads``) are sufficient: if they keep their values, each predicate
+  stays at least (where it holds) or at most (where it fails) as large as it is on its interval, whatever all
+  other samples are.
 - The number of intervals is not guaranteed to be minimal, because the choice between several witnesses is free.
 """

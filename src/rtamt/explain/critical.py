@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import inf
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
@@ -22,7 +22,6 @@ from rtamt.rewrite.structure import CHOOSING, NEGATION, opcode, window_of
 if TYPE_CHECKING:
     from fractions import Fraction
 
-    from rtamt.explain.signals import Signals
     from rtamt.signals.instants import StepFunction
 
 #: What decides a value that no predicate does.
@@ -39,10 +38,20 @@ class Point:
     decided_by: str = ""
 
 
+class Values(Protocol):
+    """The values of sub-formulas."""
+
+    def of(self, node: Formula, /) -> StepFunction:
+        """Return the values of a sub-formula that reads other instants, or that one reads."""
+
+    def at(self, node: Formula, cell: int, /) -> float:
+        """Return the value of a sub-formula at a cell."""
+
+
 class Walk:
     """A way down one formula."""
 
-    def __init__(self, signals: Signals, period: Fraction, end: int) -> None:
+    def __init__(self, signals: Values, period: Fraction, end: int) -> None:
         self._signals = signals
         self._period = period
         self._end = end
@@ -59,7 +68,7 @@ class Walk:
                 same = [arg for arg in node.args if self._signals.at(arg, cell) == value]
                 node = next((arg for arg in same if not isinstance(arg, Const)), same[0])
             else:
-                step = self._elsewhere(node, cell)
+                step = self.elsewhere(node, cell)
                 if step is None:
                     return Point(cell, sign, decided_by=END if node.op.tense is Tense.FUTURE else START)
                 node, cell = step
@@ -78,7 +87,7 @@ class Walk:
         found = changes[values == self._signals.at(node, cell)]
         return int(found[0]) if len(found) else None
 
-    def _elsewhere(self, node: Apply, cell: int) -> tuple[Formula, int] | None:
+    def elsewhere(self, node: Apply, cell: int) -> tuple[Formula, int] | None:
         """Return the operand and the cell from which the value comes; None if there is none to come from."""
         kernel, past = node.op.kernel, node.op.tense is Tense.PAST
         if isinstance(kernel, Shift):

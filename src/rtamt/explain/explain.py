@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from itertools import islice
-from math import inf, isinf
+from math import inf
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -12,28 +12,26 @@ from rtamt.engine.engine import engine_of
 from rtamt.engine.offline import Evaluators
 from rtamt.errors import EvaluationError
 from rtamt.explain.critical import Point, Walk
+from rtamt.explain.description import Description, recorded
 from rtamt.explain.minimise import Forcing, intervals_of, minimal
 from rtamt.explain.necessary import Needs
 from rtamt.explain.propagate import Demands
-from rtamt.explain.report import CriticalPoint, Explanation, Listed, Stretch
+from rtamt.explain.report import CriticalPoint, Explanation, Listed
 from rtamt.explain.sentences import cause, predicate_text, summary
 from rtamt.explain.signals import Signals, truths
-from rtamt.language.formula import Var, postorder, types_of
 from rtamt.language.printer import to_text
-from rtamt.language.value_types import value_text
 from rtamt.language.writing import PAGE
 from rtamt.rewrite.semantics import boolean, no_verdict
-from rtamt.rewrite.structure import NEVER, Structure, literal, reaches
-from rtamt.signals.instants import StepFunction, two_valued
+from rtamt.rewrite.structure import Structure, literal
+from rtamt.signals.instants import Cells, StepFunction, two_valued
 from rtamt.verdicts.offline import first_violation
 from rtamt.verdicts.robustness_and_truth import outputs_of
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator, Sequence
+    from collections.abc import Callable, Iterator, Sequence
 
     from rtamt.explain.minimise import Interval
     from rtamt.language.formula import Formula
-    from rtamt.rewrite.structure import Leaf
     from rtamt.signals.domain_interface import DomainTrace
 
 #: How many places are tried for one that overturns the verdict alone.
@@ -101,7 +99,9 @@ class _Explainer:
         robustness = self._signals.at(core, cell)
         implicant = self._implicant(cell, satisfied)
         critical, point = self._critical(cell, implicant)
-        stretches = Listed(len(implicant), lambda k: self._stretch(implicant[k], cell, satisfied))
+        description = Description(self._formula, self._text, self._structure, self._line, self._values, cell)
+        critical, source = description.with_source(critical, point)
+        stretches = Listed(len(implicant), lambda k: description.stretch(implicant[k], satisfied=satisfied))
         text = to_text(self._formula, limit=PAGE)
         violation = None
         if not satisfied and cell == 0:
@@ -121,7 +121,7 @@ class _Explainer:
                 robustness,
                 show(cell) if cell else None,
                 None if violation is None else show(self._line.later(violation)),
-                (critical, show(point)),
+                (critical, show(point), source),
                 caused=bool(stretches),
             ),
             Listed(len(stretches), lambda k: cause(*stretches[k])),
@@ -181,7 +181,7 @@ class _Explainer:
             lowest,
             highest,
             decided_by,
-            "" if leaf is None else self._recorded(leaf, (value,), point.cell, point.cell + 1),
+            "" if leaf is None else recorded(self._line, leaf, (value,), point.cell, point.cell + 1),
         )
         return found, point.cell
 
@@ -205,7 +205,8 @@ class _Explainer:
         period, end = self._line.period, self._line.end
         given = (self._structure, self._holds, self._signals, self._walk, period, end)
         demands = Demands(*given, dense=self._dense)
-        demands.ask(cell, satisfied=satisfied)
+        here = Cells.of([(cell, cell + 1)])
+        demands.ask(here, satisfied=satisfied)
         fixed = {
             leaf.name: _infinite(self._truth[leaf.name])
             for leaf in self._structure.leaves.values()
@@ -214,74 +215,10 @@ class _Explainer:
         forcing = Forcing(self._structure, demands, self._line, fixed)
         candidates = intervals_of(demands)
         needs = Needs(*given, dense=self._dense).given(forcing.support(candidates))
-        needs.ask(cell, satisfied=satisfied)
+        needs.ask(here, satisfied=satisfied)
         found = minimal(candidates, needs, forcing)
         places = {name: i for i, name in enumerate(self._structure.leaves)}
         return sorted(found, key=lambda interval: (places[interval.name], interval.start, interval.sign))
-
-    def _stretch(self, interval: Interval, cell: int, satisfied: bool) -> tuple[Stretch, str]:
-        """Return an interval of the implicant as data, and when it is for a sentence."""
-        leaf = self._structure.leaves[interval.name]
-        line, last = self._line, interval.end - 1
-        holds = satisfied == (interval.sign > 0)
-        forever = interval.end >= NEVER
-        closed = not forever and line.closes(interval.end, self._formula, cell)
-        _, values = self._values[leaf.name].between(interval.start, interval.end)
-        behind, ahead = self._reads(leaf)
-        begin, end = max(interval.start - behind, 0), min(last + ahead, line.end - 1)
-        stop = None if forever else line.time(last if closed else interval.end)
-        stretch = Stretch(
-            predicate_text(leaf.formula, self._text),
-            leaf.formula,
-            holds,
-            line.time(interval.start),
-            stop,
-            closed,
-            float(values.min()),
-            float(values.max()),
-            line.time(begin),
-            line.time(end) if ahead else stop,
-            self._recorded(leaf, values, interval.start, interval.end),
-        )
-        when = self._when(interval, closed)
-        if behind or ahead:
-            reading = f"to {line.show(end)}" if end < NEVER // 2 else "on"
-            when += f", read as a whole: from {line.show(begin)} {reading}"
-        return stretch, when
-
-    def _recorded(self, leaf: Leaf, values: Iterable[float], start: int, end: int) -> str:
-        """Return the Booleans and members that a predicate of truth read on an interval of cells."""
-        types = types_of(leaf.formula)
-        if not types or not all(map(isinf, values)):
-            return ""
-        found = []
-        steps = self._line.measured([Var(name) for name in types])
-        for (name, type_), step in zip(types.items(), steps, strict=True):
-            _, read = step.between(start, end)
-            texts = dict.fromkeys(value_text(value, type_) or f"{value:g}" for value in read.tolist())
-            found.append(f"{name} is {' or '.join(texts)}")
-        return ", ".join(found)
-
-    def _reads(self, leaf: Leaf) -> tuple[int, int]:
-        """Return how many cells behind and ahead the value of a predicate depends on."""
-        order = tuple(dict.fromkeys(postorder(leaf.formula)))
-        return reaches(order, self._line.period)[leaf.formula]
-
-    def _when(self, interval: Interval, closed: bool) -> str:
-        show, last = self._line.show, interval.end - 1
-        if closed and last == interval.start:
-            when = f"at {show(interval.start)}"
-        elif interval.end >= NEVER:
-            when = f"from {show(interval.start)} on"
-        elif closed:
-            when = f"from {show(interval.start)} to {show(last)}"
-        else:
-            when = f"from {show(interval.start)} until {show(interval.end)}"
-        return (
-            when
-            if interval.start <= self._line.last
-            else f"{when} (after the last sample, whose values hold)"
-        )
 
 
 def overturns(point: CriticalPoint) -> bool:

@@ -71,11 +71,10 @@ class Demands:
         self.leaves: dict[tuple[str, int], Asked] = {}
         self.choices: list[tuple[Place, Cells]] = []
 
-    def ask(self, cell: int, *, satisfied: bool) -> None:
-        """Ask for the verdict at a cell."""
+    def ask(self, cells: Cells, *, satisfied: bool) -> None:
+        """Ask for the verdict at some cells."""
         self._satisfied = satisfied
-        here = Cells.of([(cell, cell + 1)])
-        self._add(self._structure.core, 1, Asked(here, here))
+        self._add(self._structure.core, 1, Asked(cells, cells))
         for node in reversed(self._structure.order):
             for sign in (1, -1):
                 asked = self._asked.pop((node, sign), None)

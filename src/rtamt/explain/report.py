@@ -63,6 +63,20 @@ class Listed(Sequence[T], Generic[T]):
 
 
 @dataclass(frozen=True, slots=True)
+class Reading:
+    """The samples of a signal from ``start`` to ``end``, times in the caller's format.
+
+    ``end`` is None where it never comes; it belongs to the interval if ``closed``. In dense time what is meant is the
+    signal on the interval, hence the samples that hold their value on any part of it.
+    """
+
+    signal: str
+    start: Any
+    end: Any
+    closed: bool
+
+
+@dataclass(frozen=True, slots=True)
 class CriticalPoint:
     """The predicate and the instant whose value is, up to sign, the robustness.
 
@@ -78,6 +92,7 @@ class CriticalPoint:
     where something else (the other operand of an ``or``, a later witness) holds as well.
 
     ``recorded``: of a predicate over Booleans and enumerations what was recorded, such as ``mode is AUTO``.
+    ``reads``: the samples that the value comes from: of ``maximum[0:3](x) >= 3`` the one that attains the maximum.
     """
 
     predicate: str | None
@@ -91,6 +106,7 @@ class CriticalPoint:
     highest: float
     decided_by: str = "predicate"
     recorded: str = ""
+    reads: tuple[Reading, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,9 +115,9 @@ class Stretch:
 
     ``start`` and ``end`` are times in the caller's format, None for an end that never comes; ``end``
     belongs to the interval if ``closed``, as it always does in discrete time. ``lowest`` and
-    ``highest``: of the predicate's robustness on the interval. The predicate's value on it depends on
-    the signals from ``reads_from`` to ``reads_to``: more than the interval where operators in time stand
-    inside a comparison, or where an operator has a definition only and is taken as a whole. ``recorded``: as for
+    ``highest``: of the predicate's robustness on the interval. ``reads``: the samples that keep the predicate so,
+    whatever all others are: of ``maximum[0:3](x) >= 3`` where it holds one that is large enough, where it fails the
+    whole window; of ``if φ then x else y`` the condition and the branch taken. ``recorded``: as for
     :class:`CriticalPoint`.
     """
 
@@ -113,8 +129,7 @@ class Stretch:
     closed: bool
     lowest: float
     highest: float
-    reads_from: Any
-    reads_to: Any
+    reads: tuple[Reading, ...]
     recorded: str = ""
 
 
@@ -124,7 +139,8 @@ class Explanation:
 
     ``critical`` is why the robustness is what it is: if every predicate changes by less than
     its absolute value, the verdict stands. ``implicant`` is why the verdict is what it is: the predicates
-    on these intervals are sufficient for it, independent of all other samples, and none of them can be left out.
+    on these intervals are sufficient for it, independent of all other samples, and none of them can be left out. So
+    are the samples that they read.
     ``first_violation``: for ``always φ`` the earliest time of its window at which φ does not hold, for a
     conjunction the earliest of its parts, else ``time``; None where the formula is satisfied, and for any other
     instant than the first.
@@ -199,6 +215,7 @@ class Explanation:
                 "lowest": _plain(point.lowest),
                 "highest": _plain(point.highest),
                 "decided_by": point.decided_by,
+                "reads": _as_data(point.reads),
             },
             "implicant": [
                 {
@@ -209,12 +226,18 @@ class Explanation:
                     "closed": stretch.closed,
                     "lowest": _plain(stretch.lowest),
                     "highest": _plain(stretch.highest),
-                    "reads_from": _plain(stretch.reads_from),
-                    "reads_to": _plain(stretch.reads_to),
+                    "reads": _as_data(stretch.reads),
                 }
                 for stretch in self.implicant
             ],
         }
+
+
+def _as_data(reads: Sequence[Reading]) -> list[dict[str, Any]]:
+    return [
+        {"signal": each.signal, "start": _plain(each.start), "end": _plain(each.end), "closed": each.closed}
+        for each in reads
+    ]
 
 
 def _plain(value: Any) -> Any:

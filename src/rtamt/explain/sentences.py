@@ -10,6 +10,8 @@ from rtamt.language.printer import to_text
 from rtamt.language.writing import PAGE
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
     from rtamt.explain.report import CriticalPoint, Stretch
     from rtamt.language.formula import Formula
 
@@ -21,6 +23,8 @@ _NO_PREDICATE = {
 #: Before the causes.
 CAUSE = "sufficient cause, independent of all other samples:"
 _NO_CAUSE = "the verdict depends on no predicate"
+#: Intervals of a signal that are printed of those that a predicate reads.
+_READ = 3
 
 
 def predicate_text(predicate: Formula, text: str | None) -> str:
@@ -47,12 +51,13 @@ def summary(
     robustness: float,
     when: str | None,
     first_violation: str | None,
-    critical: tuple[CriticalPoint, str],
+    critical: tuple[CriticalPoint, str, str],
     *,
     caused: bool,
 ) -> tuple[str, ...]:
-    """Return the lines of an explanation before the causes; with the critical point comes its time in words.
+    """Return the lines of an explanation before the causes.
 
+    ``critical``: the critical point, its time and the samples that its value comes from, in words.
     ``when``: the explained instant, None where it is the first of the trace. ``caused``: whether causes follow.
     """
     at = "" if when is None else f" at {when}"
@@ -62,15 +67,26 @@ def summary(
     return (*lines, _decision(*critical), CAUSE if caused else _NO_CAUSE)
 
 
-def cause(stretch: Stretch, when: str) -> str:
-    """Return the line about one interval of the implicant."""
+def cause(stretch: Stretch, when: str, reads: str) -> str:
+    """Return the line about one interval of the implicant; ``reads``: the samples it reads, if they are others."""
     values = stretch.recorded or _short(stretch.lowest)
     if not stretch.recorded and stretch.highest != stretch.lowest:
         values += f" to {_short(stretch.highest)}"
-    return f"'{stretch.predicate}' {'holds' if stretch.holds else 'fails'} {when} ({values})"
+    sentence = f"'{stretch.predicate}' {'holds' if stretch.holds else 'fails'} {when} ({values})"
+    return f"{sentence}, reading {reads}" if reads else sentence
 
 
-def _decision(point: CriticalPoint, when: str) -> str:
+def reading(signals: Iterable[tuple[str, Sequence[str]]]) -> str:
+    """Return in words when signals are read: ``x from 1 s to 3 s and y at 2 s``."""
+    parts = []
+    for name, times in signals:
+        more = [f"{len(times) - _READ} more times"] if len(times) > _READ + 1 else times[_READ:]
+        *rest, last = (*times[:_READ], *more)
+        parts.append(f"{name} {', '.join(rest)} and {last}" if rest else f"{name} {last}")
+    return "; ".join(parts) or "no sample"
+
+
+def _decision(point: CriticalPoint, when: str, source: str) -> str:
     if point.predicate is None:
         return _NO_PREDICATE[point.decided_by]
     value = f"is {_short(point.value)}"
@@ -79,6 +95,8 @@ def _decision(point: CriticalPoint, when: str) -> str:
     sentence = f"critical point at {when}: '{point.predicate}' {value}"
     if point.decided_by == "constant":
         return f"{sentence}, a constant"
+    if source:
+        sentence += f" (reading {source})"
     if point.lowest == point.highest:
         return f"{sentence}; others give the same robustness"
     return f"{sentence}; the robustness follows it{_reach(point)}"

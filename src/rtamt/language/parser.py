@@ -43,7 +43,7 @@ from rtamt.language.grammar import (
 )
 from rtamt.language.groups import QUANTIFIERS, begins_quantifier, parse_quantifier
 from rtamt.language.intervals import parse_interval
-from rtamt.language.operators import STL, Bounds, Fixity, Language, Operator, Sort
+from rtamt.language.operators import STL, Bounds, Fixity, Language, Operator, Sort, Tense
 from rtamt.language.scope import Scope
 from rtamt.language.shares import parse_share
 from rtamt.language.templates import Template, parse_use
@@ -217,10 +217,10 @@ class FormulaParser(TypedParser):
         if op.strict and sort is Sort.NUMBER and not is_number(operand):
             end = self.tokens[self.index - 1].end
             written = self.text[start:end]
-            instead = f" or {op.instead}({written})" if op.instead else ""
+            how_long = "" if op.tense is Tense.NONE else f", or duration({written}) for how long it holds"
             raise self.error(
                 f"'{op.spellings[0]}' takes a number, and '{written}' is a formula, true or false; "
-                f"write a signal or arithmetic, such as (if {written} then 1 else 0){instead}",
+                f"write a signal or arithmetic, such as (if {written} then 1 else 0){how_long}",
                 Span(start, end),
             )
         return operand

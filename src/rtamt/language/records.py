@@ -80,6 +80,14 @@ class Known(ABC):
         """True where they were known the duration of an interval ago, by default one sample."""
 
 
+class Source(Enum):
+    """From where an operator takes its value, which is that of one of its operands at some instant."""
+
+    BRANCH = "branch"  # the second operand where the first holds, else the third
+    HELD = "held"  # the first operand when the second last held; where it never did, the third or the first value
+    DELAYED = "delayed"  # the first operand so long ago; where that is too early, the second or the first value
+
+
 @dataclass(frozen=True, slots=True)
 class Pointwise:
     """One value from the operands' values at the same instant; ``partial`` if it can be undefined (NaN)."""
@@ -198,7 +206,6 @@ class Operator:
     one_tick: bool = (
         False  # in dense time its interval is the tick behind, in discrete time the sample behind
     )
-    instead: str = ""  # of a strict function: the one that a formula may be an operand of
     why_discrete: str = (
         ""  # completes the message in dense time; by default that it reads a neighbouring sample
     )
@@ -213,6 +220,7 @@ class Operator:
     strict: bool = False  # a formula is no operand, though others read its robustness as a number
     folds: bool = False  # a function that accepts more operands: f(a, b, c) is f(f(a, b), c)
     keeps: tuple[int, ...] = ()  # the operands, Boolean or of an enumeration too, whose type the result has
+    source: Source | None = None  # of an operator with an expansion: where its value is taken from
     equates: bool = False  # a comparison that members of an enumeration have, too
     presence: bool = False  # the operand is a variable of any type; only whether it has a sample counts
     truth: Expansion | None = None  # of a predicate: the formula that is +inf where it holds, else -inf

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from rtamt.engine.offline import Evaluators
 from rtamt.errors import UsageError
 from rtamt.explain.sentences import predicate_text
-from rtamt.language.formula import Apply, Var, variables
+from rtamt.language.formula import Apply, Var
 from rtamt.language.records import Bounds, Fixity
 from rtamt.language.value_types import value_names
 from rtamt.plot.band import Band, band
@@ -22,7 +22,7 @@ from rtamt.verdicts.robustness_and_truth import outputs_under
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from rtamt.explain.report import Explanation, Stretch
+    from rtamt.explain.report import Explanation, Reading, Stretch
     from rtamt.language.formula import Formula
     from rtamt.results import Result
     from rtamt.signals.signal import Signal
@@ -228,7 +228,12 @@ class _Painter:
         found = []
         for group in groups(lines, filter(is_predicate, formulas), trace.units):
             members = set(group.names)
-            stretches = [s for s in self._explanation.implicant if members & set(variables(s.formula))]
+            stretches = [
+                reading
+                for stretch in self._explanation.implicant
+                for reading in stretch.reads
+                if reading.signal in members
+            ]
             drawn = tuple(lines[name] for name in group.names)
             found.append(Panel(drawn, group.thresholds, self._because(stretches)))
         return tuple(found)
@@ -240,8 +245,8 @@ class _Painter:
     def _line(self, name: str, signal: Signal) -> Line:
         return Line(name, self._clock.positions(signal.times), signal.values)
 
-    def _because(self, stretches: Sequence[Stretch]) -> tuple[Range, ...]:
-        """Return the stretches as they are drawn, within the recording."""
+    def _because(self, stretches: Sequence[Stretch | Reading]) -> tuple[Range, ...]:
+        """Return intervals of the implicant, or of what it reads, as they are drawn, within the recording."""
         half = float(self._result.trace.domain.period or 0) / 2  # around a sample
         clock = self._clock
         found = dict.fromkeys(

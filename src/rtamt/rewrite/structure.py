@@ -195,18 +195,19 @@ def reaches(order: tuple[Formula, ...], period: Fraction) -> dict[Formula, tuple
     for node in order:
         behind = ahead = 0
         if isinstance(node, Apply):
-            own = _reach(node, period)
-            behind = max((found[arg][0] for arg in node.args), default=0)
-            ahead = max((found[arg][1] for arg in node.args), default=0)
-            behind += own if node.op.tense is Tense.PAST else 0
-            ahead += own if node.op.tense is Tense.FUTURE else 0
+            own = own_reach(node, period)
+            behind = own[0] + max((found[arg][0] for arg in node.args), default=0)
+            ahead = own[1] + max((found[arg][1] for arg in node.args), default=0)
         found[node] = min(behind, NEVER), min(ahead, NEVER)
     return found
 
 
-def _reach(node: Apply, period: Fraction) -> int:
+def own_reach(node: Apply, period: Fraction) -> tuple[int, int]:
+    """Return how many cells behind and ahead an operator reads its operands."""
     if node.op.tense is Tense.NONE:
-        return 0
+        return 0, 0
     if node.op.bounds is Bounds.NONE:
-        return NEVER if node.op.reach is None else node.op.reach
-    return window_of(node, period)[1] + node.op.before
+        reach = NEVER if node.op.reach is None else node.op.reach
+    else:
+        reach = window_of(node, period)[1] + node.op.before
+    return (reach, 0) if node.op.tense is Tense.PAST else (0, reach)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import UsageError
 from rtamt.language.document import Requirement
-from rtamt.language.formula import Var, variables
+from rtamt.language.formula import Var
 from rtamt.language.printer import canonical
 from rtamt.rewrite.semantics import apply_semantics, semantics_of
 from rtamt.rtamt_api.backends import backend
@@ -121,7 +121,9 @@ def _places(formula: Formula, recording: DomainTrace, explanation: Explanation) 
     at = place(explanation.time)
     found: dict[str, list[list[Any]]] = {canonical(formula): [[at, at]]}
     for stretch in explanation.implicant:
-        where = [place(stretch.start), stretch.end if stretch.end is None else place(stretch.end)]
-        for part in dict.fromkeys((stretch.formula, *map(Var, variables(stretch.formula)))):
+        parts = dict.fromkeys([(stretch.formula, stretch.start, stretch.end)])
+        parts.update(dict.fromkeys((Var(each.signal), each.start, each.end) for each in stretch.reads))
+        for part, start, end in parts:
+            where = [place(start), end if end is None else place(end)]
             found.setdefault(canonical(part), []).append(where)
     return found

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, TypeAlias
 import numpy as np
 
 from rtamt.rewrite.structure import NEVER
+from rtamt.signals.regular import merged
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -154,6 +155,15 @@ class StepFunction:
     def each(self, cells: Ints) -> Floats:
         """Return the values at several cells."""
         return self.values[np.searchsorted(self.changes, cells, side="right") - 1]
+
+    def begins(self, cells: Ints) -> Ints:
+        """Return, for each of several cells, where the stretch begins on which the value is the same."""
+        return self.changes[np.searchsorted(self.changes, cells, side="right") - 1]
+
+    def equal(self, other: StepFunction) -> Cells:
+        """Return where both functions have the same value."""
+        changes = merged((self.changes, other.changes))
+        return Cells.where(changes, self.each(changes) == other.each(changes), self.end)
 
     def between(self, begin: int, end: int) -> tuple[Ints, Floats]:
         """Return the changes and values in [begin, end), which is not empty; the first change is ``begin``."""

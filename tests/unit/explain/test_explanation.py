@@ -9,6 +9,7 @@ import pytest
 
 import rtamt
 from rtamt.errors import UsageError
+from rtamt.explain.report import Reading
 from rtamt.language.operators import STL
 
 TEXT = "always(req >= 3 -> eventually[0:2](gnt >= 3))"
@@ -131,14 +132,14 @@ def test_as_data_it_is_what_json_can_hold():
         "first_violation": 0.0,
         "critical": {
             "predicate": None, "time": 0.0, "start": 0.0, "end": 0.0, "value": "-inf", "polarity": 1,
-            "lowest": "-inf", "highest": "-inf", "decided_by": "start",
+            "lowest": "-inf", "highest": "-inf", "decided_by": "start", "reads": [],
         },
         "implicant": [],
     }  # fmt: skip
     (stretch,) = explained("always(x >= 3)", {"x": ([0, 2], [5, 4])}, time="dense").to_dict()["implicant"]
     assert stretch == {
         "predicate": "x >= 3", "holds": True, "start": 0.0, "end": None, "closed": False,
-        "lowest": 1.0, "highest": 2.0, "reads_from": 0.0, "reads_to": None,
+        "lowest": 1.0, "highest": 2.0, "reads": [{"signal": "x", "start": 0.0, "end": None, "closed": False}],
     }  # fmt: skip
 
 
@@ -238,15 +239,13 @@ def test_an_operator_with_a_definition_only_is_taken_as_a_whole():
     explanation = explained(text, data, language=language, backend="python")
     assert explanation.critical.value == explanation.robustness == 2
     (stretch,) = explanation.implicant
-    assert (stretch.start, stretch.end, stretch.reads_from, stretch.reads_to) == (2, 3, 0, 3)
-    assert lines(explanation)[-1] == (
-        "  'median[0:2](x)' holds from 2 s to 3 s, read as a whole: from 0 s to 3 s (2)"
-    )
+    assert (stretch.start, stretch.end, stretch.reads) == (2, 3, (Reading("x", 0, 3, True),))
+    assert lines(explanation)[-1] == "  'median[0:2](x)' holds from 2 s to 3 s (2), reading x from 0 s to 3 s"
 
 
 def test_a_comparison_over_a_window_is_read_as_a_whole():
     (stretch,) = explained("(always[0:2](x >= 1)) + x >= 2", {"x": [4, 3, 2, 0]}).implicant
-    assert (stretch.start, stretch.end, stretch.reads_from, stretch.reads_to) == (0, 0, 0, 2)
+    assert (stretch.start, stretch.end, stretch.reads) == (0, 0, (Reading("x", 0, 2, True),))
 
 
 def test_both_back_ends_say_the_same():

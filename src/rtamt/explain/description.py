@@ -1,0 +1,135 @@
+"""Intervals of predicates and the samples that they read, as data and in words."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import isinf
+from typing import TYPE_CHECKING
+
+from rtamt.explain.readings import Readings
+from rtamt.explain.report import Reading, Stretch
+from rtamt.explain.sentences import predicate_text, reading
+from rtamt.language.formula import Var, types_of, variables
+from rtamt.language.value_types import value_text
+from rtamt.rewrite.structure import NEVER
+from rtamt.signals.instants import NONE, Cells
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
+    from rtamt.engine.time_axis import TimeAxis
+    from rtamt.explain.minimise import Interval
+    from rtamt.explain.report import CriticalPoint
+    from rtamt.language.formula import Formula
+    from rtamt.rewrite.structure import Leaf, Structure
+    from rtamt.signals.instants import StepFunction
+
+
+class Description:
+    """What an explanation reports about its predicates; ``cell``: the explained instant."""
+
+    def __init__(
+        self,
+        formula: Formula,
+        text: str | None,
+        structure: Structure,
+        axis: TimeAxis,
+        values: Mapping[str, StepFunction],
+        cell: int,
+    ) -> None:
+        self._formula = formula
+        self._text = text
+        self._structure = structure
+        self._axis = axis
+        self._values = values
+        self._cell = cell
+        self._dense = axis.end >= NEVER
+        self._readings = Readings(axis, dense=self._dense)
+
+    def with_source(self, point: CriticalPoint, cell: int) -> tuple[CriticalPoint, str]:
+        """Return the critical point with the samples that its value comes from, and these in words."""
+        if point.formula is None or point.decided_by == "constant":
+            return point, ""
+        found = self._readings.source(point.formula, cell)
+        text = self._in_words(point.formula, Cells.of([(cell, cell + 1)]), found)
+        if self._dense and found:
+            steps = dict(zip(found, self._axis.measured([Var(name) for name in found]), strict=True))
+            found = {
+                name: Cells.of(
+                    steps[name].around(start) if end == start + 1 else (start, end) for start, end in cells
+                )
+                for name, cells in found.items()
+            }
+        return replace(point, reads=self._as_data(found)), text
+
+    def stretch(self, interval: Interval, *, satisfied: bool) -> tuple[Stretch, str, str]:
+        """Return an interval of the implicant as data, and in words when it is and what it reads."""
+        leaf, axis = self._structure.leaves[interval.name], self._axis
+        holds = satisfied == (interval.sign > 0)
+        here = Cells.of([(interval.start, interval.end)])
+        read = self._readings.of(leaf.formula, *((here, NONE) if holds else (NONE, here)))
+        _, values = self._values[leaf.name].between(interval.start, interval.end)
+        start, stop, closed = self._ends(interval.start, interval.end)
+        stretch = Stretch(
+            predicate_text(leaf.formula, self._text),
+            leaf.formula,
+            holds,
+            start,
+            stop,
+            closed,
+            float(values.min()),
+            float(values.max()),
+            self._as_data(read),
+            recorded(axis, leaf, values, interval.start, interval.end),
+        )
+        return stretch, self._when(interval.start, interval.end), self._in_words(leaf.formula, here, read)
+
+    def _ends(self, start: int, end: int) -> tuple[object, object, bool]:
+        """Return the times at which an interval of cells begins and ends, and whether the end belongs to it."""
+        closed = self._closed(end)
+        stop = None if end >= NEVER else self._axis.time(end - 1 if closed else end)
+        return self._axis.time(start), stop, closed
+
+    def _closed(self, end: int) -> bool:
+        return end < NEVER and self._axis.closes(end, self._formula, self._cell)
+
+    def _as_data(self, read: Mapping[str, Cells]) -> tuple[Reading, ...]:
+        return tuple(
+            Reading(name, *self._ends(start, end)) for name in sorted(read) for start, end in read[name]
+        )
+
+    def _in_words(self, predicate: Formula, here: Cells, read: Mapping[str, Cells]) -> str:
+        """Return what a predicate reads on some cells: nothing if that is its variables, on these cells."""
+
+        def same(name: str) -> bool:
+            return name in read and not len(read[name] - here) and not len(here - read[name])
+
+        if all(map(same, variables(predicate))):
+            return ""
+        return reading((name, [self._when(start, end) for start, end in read[name]]) for name in sorted(read))
+
+    def _when(self, start: int, end: int) -> str:
+        show = self._axis.show
+        if end >= NEVER:
+            when = f"from {show(start)} on"
+        elif not self._closed(end):
+            when = f"from {show(start)} until {show(end)}"
+        elif end - 1 == start:
+            when = f"at {show(start)}"
+        else:
+            when = f"from {show(start)} to {show(end - 1)}"
+        return when if start <= self._axis.last else f"{when} (after the last sample, whose values hold)"
+
+
+def recorded(axis: TimeAxis, leaf: Leaf, values: Iterable[float], start: int, end: int) -> str:
+    """Return the Booleans and members that a predicate of truth read on an interval of cells."""
+    types = types_of(leaf.formula)
+    if not types or not all(map(isinf, values)):
+        return ""
+    found = []
+    steps = axis.measured([Var(name) for name in types])
+    for (name, type_), step in zip(types.items(), steps, strict=True):
+        _, read = step.between(start, end)
+        texts = dict.fromkeys(value_text(value, type_) or f"{value:g}" for value in read.tolist())
+        found.append(f"{name} is {' or '.join(texts)}")
+    return ", ".join(found)
