@@ -85,7 +85,9 @@ class Source(Enum):
 
     BRANCH = "branch"  # the second operand where the first holds, else the third
     HELD = "held"  # the first operand when the second last held; where it never did, the third or the first value
-    DELAYED = "delayed"  # the first operand so long ago; where that is too early, the second or the first value
+    DELAYED = (
+        "delayed"  # the first operand so long ago; where that is too early, the second or the first value
+    )
 
 
 @dataclass(frozen=True, slots=True)
