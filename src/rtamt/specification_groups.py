@@ -12,7 +12,7 @@ from rtamt.language.document import Declaration
 from rtamt.language.groups import Field, Group, fields_of, quantifiers
 from rtamt.rewrite.members import Members, resolved_document
 from rtamt.rewrite.presence import channel_of
-from rtamt.specification_text import SpecificationText
+from rtamt.specification_recorded import RecordedSpecification
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class QuantifiedText(SpecificationText):
+class QuantifiedText(RecordedSpecification):
     """The groups of a specification, and its formulas over their members."""
 
     @cached_property

@@ -53,7 +53,16 @@ SECTIONS = {
     ),
     "Explanation": (
         "explanation",
-        ["semantics", "horizon", "interface-aware", "engine", "architecture", "rtamt", "choosing", "expressiveness"],
+        [
+            "semantics",
+            "horizon",
+            "interface-aware",
+            "engine",
+            "architecture",
+            "rtamt",
+            "choosing",
+            "expressiveness",
+        ],
     ),
 }
 

@@ -215,10 +215,12 @@ class DenseWatch(MessageWatch):
                 if at > begin:  # the previous verdict still holds
                     records.append(Verdict(standing.output, begin, standing.horizon, standing.truth > 0))
             standing.truth = truth
-            records.append(Verdict(standing.output, at, standing.horizon, self._judge(standing, at, truth)))
+            records.append(
+                Verdict(standing.output, at, standing.horizon, self._is_satisfied(standing, at, truth))
+            )
         return records
 
-    def _judge(self, standing: Standing, at: int, truth: float) -> bool | None:
+    def _is_satisfied(self, standing: Standing, at: int, truth: float) -> bool | None:
         assert self._start is not None
         return truth > 0 if at >= self._start + standing.lag else None
 
@@ -228,7 +230,7 @@ class DenseWatch(MessageWatch):
             return
         for standing, (robustness, truth) in zip(self.standings, self._places, strict=True):
             standing.latest = self._points[robustness][-1][1]
-            standing.satisfied = self._judge(standing, *self._points[truth][-1])
+            standing.satisfied = self._is_satisfied(standing, *self._points[truth][-1])
 
     @property
     def samples(self) -> int:

@@ -1,0 +1,112 @@
+"""What a specification reads of recordings: recorded names and units of its variables, and what may be missing."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from types import MappingProxyType
+from typing import TYPE_CHECKING
+
+from rtamt.signals.binding import Binding
+from rtamt.specification_text import SpecificationText
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Mapping
+
+
+#: Missing signals that are named.
+_NAMED = 3
+
+
+class RecordedSpecification(SpecificationText):
+    """One requirement or several, whose variables have names and units in recordings."""
+
+    @cached_property
+    def units(self) -> Mapping[str, str]:
+        """The units that the text declares of the variables that the formula reads.
+
+        >>> import rtamt
+        >>> dict(rtamt.parse("input float v [km/h]; always(v <= 30)").units)
+        {'v': 'km/h'}
+        """
+        declared = {d.name: d.unit for d in self.document.declarations if d.unit}
+        return MappingProxyType({name: declared[name] for name in self.input_names if name in declared})
+
+    @cached_property
+    def recorded(self) -> Mapping[str, str]:
+        """The recorded names of the variables that the formula reads, as far as the text declares them.
+
+        >>> import rtamt
+        >>> spec = rtamt.parse('input float z [m] = "setpoint.position[2]"; always(z <= 3)')
+        >>> dict(spec.recorded), spec.evaluate({"setpoint.position[2]": [1, 2]}).robustness
+        ({'z': 'setpoint.position[2]'}, 1.0)
+        """
+        return MappingProxyType({name: columns[0] for name, columns in self._recorded_names.items()})
+
+    @cached_property
+    def _recorded_names(self) -> dict[str, tuple[str, ...]]:
+        """Every recorded name of the variables that the formula reads, the preferred one first."""
+        declared = {d.name: d.columns for d in self.document.declarations if d.columns}
+        declared |= {name: (column,) for name, column in self.columns.items()}
+        found = {}
+        for name in self.input_names:
+            head, dot, field_of = name.partition(".")
+            if name in declared:
+                found[name] = declared[name]
+            elif dot and head in declared:
+                found[name] = tuple(f"{column}.{field_of}" for column in declared[head])
+        return found
+
+    @cached_property
+    def optional(self) -> frozenset[str]:
+        """The variables that the formula reads and recordings may lack."""
+        declared = {d.name for d in self.document.declarations if d.optional}
+        return frozenset(
+            name for name in self.input_names if name in declared or name.split(".")[0] in declared
+        )
+
+    def unchecked(self, names: Collection[str]) -> dict[str, str]:
+        """Return the requirements that cannot be checked on a recording with these signals, each with the reason.
+
+        These are the requirements that read an ``optional`` variable of which the recording has no recorded name.
+
+        >>> import rtamt
+        >>> spec = rtamt.parse('''
+        ...     optional input float v [V] = "battery_status.voltage_v" or "battery.voltage"
+        ...     input float z
+        ...     require BAT: always(v >= 14)
+        ...     require ALT: always(z <= 50)''')
+        >>> spec.unchecked(["z", "battery.voltage"])
+        {}
+        >>> spec.unchecked(["z"])
+        {'BAT': "no 'battery_status.voltage_v' or 'battery.voltage'"}
+        """
+        known = set(names)
+        lacking = {}
+        for name in sorted(self.optional - known):
+            columns = self._recorded_names.get(name, (name,))
+            if known.isdisjoint(columns):
+                lacking[name] = " or ".join(f"'{column}'" for column in columns)
+        return {
+            name: _listed([lacking[each] for each in one.input_names if each in lacking])
+            for name, one in self.requirements.items()
+            if not lacking.keys().isdisjoint(one.input_names)
+        }
+
+    @cached_property
+    def binding(self) -> Binding:
+        """Where recordings have the variables that the formula reads, and in which units they are declared."""
+        others = {name: columns[1:] for name, columns in self._recorded_names.items() if len(columns) > 1}
+        return Binding(
+            self.input_names, tuple(self.recorded.items()), tuple(self.units.items()), tuple(others.items())
+        )
+
+    @cached_property
+    def _declared(self) -> tuple[str, ...]:
+        """The names that the text declares: data may have them, also where the formula reads none of them."""
+        return tuple(declaration.name for declaration in self.document.declarations)
+
+
+def _listed(missing: list[str]) -> str:
+    """Return what is missing as part of a sentence."""
+    more = len(missing) - _NAMED
+    return f"no {', '.join(missing[:_NAMED])}{f' and {more} more' if more > 0 else ''}"
