@@ -361,34 +361,39 @@ TURBINE = Traces(
 
 # ---- CommonRoad ----------------------------------------------------------------------------------
 
+
+def _vehicle(number: int, **fields: Any) -> Columns:
+    return {f"vehicle_{number}.{name}": value for name, value in fields.items()}
+
+
 _JAM = {"congestion": 1, "speed": 0, "lead_gap": 2, "lead_speed": 0}
 INTERSTATE = Traces(
     100,
-    {
+    dict.fromkeys(("on_access_ramp", "congestion", "leftmost_lane", "lateral_offset"), 0)
+    | {
         "on_carriageway": 1,
-        "on_access_ramp": 0,
-        "congestion": 0,
-        "leftmost_lane": 0,
         "rightmost_lane": 1,
         "speed": 25,
         "heading_error": 1,
-        "lateral_offset": 0,
         "lead_gap": 60,
         "lead_speed": 25,
-        "left_speed": 30,
-        "entering_near": 0,
-    },
+    }
+    | _vehicle(1, speed=30, on_left=1, entering=0)
+    | _vehicle(2, speed=15, on_left=0, entering=0),
     {
         "R_I1": (_JAM, {"speed": step(20, 0, 25, 60)}),
-        "R_I2": ({"left_speed": 15, "speed": 20}, {"left_speed": 20}),
+        "R_I2": (
+            {"speed": 20} | _vehicle(2, speed=15, on_left=1, entering=0),
+            _vehicle(2, speed=20, on_left=1, entering=0),
+        ),
         "R_I3": ({"heading_error": -20}, {"heading_error": step(50, 120)}),
         "R_I4": (
             _JAM | {"lateral_offset": step(40, -0.5)},
             _JAM | {"leftmost_lane": 1, "lateral_offset": 0.1},
         ),
         "R_I5": (
-            {"rightmost_lane": step(50, 1), "entering_near": step(60, 1)},
-            {"rightmost_lane": step(50, 1), "entering_near": 1},
+            {"rightmost_lane": step(50, 1), "vehicle_2.entering": step(60, 1)},
+            {"rightmost_lane": step(50, 1), "vehicle_2.entering": 1},
         ),
     },
 )
@@ -398,22 +403,12 @@ _ENTER = {"in_conflict_area": step(60, 1, 0, 90)}
 _STOP = {"speed": step(30, 0, 10, 50)}
 INTERSECTION = Traces(
     250,
-    {
-        "light": 2,
-        "light_works": 1,
-        "green_arrow": 0,
-        "stop_sign": 0,
-        "turning_left": 0,
-        "turning_right": 0,
-        "past_line": 0,
-        "in_conflict_area": 0,
-        "has_priority": 0,
-        "speed": 10,
-        "other_arrival": inf,
-        "oncoming_arrival": inf,
-        "exit_gap": 30,
-        "ego_length": 5,
-    },
+    dict.fromkeys(
+        ("green_arrow", "stop_sign", "turning_left", "turning_right", "past_line", "in_conflict_area"), 0
+    )
+    | {"light": 2, "light_works": 1, "speed": 10, "exit_gap": 30, "ego_length": 5}
+    | _vehicle(1, arrival=2, oncoming=0, has_priority=0)
+    | _vehicle(2, arrival=5, oncoming=0, has_priority=0),
     {
         "R_IN1": (_PASS | _STOP | {"stop_sign": 1}, _PASS | {"stop_sign": 1}),
         "R_IN2": (_PASS | {"light": step(50, 2)}, _PASS | {"light": 0}),
@@ -421,10 +416,10 @@ INTERSECTION = Traces(
             _PASS | _STOP | {"light": 0, "green_arrow": 1, "turning_right": 1},
             _PASS | {"light": 0, "green_arrow": 1, "turning_right": 1},
         ),
-        "R_IN4": (_ENTER | {"other_arrival": 5}, _ENTER | {"other_arrival": 2}),
+        "R_IN4": (_ENTER | {"vehicle_2.has_priority": 1}, _ENTER | {"vehicle_1.has_priority": 1}),
         "R_IN5": (
-            _ENTER | {"turning_left": 1, "oncoming_arrival": 4},
-            _ENTER | {"turning_left": 1, "oncoming_arrival": 1},
+            _ENTER | {"turning_left": 1, "vehicle_2.oncoming": 1},
+            _ENTER | {"turning_left": 1, "vehicle_1.oncoming": 1},
         ),
         "R_IN6": (_ENTER, {"in_conflict_area": step(60, 1)}),
     },
