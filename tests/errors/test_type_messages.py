@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import rtamt
-from rtamt.errors import NameInFormulaError, ParseError
+from rtamt.errors import BoundError, NameInFormulaError, ParseError
 
 DECLARED = "enum Mode { MANUAL, AUTO = 4 } enum Phase { AUTO, STOP } Mode mode Phase phase bool p float x\n"
 
@@ -19,6 +19,10 @@ NO_FORMULA = (
 )
 
 TEXTS = [
+    ("const Mode home = AUTO  always[0:home](p)", "                                 ^^^^", BoundError,
+     "'home' is of the enumeration Mode, and a bound is a number; declare it as float, such as const float home = 5"),
+    ("parameter bool on = true  always[on:5](p)", "                                 ^^", BoundError,
+     "'on' is a Boolean, and a bound is a number; declare it as float, such as const float on = 5"),
     ("mode + 1 > 2", "^^^^", ParseError, NO_ARITHMETIC),
     ("x > mode", "    ^^^^", ParseError, NO_ARITHMETIC),
     ("max(x, mode) > 3", "       ^^^^", ParseError, NO_ARITHMETIC),

@@ -12,6 +12,7 @@ from rtamt.language.grammar import INFINITY
 from rtamt.language.operators import Bounds, Fixity
 from rtamt.language.templates import bound, constants_of
 from rtamt.language.units import UNITS, exact
+from rtamt.language.value_types import BOOLEAN
 
 if TYPE_CHECKING:
     from rtamt.errors import SpecificationError
@@ -183,6 +184,14 @@ def _constant(parser: FormulaParser, token: Token) -> Fraction | None:
             return None
         hint = did_you_mean(name, constants) or f"; a bound is a number, a constant or {INFINITY}"
         raise parser.error(f"'{name}' is not a declared constant{hint}", token.span, NameInFormulaError)
+    type_ = parser.scope.types.get(name)
+    if type_ is not None:
+        kind = "a Boolean" if type_ is BOOLEAN else f"of the enumeration {type_.name}"
+        raise parser.error(
+            f"'{name}' is {kind}, and a bound is a number; declare it as float, such as const float {name} = 5",
+            token.span,
+            BoundError,
+        )
     if isinf(value):
         # Minus infinity is negative, too.
         return None if value > 0 else Fraction(-1)
