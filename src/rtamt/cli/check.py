@@ -153,7 +153,8 @@ def run(args: argparse.Namespace) -> int:
     color = use_color(args.color, sys.stdout)
     given, traces = requirements_and_traces(args, "check")
     for each in [] if args.quiet else given:
-        warn(warnings_of(each.spec, args.ignore), each.given)
+        warnings = warnings_of(each.spec, args.ignore)
+        warn([one for one in warnings if one.severity != "note"], each.given)
     _check_output(args.output, given, traces)
     requirements = each_requirement(given)
     rows = {requirement.label: requirement for requirement in requirements}

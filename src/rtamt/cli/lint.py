@@ -84,8 +84,9 @@ def _lint(file: str, args: argparse.Namespace) -> int:
         else:
             complain(error)
         return ERROR
-    if args.quiet and not args.strict:
-        found = [each for each in found if each.severity == "error"]
+    if args.quiet:
+        shown = ("error", "warning") if args.strict else ("error",)
+        found = [each for each in found if each.severity in shown]
     if args.json:
         for each in found:
             say(_as_json(file, each.severity, each.code, each.message, each.text, each.span))
@@ -93,7 +94,7 @@ def _lint(file: str, args: argparse.Namespace) -> int:
         warn(found, file)
     if any(each.severity == "error" for each in found):
         return ERROR
-    return VIOLATED if found else OK
+    return VIOLATED if any(each.severity == "warning" for each in found) else OK
 
 
 def _place(error: StlError) -> tuple[str, str | None, Span | None]:

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 class Rule:
     """One kind of warning: its code, its summary, an example, and the function that finds it in a document.
 
-    ``severity``: "error" for what is certainly a mistake, though the text is legal.
+    ``severity``: "error" for what is certainly a mistake, though the text is legal; "note" for what is not checked.
     """
 
     code: str
@@ -40,7 +40,7 @@ class Rule:
 class LintWarning:
     """A legal but probably unintended part of a specification; ``str()`` shows the line and a caret.
 
-    ``severity``: "warning", or "error" for what is certainly a mistake.
+    ``severity``: "warning"; "error" for what is certainly a mistake, "note" for what is not checked.
     """
 
     code: str
@@ -216,6 +216,7 @@ RULES: tuple[Rule, ...] = (
         "units that cannot be checked",
         "input float v [kmh]  parameter float limit = 30 [m/s]  v < limit",
         partial(_units, kind=UNCHECKED),
+        "note",
     ),
 )
 CODES = tuple(rule.code for rule in RULES)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import sys
 
 
 def test_files_that_are_right(run, write):
@@ -131,3 +132,16 @@ def test_findings_as_json_for_editors(run, write):
     assert places == [(3, 8, 3, 19), (3, 29, 3, 34), (2, 8, 2, 9), (None,) * 4]
     assert rows[2]["message"] == "expected an operand after '>=', got ')'"
     assert run("lint", "speed.stl", "--json", "--ignore", "RT301", "--ignore", "RT101") == (0, "", "")
+
+
+def test_without_the_library_of_units_only_lint_notes_what_is_not_checked(run, write, monkeypatch):
+    monkeypatch.setitem(sys.modules, "pint", None)
+    write("speed.stl", "input float speed [m/s]\ninput float limit [km/h]\nalways(speed <= limit)\n")
+    write("log.csv", "speed,limit\n2,3\n")
+    answer = run("lint", "speed.stl", "--strict")
+    assert (answer.code, answer.err.splitlines()[0]) == (
+        0,
+        "rtamt: speed.stl: note RT303: the units are not checked here: comparing units needs the package 'pint', which "
+        "is not installed: pip install 'rtamt[units]'",
+    )
+    assert run("check", "speed.stl", "log.csv").err == ""
