@@ -7,7 +7,7 @@ from functools import cached_property
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
-from rtamt.errors import UsageError
+from rtamt.errors import UsageError, choices
 from rtamt.language.document import Declaration
 from rtamt.language.groups import Field, Group, fields_of, quantifiers
 from rtamt.rewrite.members import Members, resolved_document
@@ -15,9 +15,11 @@ from rtamt.rewrite.presence import channel_of
 from rtamt.specification_recorded import RecordedSpecification
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterable, Mapping
 
     from typing_extensions import Self
+
+    from rtamt.language.formula import Formula
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -35,9 +37,7 @@ class QuantifiedText(RecordedSpecification):
         """
         if self.resolved is not None:
             return MappingProxyType({})
-        formulas = [assertion.formula for assertion in self.document.assertions]
-        if self.document.replaced:
-            formulas.append(self.formula)
+        formulas = self._all_formulas
         found: dict[str, tuple[Group, dict[str, None]]] = {}
         for node in quantifiers(*formulas):
             assert node.op.binder is not None
@@ -48,8 +48,24 @@ class QuantifiedText(RecordedSpecification):
             found[field_of.group.name][1].setdefault(field_of.field)
         return MappingProxyType({name: (group, tuple(fields)) for name, (group, fields) in found.items()})
 
-    def over(self, members: Members) -> Self:
-        """Return the specification over these members of its groups: an ordinary one, without quantifiers."""
+    @property
+    def _all_formulas(self) -> list[Formula]:
+        formulas = [assertion.formula for assertion in self.document.assertions]
+        return [*formulas, self.formula] if self.document.replaced else formulas
+
+    def over(self, members: Members | Mapping[str, Iterable[str]]) -> Self:
+        """Return the specification over these members of its groups: an ordinary one, without quantifiers.
+
+        ``members``: from each group to its members, which are present throughout, such as
+        ``{"cars": ["car_1", "car_2"]}``.
+
+        >>> import rtamt
+        >>> spec = rtamt.parse('group cars = "car_*"; forall v in cars: v.x > 3')
+        >>> print(spec.over({"cars": ["car_1", "car_2"]}))
+        car_1.x > 3 and car_2.x > 3
+        """
+        if not isinstance(members, Members):
+            members = self._checked_members(members)
         key = tuple(members.names.items()), members.throughout
         made = self._over.get(key)
         if made is None:
@@ -86,3 +102,17 @@ class QuantifiedText(RecordedSpecification):
                 f"the formula quantifies over '{name}', whose members are known with the data, and {what} needs "
                 f"them before; evaluate recordings with evaluate(), or name the members: spec.over(...)"
             )
+
+    def _checked_members(self, given: Mapping[str, Iterable[str]]) -> Members:
+        names = {name: tuple(given.get(name, ())) for name in self.groups}
+        for name in given:
+            if name not in names:
+                raise UsageError(f"there is no group '{name}'{choices(name, names, 'groups')}")
+        for name, found in names.items():
+            if name not in given:
+                raise UsageError(f"the members of '{name}' are missing; give {{'{name}': [...]}}")
+            for member in found:
+                if not self.groups[name][0].matches(member):
+                    pattern = self.groups[name][0].pattern
+                    raise UsageError(f"'{member}' is no member of '{name}', whose pattern is \"{pattern}\"")
+        return Members(names, frozenset(member for found in names.values() for member in found))

@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from fractions import Fraction
 from functools import partial
-from typing import TYPE_CHECKING, Any, Literal, overload
+from typing import TYPE_CHECKING, Any, Literal, cast, overload
 
 from rtamt.engine.engine import engine_of
-from rtamt.engine.online import OnlineMonitor
+from rtamt.engine.online import OnlineMonitor, Watched
 from rtamt.errors import UsageError
+from rtamt.language.groups import quantifiers
+from rtamt.rewrite.member_streams import Splitting
+from rtamt.rewrite.presence import channel_of
+from rtamt.rewrite.semantics import apply_semantics
 from rtamt.settings import watched_of
 from rtamt.specification_groups import QuantifiedText
 from rtamt.verdicts.modes import DELAYED, mode_of, monitor_of, semantics_in
@@ -20,6 +26,7 @@ if TYPE_CHECKING:
     from rtamt.compiler.program import Program
     from rtamt.engine.dense.monitor import DenseMonitor
     from rtamt.engine.discrete.monitor import Monitor
+    from rtamt.language.formula import Formula
     from rtamt.language.units import Duration
     from rtamt.settings import DenseSettings, DiscreteSettings, IntervalSettings, Semantics, Watch
     from rtamt.signals.dense import Dense
@@ -148,12 +155,15 @@ class OnlineSpecification(QuantifiedText):
         >>> print(monitor.update(0.0, req=5, gnt=2), monitor["asked"], monitor["gnt - req"])
         None 2.0 -3.0
         """
-        self.require_no_groups("a monitor")
         given = {"at": at, "ranges": ranges, "lateness": lateness, "on_correction": on_correction}
         given |= {"episodes": episodes or None, "explain": explain or None}
         settings: dict[str, Any] = {name: setting for name, setting in given.items() if setting is not None}
         mode = mode_of(verdict, settings)
         asked, semantics = semantics, semantics_in(mode, self._semantics(semantics))
+        if self.groups:
+            return self._member_monitor(
+                verdict, settings, time, period, tolerance, resolution, asked, watched_of(watch), time_unit
+            )
         formula = self._apply_semantics(self.formula, semantics)
         given_watch = watched_of(watch)
         watched = [self._watched(each, semantics) for each in given_watch]
@@ -188,6 +198,61 @@ class OnlineSpecification(QuantifiedText):
         if isinstance(monitor, OnlineMonitor):
             monitor.bind(self.binding)
         return monitor
+
+    def _member_monitor(
+        self,
+        verdict: str,
+        settings: Mapping[str, Any],
+        time: str | TimeDomain | None,
+        period: Duration | None,
+        tolerance: float | None,
+        resolution: Duration | None,
+        semantics: Semantics | None,
+        watch: tuple[str | Formula, ...],
+        time_unit: str | None,
+    ) -> OnlineMonitor:
+        """Return a monitor of quantifiers over members that come and go."""
+        domain = self._domain_for(time, period, tolerance, resolution).online
+        make = domain.part("members")
+        unfit = [f"verdict='{verdict}'"] if verdict != DELAYED else [f"{name}=" for name in settings]
+        unfit += ["time_unit="] if time_unit is not None else []
+        unfit += [f"time='{domain.name}'"] if make is None else []
+        for what in unfit:
+            raise UsageError(
+                f"a monitor of quantifiers has no {what}; name the members, which must be present throughout: "
+                f"spec.over({{'{next(iter(self.groups))}': [...]}}).monitor(...)"
+            )
+        roles = dict(self.roles)
+        for each in quantifiers(*self._all_formulas):
+            assert each.op.binder is not None
+            group = each.op.binder.group
+            role = roles.get(group.name, group.role)
+            if role is not None:
+                roles[each.op.binder.variable] = roles[channel_of(each.op.binder.variable)] = role
+        chosen = self._semantics(semantics)
+        splitting = Splitting(
+            domain.period or Fraction(1), lambda formula: apply_semantics(formula, chosen, roles), self.text
+        )
+        found = [Watched(self.text, self.formula, self.text)]
+        found += [replace(self._watched(each, "standard")) for each in watch]
+        (formula, *others), quantified = splitting.outer(tuple(each.formula for each in found))
+        monitor = make(
+            formula,
+            domain,
+            quantified,
+            self.groups,
+            names=self.input_names,
+            text=self.text,
+            backend=self.backend,
+            declared=self._declared,
+            watch=[replace(each, formula=other) for each, other in zip(found[1:], others, strict=True)],
+            factory=partial(
+                _monitor, self, time=domain, tolerance=tolerance, semantics=semantics, watch=watch
+            ),
+            types=self.types,
+        )
+        monitor.bind(self.binding)
+        return cast("OnlineMonitor", monitor)  # not a subclass: it has several
 
     def compile(
         self,

@@ -9,8 +9,9 @@ from hypothesis import strategies as st
 
 import rtamt
 from rtamt.errors import EvaluationError
-from rtamt.language.formula import Apply, Formula, Var, fold
+from rtamt.language.formula import Apply, Const, Formula, Var, fold
 from rtamt.language.groups import Binder, Field, FieldOf, Group, quantified
+from rtamt.language.operators import STL
 from rtamt.rewrite.truth import rebuilt
 from rtamt.testing.strategies import formulas, traces
 
@@ -19,15 +20,26 @@ COMBINED = {"forall": np.min, "exists": np.max, "count": lambda truths, axis: np
 EMPTY = {"forall": np.inf, "exists": -np.inf, "count": 0.0}
 
 
-def quantify(word: str, body: Formula) -> Formula:
-    """Return a quantifier over a formula whose variables x become fields v.x."""
+def quantify(word: str, body: Formula, other: str | None = None) -> Formula:
+    """Return a quantifier over a formula whose variables x become fields v.x.
 
-    def step(node: Formula, args: tuple[Formula, ...]) -> Formula:
-        if isinstance(node, Var) and node.name == "x":
-            return FieldOf("v.x", None, None, "v", "x", CARS)
-        return rebuilt(node, args) if isinstance(node, Apply) else node
+    ``other``: a quantifier inside it, over other members, for which y is w.x, too.
+    """
 
-    return quantified(word, Binder("v", CARS))(fold(body, step))
+    def over(variable: str, name: str) -> Formula:
+        def step(node: Formula, args: tuple[Formula, ...]) -> Formula:
+            if isinstance(node, Var) and node.name == name:
+                return FieldOf(f"{variable}.x", None, None, variable, "x", CARS)
+            return rebuilt(node, args) if isinstance(node, Apply) else node
+
+        return fold(body, step)
+
+    if other is None:
+        return quantified(word, Binder("v", CARS))(over("v", "x"))
+    body = over("w", "y")
+    inner = quantified(other, Binder("w", CARS, (("v", "w"),)))(body)
+    body = STL["next"](STL["or"](inner, Const(-1.0)))
+    return quantified(word, Binder("v", CARS))(over("v", "x"))
 
 
 def values_of(formula: Formula, data: dict[str, object]) -> np.ndarray | None:
@@ -65,3 +77,62 @@ def test_a_quantifier_means_each_member_on_its_own_trace(word, data):
         return
     assert found is not None, "the error lies at an instant at which the member is absent"
     np.testing.assert_array_equal(found, COMBINED[word](each, axis=0))
+
+
+def inside(outer: Formula, quantifier: Formula) -> Formula:
+    """Return a formula with a quantifier in place of its variable q."""
+
+    def step(node: Formula, args: tuple[Formula, ...]) -> Formula:
+        if isinstance(node, Var) and node.name == "q":
+            return quantifier
+        return rebuilt(node, args) if isinstance(node, Apply) else node
+
+    return fold(outer, step)
+
+
+@st.composite
+def scenes(draw, n: int) -> dict[str, list[float | None]]:
+    """Draw the x of some cars, each of which appears and disappears."""
+    trace = draw(traces(("a", "b", "c"), min_size=n, max_size=n))
+    scene = {}
+    for name, values in trace.items():
+        present = draw(st.lists(st.booleans(), min_size=n, max_size=n))
+        scene[f"car_{name}.x"] = [
+            x if here else None for x, here in zip(values.tolist(), present, strict=True)
+        ]
+    return scene
+
+
+@given(data=st.data())
+def test_a_stream_of_members_gives_what_the_whole_recording_gives(data):
+    word, other = data.draw(st.tuples(*[st.sampled_from(sorted(COMBINED))] * 2))
+    body = quantify(word, data.draw(formulas(3)), data.draw(st.sampled_from((None, other))))
+    formula = STL["or"](inside(data.draw(formulas(2, ("q", "y"))), body), STL["and"](Var("y"), body))
+    n = data.draw(st.integers(1, 9))
+    y = data.draw(traces(("y",), min_size=n, max_size=n))["y"].tolist()
+    columns = {"y": y, **data.draw(scenes(n))}
+    spec = rtamt.parse('group cars = "car_*"; true').with_formula(formula)
+    expected = values_of(formula, columns)
+    monitor = spec.monitor()
+    found: list[float] = []
+    try:
+        for t in range(n):
+            present = {name: xs[t] for name, xs in columns.items() if xs[t] is not None}
+            robustness = monitor.update(float(t), **present)
+            if robustness is not None:
+                found.append(robustness)
+        found += monitor.finish().values.tolist()
+    except EvaluationError:
+        assert expected is None
+        return
+    if expected is not None:
+        np.testing.assert_array_equal(found, expected)
+        chunks = spec.monitor()
+        cut = data.draw(st.integers(0, n))
+        parts = [
+            {name: xs[:cut] for name, xs in columns.items()},
+            {name: xs[cut:] for name, xs in columns.items()},
+        ]
+        signals = [*map(chunks.update_many, parts), chunks.finish()]
+        np.testing.assert_array_equal(np.concatenate([signal.values for signal in signals]), expected)
+        np.testing.assert_array_equal(np.concatenate([signal.times for signal in signals]), np.arange(n))

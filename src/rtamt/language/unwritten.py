@@ -83,8 +83,15 @@ WHERE_PRESENT = Operator(
 )  # fmt: skip
 
 
+#: What the members of a group give together, under every semantics: a column that is no predicate, for it has a
+#: second operand that is a formula.
+COLUMN = Operator(
+    "column", ("column",), Fixity.FUNCTION, 200, (N, F), F, "The first operand.", "x", latex="{0}",
+    definition=lambda x, _true: x, expansion=lambda x, _true, _i: x,
+)  # fmt: skip
+
 #: By name, for unpickling.
-UNWRITTEN = {op.name: op for op in (*_TRUTHS, AT_LEAST, PRESENT, WHERE_PRESENT)}
+UNWRITTEN = {op.name: op for op in (*_TRUTHS, AT_LEAST, PRESENT, WHERE_PRESENT, COLUMN)}
 
 
 # The operand one step before, a sample or a tick; +inf at the start. Not part of the language.

@@ -53,14 +53,14 @@ def resolve(formula: Formula, members: Members) -> Formula:
     >>> print(resolve(near, Members({"cars": ("car_1", "car_2")}, frozenset({"car_1"}))))
     always(once(car_1.x > 3) or valid(car_2) and once(valid(car_2) and car_2.x > 3))
     """
-    return _Scope(members).resolved(formula)
+    return Scope(members).resolved(formula)
 
 
 def resolved_document(
     document: Document, members: Members, declarations: tuple[Declaration, ...]
 ) -> Document:
     """Return the document over these members; ``declarations``: also of their fields."""
-    scope, done = _Scope(members), dict[int, Formula]()
+    scope, done = Scope(members), dict[int, Formula]()
 
     def formula(of: Formula) -> Formula:
         if id(of) not in done:
@@ -88,7 +88,7 @@ def resolved_document(
 
 
 @dataclass(frozen=True)
-class _Scope(Known):
+class Scope(Known):
     """The inside of quantifiers: the members that their variables stand for, and where all of these are present."""
 
     members: Members
@@ -100,14 +100,17 @@ class _Scope(Known):
 
     @property
     def now(self) -> Formula:
+        """See :class:`Known`."""
         assert self.present is not None
         return self.present
 
     @property
     def begun(self) -> Formula:
+        """See :class:`Known`."""
         return STL["once"](self.now)
 
     def before(self, interval: Interval | None) -> Formula:
+        """See :class:`Known`."""
         return STL["s_prev"](self.now) if interval is None else STL["once"](self.now, interval=interval)
 
     # ---- formulas --------------------------------------------------------------------------------
@@ -133,10 +136,11 @@ class _Scope(Known):
         if not isinstance(node, Apply):
             return node
         if node.op.binder is not None:
-            return self._over_members(node, node.op.binder)
+            return self.over_members(node, node.op.binder)
         return rebuilt(node, args) if self.present is None else self._cut(node, args)
 
-    def _over_members(self, node: Apply, binder: Binder) -> Formula:
+    def over_members(self, node: Apply, binder: Binder) -> Formula:
+        """Return the formula over all members that a quantifier stands for."""
         (body,) = node.args
         inside = [self._inside(binder, member) for member in self.members.names[binder.group.name]]
         scopes = [scope for scope in inside if scope.keeps_apart(binder)]
@@ -153,10 +157,10 @@ class _Scope(Known):
             total = reduce(STL["or"], parts) if parts else Const(-inf, node.span)
         return replace(total, span=node.span)  # type: ignore[type-var]
 
-    def _inside(self, binder: Binder, member: str) -> _Scope:
+    def _inside(self, binder: Binder, member: str) -> Scope:
         here = None if member in self.bound.values() else self._present(member)
         present = self.present if here is None else _both(self.present, here)
-        return _Scope(self.members, {**self.bound, binder.variable: member}, present)
+        return Scope(self.members, {**self.bound, binder.variable: member}, present)
 
     def _present(self, member: str) -> Formula | None:
         return None if member in self.members.throughout else present_of(member)
@@ -177,7 +181,7 @@ class _Scope(Known):
         if op.tense is Tense.NONE:
             if op.definition is None and op.expansion is not None:
                 return self._expanded(node, args)
-            return rebuilt(node, self._guarded(args) if self._needs_guards(op, args) else args)
+            return rebuilt(node, self._guarded(op, args) if self._needs_guards(op, args) else args)
         rules = op.absent or op.guards
         if rules:
             assert len(rules) == len(args)
@@ -227,24 +231,32 @@ class _Scope(Known):
         """Return whether an operation on numbers may have no value where a member is absent, whose fields are 1."""
         if any(sort is not Sort.NUMBER for sort in op.operands) or not args:
             return False
-        absent = {member for member in self.bound.values() if member not in self.members.throughout}
-        return any(_may_fail(op, tuple(_known(arg, member) for arg in args)) for member in absent)
+        return any(_may_fail(op, tuple(_known(arg, member) for arg in args)) for member in self.absent())
 
-    def _guarded(self, args: tuple[Formula, ...]) -> tuple[Formula, ...]:
+    def absent(self) -> set[str | None]:
+        """Return the members that may be absent."""
+        return {member for member in self.bound.values() if member not in self.members.throughout}
+
+    def _guarded(self, op: Operator, args: tuple[Formula, ...]) -> tuple[Formula, ...]:
         """Return operands that are 1, 2, 3 where a member is absent: there, every operation has a value."""
+        instead = [
+            arg.value if isinstance(arg, Const) else float(position) for position, arg in enumerate(args, 1)
+        ]
+        constants = not _may_fail(op, tuple(instead))  # numbers of the text may stay as they are
         return tuple(
             arg
-            if isinstance(arg, Const)
-            else Apply(WHERE_PRESENT, (self.now, Const(position), arg), None, arg.span)
+            if constants and isinstance(arg, Const)
+            else Apply(WHERE_PRESENT, (self.now, Const(float(position)), arg), None, arg.span)
             for position, arg in enumerate(args, 1)
         )
 
 
-def _known(operand: Formula, absent: str) -> float | None:
-    """Return the value of an operand where a member is absent, None if it may be any."""
+def _known(operand: Formula, absent: str | None) -> float | None:
+    """Return the value of an operand where a member (None: everything) is absent, None if it may be any."""
     if isinstance(operand, Const):
         return operand.value
-    return 1.0 if isinstance(operand, Var) and operand.name.startswith(f"{absent}.") else None
+    own = isinstance(operand, Var) and (absent is None or operand.name.startswith(f"{absent}."))
+    return 1.0 if own else None
 
 
 def present_of(member: str) -> Formula:

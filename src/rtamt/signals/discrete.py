@@ -60,6 +60,7 @@ class Discrete(TimeDomain):
         "early_check": "rtamt.verdicts.early_check:DiscreteEarlyCheck",
         "replay": "rtamt.plot.band:replay_samples",
         "watches": "rtamt.ros.watches:sampled",
+        "members": "rtamt.engine.discrete.members:MemberMonitor",
     }
 
     period: Fraction | None

@@ -93,6 +93,57 @@ def bound(
     return Bound(made, Members(members, frozenset(throughout)))
 
 
+class Chunk(NamedTuple):
+    """Samples of a stream, in which each member is a set of ordinary variables."""
+
+    data: Any
+    #: The variables of members, with their channels.
+    columns: tuple[str, ...]
+    types: Mapping[str, Any]
+    #: By group: its members, each with the names of its channel (None if it is present throughout) and fields.
+    groups: Mapping[str, Mapping[str, tuple[str | None, Mapping[str, str]]]]
+
+    def present(self, columns: Mapping[str, Any], i: int) -> dict[str, dict[str, dict[str, float]]]:
+        """Return the members of each group that are present at a sample, with their fields."""
+        return {
+            group: {
+                member: {field: float(columns[name][i]) for field, name in fields.items()}
+                for member, (channel, fields) in found.items()
+                if channel is None or columns[channel][i]
+            }
+            for group, found in self.groups.items()
+        }
+
+
+def chunk(data: Any, groups: Fields) -> Chunk:
+    """Return some samples of a stream with the members of groups as ordinary variables, of which there may be none."""
+    found = members_of(groups, _names(data))
+    known = _columns(found, groups)
+    if isinstance(data, Clocked):
+        data = data.on_one_clock([name for name in data if name != TIME])  # type: ignore[attr-defined]
+    made, throughout = _on_one_clock(data, known, ())
+    channels = {each.name: channel_of(each.name) for each in known if each.name not in throughout}
+    types = {
+        each.column(field): type_
+        for each in known
+        for field, type_ in each.fields.items()
+        if type_ is not None
+    }
+    columns = (*(each.column(field) for each in known for field in each.fields), *channels.values())
+    return Chunk(
+        made,
+        columns,
+        types,
+        {
+            name: {
+                member: (channels.get(member), {field: f"{member}.{field}" for field in groups[name][1]})
+                for member in own
+            }
+            for name, own in found.items()
+        },
+    )
+
+
 class _Member(NamedTuple):
     """A member with its fields: the type of each, None for numbers."""
 

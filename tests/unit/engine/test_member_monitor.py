@@ -1,0 +1,175 @@
+"""Monitors of quantifiers: members that come and go, one compilation, and what is wrong with an update."""
+
+from __future__ import annotations
+
+import copy
+import pickle
+import time
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+import rtamt
+from rtamt.compiler import lower
+from rtamt.errors import EvaluationError, SpecificationError, TraceError, UsageError
+
+inf = float("inf")
+CARS = 'group cars = "car_*"; '
+
+
+def spec(text: str, **settings) -> rtamt.Specification:
+    return rtamt.parse(CARS + text, **settings)
+
+
+def test_a_member_that_an_update_leaves_out_or_gives_as_none_is_absent():
+    monitor = spec("forall v in cars: v.x > ego").monitor()
+    assert monitor.update(0, ego=0.0, **{"car_1.x": 3.0}) == 3
+    assert monitor.update(1, ego=1.0, **{"car_1.x": None, "car_2.x": 5.0}) == 4
+    assert monitor.update(2, ego=1.0) == inf
+    assert monitor.update(3, ego=1.0, car_2=None, car_3=SimpleNamespace(x=0.5)) == -0.5
+
+
+def test_a_value_is_known_one_horizon_later_also_in_mixed_formulas():
+    monitor = spec("(forall v in cars: eventually[0:1](v.x > 0)) or eventually[0:2](ego > 0)").monitor()
+    assert monitor.horizon == 2
+    given = [monitor.update(t, ego=-5.0, **{"car_1.x": float(-t)}) for t in range(4)]
+    assert given == [None, None, 0, -1]
+    assert monitor.finish().points() == [(2, -2), (3, -3)]
+
+
+def test_a_new_member_compiles_nothing(monkeypatch):
+    compiled = []
+    original = lower.Lowering.program
+    monkeypatch.setattr(lower.Lowering, "program", lambda *a: compiled.append(a) or original(*a))
+    monitor = spec("forall v in cars: once[0:2](v.x > 0)").monitor()
+    before = len(compiled)
+    assert before > 0
+    for t in range(20):
+        monitor.update(t, **{f"car_{t}.x": 1.0})
+    assert len(compiled) == before
+
+
+def test_a_member_that_is_gone_is_dropped_when_it_cannot_matter_any_more():
+    monitor = spec("forall v in cars: once[0:2](v.x > 0)").monitor()
+    for t in range(20):
+        monitor.update(t, **{f"car_{t}.x": 1.0})
+    assert len(monitor.members) < 6
+    unbounded = spec("forall v in cars: once(v.x > 0)").monitor()
+    given = [unbounded.update(t, **({"car_1.x": 3.0 - t} if t in (0, 15) else {})) for t in range(16)]
+    assert given[15] == 3
+
+
+@pytest.mark.parametrize("backend", ["cpp", "python"])
+def test_copies_and_pickles_go_on_on_their_own(backend):
+    monitor = spec("forall v in cars: once[0:2](v.x > ego)", backend=backend).monitor()
+    monitor.update(0, ego=0.0, **{"car_1.x": 3.0})
+    twins = [copy.copy(monitor), pickle.loads(pickle.dumps(monitor))]  # noqa: S301
+    assert monitor.update(1, ego=9.0, **{"car_1.x": 3.0}) == 3
+    for twin in twins:
+        assert twin.update(1, ego=0.0, **{"car_1.x": 4.0, "car_2.x": 1.0}) == 1
+
+
+def test_a_failed_update_changes_nothing():
+    monitor = spec("forall v in cars: once[0:1](1 / v.x + ego / ego > 0)").monitor()
+    twin = copy.copy(monitor)
+    for t in range(100):
+        sample = {"ego": 1.0, "car_1.x": 2.0 + t, "car_2.x": 1.0}
+        with pytest.raises(EvaluationError) as error:
+            monitor.update(t, **{**sample, "car_3.x": 1.0, "ego": 0.0})
+        assert f"at sample {t}, time {t} s" in str(error.value)
+        with pytest.raises(TraceError):
+            monitor.update(t, **{**sample, "car_1.x": float("nan")})
+        assert monitor.update(t, **sample) == twin.update(t, **sample)
+    assert monitor.members == twin.members
+
+
+def test_a_chunk_that_fails_changes_nothing():
+    monitor = spec("forall v in cars: once(1 / v.x > 0)").monitor()
+    monitor.update_many({"car_1.x": [1.0, 2.0]})
+    with pytest.raises(EvaluationError):
+        spec("forall v in cars: 0 * (1 / v.x) > 0").monitor().update_many({"car_1.x": [1.0, 0.0]})
+    with pytest.raises(TraceError):
+        monitor.update_many({"car_1.x": [1.0, float("nan")]})
+    assert monitor.samples == 2
+
+
+def test_a_chunk_may_have_no_members_and_reset_forgets_them():
+    monitor = spec("count v in cars: v.x > 0").monitor(period=0.5)
+    assert monitor.update_many({"time": [0, 0.5]}).points() == [(0, 0), (0.5, 0)]
+    assert monitor.update_many({"time": [1.0], "car_1.x": [1]}).points() == [(1, 1)]
+    monitor.reset()
+    assert (monitor.samples, monitor.members) == (0, ())
+    assert monitor.update(0.0, **{"car_1.x": 1.0}) == 1
+
+
+def test_watched_formulas_and_parameters():
+    text = (
+        "parameter float gap = 5  " + CARS + "require R1: forall v in cars: v.x > gap\nrequire R2: ego > gap"
+    )
+    monitor = rtamt.parse(text).monitor(watch=["R1", "R2"])
+    assert monitor.update(0, ego=6.0, **{"car_1.x": 8.0}) == 1
+    assert (monitor["R1"], monitor["R2"]) == (3, 1)
+    monitor.reset(gap=1)
+    assert monitor.update(0, ego=6.0, **{"car_1.x": 8.0}) == 5
+
+
+def test_semantics_and_roles_hold_for_members():
+    text = "input float ego input " + CARS + "forall v in cars: once(v.x >= 3) -> ego >= 2"
+    data = {"car_1.x": [5, None, 1], "ego": [1, 1, 1]}
+    for semantics in ("standard", "boolean", "output_robustness", "input_vacuity", "input_robustness"):
+        parsed = rtamt.parse(text)
+        expected = parsed.evaluate(data, semantics=semantics).signal.values.tolist()
+        assert parsed.monitor(semantics=semantics).update_many(data).values.tolist() == expected
+
+
+WRONG = [
+    ({"ego": 1.0, "cra_1.x": 1.0}, "the formula has no variable 'cra_1.x'; variables: ego, car_*"),
+    ({"car_1.x": 1.0, "car_1.v": 1.0}, "the data has no 'ego'; signals: none"),
+    (
+        {"ego": 1.0, "car_1.x": 1.0},
+        "'car_1' has no 'v' at sample 0; give 'car_1.v', or leave out all fields of a member that is absent",
+    ),
+    ({"ego": 1.0, "car_1.x": "3", "car_1.v": 1.0}, "'car_1.x' is '3' at sample 0, expected a number"),
+]
+
+
+@pytest.mark.parametrize(("values", "message"), WRONG)
+def test_what_is_wrong_with_an_update_is_one_sentence(values, message):
+    monitor = spec("forall v in cars: v.x > v.v + ego").monitor()
+    with pytest.raises(TraceError) as error:
+        monitor.update(0, **values)
+    assert str(error.value) == message
+    assert monitor.samples == 0
+
+
+def test_what_a_monitor_of_quantifiers_cannot_do_is_one_sentence():
+    quantified = spec("forall v in cars: v.x > 0")
+    with pytest.raises(UsageError) as error:
+        quantified.monitor(verdict="eager")
+    assert str(error.value) == (
+        "a monitor of quantifiers has no verdict='eager'; name the members, which must be present throughout: "
+        "spec.over({'cars': [...]}).monitor(...)"
+    )
+    with pytest.raises(SpecificationError, match="without an upper bound"):
+        spec("forall v in cars: eventually(v.x > 0)").monitor()
+    eager = quantified.over({"cars": ["car_1"]}).monitor(verdict="eager")
+    assert eager.input_names == ("car_1.x",)
+
+
+def test_twenty_members_cost_at_most_twenty_times_one_member():
+    text = "always[0:10] forall v in cars: eventually[0:5](v.x - ego > 5) or once[0:20](v.x > 3)"
+    parsed = spec(text)
+
+    def data(members: int) -> dict[str, np.ndarray]:
+        return {"ego": np.zeros(1000), **{f"car_{k}.x": np.full(1000, float(k)) for k in range(members)}}
+
+    def seconds(run, trace) -> float:
+        begin = time.perf_counter()
+        run(trace)
+        return time.perf_counter() - begin
+
+    for run in (parsed.evaluate, lambda trace: parsed.monitor().update_many(trace)):
+        one, twenty = data(1), data(20)
+        times = [(seconds(run, one), seconds(run, twenty)) for _ in range(5)]
+        assert min(b for _, b in times) <= 20 * min(a for a, _ in times)
