@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from bisect import bisect_right
 from dataclasses import replace
+from itertools import accumulate
 from math import isinf
 from typing import TYPE_CHECKING
 
 from rtamt.explain.readings import Readings
-from rtamt.explain.report import Reading, Stretch
+from rtamt.explain.report import Listed, Reading, Stretch
 from rtamt.explain.sentences import predicate_text, reading
 from rtamt.language.formula import Var, types_of, variables
 from rtamt.language.value_types import value_text
@@ -15,7 +17,7 @@ from rtamt.rewrite.structure import NEVER
 from rtamt.signals.instants import NONE, Cells
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Callable, Iterable, Mapping, Sequence
 
     from rtamt.engine.time_axis import TimeAxis
     from rtamt.explain.minimise import Interval
@@ -93,10 +95,16 @@ class Description:
     def _closed(self, end: int) -> bool:
         return end < NEVER and self._axis.closes(end, self._formula, self._cell)
 
-    def _as_data(self, read: Mapping[str, Cells]) -> tuple[Reading, ...]:
-        return tuple(
-            Reading(name, *self._ends(start, end)) for name in sorted(read) for start, end in read[name]
-        )
+    def _as_data(self, read: Mapping[str, Cells]) -> Sequence[Reading]:
+        names = sorted(read)
+        firsts = [0, *accumulate(len(read[name]) for name in names)]
+
+        def one(number: int) -> Reading:
+            k = bisect_right(firsts, number) - 1
+            cells, place = read[names[k]], number - firsts[k]
+            return Reading(names[k], *self._ends(int(cells.starts[place]), int(cells.ends[place])))
+
+        return Listed(firsts[-1], one)
 
     def _in_words(self, predicate: Formula, here: Cells, read: Mapping[str, Cells]) -> str:
         """Return what a predicate reads on some cells: nothing if that is its variables, on these cells."""
@@ -106,7 +114,10 @@ class Description:
 
         if all(map(same, variables(predicate))):
             return ""
-        return reading((name, [self._when(start, end) for start, end in read[name]]) for name in sorted(read))
+        return reading((name, Listed(len(read[name]), self._time(read[name]))) for name in sorted(read))
+
+    def _time(self, cells: Cells) -> Callable[[int], str]:
+        return lambda place: self._when(int(cells.starts[place]), int(cells.ends[place]))
 
     def _when(self, start: int, end: int) -> str:
         show = self._axis.show

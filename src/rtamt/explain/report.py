@@ -106,7 +106,7 @@ class CriticalPoint:
     highest: float
     decided_by: str = "predicate"
     recorded: str = ""
-    reads: tuple[Reading, ...] = ()
+    reads: Sequence[Reading] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -129,7 +129,7 @@ class Stretch:
     closed: bool
     lowest: float
     highest: float
-    reads: tuple[Reading, ...]
+    reads: Sequence[Reading]
     recorded: str = ""
 
 
