@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from rtamt.engine.offline import Evaluators
 from rtamt.errors import UsageError
 from rtamt.explain.sentences import predicate_text
-from rtamt.language.formula import Apply, Var
+from rtamt.language.formula import Apply, Var, variables
 from rtamt.language.records import Bounds, Fixity
 from rtamt.language.value_types import value_names
 from rtamt.plot.band import Band, band
@@ -29,6 +29,9 @@ if TYPE_CHECKING:
 
 #: Sub-formulas that are shown at most; of a larger formula those next to its top.
 _MOST = 200
+
+#: Readings of a cause that are drawn one by one; of more, which the eye cannot tell apart, the interval of the cause.
+_READINGS = 1000
 
 _PLACES = "φψχ"
 
@@ -228,12 +231,12 @@ class _Painter:
         found = []
         for group in groups(lines, filter(is_predicate, formulas), trace.units):
             members = set(group.names)
-            stretches = [
-                reading
-                for stretch in self._explanation.implicant
-                for reading in stretch.reads
-                if reading.signal in members
-            ]
+            stretches: list[Stretch | Reading] = []
+            for stretch in self._explanation.implicant:
+                if len(stretch.reads) <= _READINGS:
+                    stretches += [each for each in stretch.reads if each.signal in members]
+                elif members & set(variables(stretch.formula)):
+                    stretches.append(stretch)
             drawn = tuple(lines[name] for name in group.names)
             found.append(Panel(drawn, group.thresholds, self._because(stretches)))
         return tuple(found)

@@ -119,3 +119,18 @@ def test_signals_whose_units_are_known_to_differ_have_panels_of_their_own():
         panels = scene(spec.evaluate(stamped, time=time)).panels
         labels = [[line.label for line in panel.lines] for panel in panels]
         assert labels == [["gap [m]", "near"], ["speed [m/s]"]]
+
+
+def test_signals_are_marked_where_a_predicate_reads_them():
+    data = {"x": [5, 1, 1], "z": [0, 0, 1]}
+    spec = rtamt.parse("input float x [m]; input float z [s]; (if z > 0 then 9 else delay[2](x)) > 9")
+    seen = scene(spec.evaluate(data), 2)
+    marked = {line.name: panel.because for panel in seen.panels for line in panel.lines}
+    assert marked == {"x": (), "z": ((1.5, 2.5),)}
+
+
+def test_of_very_many_readings_the_interval_of_the_cause_is_marked():
+    x = np.arange(1, 3001) % 2
+    seen = scene(rtamt.parse("always(maximum[0:1](x) > 0)").evaluate({"x": x}))
+    (panel,) = seen.panels
+    assert panel.because == ((-0.5, 2999.5),)

@@ -147,3 +147,24 @@ def test_what_is_not_remembered_is_reported_with_one_sentence():
     with pytest.raises(rtamt.UsageError) as error:
         rtamt.parse("x >= 3").monitor(explain=True)
     assert str(error.value) == "explain= belongs to verdict='eager', and this is verdict='delayed'"
+
+
+@pytest.mark.parametrize(
+    ("text", "rows", "causes"),
+    [
+        ("always[0:9](maximum[0:2](x) <= 3)", [{"x": 1}, {"x": 5}], [("x", 1)]),
+        (
+            "always[0:9]((if y > 0 then x else delay(x)) <= 3)",
+            [{"x": 1, "y": 1}, {"x": 5, "y": 0}, {"x": 1, "y": 0}],
+            [("x", 1), ("y", 2)],
+        ),
+        ("always[2:9](held(x, y > 0) <= 3)", [{"x": 5, "y": 1}, {"x": 1, "y": 0}, {"x": 1, "y": 0}],
+         [("x", 0), ("y", 0), ("y", 1), ("y", 2)]),
+        ("atleast[0:4](60%, x > 3)", [{"x": x} for x in (1, 5, 4, 0, 9)], [("x", 1), ("x", 2), ("x", 4)]),
+        ("always[0:9](count[0:3](x > 0) <= 1)", [{"x": x} for x in (1, 0, 1)], [("x", 0), ("x", 1), ("x", 2)]),
+    ],
+)  # fmt: skip
+def test_numbers_over_time_rest_on_the_samples_that_they_read(text, rows, causes):
+    monitor = rtamt.parse(text, period=1).monitor(verdict="eager", explain=True)
+    found = [verdict for t, row in enumerate(rows) for verdict in monitor.update(t, **row)]
+    assert [(cause.variable, cause.time) for cause in monitor.explain(found[0])] == causes
