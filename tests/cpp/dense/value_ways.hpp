@@ -6,6 +6,7 @@
 #include "dense/executor.hpp"
 #include "discrete/oracle.hpp"
 #include "oracle.hpp"
+#include "snapshots.hpp"
 
 #include <algorithm>
 #include <cstdint>
@@ -108,14 +109,7 @@ void check_online(const Program& program, const Trace<D>& trace, std::int64_t la
         const bool valid = !executor.push(inputs, outputs);
         CHECK_MESSAGE((valid || expected == nullptr), note);
         if (valid) CHECK_MESSAGE(!twin->push(inputs, others), note);
-        if (random.chance(20)) {
-            rtamt::Snapshot written;
-            twin->transfer(written);
-            rtamt::Snapshot read(written.bytes());
-            twin = std::make_unique<BasicExecutor<D>>(program);
-            twin->transfer(read);
-            read.end();
-        }
+        if (random.chance(20)) twin = snapshots::restored(*twin, program);
     }
     const bool finished = !executor.finish(outputs);
     CHECK_MESSAGE(finished == !twin->finish(others), note);

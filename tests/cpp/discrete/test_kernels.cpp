@@ -1,6 +1,7 @@
 #include "discrete/kernels.hpp"
 
 #include "check.hpp"
+#include "each_opcode.hpp"
 #include "values/interval.hpp"
 #include "values/lanes.hpp"
 #include "values/real.hpp"
@@ -19,16 +20,10 @@ namespace {
 
 template <class D>
 void check_opcodes() {
-    for (std::size_t code = 0; code < rtamt::opcodes.size(); ++code) {
-        Instruction instruction;
-        instruction.opcode = static_cast<Opcode>(code);
-        const auto& opcode = rtamt::opcodes[code];
-        for (const Sort sort : {Sort::number, Sort::formula}) {
-            if (opcode.gives != Sort::either && opcode.gives != sort) continue;
-            const auto kernel = Kernels<D>::make(instruction, sort, 0, nullptr, nullptr);
-            CHECK((kernel != nullptr) == (opcode.operands > 0));
-        }
-    }
+    each_opcode([](const Instruction& instruction, bool computes, Sort sort) {
+        const auto kernel = Kernels<D>::make(instruction, sort, 0, nullptr, nullptr);
+        CHECK((kernel != nullptr) == computes);
+    });
 }
 
 } // namespace

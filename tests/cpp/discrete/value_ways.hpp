@@ -5,6 +5,7 @@
 #include "discrete/executor.hpp"
 #include "oracle.hpp"
 #include "program/program.hpp"
+#include "snapshots.hpp"
 
 #include <algorithm>
 #include <cstdint>
@@ -96,14 +97,7 @@ void check_online(const Program& program, const std::vector<Samples<D>>& samples
         const bool taken = advance<D>(executor, samples, begin, chunk, outputs);
         CHECK_MESSAGE((taken || expected == nullptr), note);
         if (taken) CHECK_MESSAGE(advance<D>(*twin, samples, begin, chunk, others), note);
-        if (random.chance(20)) {
-            rtamt::Snapshot written;
-            twin->transfer(written);
-            rtamt::Snapshot read(written.bytes());
-            twin = std::make_unique<BasicExecutor<D>>(program);
-            twin->transfer(read);
-            read.end();
-        }
+        if (random.chance(20)) twin = snapshots::restored(*twin, program);
         begin += chunk;
     }
     const bool finished = advance<D>(executor, samples, 0, std::nullopt, outputs);
