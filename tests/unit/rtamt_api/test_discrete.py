@@ -113,7 +113,7 @@ def test_the_start_of_a_mean_is_printed_in_the_unit_in_which_it_is_read_again():
     spec.spec = "rise(mean[1:2](ahead[1](x)) >= 3)"
     spec.parse()
     spec.pastify()
-    assert "once[1h,1h](once[1h,1h](true))" in spec.spec_print()
+    assert "rise(once[1h,1h](true))" in spec.spec_print()
     values = [spec.update(t, [("x", x)]) for t, x in enumerate([2, 0, 8, 1, 5])]
     printed = spec.spec_print()
     spec.spec = printed
