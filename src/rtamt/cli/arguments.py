@@ -158,10 +158,10 @@ def _results(requirements: list[Requirement], trace: str, reading: Reading) -> d
     ):
         if outcome.unchecked:
             complain(f"{row.label}, {outcome.trace}: {outcome.unchecked}")
-            continue
-        if outcome.result is None:
+        if outcome.result is not None:
+            found[row.written.name] = outcome.result
+        elif outcome.error:
             raise CommandError(outcome.error)
-        found[row.written.name] = outcome.result
     if not found:
         raise CommandError(
             f"{shown(trace)}: nothing was checked, since the recording has none of the signals"

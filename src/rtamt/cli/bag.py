@@ -14,7 +14,7 @@ from rtamt.ros.bags import Finding, write_mcap
 from rtamt.ros.binding import bind, topic_of
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterator, Mapping
 
     from rtamt.cli.outcome import Requirement
     from rtamt.cli.reading_options import Reading
@@ -25,9 +25,9 @@ TOPIC = "rtamt/robustness"
 
 
 def write_bag(
-    requirement: Requirement, trace: str, reading: Reading, results: Sequence[Result], path: str
+    requirement: Requirement, trace: str, reading: Reading, results: Mapping[str, Result], path: str
 ) -> None:
-    """Write a recording with what was found out about it; ``results``: of each requirement in it."""
+    """Write a recording with what was found out about it; ``results``: of each checked requirement, by its label."""
     if not is_bag(trace):
         raise CommandError(
             f"'{trace}' is no bag, so that there are no topics to write to '{path}'; write .csv"
@@ -36,18 +36,22 @@ def write_bag(
 
 
 def _findings(
-    requirement: Requirement, trace: str, reading: Reading, results: Sequence[Result]
+    requirement: Requirement, trace: str, reading: Reading, results: Mapping[str, Result]
 ) -> Iterator[Finding]:
     """Yield what came of every assertion that a node would publish, else of every requirement."""
     try:
         outputs = bind(requirement.spec).outputs
     except UsageError:  # it was not written for nodes: a formula over columns
-        for row, result in zip(requirement.rows or (requirement,), results, strict=True):
-            yield _finding(row.label, topic_of(row.written.name) if requirement.rows else TOPIC, result)
+        for row in requirement.rows or (requirement,):
+            if row.label in results:
+                topic = topic_of(row.written.name) if requirement.rows else TOPIC
+                yield _finding(row.label, topic, results[row.label])
         return
     for output in outputs:
         alone = replace(requirement, spec=output.specification, rows=())
         (outcome,) = evaluate([alone], trace, reading)
+        if outcome.unchecked:
+            continue
         if outcome.result is None:
             raise CommandError(outcome.error)
         yield _finding(output.name, output.topic, outcome.result)

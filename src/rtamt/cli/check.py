@@ -35,7 +35,7 @@ from rtamt.signals.regular import merged
 
 if TYPE_CHECKING:
     import argparse
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterator, Mapping, Sequence
 
     from rtamt.cli.outcome import Outcome, Requirement
     from rtamt.results import Result
@@ -188,14 +188,17 @@ def run(args: argparse.Namespace) -> int:
             progress.bar(len(found), pairs, outcome.trace)
     if not args.json and not args.quiet and any(not outcome.error for outcome in found):
         say(_as_table(requirements, found, color), color=color)
-    results = [outcome.result for outcome in found if outcome.result is not None]
-    if args.output is not None and len(results) == len(found):
+    results = {outcome.requirement: outcome.result for outcome in found if outcome.result is not None}
+    if args.output is not None and results and not any(outcome.error for outcome in found):
         if args.output.lower().endswith(".mcap"):
             from rtamt.cli.bag import write_bag
 
             write_bag(given[0], traces[0], reading, results, args.output)
         else:
-            _write(requirements, results, args.output)
+            names = {
+                label: row.written.name if len(rows) > 1 else "robustness" for label, row in rows.items()
+            }
+            _write({names[label]: result for label, result in results.items()}, args.output)
     for kind, (_, make) in REPORTS.items():
         path = getattr(args, kind)
         if make is not None and path is not None:
@@ -294,14 +297,12 @@ def _says_more(outcome: Outcome) -> bool:
     )
 
 
-def _write(requirements: Sequence[Requirement], results: Sequence[Result], path: str) -> None:
+def _write(results: Mapping[str, Result], path: str) -> None:
     """Write a column of robustness for each result; a cell is empty where one has no sample."""
-    names = [requirement.written.name for requirement in requirements]
-    if len(names) == 1:
-        names = ["robustness"]
-    times = merged([result.signal.times for result in results])
-    rows = zip(map(stamp_text, times), *(_cells(result.signal, times) for result in results), strict=True)
-    lines = [",".join(["time", *names]), *(",".join(row) for row in rows)]
+    times = merged([result.signal.times for result in results.values()])
+    columns = [_cells(result.signal, times) for result in results.values()]
+    rows = zip(map(stamp_text, times), *columns, strict=True)
+    lines = [",".join(["time", *results]), *(",".join(row) for row in rows)]
     write_output(path, "".join(f"{line}\n" for line in lines))
 
 

@@ -7,6 +7,7 @@ import time
 from collections import Counter
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import replace
+from functools import reduce
 from itertools import islice
 from multiprocessing import get_context
 from typing import TYPE_CHECKING, Any
@@ -23,6 +24,7 @@ from rtamt.cli.reading_options import (
     read_for,
 )
 from rtamt.errors import BoundError, StlError, TraceError
+from rtamt.language.operators import STL
 from rtamt.readers.assemble import chunks_of, trace_of
 from rtamt.readers.read import opened
 from rtamt.readers.sql import is_url, shown
@@ -123,7 +125,12 @@ def evaluate(requirements: Sequence[Requirement], trace: str, reading: Reading) 
     except StlError:  # the check reports what is wrong
         kept, unchecked, rest = list(requirements), [], None
     found = _checked(kept, trace, reading) if rest is None else rest
-    of = {outcome.requirement: outcome for outcome in (*found, *unchecked)}
+    of = {outcome.requirement: outcome for outcome in unchecked}
+    for outcome in found:
+        lacking = of.get(outcome.requirement)
+        of[outcome.requirement] = (
+            outcome if lacking is None else replace(outcome, unchecked=lacking.unchecked)
+        )
     return [of[row.label] for requirement in requirements for row in requirement.rows or (requirement,)]
 
 
@@ -139,9 +146,15 @@ def _applicable(
         if not any(reasons):
             kept.append(requirement)
             continue
+        rest = [
+            known.formula for known in requirement.spec.document.requirements if known.name not in reasons[0]
+        ]
+        if not requirement.rows and rest:  # their conjunction is evaluated as far as the signals are there
+            kept.append(replace(requirement, spec=requirement.spec.with_formula(reduce(STL["and"], rest))))
         for row, reason in zip(rows, reasons, strict=True):
             if reason:
-                unchecked.append(skipped(row, trace, "; ".join(dict.fromkeys(reason.values()))))
+                names = "" if len(row.spec.document.requirements) == 1 else f"{', '.join(reason)}: "
+                unchecked.append(skipped(row, trace, names + "; ".join(dict.fromkeys(reason.values()))))
             else:
                 kept.append(row)
     return kept, unchecked

@@ -2,6 +2,7 @@
 
 import json
 import pickle
+from pathlib import Path
 
 import numpy as np
 import pandas as pd
@@ -109,3 +110,22 @@ def test_checks_are_those_of_the_requirements_whose_signals_are_there(bits):
         if not missing:
             data = {f"old.{each}": np.array([1.0]) for each in there}
             assert one.evaluate(data).robustness == len(one.input_names)
+
+
+@pytest.mark.parametrize(("row", "verdict"), [("0,1", "satisfied"), ("0,51", "violated")])
+def test_a_plot_of_several_requirements_is_of_those_whose_signals_are_there(run, write, row, verdict):
+    spec, trace = write("a.stl", TEXT), write("a.csv", f"time,z\n{row}\n")
+    done = run("plot", spec, trace, "-o", "a.svg")
+    assert done.code == 0, done.err
+    assert f": {verdict}, robustness" in done.out
+    assert "not checked: BAT: no 'battery_status.voltage_v' or 'battery.voltage'" in done.err
+    done = run("plot", spec, write("b.csv", "time,y\n0,1\n"), "-o", "b.svg")
+    assert done.code == 2
+    assert "'z'" in done.err
+
+
+def test_the_robustness_of_what_was_checked_is_written_although_something_was_not(run, write):
+    """Nothing was written, without a word."""
+    done = run("check", write("a.stl", TEXT), write("a.csv", "time,z\n0,1\n1,3\n"), "-o", "out.csv")
+    assert done.code == 0
+    assert Path("out.csv").read_text() == "time,ALT\n0.0,49.0\n1.0,47.0\n"

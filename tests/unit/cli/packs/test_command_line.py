@@ -119,8 +119,14 @@ def test_a_bag_of_a_mobile_base(run, tmp_path, kind):
     path = str(bag.path.relative_to(tmp_path))
     answer = run("check", "mobile_base", path, "--json", "--set", "radius=0.2")
     rows = {row["requirement"]: row for row in map(json.loads, answer.out.splitlines())}
-    assert {name for name, row in rows.items() if "unchecked" not in row} == {"LIMIT-1", "LIMIT-2", "OBST-1"}
+    checked = {name for name, row in rows.items() if "unchecked" not in row}
+    assert checked == {"LIMIT-1", "LIMIT-2", "OBST-1"}
     assert rows["LIMIT-1"]["robustness"] == pytest.approx(0.06)
+    run("check", "mobile_base", path, "--set", "radius=0.2", "-o", "out.mcap")
+    written = {
+        name.split("/")[2].split(".")[0] for name in rtamt.read("out.mcap").names if name[:7] == "/rtamt/"
+    }
+    assert written == {"LIMIT_1", "LIMIT_2", "OBST_1"}
 
 
 def test_reports_of_unchecked_requirements(run, tmp_path):

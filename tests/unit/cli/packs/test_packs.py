@@ -43,3 +43,9 @@ def test_a_bad_trace_violates_a_requirement_of_a_pack(specs, pack, requirement):
     good, violated = PACKS[pack]
     result = specs[pack].requirements[requirement].evaluate(made(good, **violated[requirement]))
     assert result.satisfied is False
+
+
+def test_rc_that_was_lost_before_the_recording_is_no_loss(specs):
+    """It was reported as a loss at the first sample."""
+    data = made(PACKS["px4"][0], **{"failsafe_flags.manual_control_signal_lost": 1})
+    assert specs["px4"].requirements["RC-1"].evaluate(data).satisfied is True
