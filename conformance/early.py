@@ -19,7 +19,7 @@ from rtamt.errors import EvaluationError
 from rtamt.language.enclosures import Enclosure
 from rtamt.language.formula import variables
 from rtamt.language.parser import parse_formula
-from rtamt.reference import dense_bounds, discrete_bounds, earliest
+from rtamt.reference import dense_bounds, dense_causation, discrete_bounds, earliest
 from rtamt.reference.causation import causation
 from rtamt.reference.discrete_bounds import ANYTHING, Knowledge
 from rtamt.rewrite.check import unbounded_future
@@ -29,10 +29,11 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from conformance.generate import Drawing
+    from rtamt.signals.outcomes import Causation
 
 FILE = "early.jsonl"
 DRAWN = 150  # cases a time domain
-EXACT = 50  # cases more whose samples are all known, for causation
+EXACT = 50  # cases more of each time domain whose samples are all known, for causation
 
 
 @dataclass
@@ -52,9 +53,10 @@ class EarlyCase:
 
     @property
     def exact(self) -> bool:
-        """Whether all samples are known, and nothing is of later ones, in discrete time."""
-        known = (value for values in self.signals.values() for value in values)
-        return self.time == "discrete" and not self.ranges and all(isinstance(v, int | float) for v in known)
+        """Whether all samples are known, and nothing is of later ones."""
+        samples = (sample for values in self.signals.values() for sample in values)
+        known = (sample if self.time == "discrete" else sample[1] for sample in samples)
+        return not self.ranges and all(isinstance(v, int | float) for v in known)
 
     @property
     def seconds(self) -> Fraction:
@@ -100,20 +102,34 @@ def answered(case: EarlyCase) -> EarlyCase:
         case.verdicts = [list(map(list, news)) for news in earliest.verdicts(formula, known, case.seconds)]
         if case.exact and causeless(formula) is None:
             caused = (causation(formula, stage, case.seconds, 1)[0] for stage in stages[:-1])
-            case.causation = [[each.violation + 0.0, each.satisfaction + 0.0] for each in caused]
+            case.causation = list(map(_ends, caused))
         return case
     updates = updates_of(case)
     names = tuple(case.signals)
     limits = {name: (low, high) for name, (low, high) in case.ranges.items()}
     end = updates[-1][0]
+    before: dense_bounds.DenseKnowledge | None = None
+    has_causes = case.exact and causeless(formula) is None
     for k in range(1, len(updates) + 2):
         stage_ = earliest.after(updates[:k], names, limits, finished=k > len(updates))
         found = dense_bounds.bounds(formula, stage_, case.seconds)
         rows = [list(row) for row in zip(found.times, found.lower, found.upper, strict=True) if row[0] <= end]
         case.bounds.append(None if stage_.start is None else rows)
+        if has_causes:
+            event = (
+                None
+                if stage_.start is None
+                else dense_causation.causation(formula, before, stage_, case.seconds)
+            )
+            case.causation.append(None if event is None else _ends(event.causes[0]))
+            before = None if event is None else stage_
     told = earliest.dense_verdicts(formula, updates, names, case.seconds, limits, finished=True)
     case.verdicts = [[list(run) for run in earliest.runs(news)] for news in told]
     return case
+
+
+def _ends(caused: Causation) -> list[float]:
+    return [caused.violation + 0.0, caused.satisfaction + 0.0]  # no minus before a zero
 
 
 def updates_of(case: EarlyCase) -> list[earliest.Update]:
@@ -179,13 +195,14 @@ def cases(drawing: Any, steps: tuple[str, ...], seed: int) -> Iterator[EarlyCase
         ("discrete", "discrete", DRAWN),
         ("dense", "dense", DRAWN),
         ("causation", "discrete", EXACT),
+        ("dense_causation", "dense", EXACT),
     ):
         found = attempt = 0
         while found < count:
             attempt += 1
             step = steps[attempt % len(steps)]
             draw = drawing(f"{seed} early {kind} {attempt}", time, step)
-            case = drawn(draw, f"early/{kind}/{found:03}", time, step, exact=kind == "causation")
+            case = drawn(draw, f"early/{kind}/{found:03}", time, step, exact="causation" in kind)
             if case is not None:
                 found += 1
                 yield case

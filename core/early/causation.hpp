@@ -1,20 +1,25 @@
-// What the newest sample alone makes of a formula: by how much it violates and satisfies it.
+// What the newest samples alone make of a formula: by how much they violate and satisfy it.
 //
 // Z. Zhang et al., "Online causation monitoring of signal temporal logic", CAV 2023. Two more
-// registers beside those of the bounds: register 0 holds how good the newest sample makes a part at
+// registers beside those of the bounds: register 0 holds how good the newest samples make a part at
 // a tick, register 1 how bad, negated, so that negation exchanges them and one set of rules serves
-// both. What an atom causes is its value at the newest tick and -inf elsewhere, nothing. What takes
-// the greatest of its operands takes the greatest of what they cause; what takes the least takes
-// the greatest too, but not more than its own bound.
+// both. What an atom causes is its value at the ticks that they make known and -inf elsewhere,
+// nothing; a function of several ticks causes its bounds where they have moved. What takes the
+// greatest of its operands takes the greatest of what they cause; what takes the least takes the
+// greatest too, but not more than its own bound.
 //
-// Nothing is kept from one sample to the next. Cost: proportional to the runs of what is caused.
+// Nothing is kept from one sample to the next. Cost: proportional to the runs of what is caused,
+// and for until to those of its operands as far as it reaches.
 #pragma once
 
+#include "caused.hpp"
+#include "changes.hpp"
 #include "engine.hpp"
 #include "origin.hpp"
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace rtamt::early {
@@ -43,36 +48,58 @@ struct StartingCause {
     std::uint32_t rest = none;
 };
 
+struct CauseGraph {
+    std::vector<Cause> parts;
+    std::vector<std::uint32_t> outputs;
+    std::vector<StartingCause> starts; // of the items of the origin
+};
+
 class Causes {
   public:
-    Causes(std::vector<Cause> parts, std::vector<std::uint32_t> outputs,
-           std::vector<StartingCause> starts, const Engine& engine, const Origin& origin);
+    Causes(CauseGraph graph, const Engine& engine, const Origin& origin, bool dense);
 
-    // Looks at the newest sample, which the engine and the origin know.
+    // Looks at the newest sample in discrete time, or at what has become known in dense time. The
+    // engine and the origin know it.
     void look(const Engine& engine, const Origin& origin, Tick newest);
+    void look(const Engine& engine, const Origin& origin, std::span<const Engine::Lesson> lessons);
 
     // Violation is the upper end, satisfaction the lower.
     [[nodiscard]] Bounds at(std::size_t output, Tick t) const noexcept;
     [[nodiscard]] Bounds at_start() const noexcept { return start_; }
 
+    // The ticks at which something is caused, up to a tick, in order.
+    [[nodiscard]] std::vector<Change> runs(std::size_t output, Tick last) const;
+
     void transfer(Snapshot& snapshot);
 
   private:
-    using Part = std::array<std::vector<Run>, 2>; // without ticks at which nothing is caused
+    using Part = std::array<Pieces, 2>;
+
+    // What has become known: at the newest tick, or by lessons.
+    struct News {
+        Tick newest = 0;
+        std::span<const Engine::Lesson> lessons;
+    };
 
     std::vector<Cause> causes_;
     std::vector<std::uint32_t> outputs_;
     std::vector<StartingCause> starts_;
+    bool dense_;
     Tick reach_ = 0; // farther from the newest sample than anything is read that still changes
     std::vector<Part> parts_;
     std::vector<Part> known_; // by output
     std::vector<std::array<double, 2>> items_;
     Bounds start_{-infinity, infinity};
 
-    [[nodiscard]] const std::vector<Run>& of(std::uint32_t ref, int reg) const noexcept {
+    [[nodiscard]] const Pieces& of(std::uint32_t ref, int reg) const noexcept {
         return parts_[ref / 2][static_cast<std::size_t>(reg) ^ (ref & 1U)];
     }
-    void compute(const Engine& engine, std::size_t index, int reg, Tick newest);
+    void check(const Engine& engine, const Origin& origin);
+    void look(const Engine& engine, const Origin& origin, const News& news);
+    void compute(const Engine& engine, std::size_t index, int reg, const News& news);
+    // Of until and since, register 0 and 1.
+    [[nodiscard]] Pieces together(const Engine& engine, const Cause& cause, Tick last) const;
+    [[nodiscard]] Pieces apart(const Cause& cause) const;
     [[nodiscard]] double item(const Engine& engine, const Origin& origin, std::size_t index,
                               int reg) const noexcept;
     [[nodiscard]] double until_item(const Engine& engine, const Origin& origin,

@@ -31,7 +31,12 @@ DenseMonitor::DenseMonitor(Graph graph, DenseSettings settings)
     for (const std::uint32_t output : outputs_) {
         if (output / 2 >= engine_.size()) throw std::invalid_argument("There is no such output.");
     }
-    if (!settings.origin.empty()) origin_.emplace(std::move(settings.origin), engine_);
+    if (!settings.origin.empty()) {
+        origin_.emplace(std::move(settings.origin), engine_, settings.causes.has_value());
+    }
+    if (settings.causes) {
+        causes_.emplace(std::move(*settings.causes), engine_, origin_.value(), true);
+    }
     for (std::size_t i = 0; i < outputs_.size() && decides_; ++i)
         decisions_[i].begin(engine_, outputs_[i]);
 }
@@ -80,6 +85,7 @@ std::optional<DenseMonitor::Failure> DenseMonitor::learn(Tick at, std::optional<
     for (std::size_t i = 0; i < outputs_.size(); ++i)
         collect(i, at, begins ? -1 : *before - start(), begins);
     if (origin_) origin_->look(engine_);
+    if (causes_) causes_->look(engine_, *origin_, lessons_);
     if (samples_.ended()) return std::nullopt; // what was kept can still be asked for
     closed_ = std::ranges::min(samples_.settled());
     if (++calls_ % pause == 0) settle();
@@ -117,8 +123,8 @@ void DenseMonitor::collect(std::size_t output, Tick at, Tick before, bool begins
 
 std::vector<Change> DenseMonitor::timed(std::vector<Change> runs) const {
     for (Change& change : runs) {
-        change.l += start();
-        change.r += start();
+        change.l = plus(change.l, start());
+        change.r = plus(change.r, start());
     }
     return runs;
 }
@@ -143,6 +149,18 @@ std::optional<Bounds> DenseMonitor::at(std::size_t output, Tick time) const {
     const auto first = held(output);
     if (!first || time < *first) return std::nullopt;
     return engine_.at(outputs_[output], std::min(time - start(), forever));
+}
+
+std::optional<Bounds> DenseMonitor::caused(std::size_t output, std::optional<Tick> time) const {
+    const Tick tick = time.value_or(start());
+    if (!begun_ || tick < start()) return std::nullopt;
+    return causes_.value().at(output, std::min(tick - start(), forever));
+}
+
+std::vector<Change> DenseMonitor::caused(std::size_t output) const {
+    if (!begun_) return {};
+    const Tick last = finished_ ? *samples_.newest() - start() : forever;
+    return timed(causes_.value().runs(output, last));
 }
 
 std::variant<Bounds, DenseMonitor::Failure> DenseMonitor::suppose(std::optional<std::size_t> output,
@@ -220,6 +238,7 @@ std::size_t DenseMonitor::bytes() const noexcept {
 void DenseMonitor::transfer(Snapshot& snapshot) {
     engine_.transfer(snapshot);
     if (origin_) origin_->transfer(snapshot);
+    if (causes_) causes_->transfer(snapshot);
     for (auto& decisions : decisions_)
         decisions.transfer(snapshot);
     samples_.transfer(snapshot);

@@ -6,6 +6,7 @@
 // Cost: that of the engine. Memory: its runs, and samples as Samples keeps them.
 #pragma once
 
+#include "causation.hpp"
 #include "changes.hpp"
 #include "decisions.hpp"
 #include "engine.hpp"
@@ -27,6 +28,7 @@ struct DenseSettings {
     std::vector<Bounds> ranges;         // of the inputs
     std::optional<Tick> lateness;       // see Samples
     bool decides = false;               // verdicts; if not, bounds
+    std::optional<CauseGraph> causes;   // what samples cause, in addition to bounds
 };
 
 class DenseMonitor {
@@ -60,6 +62,14 @@ class DenseMonitor {
     // The bounds at the start, where there is an origin.
     [[nodiscard]] std::optional<Bounds> at_start() const;
 
+    // What the last call caused, where that is asked for: at the start of the trace, of an output
+    // there or at a later time, and at all times, in order.
+    [[nodiscard]] Bounds caused_at_start() const noexcept {
+        return causes_ ? causes_->at_start() : bounds::anything;
+    }
+    [[nodiscard]] std::optional<Bounds> caused(std::size_t output, std::optional<Tick> time) const;
+    [[nodiscard]] std::vector<Change> caused(std::size_t output) const;
+
     // An output, or none for the start, at a tick that is held, if an input had these bounds from a
     // time on: behind its newest sample, and up to the next one of them.
     struct Supposed {
@@ -89,6 +99,7 @@ class DenseMonitor {
     bool decides_;
     Samples samples_;
     std::optional<Origin> origin_;
+    std::optional<Causes> causes_;
     std::vector<Decisions> decisions_;           // by output
     std::vector<std::vector<Decision>> decided_; // by output
     std::vector<Changes> changes_;               // by output

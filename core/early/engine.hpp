@@ -11,6 +11,7 @@
 #include "graph.hpp"
 #include "totals.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -88,6 +89,10 @@ class Engine {
     }
     [[nodiscard]] const Runs& runs(std::uint32_t ref, int reg) const noexcept {
         return nodes_[ref / 2].own[static_cast<std::size_t>(reg) ^ (ref & 1U)];
+    }
+    // Whether an atom reads an input.
+    [[nodiscard]] bool reads(std::uint32_t ref, std::uint32_t input) const noexcept {
+        return std::ranges::binary_search(readers_[input], ref / 2);
     }
     [[nodiscard]] Tick horizon(std::uint32_t ref) const noexcept {
         return graph_.nodes[ref / 2].horizon;

@@ -43,12 +43,15 @@ tuples_of(const std::vector<early::Change>& runs) {
 DenseEarlyMonitor::DenseEarlyMonitor(const early::Graph& graph,
                                      const early::DenseSettings& settings,
                                      const std::vector<nb::str>& names, const nb::object& ignored,
-                                     const nb::dict& types, bool replays, Exceptions exceptions)
+                                     const nb::dict& types, bool replays,
+                                     const std::optional<EarlyCauses>& causes,
+                                     Exceptions exceptions)
     : monitor_(graph, settings), ranges_(settings.ranges), late_(settings.lateness.has_value()),
       decides_(settings.decides), replays_(replays), exceptions_(std::move(exceptions)),
       guard_(exceptions_.refused, exceptions_.in_use), names_(names, graph.inputs, ignored, types),
       steps_before_(steps_before(graph)), counts_(graph.inputs) {
     ranges_.resize(graph.inputs, bounds::anything);
+    if (causes) causation_.emplace(causation_of(*causes));
 }
 
 void DenseEarlyMonitor::set_time_scale(const nb::object& verdict, double rate) {
@@ -99,6 +102,7 @@ PyObject* DenseEarlyMonitor::update(PyObject* time, const Named& values) noexcep
         return PyErr_NoMemory();
     }
     if (decides_) return news();
+    if (causation_) return made_of(*causation_, monitor_.caused_at_start());
     Py_RETURN_NONE;
 }
 
@@ -224,6 +228,28 @@ std::optional<std::pair<double, double>> DenseEarlyMonitor::supposed(
     return pair_of(std::get<Bounds>(found));
 }
 
+std::pair<double, double> DenseEarlyMonitor::causation_at_start() const {
+    return caused_of(monitor_.caused_at_start());
+}
+
+std::optional<std::pair<double, double>>
+DenseEarlyMonitor::causation(std::size_t output, std::optional<Tick> tick) const {
+    require_output(output);
+    const auto caused = monitor_.caused(output, tick);
+    if (!caused) return std::nullopt;
+    return caused_of(*caused);
+}
+
+DenseEarlyMonitor::Runs DenseEarlyMonitor::caused(std::size_t output) const {
+    require_output(output);
+    Runs result;
+    for (const early::Change& run : monitor_.caused(output)) {
+        const auto [violation, satisfaction] = caused_of(run.bounds);
+        result.emplace_back(run.l, early::plus(run.r, 1), violation, satisfaction);
+    }
+    return result;
+}
+
 std::pair<double, double> DenseEarlyMonitor::known(std::uint32_t input, Tick tick) const {
     if (input >= ranges_.size()) throw std::out_of_range("There is no such input.");
     return pair_of(monitor_.samples().known(input, tick));
@@ -294,16 +320,19 @@ void add_dense_early_monitor(const nb::module_& module, const Exceptions& except
                          const std::vector<std::pair<double, double>>& ranges,
                          const std::vector<nb::str>& names, const nb::object& ignored,
                          const nb::dict& types, std::optional<Tick> lateness, bool verdicts,
-                         bool replays) {
-                const early::DenseSettings settings{std::move(outputs), items_of(origin),
-                                                    bounds_of(ranges), lateness, verdicts};
+                         bool replays, const std::optional<EarlyCauses>& causes) {
+                const early::DenseSettings settings{
+                    std::move(outputs), items_of(origin),
+                    bounds_of(ranges),  lateness,
+                    verdicts,           causes ? std::optional(causes_of(*causes)) : std::nullopt};
                 new (self)
                     DenseEarlyMonitor(graph_of(nodes, static_cast<std::uint32_t>(names.size())),
-                                      settings, names, ignored, types, replays, exceptions);
+                                      settings, names, ignored, types, replays, causes, exceptions);
             },
             nb::arg("nodes"), nb::arg("outputs"), nb::arg("origin"), nb::arg("ranges"),
             nb::arg("names"), nb::arg("ignored").none(), nb::arg("types"),
-            nb::arg("lateness").none(), nb::arg("verdicts"), nb::arg("replays") = false)
+            nb::arg("lateness").none(), nb::arg("verdicts"), nb::arg("replays") = false,
+            nb::arg("causes").none() = nb::none())
         .def("set_time_scale", &DenseEarlyMonitor::set_time_scale, nb::arg("verdict"),
              nb::arg("rate"), "Let update() take numbers of so many ticks each.")
         .def("learn", &DenseEarlyMonitor::learn, nb::arg("tick"), nb::arg("values"),
@@ -323,6 +352,12 @@ void add_dense_early_monitor(const nb::module_& module, const Exceptions& except
         .def("supposed", &DenseEarlyMonitor::supposed, nb::arg("output").none(), nb::arg("tick"),
              nb::arg("later"),
              "The bounds of an output, or at the start, if inputs had such bounds from ticks on.")
+        .def("causation_at_start", &DenseEarlyMonitor::causation_at_start,
+             "Violation and satisfaction that the last call caused at the start of the trace.")
+        .def("causation", &DenseEarlyMonitor::causation, nb::arg("output"), nb::arg("tick").none(),
+             "The same of an output at a tick, or at the start; None before the trace.")
+        .def("caused", &DenseEarlyMonitor::caused, nb::arg("output"),
+             "The same as runs (begin, end, violation, satisfaction), where there is any.")
         .def("known", &DenseEarlyMonitor::known, nb::arg("number"), nb::arg("tick"),
              "What is known of an input at a tick.")
         .def(

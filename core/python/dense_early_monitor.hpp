@@ -28,7 +28,8 @@ class DenseEarlyMonitor : public EarlyBackend {
 
     DenseEarlyMonitor(const early::Graph& graph, const early::DenseSettings& settings,
                       const std::vector<nb::str>& names, const nb::object& ignored,
-                      const nb::dict& types, bool replays, Exceptions exceptions);
+                      const nb::dict& types, bool replays, const std::optional<EarlyCauses>& causes,
+                      Exceptions exceptions);
 
     // update() takes numbers of which 1 is so many ticks, and returns objects of this class.
     void set_time_scale(const nb::object& verdict, double rate);
@@ -56,6 +57,11 @@ class DenseEarlyMonitor : public EarlyBackend {
     [[nodiscard]] std::optional<std::pair<double, double>>
     supposed(std::optional<std::size_t> output, Tick tick,
              const std::vector<std::tuple<std::uint32_t, Tick, double, double>>& later);
+    // Violation and satisfaction that the last call caused: at the start, at a tick, and as runs.
+    [[nodiscard]] std::pair<double, double> causation_at_start() const;
+    [[nodiscard]] std::optional<std::pair<double, double>>
+    causation(std::size_t output, std::optional<Tick> tick) const;
+    [[nodiscard]] Runs caused(std::size_t output) const;
     [[nodiscard]] std::pair<double, double> known(std::uint32_t input, Tick tick) const;
     [[nodiscard]] std::optional<Tick> held(std::size_t output) const;
 
@@ -85,7 +91,8 @@ class DenseEarlyMonitor : public EarlyBackend {
     std::vector<std::uint32_t> steps_before_; // by node
     std::vector<std::int64_t> counts_;        // samples of each input
     std::vector<early::DenseMonitor::Given> given_;
-    std::optional<ResultClass<4>> verdict_; // of what update() returns
+    std::optional<ResultClass<4>> verdict_;   // of what update() returns
+    std::optional<ResultClass<2>> causation_; // of what update() returns
     double rate_ = 0;
 
     [[nodiscard]] bool takes(PyObject* time, const Named& values, Tick& tick) noexcept;

@@ -19,11 +19,7 @@ using early::Tick;
 
 PyObject* EarlyMonitor::answer() noexcept {
     if (settings_.verdict) return news(0);
-    if (causation_ && !finished_) {
-        const auto [violation, satisfaction] = causation_at_start();
-        return causation_->make({nb::steal(PyFloat_FromDouble(violation)),
-                                 nb::steal(PyFloat_FromDouble(satisfaction))});
-    }
+    if (causation_ && !finished_) return made_of(*causation_, causes_->at_start());
     Py_RETURN_NONE;
 }
 
@@ -117,16 +113,13 @@ nb::object EarlyMonitor::supposed(
     return nb::make_tuple(value.lower, value.upper);
 }
 
-// No minus before a zero.
 std::pair<double, double> EarlyMonitor::causation_at_start() const {
-    const Bounds caused = causes_ ? causes_->at_start() : bounds::anything;
-    return {caused.upper + 0.0, caused.lower + 0.0};
+    return caused_of(causes_ ? causes_->at_start() : bounds::anything);
 }
 
 std::pair<double, double> EarlyMonitor::causation(std::size_t output, Tick sample) const {
     if (output >= outputs_.size()) throw std::out_of_range("There is no such output.");
-    const Bounds caused = causes_.value().at(output, sample);
-    return {caused.upper + 0.0, caused.lower + 0.0};
+    return caused_of(causes_.value().at(output, sample));
 }
 
 std::optional<Tick> EarlyMonitor::place(double time) const {

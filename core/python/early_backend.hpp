@@ -1,6 +1,7 @@
 // What the monitors of verdicts and bounds before the horizon have in common, as Python sees them.
 #pragma once
 
+#include "../early/causation.hpp"
 #include "../early/origin.hpp"
 #include "names.hpp"
 #include "result_class.hpp"
@@ -21,10 +22,23 @@ using EarlyNode = std::tuple<int, std::uint32_t, std::uint32_t, early::Tick, ear
                              early::Tick, std::vector<EarlyStep>>;
 // (kind, negated, a, b, c, tick)
 using EarlyItem = std::tuple<int, bool, std::uint32_t, std::uint32_t, std::uint32_t, early::Tick>;
+// (kind, ref, a, b, low, high, shift, core)
+using EarlyCause = std::tuple<int, std::uint32_t, std::uint32_t, std::uint32_t, early::Tick,
+                              early::Tick, early::Tick, std::uint32_t>;
+// (a, b, before, rest)
+using EarlyStart = std::tuple<std::uint32_t, std::uint32_t, std::uint32_t, std::uint32_t>;
+// Parts, outputs, starts, and the class of what update() returns.
+using EarlyCauses = std::tuple<std::vector<EarlyCause>, std::vector<std::uint32_t>,
+                               std::vector<EarlyStart>, nb::object>;
 
 [[nodiscard]] early::Graph graph_of(const std::vector<EarlyNode>& nodes, std::uint32_t inputs);
 [[nodiscard]] std::vector<early::Item> items_of(const std::vector<EarlyItem>& items);
 [[nodiscard]] std::vector<Bounds> bounds_of(const std::vector<std::pair<double, double>>& pairs);
+[[nodiscard]] early::CauseGraph causes_of(const EarlyCauses& causes);
+// What update() returns, by the class of the causes; no minus before a zero.
+[[nodiscard]] ResultClass<2> causation_of(const EarlyCauses& causes);
+[[nodiscard]] std::pair<double, double> caused_of(const Bounds& caused);
+[[nodiscard]] PyObject* made_of(const ResultClass<2>& causation, const Bounds& caused) noexcept;
 
 // Of each node, how many steps of others come before its own.
 [[nodiscard]] std::vector<std::uint32_t> steps_before(const early::Graph& graph);

@@ -42,6 +42,31 @@ std::vector<Bounds> bounds_of(const std::vector<std::pair<double, double>>& pair
     return result;
 }
 
+early::CauseGraph causes_of(const EarlyCauses& causes) {
+    early::CauseGraph graph;
+    for (const auto& [kind, ref, a, b, low, high, shift, core] : std::get<0>(causes)) {
+        const auto known = static_cast<early::Cause::Kind>(kind);
+        graph.parts.push_back({known, ref, a, b, low, high, shift, core});
+    }
+    graph.outputs = std::get<1>(causes);
+    for (const auto& [a, b, before, rest] : std::get<2>(causes))
+        graph.starts.push_back({a, b, before, rest});
+    return graph;
+}
+
+ResultClass<2> causation_of(const EarlyCauses& causes) {
+    return {std::get<3>(causes), std::array{"violation", "satisfaction"}};
+}
+
+std::pair<double, double> caused_of(const Bounds& caused) {
+    return {caused.upper + 0.0, caused.lower + 0.0};
+}
+
+PyObject* made_of(const ResultClass<2>& causation, const Bounds& caused) noexcept {
+    return causation.make({nb::steal(PyFloat_FromDouble(caused.upper + 0.0)),
+                           nb::steal(PyFloat_FromDouble(caused.lower + 0.0))});
+}
+
 std::vector<std::uint32_t> steps_before(const early::Graph& graph) {
     std::vector<std::uint32_t> result;
     std::uint32_t before = 0;

@@ -25,19 +25,6 @@ constexpr std::int64_t pause = 64;
     return early::Origin(std::move(items), engine, follows);
 }
 
-[[nodiscard]] early::Causes causes_of(const EarlyCauses& given, const early::Engine& engine,
-                                      const early::Origin& origin) {
-    std::vector<early::Cause> parts;
-    for (const auto& [kind, ref, a, b, low, high, shift, core] : std::get<0>(given)) {
-        const auto known = static_cast<early::Cause::Kind>(kind);
-        parts.push_back({known, ref, a, b, low, high, shift, core});
-    }
-    std::vector<early::StartingCause> starts;
-    for (const auto& [a, b, before, rest] : std::get<2>(given))
-        starts.push_back({a, b, before, rest});
-    return {std::move(parts), std::get<1>(given), std::move(starts), engine, origin};
-}
-
 } // namespace
 
 EarlyMonitor::EarlyMonitor(const early::Graph& graph, std::vector<std::uint32_t> outputs,
@@ -59,8 +46,8 @@ EarlyMonitor::EarlyMonitor(const early::Graph& graph, std::vector<std::uint32_t>
         if (output / 2 >= engine_.size()) throw std::invalid_argument("There is no such output.");
     }
     if (causes) {
-        causes_.emplace(causes_of(*causes, engine_, origin_.value()));
-        causation_.emplace(std::get<3>(*causes), std::array{"violation", "satisfaction"});
+        causes_.emplace(causes_of(*causes), engine_, origin_.value(), false);
+        causation_.emplace(causation_of(*causes));
     }
     // What is known before any sample came, such as the truth of constants, waits for the first.
     for (std::size_t i = 0; i < outputs_.size(); ++i)

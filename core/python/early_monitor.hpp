@@ -27,15 +27,6 @@
 
 namespace rtamt::python {
 
-// (kind, ref, a, b, low, high, shift, core)
-using EarlyCause = std::tuple<int, std::uint32_t, std::uint32_t, std::uint32_t, early::Tick,
-                              early::Tick, early::Tick, std::uint32_t>;
-// (a, b, before, rest)
-using EarlyStart = std::tuple<std::uint32_t, std::uint32_t, std::uint32_t, std::uint32_t>;
-// Parts, outputs, starts, and the class of what update() returns.
-using EarlyCauses = std::tuple<std::vector<EarlyCause>, std::vector<std::uint32_t>,
-                               std::vector<EarlyStart>, nb::object>;
-
 struct EarlySettings {
     double period = 0;
     double tolerance = 0;

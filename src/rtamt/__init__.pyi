@@ -93,6 +93,7 @@ from rtamt.signals.dense import Dense as Dense
 from rtamt.signals.discrete import Discrete as Discrete
 from rtamt.signals.episodes import Episode as Episode
 from rtamt.signals.outcomes import Causation as Causation
+from rtamt.signals.outcomes import CausationRun as CausationRun
 from rtamt.signals.outcomes import Cause as Cause
 from rtamt.signals.outcomes import Interval as Interval
 from rtamt.signals.outcomes import Verdict as Verdict

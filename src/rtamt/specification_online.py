@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from rtamt.signals.discrete import Discrete
     from rtamt.signals.domain_interface import TimeDomain
     from rtamt.verdicts.causation import CausationMonitor
+    from rtamt.verdicts.dense_causation import DenseCausationMonitor
     from rtamt.verdicts.dense_early import DenseEagerMonitor
     from rtamt.verdicts.eager import EagerMonitor
     from rtamt.verdicts.interval import IntervalMonitor
@@ -99,6 +100,15 @@ class OnlineSpecification(QuantifiedText):
         **settings: Unpack[DiscreteSettings],
     ) -> CausationMonitor: ...
 
+    @overload
+    def monitor(
+        self,
+        *,
+        time: Literal["dense"] | Dense,
+        verdict: Literal["causation"],
+        **settings: Unpack[DenseSettings],
+    ) -> DenseCausationMonitor: ...
+
     def monitor(
         self,
         *,
@@ -134,7 +144,7 @@ class OnlineSpecification(QuantifiedText):
         ``verdict``: what the monitor reports of each sample: ``"delayed"``, the robustness one horizon later;
         ``"eager"``, whether the formula holds, as soon as no later sample can change it; ``"interval"``, bounds
         of the robustness from what is known by now; ``"causation"``, by how much the sample alone violates or
-        satisfies the formula. In dense time ``"eager"`` and ``"interval"`` report runs of instants, with unbounded
+        satisfies the formula. In dense time these three report runs of instants, with unbounded
         future too. ``at``: of which instants ``"interval"`` reports: the ``"start"`` of the trace, as by default
         for unbounded future, or ``"every"`` one. ``ranges``: from a variable to its least and greatest value
         (``"eager"``, ``"interval"``). ``lateness``: by how much a sample may come late (``"interval"``); without it,

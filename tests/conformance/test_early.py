@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from math import inf
 from random import Random
 
 import pytest
 from conformance import early
 
 import rtamt
-from rtamt import Dense
+from rtamt import Dense, Discrete
 from rtamt.language.parser import parse_formula
 from rtamt.rewrite.check import unbounded_future
 from tests.oracle import meaning
@@ -62,19 +63,36 @@ CAUSED = [case for case in CASES if case.causation]
 @pytest.mark.parametrize("backend", ["cpp", "python"])
 @pytest.mark.parametrize("case", [pytest.param(case, id=case.id) for case in CAUSED])
 def test_causation_is_that_of_the_monitor_and_adds_up_to_the_bounds(case, backend):
-    spec = rtamt.parse(case.formula, period=case.seconds, backend=backend)
+    dense = case.time == "dense"
+    domain = Dense(case.seconds) if dense else Discrete(case.seconds)
+    spec = rtamt.parse(case.formula, time=domain, backend=backend)
     monitor = spec.monitor(verdict="causation")
     before = spec.monitor(verdict="interval", at="start").interval()
     lower, upper = before.lower, before.upper
-    for i, (violation, satisfaction) in enumerate(case.causation):
-        row = {name: values[i] for name, values in case.signals.items()}
-        assert monitor.update(_seconds(i, case), **row) == rtamt.Causation(violation, satisfaction)
+    for i, caused in enumerate(case.causation):
+        if not dense:
+            row = {name: values[i] for name, values in case.signals.items()}
+            found, bounds = monitor.update(_seconds(i, case), **row), case.bounds[i][0]
+        elif i < len(updates := early.updates_of(case)):
+            row = {name: value for name, (value, _) in updates[i][1].items()}
+            found, bounds = (
+                monitor.update(_seconds(updates[i][0], case), **row),
+                (case.bounds[i] or [[]])[0][1:],
+            )
+        else:
+            found, bounds = monitor.finish(), case.bounds[i][0][1:]
+        if caused is None:
+            assert found == rtamt.Causation(inf, -inf)
+            continue
+        violation, satisfaction = caused
+        assert found == rtamt.Causation(violation, satisfaction)
         lower, upper = max(lower, satisfaction), min(upper, violation)
-        assert [lower, upper] == case.bounds[i][0]
+        assert [lower, upper] == bounds
 
 
 def test_the_corpus_has_causation():
-    assert len(CAUSED) >= 50
+    for time in ("discrete", "dense"):
+        assert sum(case.time == time for case in CAUSED) >= 50
 
 
 def _seconds(tick, case):

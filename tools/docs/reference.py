@@ -207,7 +207,8 @@ TASKS: dict[str, tuple[str, tuple[str, ...]]] = {
         (
             "rtamt.verdicts.eager.EagerMonitor", "Verdict", "rtamt.verdicts.dense_early.DenseEagerMonitor",
             "VerdictRun", "rtamt.verdicts.interval.IntervalMonitor", "rtamt.verdicts.interval.Change", "Interval",
-            "rtamt.verdicts.causation.CausationMonitor", "Causation", "Cause", "calibrate",
+            "rtamt.verdicts.causation.CausationMonitor", "rtamt.verdicts.dense_causation.DenseCausationMonitor",
+            "Causation", "CausationRun", "Cause", "calibrate",
         ),
     ),
     "Explain": ("", ("Result.explain", "rtamt.explain.report.Explanation")),

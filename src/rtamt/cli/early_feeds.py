@@ -22,9 +22,10 @@ if TYPE_CHECKING:
 
     from rtamt.cli.live_view import Live
     from rtamt.signals.coding import Types
-    from rtamt.signals.outcomes import Cause, Interval, Verdict
+    from rtamt.signals.outcomes import Causation, Cause, Interval, Verdict
     from rtamt.verdicts.at_start import StartMonitor
     from rtamt.verdicts.causation import CausationMonitor
+    from rtamt.verdicts.dense_causation import DenseCausationMonitor
     from rtamt.verdicts.dense_early import DenseEagerMonitor
     from rtamt.verdicts.eager import EagerMonitor
     from rtamt.verdicts.early import EarlyMonitor
@@ -164,7 +165,7 @@ class IntervalFeed:
 class CausationFeed:
     """Prints what each sample alone makes of the formula at the start of the trace."""
 
-    def __init__(self, monitor: CausationMonitor) -> None:
+    def __init__(self, monitor: CausationMonitor | DenseCausationMonitor) -> None:
         self.monitor = monitor
 
     def take(self, stamp: Any, values: dict[str, float], line: int) -> str:
@@ -174,14 +175,14 @@ class CausationFeed:
             caused = self.monitor.update(time, **values)
         except StlError as error:
             return f"{STDIN}, line {line}: {error}"
-        violation, satisfaction = map(json_number, (caused.violation, caused.satisfaction))
-        rest = json.dumps({"violation": violation, "satisfaction": satisfaction})
-        say(f'{{"time": {_json(time)}, {rest[1:]}', flush=True)
+        say(f'{{"time": {_json(time)}, {_caused(caused)}}}', flush=True)
         return ""
 
     def finish(self) -> None:
-        """End the trace."""
-        self.monitor.finish()
+        """End the trace, in dense time with what that causes: variables hold their last values."""
+        caused = self.monitor.finish()
+        if caused is not None:
+            say(f'{{{_caused(caused)}, "final": true}}', flush=True)
 
 
 def _time(monitor: EarlyMonitor, stamp: Any) -> Any:
@@ -195,6 +196,12 @@ def _time(monitor: EarlyMonitor, stamp: Any) -> Any:
 
 def _json(time: Any) -> str:
     return f'"{stamp_text(time)}"' if isinstance(time, np.datetime64) else stamp_text(time)
+
+
+def _caused(caused: Causation) -> str:
+    """Return causation as members of a JSON object."""
+    violation, satisfaction = map(json_number, (caused.violation, caused.satisfaction))
+    return f'"violation": {json.dumps(violation)}, "satisfaction": {json.dumps(satisfaction)}'
 
 
 def _ends(interval: Interval) -> str:

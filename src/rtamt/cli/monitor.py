@@ -36,6 +36,7 @@ from rtamt.signals.signal import Signal
 from rtamt.signals.trace import in_seconds
 from rtamt.verdicts.at_start import StartMonitor
 from rtamt.verdicts.causation import CausationMonitor
+from rtamt.verdicts.dense_causation import DenseCausationMonitor
 from rtamt.verdicts.interval import IntervalMonitor
 from rtamt.verdicts.modes import DELAYED, MODES
 
@@ -79,9 +80,10 @@ samples that decide it alone. --verdict interval prints bounds of the robustness
 {"time": 0.0, "lower": -1.0, "upper": "inf", "final": false}. With "until" an object is about all samples up to that
 one, in dense time all instants before it. --verdict causation prints by how much each sample alone violates and
 satisfies the formula at the start of the trace: {"time": 0.0, "violation": -1.0, "satisfaction": "-inf"}, or
-"inf" and "-inf" if it has no part. A formula of unbounded future is watched at the
-start of the trace, also without --verdict: {"time": 12.3, "lower": "-inf", "upper": -1.0, "status":
-"violated since 12.3 s"}; other states are "open" and "can no longer be violated".
+"inf" and "-inf" if it has no part. In dense time a last line is about the end of the trace, with "final": true.
+A formula of unbounded future is watched at the start of the trace, also without --verdict: {"time": 12.3,
+"lower": "-inf", "upper": -1.0, "status": "violated since 12.3 s"}; other states are "open" and "can no longer
+be violated".
 
 A line that is no sample ends the monitor with exit code 2. With --keep-going it is reported and
 left out, and the exit code is 2 at the end. A sample that is left out leaves a gap in time, which
@@ -213,7 +215,7 @@ def _early(spec: Specification, args: argparse.Namespace, live: Live | None) -> 
         raise CommandError(f"--live draws the robustness; leave it out, or use --verdict {DELAYED}")
     settings: dict[str, Any] = {"explain": True} if args.explain else {}
     monitor = spec.monitor(verdict=verdict, tolerance=args.tolerance, **settings)
-    if isinstance(monitor, CausationMonitor):
+    if isinstance(monitor, CausationMonitor | DenseCausationMonitor):
         return CausationFeed(monitor)
     return (
         IntervalFeed(monitor)

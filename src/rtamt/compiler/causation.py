@@ -93,17 +93,20 @@ def _recursive(formula: Formula) -> bool:
 
 
 def _operands(graph: Graph, formula: Formula) -> tuple[Formula, ...]:
-    """Return the parts that a part is made of, none of a predicate."""
-    return () if graph.is_atom(formula) or not connects(formula) else children(formula)
+    """Return the parts that a part is made of, none of a predicate.
+
+    In dense time variables become known at different ticks, so that predicates do which are one atom of the graph.
+    """
+    whole = graph.is_atom(formula) and not graph.domain.continuous
+    return () if whole or not connects(formula) else children(formula)
 
 
 def _part(graph: Graph, parts: list[Cause], refs: dict[Formula, int], formula: Formula) -> int:
     """Add a part whose operands have been added; return its reference."""
-    if graph.is_atom(formula):
-        return _add(parts, Cause(KINDS.index("atom"), graph.ref(formula)))
+    if not _operands(graph, formula):
+        kind = "atom" if graph.is_atom(formula) else "span"
+        return _add(parts, Cause(KINDS.index(kind), graph.ref(formula)))
     assert isinstance(formula, Apply)
-    if not connects(formula):
-        return _add(parts, Cause(KINDS.index("span"), graph.ref(formula)))
     kernel = formula.op.kernel
     args = [refs[operand] for operand in formula.args]
     past = formula.op.tense is Tense.PAST

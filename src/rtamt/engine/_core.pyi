@@ -269,7 +269,8 @@ class DenseEarlyMonitor:
     """The same in dense time. Times are ticks, and runs reach from ``begin`` up to, and without, ``end``.
 
     ``lateness``: by how many ticks a sample may come late after the newest one of any input; None where those of each
-    input come in order. ``verdicts``: verdicts, not bounds. What stands for no tick is ``compiler.early.NEVER``.
+    input come in order. ``verdicts``: verdicts, not bounds. ``causes`` as for EarlyMonitor. What stands for no
+    tick is ``compiler.early.NEVER``.
     """
 
     def __init__(
@@ -284,6 +285,7 @@ class DenseEarlyMonitor:
         lateness: int | None,
         verdicts: bool,
         replays: bool = False,
+        causes: tuple[Any, ...] | None = None,
     ) -> None: ...
     def set_time_scale(self, verdict: type, rate: float) -> None:
         """Let update() take times in numbers of ``rate`` ticks each, and return objects of a class like VerdictRun."""
@@ -319,6 +321,15 @@ class DenseEarlyMonitor:
 
         ``later``: (input, from, lower, upper) in order; None as for bounds().
         """
+
+    def causation_at_start(self) -> tuple[float, float]:
+        """Violation and satisfaction that the last call caused at the start of the trace."""
+
+    def causation(self, output: int, tick: int | None) -> tuple[float, float] | None:
+        """The same of an output at a tick, or at the start; None before the trace."""
+
+    def caused(self, output: int) -> list[tuple[int, int, float, float]]:
+        """The same as runs (begin, end, violation, satisfaction), where there is any."""
 
     def known(self, number: int, tick: int) -> tuple[float, float]:
         """What is known of an input at a tick."""

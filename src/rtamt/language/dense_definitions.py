@@ -97,7 +97,7 @@ def lifted(
     return merged(instants, [at(t, *operands, a, b, *rank) for t in between])
 
 
-def _pieces(
+def pieces(
     begin: int, end: int | None, operands: tuple[Steps, ...], cut: int | None = None
 ) -> list[tuple[int, bool]]:
     """Return one instant for each piece of [begin, end] on which nothing changes, in order.
@@ -126,13 +126,13 @@ def _pieces(
 
 def _ahead(t: int, x: Steps, a: int, b: int | None) -> list[float]:
     """Return the values of φ on [t+a, t+b], which is not clipped at the end of the trace."""
-    return [x.at(u) for u, _ in _pieces(t + a, None if b is None else t + b, (x,))]
+    return [x.at(u) for u, _ in pieces(t + a, None if b is None else t + b, (x,))]
 
 
 def _behind(t: int, x: Steps, a: int, b: int | None) -> list[float]:
     """Return the values of φ on [t-b, t-a] ∩ [t₀, ∞)."""
     start = x.times[0]
-    return [x.at(u) for u, _ in _pieces(start if b is None else max(t - b, start), t - a, (x,))]
+    return [x.at(u) for u, _ in pieces(start if b is None else max(t - b, start), t - a, (x,))]
 
 
 def eventually(t: int, x: Steps, a: int, b: int | None) -> float:
@@ -271,7 +271,7 @@ def fall(t: int, x: Steps, tick: int, _: int | None) -> float:
 def _reached(begin: int, first: int, last: int | None, x: Steps, y: Steps) -> float:
     """Sup over t' ∈ [first, last] of min(ψ(t'), inf of φ over [begin, t')); begin ≤ first ≤ last."""
     best, held = -inf, inf
-    for u, interval in _pieces(begin, last, (x, y), cut=first):
+    for u, interval in pieces(begin, last, (x, y), cut=first):
         if interval:  # part of the interval precedes each t' inside it
             held = min(held, x.at(u))
         if u >= first:
@@ -297,7 +297,7 @@ def since(t: int, x: Steps, y: Steps, a: int, b: int | None) -> float:
     start = x.times[0]
     begin = start if b is None else max(t - b, start)
     best, held = -inf, inf
-    for u, interval in reversed(_pieces(begin, t, (x, y), cut=t - a)):
+    for u, interval in reversed(pieces(begin, t, (x, y), cut=t - a)):
         if interval:  # part of the interval follows each t' inside it
             held = min(held, x.at(u))
         if u <= t - a:

@@ -11,6 +11,7 @@ discrete_bounds     bounds in discrete time, of traces that are known in part
 dense_bounds        bounds in dense time
 earliest            verdicts, each at the first sample that decides it
 causation           by how much the newest sample alone violates or satisfies a formula
+dense_causation     the same in dense time
 definition_adapter  run an operator that has only a definition inside the engine
 ==================  ============================================================
 """

@@ -55,6 +55,7 @@ class Dense(TimeDomain):
         "stream": "rtamt.verdicts.streaming:DenseStream",
         "eager": "rtamt.verdicts.dense_early:DenseEagerMonitor",
         "interval": "rtamt.verdicts.dense_interval:DenseIntervalMonitor",
+        "causation": "rtamt.verdicts.dense_causation:DenseCausationMonitor",
         "early_check": "rtamt.verdicts.dense_early_check:DenseEarlyCheck",
         "replay": "rtamt.plot.band:replay_ticks",
         "watches": "rtamt.ros.watches:of_messages",

@@ -81,14 +81,29 @@ class Cause:
 class Causation:
     """By how much the newest sample alone violates and satisfies a formula (CAV 2023).
 
-    ``violation``: the robustness would be at most this because of the sample; +inf if it has no part. ``satisfaction``:
-    it would be at least this; -inf if it has no part.
+    In dense time that is all that the last call made known. ``violation``: the robustness would be at most this because
+    of the sample; +inf if it has no part. ``satisfaction``: it would be at least this; -inf if it has no part.
 
     >>> from rtamt import Causation
     >>> Causation(violation=-2.0, satisfaction=-2.0)
     Causation(violation=-2.0, satisfaction=-2.0)
     """
 
+    violation: float
+    satisfaction: float
+
+
+@dataclass(frozen=True, slots=True)
+class CausationRun:
+    """Causation in dense time at every instant from ``begin`` up to, and without, ``end``; None: for ever.
+
+    >>> from rtamt import CausationRun
+    >>> CausationRun(0.0, 2.5, violation=-2.0, satisfaction=-2.0)
+    CausationRun(begin=0.0, end=2.5, violation=-2.0, satisfaction=-2.0)
+    """
+
+    begin: Any
+    end: Any
     violation: float
     satisfaction: float
 

@@ -19,8 +19,34 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from rtamt.compiler.graph import Graph
+    from rtamt.engine.online import Watched
     from rtamt.language.formula import Formula
     from rtamt.signals.domain_interface import TimeDomain
+
+
+START_ONLY = "a formula of unbounded future has causation at the start of the trace alone; call causation()"
+
+
+def check_causation(formula: Formula, text: str | None, watch: Sequence[Watched]) -> None:
+    """Raise :class:`SpecificationError` for a formula without causation."""
+    for each, source in ((formula, text), *((w.formula, w.text) for w in watch)):
+        culprit = causeless(each)
+        if culprit is not None:
+            raise SpecificationError(
+                f"'{excerpt(culprit)}' is a share of a window, which has no causation; use another verdict mode",
+                source,
+                culprit.span,
+            )
+
+
+def not_exact(name: str, given: Any, index: int, moment: str) -> TraceError:
+    """Return the error for a sample that is missing or uncertain."""
+    return TraceError(
+        f"'{name}' is {shown(given)} at sample {index}, {moment}, and causation needs exact samples: give a number, "
+        f"or monitor with verdict='interval'",
+        variable=name,
+        index=index,
+    )
 
 
 class CausationMonitor(DiscreteEarlyMonitor, EarlyMonitorBase):
@@ -40,15 +66,7 @@ class CausationMonitor(DiscreteEarlyMonitor, EarlyMonitorBase):
     _verdict = None
 
     def __init__(self, formula: Formula, domain: TimeDomain, **settings: Any) -> None:
-        watch = settings.get("watch", ())
-        for each, text in ((formula, settings.get("text")), *((w.formula, w.text) for w in watch)):
-            culprit = causeless(each)
-            if culprit is not None:
-                raise SpecificationError(
-                    f"'{excerpt(culprit)}' is a share of a window, which has no causation; use another verdict mode",
-                    text,
-                    culprit.span,
-                )
+        check_causation(formula, settings.get("text"), settings.get("watch", ()))
         self._bounded = unbounded_future(formula) is None
         super().__init__(formula, domain, start=True, every=self._bounded, **settings)
         self._forget()
@@ -78,12 +96,7 @@ class CausationMonitor(DiscreteEarlyMonitor, EarlyMonitorBase):
         known = super()._bounds_of(values, index, time)
         for name, bounds in known.items():
             if bounds is None or bounds[0] != bounds[1]:
-                raise TraceError(
-                    f"'{name}' is {shown(values[name])} at sample {index}, time {time:.15g} s, and causation needs "
-                    f"exact samples: give a number, or monitor with verdict='interval'",
-                    variable=name,
-                    index=index,
-                )
+                raise not_exact(name, values[name], index, f"time {time:.15g} s")
         return known
 
     def causation(self, time: Any = None) -> Causation:
@@ -94,9 +107,7 @@ class CausationMonitor(DiscreteEarlyMonitor, EarlyMonitorBase):
         if time is None:
             return Causation(*self._backend.causation_at_start())
         if not self._bounded:
-            raise UsageError(
-                "a formula of unbounded future has causation at the start of the trace alone; call causation()"
-            )
+            raise UsageError(START_ONLY)
         backend = self._backend
         stamp = self._seconds(time)
         sample = backend.place(stamp) if backend.newest >= 0 else None

@@ -19,13 +19,14 @@ from rtamt.rewrite.presence import tracked
 from rtamt.signals import arrays, dense_arrays
 from rtamt.signals.coding import codes_of
 from rtamt.signals.data_errors import unknown_variable
-from rtamt.signals.outcomes import VerdictRun
+from rtamt.signals.outcomes import Causation, VerdictRun
 from rtamt.signals.ticks import TimeScale
 from rtamt.verdicts.early import DefinitionSession, EarlyMonitor, GraphSession
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
+    from rtamt.compiler.causation import Causes
     from rtamt.engine.dense.early_python_backend import Output
     from rtamt.language.formula import Formula
     from rtamt.signals.domain_interface import TimeDomain
@@ -33,9 +34,11 @@ if TYPE_CHECKING:
 
 
 class DenseEarlyMonitor(EarlyMonitor):
-    """What both monitors of dense time share: samples in ticks, and the caller's times. Not instantiated by users."""
+    """What the monitors of dense time share: samples in ticks, and the caller's times. Not instantiated by users."""
 
     _base = EarlyMonitorBase
+    #: What each sample causes is reported, too.
+    _causes: Causes | None = None
 
     def __init__(
         self,
@@ -80,6 +83,7 @@ class DenseEarlyMonitor(EarlyMonitor):
             self._late,
             self._verdict is not None,
             self._replays,
+            None if self._causes is None else (*self._causes, Causation),
         )
 
     def _defined(self) -> DefinitionSession:

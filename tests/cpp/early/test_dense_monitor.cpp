@@ -49,7 +49,8 @@ DenseSettings settings(const Graph& graph, bool decides) {
             .origin = {},
             .ranges = {},
             .lateness = {},
-            .decides = decides};
+            .decides = decides,
+            .causes = {}};
 }
 
 // A monitor that has the same behind it.

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
@@ -16,6 +16,7 @@ from rtamt.reference import causation, dense_bounds, discrete_bounds, earliest
 from rtamt.reference.dense_bounds import DenseKnowledge
 from rtamt.reference.discrete_bounds import ANYTHING, Knowledge
 from rtamt.signals.dense import Dense
+from tests.laws.early import causation_grid
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -36,7 +37,8 @@ class Implementation:
     Times are whole seconds: the period and the tick are 1 s. A monitor of bounds has ``update(t, x=…)``, which
     takes a number, bounds or None (missing), ``interval(t)`` and ``finish()``; one of verdicts has
     ``update`` and ``finish``, which return lists of ``Verdict``, in dense time of ``VerdictRun``; one of causation
-    has ``update``, which returns what a sample causes at the start, and ``causation(t)``.
+    has ``update``, which returns what a sample causes at the start, and ``causation(t)``, in dense time also
+    ``watermark(t)`` and ``finish()``, which return the same as ``update``.
     """
 
     name: str
@@ -46,6 +48,7 @@ class Implementation:
     #: Also with a lateness and whether to replay corrections.
     dense_interval: Callable[..., Any]
     dense_eager: Callable[[Formula, tuple[str, ...], Mapping[str, Range]], Any]
+    dense_causation: Callable[[Formula], Any]
     #: The back end of specifications, if it is one.
     backend: str | None = None
 
@@ -225,4 +228,50 @@ class _DenseEager(_Dense):
         return [VerdictRun(*run) for run in earliest.runs(told[-1])]
 
 
-DEFINITION = Implementation("definition", _Intervals, _Eager, _Causes, _DenseIntervals, _DenseEager)
+class _DenseCauses(_DenseIntervals):
+    """Causation by brute force."""
+
+    def __init__(self, formula: Formula) -> None:
+        super().__init__(formula, variables(formula), {})
+        self._last: list[Causation] | None = None
+
+    def update(self, t: int, **values: Any) -> Causation:  # type: ignore[override]
+        before = self._known
+        self._take(t, values)
+        return self._look(before)
+
+    def watermark(self, t: int) -> Causation:  # type: ignore[override]
+        before = self._known
+        self._mark = t if self._mark is None else max(t, self._mark)
+        return self._look(before)
+
+    def finish(self) -> Causation:  # type: ignore[override]
+        before = self._known
+        self._finished = True
+        return self._look(before)
+
+    @property
+    def _known(self) -> DenseKnowledge:
+        found = earliest.after(self._updates, self._names, {}, finished=self._finished)
+        marks = {}
+        for name, (times, _, _) in found.samples.items():
+            marks[name] = max([*times[-1:], *([] if self._mark is None else [self._mark])], default=-FOREVER)
+        return replace(found, closed=marks)
+
+    def _look(self, before: DenseKnowledge) -> Causation:
+        known = self._known
+        self._start = known.start
+        self._last = (
+            None if known.start is None else causation_grid.on_grid(self._formula, before, known, TICK)
+        )
+        return self.causation(known.start or 0)
+
+    def causation(self, t: int) -> Causation:
+        if self._last is None or self._start is None:
+            return causation_grid.NOTHING
+        return self._last[min(t - self._start, len(self._last) - 1)]
+
+
+DEFINITION = Implementation(
+    "definition", _Intervals, _Eager, _Causes, _DenseIntervals, _DenseEager, _DenseCauses
+)

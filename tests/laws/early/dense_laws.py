@@ -11,13 +11,15 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rtamt import Interval
+from rtamt import Causation, Interval
 from rtamt.errors import EvaluationError
 from rtamt.language.formula import Apply, postorder
 from rtamt.language.operators import STL
 from rtamt.reference import dense as dense_reference
-from rtamt.reference import earliest
-from rtamt.rewrite.early import loose
+from rtamt.reference import dense_bounds, earliest
+from rtamt.reference.dense_bounds import DenseKnowledge
+from rtamt.rewrite.check import unbounded_future
+from rtamt.rewrite.early import causeless, loose
 from rtamt.rewrite.ground import ground
 from rtamt.rewrite.semantics import boolean
 from tests.laws.early.definition import DEFINITION, TICK
@@ -25,7 +27,8 @@ from tests.laws.early.laws import NothingToCheck, given, whole_horizon
 from tests.laws.early.monitors import PYTHON
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterator, Mapping
+    from random import Random
 
     from rtamt.language.formula import Formula
     from tests.laws.early.cases import Arrivals, DenseCase
@@ -293,3 +296,69 @@ def _dense_signs(case: DenseCase, got: list[dict[int, tuple[bool, int]]]) -> Non
     for news in got:
         for t, (satisfied, _) in news.items():
             assert satisfied == (final[t - known.start] > 0)
+
+
+def _events(case: DenseCase, rng: Random) -> Iterator[tuple[str, int, dict[str, Any]]]:
+    """Yield the updates of a case, watermarks between some of them that are as late as they can be, and the end."""
+    for k, (t, row) in enumerate(case.updates):
+        yield "update", t, {name: given(known) for name, known in row.items()}
+        mark = min([later - 1 for later, _ in case.updates[k + 1 :]], default=t + 2)
+        if rng.random() < 0.2:
+            yield "watermark", mark, {}
+    yield "finish", 0, {}
+
+
+def _caused(monitor: Any, event: tuple[str, int, dict[str, Any]]) -> Causation:
+    kind, t, row = event
+    try:
+        caused: Causation = monitor.finish() if kind == "finish" else getattr(monitor, kind)(t, **row)
+    except EvaluationError:
+        raise NothingToCheck from None
+    return caused
+
+
+def causes(case: DenseCase, made: Implementation, rng: Random) -> None:
+    """With the bounds before any event, the bounds are the extremes of the causation of all events so far."""
+    assert case.exact
+    if causeless(case.formula) is not None:
+        raise NothingToCheck
+    every = unbounded_future(case.formula) is None
+    monitor = made.dense_causation(case.formula)
+    bounds = DEFINITION.dense_interval(case.formula, case.names, {})
+    first = bounds.start()
+    start, end = _span(case)
+    found = dict.fromkeys(range(start, end + 4), first)
+    began = False
+    for event in _events(case, rng):
+        caused = _caused(monitor, event)
+        kind, t, row = event
+        _ = bounds.finish() if kind == "finish" else getattr(bounds, kind)(t, **row)
+        if not bounds.started:
+            assert caused == Causation(math.inf, -math.inf)
+            continue
+        if not began:  # what is known before anything is seen, from this instant on
+            unseen = DenseKnowledge({name: ([start], [-math.inf], [math.inf]) for name in case.names})
+            steps = dense_bounds.bounds(case.formula, unseen, TICK)
+            found = {t: Interval(*steps.at(t)) for t in found}
+            began = True
+        for t in found if every else [start]:
+            now = monitor.causation(t) if every else caused
+            assert t != start or now == caused
+            lower, upper = max(found[t].lower, now.satisfaction), min(found[t].upper, now.violation)
+            found[t] = Interval(lower, upper)
+            assert found[t] == bounds.interval(t)
+
+
+def causation_as_defined(case: DenseCase, made: Implementation, rng: Random) -> None:
+    """What each event causes, at the start of the trace and at every instant, is what the definition says."""
+    if causeless(case.formula) is not None:
+        raise NothingToCheck
+    every = unbounded_future(case.formula) is None
+    monitor, definition = made.dense_causation(case.formula), DEFINITION.dense_causation(case.formula)
+    start, end = _span(case)
+    missing = set(case.names)
+    for event in _events(case, rng):
+        assert _caused(monitor, event) == _caused(definition, event)
+        missing -= set(event[2])
+        for t in range(start, end + 8) if every and not missing else ():
+            assert monitor.causation(t) == definition.causation(t)

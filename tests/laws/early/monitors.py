@@ -6,12 +6,15 @@ An implementation is four functions, which make a monitor of a formula: to add t
 
 from __future__ import annotations
 
+from math import inf
 from typing import TYPE_CHECKING, Any
 
-from rtamt import Interval, Verdict, VerdictRun
+from rtamt import Causation, Interval, Verdict, VerdictRun
+from rtamt.rewrite.check import unbounded_future
 from rtamt.rewrite.semantics import boolean
 from rtamt.signals.discrete import DISCRETE
 from rtamt.verdicts.causation import CausationMonitor
+from rtamt.verdicts.dense_causation import DenseCausationMonitor
 from rtamt.verdicts.dense_early import DenseEagerMonitor
 from rtamt.verdicts.dense_interval import DenseIntervalMonitor
 from rtamt.verdicts.discrete_interval import DiscreteIntervalMonitor
@@ -170,6 +173,45 @@ class _DenseSettled:
         return self._ticks(self._monitor.finish())
 
 
+class _DenseCauses:
+    """The monitor of causation in dense time, whose runs must be what it gives when asked."""
+
+    backend = "cpp"
+
+    def __init__(self, formula: Formula) -> None:
+        self._monitor = DenseCausationMonitor(formula, SECONDS, backend=self.backend)
+        self._bounded = unbounded_future(formula) is None
+
+    def update(self, t: int, **values: Any) -> Causation:
+        return self._checked(self._monitor.update(t, **values))
+
+    def watermark(self, t: int) -> Causation:
+        return self._checked(self._monitor.watermark(t))
+
+    def finish(self) -> Causation:
+        return self._checked(self._monitor.finish())
+
+    def _checked(self, caused: Causation) -> Causation:
+        assert self._monitor.causation() == caused
+        for run in self._monitor.runs() if self._bounded else ():
+            inside = Causation(run.violation, run.satisfaction)
+            last = run.begin if run.end is None else run.end - 1
+            assert self._monitor.causation(run.begin) == inside == self._monitor.causation(last)
+            assert inside != Causation(inf, -inf)
+        return caused
+
+    def causation(self, t: int) -> Causation:
+        found = self._monitor.causation(t)
+        finished = self._monitor._finished and t > self._monitor._backend.newest
+        runs = [r for r in self._monitor.runs() if r.begin <= t and (r.end is None or t < r.end)]
+        assert finished or len(runs) == (found != Causation(inf, -inf))
+        return found
+
+
+class _DenseCausesByPython(_DenseCauses):
+    backend = "python"
+
+
 class _KeptByPython(_Kept):
     backend = "python"
 
@@ -186,7 +228,7 @@ class _DenseSettledByPython(_DenseSettled):
     backend = "python"
 
 
-ENGINE = Implementation("engine", _Kept, _Settled, _causes, _DenseKept, _DenseSettled, "cpp")
+ENGINE = Implementation("engine", _Kept, _Settled, _causes, _DenseKept, _DenseSettled, _DenseCauses, "cpp")
 PYTHON = Implementation(
     "Python back end",
     _KeptByPython,
@@ -194,6 +236,7 @@ PYTHON = Implementation(
     _causes_by_python,
     _DenseKeptByPython,
     _DenseSettledByPython,
+    _DenseCausesByPython,
     "python",
 )
 

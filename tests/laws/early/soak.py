@@ -119,6 +119,16 @@ def dense_eager(rng: Random, made: Implementation) -> None:
     dense_laws.eager(dense_case(rng), made)
 
 
+def dense_causes(rng: Random, made: Implementation) -> None:
+    dense_laws.causes(dense_case(rng, exact=True, ranges=False, unbounded=rng.random() < 0.3), made, rng)
+
+
+def dense_causation_as_defined(rng: Random, made: Implementation) -> None:
+    dense_laws.causation_as_defined(
+        dense_case(rng, exact=True, ranges=False, unbounded=rng.random() < 0.3), made, rng
+    )
+
+
 def specification_bounds(rng: Random, made: Implementation) -> None:
     assert made.backend is not None
     specifications.bounds(rng, made.backend)
@@ -150,6 +160,8 @@ LAWS: list[Law] = [
     dense_fails_alike,
     dense_tight,
     dense_eager,
+    dense_causes,
+    dense_causation_as_defined,
     specification_bounds,
     specification_verdicts,
 ]
@@ -162,6 +174,7 @@ COMPARISONS: list[Law] = [
     dense_start,
     dense_corrected,
     dense_fails_alike,
+    dense_causation_as_defined,
     specification_bounds,
     specification_verdicts,
 ]

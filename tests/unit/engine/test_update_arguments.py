@@ -10,7 +10,6 @@ KINDS = [
     for time in ("discrete", "dense")
     for verdict in ({}, {"verdict": "eager"}, {"verdict": "interval"}, {"verdict": "causation"})
     for backend in ({}, {"backend": "python"})
-    if time == "discrete" or verdict != {"verdict": "causation"}
 ]
 
 

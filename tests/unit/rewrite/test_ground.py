@@ -105,8 +105,6 @@ def test_explanation(pair):
 @pytest.mark.parametrize("verdict", ["delayed", "eager", "interval", "causation"])
 def test_monitors_of_all_verdicts(pair, verdict, backend):
     half_open, closed, data = pair
-    if verdict == "causation" and half_open.domain.continuous:
-        pytest.skip("causation is for discrete time")
     outcomes = []
     for spec in (half_open, closed):
         monitor = rtamt.parse(spec.text, time=spec.time, resolution=spec.resolution, backend=backend).monitor(

@@ -39,17 +39,22 @@ def test_wrong_setting_is_rejected_with_one_sentence(text, settings, message):
     assert str(error.value) == message
 
 
-def test_causation_of_arithmetic_on_formulas_in_time_is_rejected_with_a_caret():
+TIMES = pytest.mark.parametrize("time", ["discrete", "dense"])
+
+
+@TIMES
+def test_causation_of_a_share_is_rejected_with_a_caret(time):
     with pytest.raises(rtamt.SpecificationError) as error:
-        rtamt.parse("always((once x) + 1 >= 0)").monitor(verdict="causation")
+        rtamt.parse("always(atleast[0:3](80%, x > 0))").monitor(verdict="causation", time=time)
     assert str(error.value) == (
-        "'(once x) + 1' is arithmetic on a formula in time, which has no causation; use another verdict mode\n"
-        "  line 1, column 8:\n    always((once x) + 1 >= 0)\n           ^^^^^^^^^^^^"
+        "'atleast[0:3](80%, x > 0)' is a share of a window, which has no causation; use another verdict mode\n"
+        "  line 1, column 8:\n    always(atleast[0:3](80%, x > 0))\n           ^^^^^^^^^^^^^^^^^^^^^^^^"
     )
 
 
-def test_causation_of_an_uncertain_sample_is_rejected_with_one_sentence():
-    monitor = rtamt.parse("always(x >= 0)").monitor(verdict="causation")
+@TIMES
+def test_causation_of_an_uncertain_sample_is_rejected_with_one_sentence(time):
+    monitor = rtamt.parse("always(x >= 0)").monitor(verdict="causation", time=time)
     with pytest.raises(rtamt.TraceError) as error:
         monitor.update(0, x=(4.8, 5.0))
     assert str(error.value) == (
@@ -58,8 +63,9 @@ def test_causation_of_an_uncertain_sample_is_rejected_with_one_sentence():
     )
 
 
-def test_causation_at_an_instant_of_unbounded_future_is_rejected_with_one_sentence():
-    monitor = rtamt.parse("always(x >= 0)").monitor(verdict="causation")
+@TIMES
+def test_causation_at_an_instant_of_unbounded_future_is_rejected_with_one_sentence(time):
+    monitor = rtamt.parse("always(x >= 0)").monitor(verdict="causation", time=time)
     with pytest.raises(rtamt.UsageError) as error:
         monitor.causation(0)
     assert str(error.value) == (

@@ -8,11 +8,14 @@ from __future__ import annotations
 
 import pickle
 from dataclasses import dataclass, replace
+from math import inf
 from typing import TYPE_CHECKING, TypeAlias
 
 from rtamt.compiler.graph import FOREVER, NEVER
 from rtamt.engine.backend import RefusedError
 from rtamt.reference.dense_bounds import DenseKnowledge, StepBounds, bounds, least
+from rtamt.reference.dense_causation import causation
+from rtamt.reference.dense_causation import least as least_caused
 from rtamt.signals.runs import clipped, compared, merged, without
 
 if TYPE_CHECKING:
@@ -21,6 +24,8 @@ if TYPE_CHECKING:
 
     from rtamt.language.formula import Formula
     from rtamt.reference.dense_bounds import Samples
+    from rtamt.reference.dense_causation import StepCauses
+    from rtamt.signals.outcomes import Causation
     from rtamt.signals.runs import Decided, Pair, Run
 
 #: The minimum of formulas, each over the trace of some variables.
@@ -78,6 +83,8 @@ class PythonDenseEarlyMonitor:
         lateness: int | None,
         verdicts: bool,
     ) -> None:
+        self._before: _Came | None = None  # the last event
+        self._causes: dict[int, StepCauses | None] = {}  # of all formulas that were asked for
         self._formulas, self._hidden = tuple(outputs), hidden
         self._ranges = dict(zip(names, ranges, strict=True))
         self._names = tuple(names)
@@ -118,7 +125,7 @@ class PythonDenseEarlyMonitor:
             before if each is None else self._reported(before, each, came.newest, now)
             for before, each in zip(self._reports, found[self._hidden :], strict=True)
         )
-        self._came, self._found = came, found
+        self._before, self._came, self._found, self._causes = self._came, came, found, {}
 
     def _knowledge(self, came: _Came) -> DenseKnowledge:
         samples, closed = {}, {}
@@ -241,18 +248,65 @@ class PythonDenseEarlyMonitor:
         parts = [bounds(f, unseen.of(names), self._tick).at(0) for f, names in self._formulas[0]]
         return min(low for low, _ in parts), max(high for _, high in parts)
 
+    def _caused(self, formula: int) -> StepCauses | None:
+        """Return what the last event caused; None while the trace has not started."""
+        if formula not in self._causes:
+            was = None if self._before is None else self._knowledge(self._before)
+            now = self._knowledge(self._came)
+            parts = [
+                (f, None if was is None else was.of(names), now.of(names))
+                for f, names in self._formulas[formula]
+            ]
+            begun = all(before is not None and before.start is not None for _, before, _ in parts)
+            self._causes[formula] = (
+                least_caused(
+                    [causation(f, before if begun else None, after, self._tick) for f, before, after in parts]
+                )
+                if all(after.start is not None for _, _, after in parts)
+                else None
+            )
+        return self._causes[formula]
+
+    def causation_at_start(self) -> Pair:
+        """Violation and satisfaction that the last event caused at the start of the trace."""
+        found = self._caused(0)
+        return (inf, -inf) if found is None else _pair(found.causes[0])
+
+    def causation(self, output: int, tick: int | None) -> Pair | None:
+        """The same of an output at a tick, or at the start; None before the trace."""
+        found = self._caused(self._hidden + output)
+        if found is None or (tick is not None and tick < found.times[0]):
+            return None
+        return _pair(found.causes[0] if tick is None else found.at(tick))
+
+    def caused(self, output: int) -> list[Run]:
+        """The same as runs (begin, end, violation, satisfaction), where there is any."""
+        found = self._caused(self._hidden + output)
+        if found is None:
+            return []
+        last = self.newest + 1 if self.finished else FOREVER
+        runs = (
+            (t, end, *_pair(cause))
+            for t, end, cause in zip(found.times, (*found.times[1:], FOREVER), found.causes, strict=True)
+        )
+        return list(clipped(merged(run for run in runs if run[2:] != (inf, -inf)), found.times[0], last))
+
     def known(self, number: int, tick: int) -> Pair:
         """What is known of an input at the tick of a sample."""
         return self._came.known[number].get(tick, self._ranges[self._names[number]])
 
     def state(self) -> bytes:
         """The state after the samples so far."""
-        return pickle.dumps((self._came, self._reports))
+        return pickle.dumps((self._before, self._came, self._reports))
 
     def restore(self, state: bytes) -> None:
         """Restore the state of a monitor that was made with the same arguments."""
-        self._came, self._reports = pickle.loads(state)  # noqa: S301 - its own
-        self._found = None
+        self._before, self._came, self._reports = pickle.loads(state)  # noqa: S301 - its own
+        self._found, self._causes = None, {}
+
+
+def _pair(caused: Causation) -> Pair:
+    return caused.violation + 0.0, caused.satisfaction + 0.0  # no minus before a zero
 
 
 def _runs(found: StepBounds) -> list[Run]:
