@@ -156,8 +156,10 @@ def evaluate_all(
     results: dict[int, Result] = {}
     for number, (spec, query) in enumerate(zip(specs, queries, strict=True)):
         rule = query.domain.sampling(spec.sampling)
-        if rule is not None and rule.hold:
-            results[number] = spec.evaluate(data, tolerance=tolerance, **reading)  # it has samples of its own
+        if spec.groups or (rule is not None and rule.hold):
+            results[number] = spec.evaluate(
+                data, tolerance=tolerance, **reading
+            )  # it has samples or members of its own
             continue
         groups = alike.setdefault((query.domain, query.unit, spec.backend), [])
         places = spec.binding.places()
@@ -181,9 +183,14 @@ def evaluate_requirements(spec: Specification, data: Any) -> Mapping[str, Result
     ``data`` and errors as for :meth:`Specification.evaluate`, which computes verdicts when they are asked for.
     """
     query = spec._query()
+    if spec.groups:
+        over, bound = spec._over_data(query, data)
+        return evaluate_requirements(over, bound)
     recording = spec._with_units(
         query.record(spec._sampled(query, spec.binding.applied(data)), spec.input_names, spec.types)
     )
+    if spec.resolved is not None:
+        recording = recording.ended_by(spec.resolved[0].input_names)
     spec._check(query, recording)
     outputs = [one._outputs() for one in spec.requirements.values()]
     return requirements_of(spec, findings_of(outputs, recording, spec._signals_of), query.semantics)

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from typing_extensions import Self
 
     from rtamt.language.formula import Formula
+    from rtamt.language.units import Duration
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -95,12 +96,17 @@ class QuantifiedText(RecordedSpecification):
         document = resolved_document(self.document, members, tuple(declarations.values()))
         return replace(self, document=document, roles=roles, resolved=(self, members))
 
+    def pastified(self, period: Duration | None = None) -> Formula:
+        """See :meth:`SpecificationText.pastified`; the members must be known."""
+        self.require_no_groups("pastification")
+        return super().pastified(period)
+
     def require_no_groups(self, what: str) -> None:
         """Raise :class:`UsageError` for quantifiers over members that are not known yet, where they have to be."""
         for name in self.groups:
             raise UsageError(
                 f"the formula quantifies over '{name}', whose members are known with the data, and {what} needs "
-                f"them before; evaluate recordings with evaluate(), or name the members: spec.over(...)"
+                f"them before; evaluate recordings, or name the members: spec.over({{'{name}': [...]}})"
             )
 
     def _checked_members(self, given: Mapping[str, Iterable[str]]) -> Members:

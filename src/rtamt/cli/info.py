@@ -164,10 +164,13 @@ def gather(spec: Specification) -> Facts:
     facts = Facts(spec, step)
     try:
         check_online(spec.formula, spec.text)
-        facts = replace(facts, horizon=_depth(spec, spec.formula), pastified=_pastified(spec))
+        pastified = None if spec.groups else _pastified(spec)
+        facts = replace(facts, horizon=_depth(spec, spec.formula), pastified=pastified)
         domain.check(spec.formula, spec.text)
     except BoundError as error:
         return replace(facts, offline_only=error.message)
+    if spec.groups:  # a program for each quantifier, which runs for each member
+        return facts
     applied = desugar(_grounded(spec, _applied(spec)))
     program = compile_program((applied,), step, spec.input_names, domain=type(spec.domain))
     memory = state_bytes(program, domain, spec.backend)
@@ -289,6 +292,21 @@ def _about_step(spec: Specification) -> str:
     return " (the default; --period sets it)" if spec.domain.step is None else ""
 
 
+def _kinds(spec: Specification) -> Iterator[str]:
+    """Yield the lines about groups and enumerations, and that there are no variables."""
+    if not spec.input_names:
+        yield "variables  none"
+    for i, group in enumerate(spec.document.groups.values()):
+        fields = "; ".join(
+            f"{each.type} {each.name}{f' [{each.unit}]' if each.unit else ''}" for each in group.fields
+        )
+        words = [group.role, group.name, "=", quoted(group.pattern), f"{{ {fields} }}" if fields else ""]
+        yield f"{'' if i else 'groups':<11}{' '.join(word for word in words if word)}"
+    for i, known in enumerate(spec.document.enumerations.values()):
+        members = ", ".join(f"{name} = {code}" for name, code in known.members)
+        yield f"{'' if i else 'types':<11}enum {known.name} {{ {members} }}"
+
+
 def _lines(facts: Facts) -> Iterator[str]:
     spec = facts.spec
     if spec.name:
@@ -312,11 +330,7 @@ def _lines(facts: Facts) -> Iterator[str]:
         recorded = variable["recorded"] and f"= {quoted(variable['recorded'])}"
         words = [variable["role"], variable["type"], variable["name"], unit, recorded, topic]
         yield f"{'' if i else 'variables':<11}{' '.join(word for word in words if word)}"
-    if not spec.input_names:
-        yield "variables  none"
-    for i, known in enumerate(spec.document.enumerations.values()):
-        members = ", ".join(f"{name} = {code}" for name, code in known.members)
-        yield f"{'' if i else 'types':<11}enum {known.name} {{ {members} }}"
+    yield from _kinds(spec)
     for i, parameter in enumerate(_parameters(spec)):
         unit = f" [{parameter['unit']}]" if parameter["unit"] else ""
         value, default = (_shown(parameter[each]) for each in ("value", "default"))
@@ -326,13 +340,17 @@ def _lines(facts: Facts) -> Iterator[str]:
     if facts.horizon is not None:
         ahead = format_duration(facts.horizon)
         yield f"horizon    {ahead}: the value at t is known at t + {ahead}"
-        yield f"pastified  {'no: too large' if facts.pastified is None else printed(facts.pastified)}"
+        if not spec.groups:
+            yield f"pastified  {'no: too large' if facts.pastified is None else printed(facts.pastified)}"
     name = _loose(facts)
     wide = f"sound, but may be wider than necessary: '{name}' raises and lowers the robustness"
     yield f"intervals  {'tight' if name is None else wide}"
     late = None if spec.domain.continuous else _ending(facts)
     changed = f"may change at the end of the trace, which cuts the windows of '{late}'"
     yield f"early      verdicts {'hold at the end of the trace' if late is None else changed}"
+    if facts.program is None and facts.offline_only is None:
+        yield "online     one program for each quantifier, which runs for each member that is present"
+        return
     if facts.program is None:
         yield f"online     no: {facts.offline_only}"
         return

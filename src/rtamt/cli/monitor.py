@@ -135,6 +135,7 @@ def run(args: argparse.Namespace) -> int:
     if args.tolerance is not None and not args.tolerance >= 0:
         raise CommandError(f"the tolerance is {args.tolerance:g}; give a fraction of the period, such as 0.1")
     spec = read_specification(args, args.time)
+    spec.require_no_groups("'rtamt monitor'")
     dense = spec.domain.continuous
     live = _live(spec) if args.live else None
     output = Output(verdicts=spec.semantics == "boolean", live=live)

@@ -29,6 +29,7 @@ from rtamt.readers.assemble import chunks_of, trace_of
 from rtamt.readers.read import opened
 from rtamt.readers.sql import is_url, shown
 from rtamt.results import first_violation
+from rtamt.signals import members
 from rtamt.signals.arrays import TIME
 from rtamt.signals.episodes import Episodes
 from rtamt.signals.resampling import Sampler
@@ -109,6 +110,13 @@ def _processes(traces: Sequence[str]) -> int:
 
 def evaluate(requirements: Sequence[Requirement], trace: str, reading: Reading) -> list[Outcome]:
     """Check requirements over one recording, which is read once if that goes well; an outcome for each row."""
+    quantified = [requirement for requirement in requirements if requirement.spec.groups]
+    if quantified:
+        plain = [requirement for requirement in requirements if not requirement.spec.groups]
+        several = [evaluate(plain, trace, reading)] if plain else []
+        several += [_over_members(requirement, trace, reading) for requirement in quantified]
+        known = {outcome.requirement: outcome for each in several for outcome in each}
+        return [known[row.label] for each in requirements for row in each.rows or (each,)]
     if not any(requirement.spec.optional for requirement in requirements):
         return _checked(requirements, trace, reading)
     try:
@@ -132,6 +140,26 @@ def evaluate(requirements: Sequence[Requirement], trace: str, reading: Reading) 
             outcome if lacking is None else replace(outcome, unchecked=lacking.unchecked)
         )
     return [of[row.label] for requirement in requirements for row in requirement.rows or (requirement,)]
+
+
+def _over_members(requirement: Requirement, trace: str, reading: Reading) -> list[Outcome]:
+    """Check a requirement over the members of groups that a recording has."""
+    begin = time.perf_counter()
+    spec = requirement.spec
+    try:
+        with opened(trace, reading.sheet, reading.query, reading.recover) as source:
+            known = spec.over(members.members_of(spec.groups, sorted(source.signals)))
+            # A cell that is empty ends the presence of a member.
+            choice = replace(choice_for([known], trace, reading), gaps=True)
+            whole = spec.binding.applied(trace_of(source, choice))
+        found = members.bound(whole, spec.groups, spec.input_names, own_clocks=True, source=shown(trace))
+        over = spec.over(found.members)
+        rows = tuple(
+            replace(row, spec=over.select(row.spec.document.requirements[0].name)) for row in requirement.rows
+        )
+    except StlError as error:
+        return [failed(row, trace, str(error), begin) for row in requirement.rows or (requirement,)]
+    return _check(replace(requirement, spec=over, rows=rows), trace, found.data, reading)
 
 
 def _applicable(

@@ -86,6 +86,7 @@ class Lowering(ABC):
         if isinstance(node, Const):
             return self.emit(Instruction("const", x=node.value), node)
         if isinstance(node, Var):
+            assert not node.bound, "quantifiers are resolved before"
             return self.emit(Instruction("input", n=self.inputs.index(node.name)), node)
         assert isinstance(node, Apply)
         args = self.align([self.value_of[arg] for arg in node.args])

@@ -143,6 +143,7 @@ def bind(spec: Specification, verdict: str | None = None, at: str | None = None)
     >>> [(known.topic, known.fields) for known in binding.inputs], [known.topic for known in binding.outputs]
     ([('rtamt/req', ('req.value',))], ['rtamt/rob'])
     """
+    spec.require_no_groups("a ROS node")
     document = spec.document
     types = _types(document)
     if verdict not in {None, *VERDICTS}:

@@ -87,6 +87,7 @@ def _stream_of(domain: TimeDomain) -> Callable[..., Stream]:
 
 def check_streamable(spec: Specification) -> None:
     """Raise :class:`BoundError` where a formula needs the whole recording at once, else as :func:`check_stream`."""
+    spec.require_no_groups("a check in chunks")
     _stream_of(spec.domain)
     for alone in spec.requirements.values():
         outputs = outputs_under(alone.formula, alone.semantics, alone.roles)
@@ -100,6 +101,7 @@ class Stream(ABC):
     """
 
     def __init__(self, spec: Specification, semantics: Semantics | None, unit: str | None) -> None:
+        spec.require_no_groups("a check in chunks")
         if not spec.input_names:
             raise UsageError("the formula reads no variable, so that there is nothing to check in chunks")
         chosen = None if semantics is None else semantics_of(semantics)
