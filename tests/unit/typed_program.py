@@ -9,6 +9,7 @@ import rtamt
 from rtamt.compiler.program import Program
 from rtamt.explain.report import Explanation
 from rtamt.language.formula import Formula
+from rtamt.verdicts.dense_causation import DenseCausationMonitor
 from rtamt.verdicts.dense_early import DenseEagerMonitor
 from rtamt.verdicts.eager import EagerMonitor
 from rtamt.verdicts.interval import IntervalMonitor
@@ -73,6 +74,9 @@ def monitors() -> None:
     assert_type(runs.update(0.0, x=4), list[rtamt.VerdictRun])
     bounds = assert_type(spec.monitor(time="dense", verdict="interval", lateness="1s"), IntervalMonitor)
     assert_type(bounds.interval(), rtamt.Interval)
+    caused = assert_type(spec.monitor(time="dense", verdict="causation"), DenseCausationMonitor)
+    assert_type(caused.update(0.0, x=4), rtamt.Causation)
+    assert_type(caused.runs(), list[rtamt.CausationRun])
 
 
 def recordings(path: str) -> None:

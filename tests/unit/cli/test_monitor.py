@@ -315,6 +315,19 @@ def test_causation_is_printed_of_every_sample(run):
     )
 
 
+def test_causation_in_dense_time_is_printed_of_every_sample_and_of_the_end(run):
+    stdin = jsonl({"time": 0, "x": 5, "y": 4}, {"time": 1, "y": 1}, {"time": 2.5, "x": 4})
+    answer = run(
+        "monitor", "always(x >= 3 and y >= 3)", "--verdict", "causation", "--time", "dense", stdin=stdin
+    )
+    assert answer.out == (
+        '{"time": 0.0, "violation": 1.0, "satisfaction": "-inf"}\n'
+        '{"time": 1.0, "violation": -2.0, "satisfaction": "-inf"}\n'
+        '{"time": 2.5, "violation": 1.0, "satisfaction": "-inf"}\n'
+        '{"violation": -2.0, "satisfaction": -2.0, "final": true}\n'
+    )
+
+
 def test_bounds_are_printed_when_they_change(run):
     stdin = jsonl(*({"time": t, "x": x} for t, x in enumerate([5, 1])))
     answer = run("monitor", "always[0:1](x >= 3)", "--verdict", "interval", stdin=stdin)

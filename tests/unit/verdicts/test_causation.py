@@ -5,6 +5,7 @@ from __future__ import annotations
 import copy
 import pickle
 from math import inf
+from time import process_time
 
 import pytest
 
@@ -116,3 +117,20 @@ def test_many_samples_keep_little_memory():
     for t in range(1000, 5000):
         monitor.update(t, req=t % 7, gnt=t % 5)
     assert monitor.memory <= before + 2**12
+
+
+def test_cost_under_until_follows_the_runs_of_the_result_and_not_the_bound():
+    def cost(bound):
+        monitor = rtamt.parse(f"eventually[0:{bound}](x > 9) until[0:{bound}] y > 9").monitor(
+            verdict="causation"
+        )
+        rows = [((t * 37) % 101 / 10, 10.0 if t % 13 == 0 else t / 1e6) for t in range(2 * bound + 1000)]
+        for t, (x, y) in enumerate(rows[:-400]):
+            monitor.update(t, x=x, y=y)
+        begin = process_time()
+        for t, (x, y) in enumerate(rows[-400:], len(rows) - 400):
+            monitor.update(t, x=x, y=y)
+        return process_time() - begin
+
+    short, long = (min(cost(bound) for _ in range(3)) for bound in (100, 1000))
+    assert long < 4 * short
