@@ -8,6 +8,8 @@ from itertools import accumulate
 from math import isinf
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from rtamt.explain.readings import Readings
 from rtamt.explain.report import Listed, Reading, Stretch
 from rtamt.explain.sentences import predicate_text, reading
@@ -23,7 +25,7 @@ if TYPE_CHECKING:
     from rtamt.explain.minimise import Interval
     from rtamt.explain.report import CriticalPoint
     from rtamt.language.formula import Formula
-    from rtamt.rewrite.structure import Leaf, Structure
+    from rtamt.rewrite.structure import Structure
     from rtamt.signals.instants import StepFunction
 
 
@@ -62,11 +64,12 @@ class Description:
                 )
                 for name, cells in found.items()
             }
-        return replace(point, reads=self._as_data(found)), text
+        recorded = self._recorded(point.formula, (point.value,), found)
+        return replace(point, reads=self._as_data(found), recorded=recorded), text
 
     def stretch(self, interval: Interval, *, satisfied: bool) -> tuple[Stretch, str, str]:
         """Return an interval of the implicant as data, and in words when it is and what it reads."""
-        leaf, axis = self._structure.leaves[interval.name], self._axis
+        leaf = self._structure.leaves[interval.name]
         holds = satisfied == (interval.sign > 0)
         here = Cells.of([(interval.start, interval.end)])
         read = self._readings.of(leaf.formula, *((here, NONE) if holds else (NONE, here)))
@@ -82,9 +85,23 @@ class Description:
             float(values.min()),
             float(values.max()),
             self._as_data(read),
-            recorded(axis, leaf, values, interval.start, interval.end),
+            self._recorded(leaf.formula, values, read),
         )
         return stretch, self._when(interval.start, interval.end), self._in_words(leaf.formula, here, read)
+
+    def _recorded(self, predicate: Formula, values: Iterable[float], read: Mapping[str, Cells]) -> str:
+        """Return the Booleans and members that a predicate of truth reads."""
+        types = {name: type_ for name, type_ in types_of(predicate).items() if name in read}
+        if not types or not all(map(isinf, values)):
+            return ""
+        found = []
+        steps = self._axis.measured([Var(name) for name in types])
+        for (name, type_), step in zip(types.items(), steps, strict=True):
+            pieces = read[name] & Cells(step.changes, np.append(step.changes[1:], step.end))
+            recorded = step.each(pieces.starts).tolist()
+            texts = dict.fromkeys(value_text(value, type_) or f"{value:g}" for value in recorded)
+            found.append(f"{name} is {' or '.join(texts)}")
+        return ", ".join(found)
 
     def _ends(self, start: int, end: int) -> tuple[object, object, bool]:
         """Return the times at which an interval of cells begins and ends, and whether the end belongs to it."""
@@ -130,17 +147,3 @@ class Description:
         else:
             when = f"from {show(start)} to {show(end - 1)}"
         return when if start <= self._axis.last else f"{when} (after the last sample, whose values hold)"
-
-
-def recorded(axis: TimeAxis, leaf: Leaf, values: Iterable[float], start: int, end: int) -> str:
-    """Return the Booleans and members that a predicate of truth read on an interval of cells."""
-    types = types_of(leaf.formula)
-    if not types or not all(map(isinf, values)):
-        return ""
-    found = []
-    steps = axis.measured([Var(name) for name in types])
-    for (name, type_), step in zip(types.items(), steps, strict=True):
-        _, read = step.between(start, end)
-        texts = dict.fromkeys(value_text(value, type_) or f"{value:g}" for value in read.tolist())
-        found.append(f"{name} is {' or '.join(texts)}")
-    return ", ".join(found)

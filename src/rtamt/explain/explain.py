@@ -12,7 +12,7 @@ from rtamt.engine.engine import engine_of
 from rtamt.engine.offline import Evaluators
 from rtamt.errors import EvaluationError
 from rtamt.explain.critical import Point, Walk
-from rtamt.explain.description import Description, recorded
+from rtamt.explain.description import Description
 from rtamt.explain.minimise import Forcing, intervals_of, minimal
 from rtamt.explain.necessary import Needs
 from rtamt.explain.propagate import Demands
@@ -181,7 +181,6 @@ class _Explainer:
             lowest,
             highest,
             decided_by,
-            "" if leaf is None else recorded(self._line, leaf, (value,), point.cell, point.cell + 1),
         )
         return found, point.cell
 

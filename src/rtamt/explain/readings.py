@@ -257,7 +257,9 @@ class Readings:
         if isinstance(kernel, Ahead):
             return [(args[0], min(cell + self._steps(node), self._axis.end - 1))]
         if node.op.source is Source.BRANCH:
-            return [(args[1] if cell in self._truth(args[0]) else args[2], cell)]
+            branch = args[1] if cell in self._truth(args[0]) else args[2]
+            # Of a constant the value comes from the condition.
+            return None if isinstance(branch, Const) else [(branch, cell)]
         if node.op.source is Source.DELAYED:
             back = cell - self._steps(node)
             return [(args[0], back) if back >= 0 else (args[1], cell) if len(args) > 1 else (args[0], 0)]

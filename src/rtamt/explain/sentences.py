@@ -77,13 +77,13 @@ def cause(stretch: Stretch, when: str, reads: str) -> str:
 
 
 def reading(signals: Iterable[tuple[str, Sequence[str]]]) -> str:
-    """Return in words when signals are read: ``x from 1 s to 3 s and y at 2 s``."""
+    """Return in words when signals are read: ``x from 1 s to 3 s, y at 2 s and at 4 s``."""
     parts = []
     for name, times in signals:
         more = [f"{len(times) - _READ} more times"] if len(times) > _READ + 1 else times[_READ:]
         *rest, last = (*times[:_READ], *more)
         parts.append(f"{name} {', '.join(rest)} and {last}" if rest else f"{name} {last}")
-    return "; ".join(parts) or "no sample"
+    return ", ".join(parts) or "no sample"
 
 
 def _decision(point: CriticalPoint, when: str, source: str) -> str:
@@ -96,7 +96,7 @@ def _decision(point: CriticalPoint, when: str, source: str) -> str:
     if point.decided_by == "constant":
         return f"{sentence}, a constant"
     if source:
-        sentence += f" (reading {source})"
+        sentence += f", reading {source}"
     if point.lowest == point.highest:
         return f"{sentence}; others give the same robustness"
     return f"{sentence}; the robustness follows it{_reach(point)}"

@@ -24,7 +24,7 @@ DISCRETE = [
     # The branch that is not taken is not read.
     ("(if y >= 3 then x else 8) >= 3", 3, [("x", 3, 3), ("y", 3, 3)], [("x", 3, 3)]),
     ("(if y >= 3 then 8 else x) >= 3", 2, [("x", 2, 2), ("y", 2, 2)], [("x", 2, 2)]),
-    ("(if y >= 3 or x >= 3 then 8 else x) >= 3", 3, [("y", 3, 3)], []),
+    ("(if y >= 3 or x >= 3 then 8 else x) >= 3", 3, [("y", 3, 3)], [("y", 3, 3)]),
     # One large sample for a large maximum, all of them for a small one.
     ("maximum[0:3](x) >= 3", 4, [("x", 1, 1)], [("x", 1, 1)]),
     ("maximum[0:3](x) <= 3", 4, [("x", 1, 1)], [("x", 1, 1)]),
@@ -48,6 +48,7 @@ DENSE = [
     ("delay[2](x) >= 3", 4, [("x", 2, 2, True)], [("x", 2, 3, False)]),
     ("held(x, y >= 3) >= 3", 4, [("x", 3, 4, False), ("y", 3, 4, True)], [("x", 3, 4, False)]),
     ("(if y >= 3 then x else 8) >= 3", 3, [("x", 3, 3, True), ("y", 3, 3, True)], [("x", 3, 4, False)]),
+    ("held(x, rise(y >= 3)) >= 3", 0, [("x", 0, 0, True), ("y", 0, 0, True)], [("x", 0, 1, False)]),
     ("maximum[0:3](x) >= 3", 4, [("x", 1, 2, False)], [("x", 1, 2, False)]),
     ("maximum[0:3](x) <= 4", 4, [("x", 1, 4, True)], [("x", 1, 2, False)]),
 ]
@@ -82,10 +83,10 @@ def test_what_is_read_elsewhere_is_in_the_text():
     spec = rtamt.parse("always[3:4](held(x, y >= 3) - maximum[0:3](x) >= 0)")
     text = str(spec.evaluate(data(spec)).explain())
     assert text.splitlines()[2:] == [
-        "critical point at 3 s: 'held(x, y >= 3) - maximum[0:3](x) >= 0' is -3 (reading x at 0 s and at 3 s); the "
+        "critical point at 3 s: 'held(x, y >= 3) - maximum[0:3](x) >= 0' is -3, reading x at 0 s and at 3 s; the "
         "robustness follows it up to -2",
         "sufficient cause, independent of all other samples:",
-        "  'held(x, y >= 3) - maximum[0:3](x) >= 0' fails at 3 s (-3), reading x at 0 s and at 3 s; y at 3 s",
+        "  'held(x, y >= 3) - maximum[0:3](x) >= 0' fails at 3 s (-3), reading x at 0 s and at 3 s, y at 3 s",
     ]
 
 
@@ -95,3 +96,14 @@ def test_many_times_are_counted_in_the_text_and_listed_in_the_data():
     (stretch,) = result.explain().implicant
     assert [r.start for r in stretch.reads] == list(range(0, 50, 5))
     assert result.explain().causes[0].endswith("reading x at 0 s, at 5 s, at 10 s and 7 more times")
+
+
+def test_members_are_those_that_were_read_and_not_those_at_the_instant():
+    text = "enum Mode { MANUAL, AUTO }; input Mode mode; input float x; held(mode, x > 3) == AUTO"
+    explanation = rtamt.parse(text).evaluate({"mode": ["MANUAL", "AUTO"], "x": [5, 1]}).explain(1)
+    assert str(explanation).splitlines()[1:] == [
+        "critical point at 1 s: 'held(mode, x > 3) == AUTO' fails (mode is MANUAL), reading mode at 0 s; "
+        "the robustness follows it up, not down",
+        "sufficient cause, independent of all other samples:",
+        "  'held(mode, x > 3) == AUTO' fails at 1 s (mode is MANUAL), reading mode at 0 s, x from 0 s to 1 s",
+    ]

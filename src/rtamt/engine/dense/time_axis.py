@@ -119,7 +119,7 @@ class DenseTimeAxis(TimeAxis):
         """Return the ticks from line to line of the finest grid that holds all samples and bounds."""
         grain = math.gcd(*(int(np.gcd.reduce(ticks)) for ticks, _ in self._recording.columns.values()))
         for node in postorder(formula):
-            if isinstance(node, Apply) and node.interval is not None:
+            if isinstance(node, Apply) and node.interval is not None and not node.interval.implied:
                 bounds = node.interval.begin, node.interval.end or 0
                 grain = math.gcd(grain, *(int(bound / self.period) for bound in bounds))
                 if node.op.share:
