@@ -186,8 +186,12 @@ class Case:
             return np.where(truth, inf, -inf)
 
         columns = self.columns(change)
-        fixed = {p: Const(inf if t[0] else -inf) for p, t in zip(self.predicates, truths, strict=True)}
-        formula = replaced(self.apart, {p: c for p, c in fixed.items() if not variables(p)})
+        fixed: dict[Formula, Formula] = {}
+        for k, (predicate, truth) in enumerate(zip(self.predicates, truths, strict=True)):
+            if not variables(predicate):  # it may change all the same: a window before the start is empty
+                fixed[predicate] = Var(f"p{k}")
+                columns[f"p{k}"] = np.where(truth, inf, -inf)
+        formula = replaced(self.apart, fixed)
         value = self.world.value(formula, columns, self.cell)
         assert abs(value) == inf
         return (value > 0) == self.explanation.satisfied
