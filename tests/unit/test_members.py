@@ -199,3 +199,14 @@ def test_what_is_wrong_with_members_is_one_sentence(data, message):
     with pytest.raises(TraceError) as error:
         spec.evaluate(data)
     assert str(error.value).startswith(message)
+
+
+def test_a_boolean_field_is_true_or_false_also_where_nothing_else_has_a_type():
+    spec = rtamt.parse('group cars = "car_*" { float x; bool ok }; always forall v in cars: v.ok -> v.x > 3')
+    assert spec.evaluate({"car_1.x": [None, 1], "car_1.ok": [None, True]}).robustness == -2
+    assert (
+        rtamt.parse('group cars = "car_*" { bool ok }; exists v in cars: v.ok')
+        .evaluate({"car_1.ok": [1, 0]})
+        .robustness
+        == inf
+    )

@@ -187,9 +187,10 @@ def parse_quantifier(parser: FormulaParser) -> Formula:
     op = quantified(first.text, Binder(variable.text, group, apart))
     start = parser.token.start
     body = parser.expression()
-    parser.scope = scope
     end = parser.tokens[parser.index - 1].end
-    return parser.apply(op, (body,), (Span(start, end),), None, Span(first.start, end))
+    made = parser.apply(op, (body,), (Span(start, end),), None, Span(first.start, end))
+    parser.scope = scope
+    return made
 
 
 def _members_given(parser: FormulaParser) -> set[str]:

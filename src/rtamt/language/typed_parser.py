@@ -43,7 +43,7 @@ class TypedParser(NameParser):
                 f"'{self._written(places[0])}' is none",
                 places[0],
             )
-        if self.scope.types or self.scope.enumerations or self.scope.arguments:
+        if self.scope.types or self.scope.enumerations or self.scope.arguments or self.scope.members:
             try:
                 op, args = typed(op, args, lambda k: self._written(places[k]))
             except MistypedError as error:
