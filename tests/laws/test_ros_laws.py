@@ -162,8 +162,8 @@ def cases(draw):
 
 
 def outputs_of(monitor):
-    """Return the outputs with what is watched together."""
-    return [(watch, standing) for watch in monitor.watches for standing in watch.standings]
+    """Return the outputs with their groups."""
+    return [(group, standing) for group in monitor.groups for standing in group.standings]
 
 
 @settings(max_examples=40)
@@ -177,9 +177,9 @@ def test_a_node_in_discrete_time_gives_what_check_finds_in_a_bag_bit_for_bit(fol
     records += monitor.tick(max(one.arrival for one in sent))
     found = checked(folders(), text, sent, "--period", f"{period}ns")
     assert len(found) == 2
-    for watch, standing in outputs_of(monitor):
+    for group, standing in outputs_of(monitor):
         expected, truth = found[standing.topic]
-        last = max(one.at for one in sent if one.topic in watch.topics)
+        last = max(one.at for one in sent if one.topic in group.topics)
         numbers, verdicts = told([r for r in records if r.stamp <= last], standing.topic)
         assert [stamp for stamp, _ in numbers] == [stamp for stamp, _ in expected]
         known = max(0, len(expected) - standing.lag)
@@ -203,9 +203,9 @@ def test_a_node_in_dense_time_gives_what_check_finds_in_a_bag_bit_for_bit(folder
     records = delivered(monitor, sent)
     found = checked(folders(), text, sent, "--time", "dense")
     assert len(found) == 2
-    for watch, standing in outputs_of(monitor):
+    for group, standing in outputs_of(monitor):
         expected = found[standing.topic]
-        ends = [max(one.at for one in sent if one.topic == topic) for topic in watch.topics]
+        ends = [max(one.at for one in sent if one.topic == topic) for topic in group.topics]
         for node, bag in zip(told(records, standing.topic), expected, strict=True):
             begin, end = bag[0][0] + standing.lag, min(ends)
             assert (not node and end < bag[0][0]) or node[-1][0] == end
@@ -233,8 +233,8 @@ def test_a_node_before_the_end_agrees_with_the_monitor_and_with_check_on_the_bag
     monitor = RosMonitor(bind(spec), period=Fraction(period, 10**9), stale=0)
     records = delivered(monitor, sent)
     records += monitor.tick(max(one.arrival for one in sent))
-    (watch,) = monitor.watches
-    last = max(one.at for one in sent if one.topic in watch.topics)
+    (group,) = monitor.groups
+    last = max(one.at for one in sent if one.topic in group.topics)
     records = [record for record in records if record.stamp <= last]
     bag = recorded(folders(), sent)
     reading = Reading(resample=f"{period}ns")

@@ -9,10 +9,10 @@ module               purpose
 binding              annotations of a specification to topics, types and fields
 fields               read a number from a message: ``pose.position.x``, ``ranges[3]``; its timestamp
 monitor              messages and ticks to robustness, verdicts and conditions
-watch                what is monitored together: its samples, and what is reported of it
+group                what is monitored together: its samples, and what is reported of it
 output_group         outputs whose robustness is reported
-early_watch          outputs that are monitored before their horizon
-watches              the watches of each time domain
+early_group          outputs that are monitored before their horizon
+groups               the groups of each time domain
 diagnostics          conditions as ROS diagnostics
 publisher            output as messages
 message_definitions  the definitions of ``rtamt_msgs``

@@ -7,7 +7,7 @@ from enum import IntEnum
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from rtamt.ros.watch import Watch
+    from rtamt.ros.group import Group
 
 
 class Level(IntEnum):
@@ -37,9 +37,9 @@ class Notice:
     message: str
 
 
-def begins_anew(watch: Watch) -> str:
-    """Return that the outputs of a watch begin anew, as the start of a sentence."""
-    first, *others = (f"'{standing.output.name}'" for standing in watch.standings)
+def begins_anew(group: Group) -> str:
+    """Return that the outputs of a group begin anew, as the start of a sentence."""
+    first, *others = (f"'{standing.output.name}'" for standing in group.standings)
     if not others:
         return f"{first} begins anew, its"
     return f"{first} and {others[0] if len(others) == 1 else f'{len(others)} others'} begin anew, their"

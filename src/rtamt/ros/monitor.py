@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any
 from rtamt.errors import StlError, UsageError
 from rtamt.language.units import duration, positive_period
 from rtamt.ros.diagnostics import Condition, Level, Notice, begins_anew, seconds_text
-from rtamt.ros.early_watch import Bounds
+from rtamt.ros.early_group import Bounds
 from rtamt.ros.fields import reader, stamp_of
-from rtamt.ros.watch import MessageWatch, Robustness, SampledWatch, Verdict
+from rtamt.ros.group import MessageGroup, Robustness, SampledGroup, Verdict
 from rtamt.signals.domains import DEFAULT, time_domain
 from rtamt.signals.ticks import NANOSECOND
 
@@ -20,9 +20,9 @@ if TYPE_CHECKING:
 
     from rtamt.language.units import Duration
     from rtamt.ros.binding import Binding, Output
-    from rtamt.ros.early_watch import EarlyStanding
+    from rtamt.ros.early_group import EarlyStanding
+    from rtamt.ros.group import Group, Record
     from rtamt.ros.output_group import Standing
-    from rtamt.ros.watch import Record, Watch
 
 #: The default number of silent periods after which a topic is stale; in dense time, seconds.
 STALE_PERIODS = 10
@@ -106,9 +106,9 @@ class RosMonitor:
             )
         topic_of = {name: known.topic for known in binding.inputs for name in known.fields}
         #: The outputs, grouped by the numbers that they read.
-        self.watches = self._watches(binding.outputs, topic_of)
-        self._by_message = [watch for watch in self.watches if isinstance(watch, MessageWatch)]
-        self._sampled = [watch for watch in self.watches if isinstance(watch, SampledWatch)]
+        self.groups = self._groups(binding.outputs, topic_of)
+        self._by_message = [group for group in self.groups if isinstance(group, MessageGroup)]
+        self._sampled = [group for group in self.groups if isinstance(group, SampledGroup)]
         #: Topics for which records are created, such as those with subscribers; None: all.
         self.wanted: Container[str] | None = None
         self._values: dict[str, float] = {}
@@ -122,15 +122,15 @@ class RosMonitor:
         self._foreign: set[str] = set()  # topics whose timestamps are from another clock
         self._timeless = False  # whether messages before the simulated clock is set have been reported
 
-    def _watches(self, outputs: Sequence[Output], topic_of: Mapping[str, str]) -> Sequence[Watch]:
-        make = self._domain.part("watches")
+    def _groups(self, outputs: Sequence[Output], topic_of: Mapping[str, str]) -> Sequence[Group]:
+        make = self._domain.part("ros_groups")
         if make is None:
             raise UsageError(f"nodes do not monitor in {self.time} time; choose discrete or dense time")
         # Timestamps are nanoseconds, and so are ticks.
-        watches: Sequence[Watch] = make(
+        groups: Sequence[Group] = make(
             outputs, topic_of, type(self._domain).of(self.period, self._domain.tolerance, NANOSECOND)
         )
-        return watches
+        return groups
 
     def _period(self, period: Duration | None) -> Fraction | None:
         """Return seconds; None in dense time."""
@@ -188,19 +188,19 @@ class RosMonitor:
         self._faults.pop(topic, None)
         self._repeated.discard(topic)
         self._values.update(values)
-        for watch in self._by_message:
-            if topic not in watch.topics:
+        for group in self._by_message:
+            if topic not in group.topics:
                 continue
-            if self._all_arrive(watch):
-                records += self._feed(watch, stamp, values)
+            if self._all_arrive(group):
+                records += self._feed(group, stamp, values)
             else:
-                watch.hold(stamp, values)
-        for group in self._sampled:
-            if topic in group.topics:
+                group.hold(stamp, values)
+        for sampled in self._sampled:
+            if topic in sampled.topics:
                 instant = now if self._is_foreign(topic, stamp, now) else stamp
-                group.hold(topic, instant, values)
-                if now and (complete := group.complete()) is not None:
-                    records += self._sample(group, complete)
+                sampled.hold(topic, instant, values)
+                if now and (complete := sampled.complete()) is not None:
+                    records += self._sample(sampled, complete)
         return records
 
     def tick(self, now: int) -> list[Record]:
@@ -210,16 +210,16 @@ class RosMonitor:
         """
         self._advance(now)
         records = self._look_for_silence(now)
-        for watch in self._sampled:
-            records += self._sample(watch, now)
+        for group in self._sampled:
+            records += self._sample(group, now)
         return records
 
-    def _sample(self, watch: SampledWatch, until: int) -> list[Record]:
+    def _sample(self, group: SampledGroup, until: int) -> list[Record]:
         """Take the samples due up to an instant, unless a topic is silent."""
         records: list[Record] = []
-        if self._all_arrive(watch):
-            while (sample := watch.sample(until)) is not None:
-                records += self._feed(watch, *sample)
+        if self._all_arrive(group):
+            while (sample := group.sample(until)) is not None:
+                records += self._feed(group, *sample)
         return records
 
     def _is_foreign(self, topic: str, stamp: int, now: int) -> bool:
@@ -239,23 +239,23 @@ class RosMonitor:
 
     def pause(self, now: int) -> float:
         """Return how many seconds a node may sleep before it calls :meth:`tick`, at most :data:`PAUSE`."""
-        due = [watch.due for watch in self._sampled if watch.due is not None and self._all_arrive(watch)]
+        due = [group.due for group in self._sampled if group.due is not None and self._all_arrive(group)]
         return min(PAUSE, max(0.0, (min(due) - now) / 1e9)) if due else PAUSE
 
-    def _all_arrive(self, watch: Watch) -> bool:
-        return watch.topics <= self._heard.keys() and not watch.topics & self._silent
+    def _all_arrive(self, group: Group) -> bool:
+        return group.topics <= self._heard.keys() and not group.topics & self._silent
 
-    def _feed(self, watch: Watch, stamp: int, values: Mapping[str, float]) -> list[Record]:
+    def _feed(self, group: Group, stamp: int, values: Mapping[str, float]) -> list[Record]:
         """Feed a sample to a group; a rejected sample leaves a gap, so that the group restarts."""
         try:
-            records = watch.take(stamp, values, self.wanted)
+            records = group.take(stamp, values, self.wanted)
         except StlError as error:
-            watch.reset()
-            if watch.fault is None:
-                self._say(Level.ERROR, f"{begins_anew(watch)} samples cannot be used: {error}")
-            watch.fault = str(error)
+            group.reset()
+            if group.fault is None:
+                self._say(Level.ERROR, f"{begins_anew(group)} samples cannot be used: {error}")
+            group.fault = str(error)
             return []
-        watch.fault = None
+        group.fault = None
         return records
 
     # ---- what goes wrong -------------------------------------------------------------------------
@@ -265,8 +265,8 @@ class RosMonitor:
             self._begin_anew(f"the clock went back by {seconds_text(self._last - now)}")
         elif self._last == 0 and now:  # the clock starts: earlier messages arrive now, and are not stale
             self._heard = dict.fromkeys(self._heard, now)
-            for watch in self._sampled:
-                watch.clock_begins(now)
+            for group in self._sampled:
+                group.clock_begins(now)
         elif self._last is not None and self._leap and now - self._last > self._leap:
             self._skip_ahead(now, now - self._last)
         self._last = now
@@ -279,15 +279,15 @@ class RosMonitor:
             self._forget(topic)
             self._stamps.pop(topic, None)
             self._silent.discard(topic)
-        for watch in self._sampled:
-            watch.leap(now)
+        for group in self._sampled:
+            group.leap(now)
         self._say(
             Level.WARN, f"the clock went forward by {seconds_text(by)} at once: all monitors begin anew"
         )
 
     def _begin_anew(self, why: str) -> None:
-        for watch in self.watches:
-            watch.forget()
+        for group in self.groups:
+            group.forget()
         self._values.clear()
         self._heard.clear()
         self._stamps.clear()
@@ -309,9 +309,9 @@ class RosMonitor:
 
     def _forget(self, topic: str) -> None:
         self._heard.pop(topic, None)
-        for watch in self.watches:
-            if topic in watch.topics:
-                watch.drop(topic)
+        for group in self.groups:
+            if topic in group.topics:
+                group.drop(topic)
 
     def _look_for_silence(self, now: int) -> list[Record]:
         """Find the topics that have become stale; return the records due before that."""
@@ -323,19 +323,19 @@ class RosMonitor:
             for topic, heard in self._heard.items()
             if topic not in self._silent and now - heard > self._stale
         }
-        for group in self._sampled:
-            if stale & group.topics and self._all_arrive(group):
+        for sampled in self._sampled:
+            if stale & sampled.topics and self._all_arrive(sampled):
                 records += self._sample(
-                    group, min(self._heard[topic] for topic in group.topics) + self._stale
+                    sampled, min(self._heard[topic] for topic in sampled.topics) + self._stale
                 )
         for topic in stale:
             self._silent.add(topic)
             self._say(
                 Level.WARN, f"{topic} is stale: no message for {seconds_text(now - self._heard[topic])}"
             )
-            for watch in self.watches:
-                if topic in watch.topics:
-                    watch.drop(topic)
+            for group in self.groups:
+                if topic in group.topics:
+                    group.drop(topic)
         return records
 
     def _arrived(self, topic: str, now: int) -> None:
@@ -360,29 +360,29 @@ class RosMonitor:
 
     def conditions(self, now: int) -> list[Condition]:
         """Return the condition of every output, for ``/diagnostics``."""
-        for watch in self.watches:
-            watch.refresh()
+        for group in self.groups:
+            group.refresh()
         conditions = {
-            standing.output.name: self._condition(watch, standing, now)
-            for watch in self.watches
-            for standing in watch.standings
+            standing.output.name: self._condition(group, standing, now)
+            for group in self.groups
+            for standing in group.standings
         }
         return [conditions[output.name] for output in self.binding.outputs]
 
-    def _condition(self, watch: Watch, standing: Standing | EarlyStanding, now: int) -> Condition:
+    def _condition(self, group: Group, standing: Standing | EarlyStanding, now: int) -> Condition:
         output = standing.output
-        inputs = ((name, self._values[name]) for name in watch.names if name in self._values)
+        inputs = ((name, self._values[name]) for name in group.names if name in self._values)
         values = (
             *((name, f"{value:.6g}") for name, value in inputs),
             ("topic", output.topic),
-            ("samples", str(watch.samples)),
+            ("samples", str(group.samples)),
             *standing.facts,
         )
-        missing = sorted(topic for topic in watch.topics if topic not in self._heard)
+        missing = sorted(topic for topic in group.topics if topic not in self._heard)
         faulty = [self._faults[topic] for topic in missing if topic in self._faults]
-        silent = sorted(watch.topics & self._silent)
-        if watch.fault is not None or faulty:
-            level, text = Level.ERROR, watch.fault or faulty[0]
+        silent = sorted(group.topics & self._silent)
+        if group.fault is not None or faulty:
+            level, text = Level.ERROR, group.fault or faulty[0]
         elif silent:
             ages = [f"{topic} for {seconds_text(now - self._heard[topic])}" for topic in silent]
             level, text = Level.STALE, f"no message on {', '.join(ages)}"

@@ -9,7 +9,7 @@ from rtamt.errors import SpecificationError
 from rtamt.language.formula import variables
 from rtamt.rewrite.check import always_has_a_value
 from rtamt.rewrite.horizon import horizon
-from rtamt.ros.watch import MessageWatch, Robustness, SampledWatch, Verdict
+from rtamt.ros.group import MessageGroup, Robustness, SampledGroup, Verdict
 from rtamt.verdicts.robustness_and_truth import outputs_under
 
 if TYPE_CHECKING:
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from rtamt.language.formula import Formula
     from rtamt.ros.binding import Output
-    from rtamt.ros.watch import Record
+    from rtamt.ros.group import Record
     from rtamt.signals.dense import Dense
     from rtamt.signals.discrete import Discrete
     from rtamt.signals.domain_interface import TimeDomain
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 
 class Standing:
-    """One output, as of the last :meth:`Watch.refresh`: ``latest`` robustness, whether it was ``satisfied``.
+    """One output, as of the last :meth:`Group.refresh`: ``latest`` robustness, whether it was ``satisfied``.
 
     ``horizon``: seconds. ``lag``: the same in samples, in dense time in nanoseconds.
     """
@@ -99,7 +99,7 @@ def _together(outputs: Sequence[Output], formulas: Sequence[Outputs]) -> tuple[S
     return outputs[0].specification.with_formula(every[0]), every
 
 
-class DiscreteWatch(SampledWatch):
+class DiscreteGroup(SampledGroup):
     """Outputs whose robustness is reported with every sample, from one program with shared sub-formulas."""
 
     def __init__(self, outputs: Sequence[Output], topic_of: Mapping[str, str], domain: Discrete) -> None:
@@ -156,7 +156,7 @@ class DiscreteWatch(SampledWatch):
             standing.satisfied = self._held(standing, truth)
 
 
-class DenseWatch(MessageWatch):
+class DenseGroup(MessageGroup):
     """Samples at the times in the messages' headers, each topic on its own time base."""
 
     def __init__(self, outputs: Sequence[Output], topic_of: Mapping[str, str], domain: Dense) -> None:

@@ -5,17 +5,17 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from rtamt.ros.binding import MessageType
-from rtamt.ros.early_watch import Bounds
+from rtamt.ros.early_group import Bounds
 from rtamt.ros.fields import write
+from rtamt.ros.group import Robustness
 from rtamt.ros.message_definitions import SATISFIED, UNKNOWN, VIOLATED
-from rtamt.ros.watch import Robustness
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
     from rtamt.ros.binding import Binding, Output
     from rtamt.ros.diagnostics import Condition, Level
-    from rtamt.ros.watch import Record
+    from rtamt.ros.group import Record
 
 VERDICT = MessageType("rtamt_msgs.msg", "Verdict")
 BOUNDS = MessageType("rtamt_msgs.msg", "Bounds")

@@ -58,7 +58,7 @@ class Dense(TimeDomain):
         "causation": "rtamt.verdicts.dense_causation:DenseCausationMonitor",
         "early_check": "rtamt.verdicts.dense_early_check:DenseEarlyCheck",
         "replay": "rtamt.plot.band:replay_ticks",
-        "watches": "rtamt.ros.watches:of_messages",
+        "ros_groups": "rtamt.ros.groups:of_messages",
     }
 
     resolution: Fraction

@@ -59,7 +59,7 @@ class Discrete(TimeDomain):
         "causation": "rtamt.verdicts.causation:CausationMonitor",
         "early_check": "rtamt.verdicts.early_check:DiscreteEarlyCheck",
         "replay": "rtamt.plot.band:replay_samples",
-        "watches": "rtamt.ros.watches:sampled",
+        "ros_groups": "rtamt.ros.groups:sampled",
         "members": "rtamt.engine.discrete.members:MemberMonitor",
     }
 

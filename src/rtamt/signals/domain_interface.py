@@ -51,7 +51,7 @@ class TimeDomain(ABC):
     #: The setting that is the length of a step.
     setting: ClassVar[str]
     #: What higher layers have for this time domain, as ``module:name`` by purpose: the required ``engine``,
-    #: ``stream`` (checks in chunks), ``early_check`` (``rtamt check --early``), ``watches`` (what ROS nodes run),
+    #: ``stream`` (checks in chunks), ``early_check`` (``rtamt check --early``), ``ros_groups`` (what ROS nodes run),
     #: ``replay`` (the samples of a recording, for plots of bounds), and a monitor for each verdict mode.
     parts: ClassVar[Mapping[str, str]]
 

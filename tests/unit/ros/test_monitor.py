@@ -107,7 +107,7 @@ def test_an_output_whose_sample_has_no_value_begins_anew_alone(time):
     assert by_name["gnt.value"] == [(1, -8), (2, -8), (3, -8)]
     (notice,) = said(watched)
     assert notice.startswith("'rob.value' begins anew, its samples cannot be used: ")
-    assert len(watched.watches) == 2
+    assert len(watched.groups) == 2
     watched.message("/req", message(nan, at=4), 4 * SECOND)
     watched.tick(4 * SECOND)
     assert "'all.value' and 'gnt.value' begin anew, their samples cannot be used: " in "".join(said(watched))
@@ -161,7 +161,7 @@ def test_outputs_in_one_program_tell_what_each_would_tell_alone(time, values):
         "gnt": "(req.value == 2) until[0,3] (req.value < 0)",
     }
     watched = [monitor("; ".join(f"{name}.value = {text}" for name, text in formulas.items()), time=time)]
-    assert len(watched[0].watches) == 1
+    assert len(watched[0].groups) == 1
     watched += [monitor(f"{name}.value = {text}", time=time) for name, text in formulas.items()]
     together, *alone = ([] for _ in watched)
     for i, value in enumerate(values, 1):

@@ -62,8 +62,8 @@ def test_dense_silence_is_stale_and_what_others_say_meanwhile_is_not_piled_up():
     for at in range(2, 500):
         watched.message("/req", message(at, at=at), at * SECOND)
         watched.tick(at * SECOND)
-    (watch,) = watched.watches
-    assert watch.samples == 0
+    (group,) = watched.groups
+    assert group.samples == 0
     assert watched.conditions(500 * SECOND)[0].message == "no message on /gnt for 499 s"
     assert numbers(watched.message("/gnt", message(9, at=499.5), 500 * SECOND)) == []
     assert numbers(watched.message("/req", message(10, at=500), 500 * SECOND)) == [(499.5, 490)]

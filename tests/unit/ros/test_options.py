@@ -20,7 +20,7 @@ def monitor(*arguments, **parameters):
 def test_unit_is_that_of_the_period_and_bounds_stay_seconds_as_in_the_papers_listing_5():
     watched = monitor(LISTING_8, "--period", "100", "--unit", "ms")
     assert watched.period == Fraction(1, 10)
-    assert watched.watches[0].standings[0].horizon == 15
+    assert watched.groups[0].standings[0].horizon == 15
 
 
 def test_an_argument_comes_before_a_parameter_and_that_before_the_default():

@@ -7,7 +7,7 @@ from math import inf
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rtamt.ros.binding import EAGER, EVERY
-from rtamt.ros.watch import MessageWatch, SampledWatch, Watch
+from rtamt.ros.group import Group, MessageGroup, SampledGroup
 from rtamt.signals.outcomes import VerdictRun
 from rtamt.verdicts.at_start import OPEN, SATISFIED, VIOLATED, StartMonitor
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from collections.abc import Container, Mapping
 
     from rtamt.ros.binding import Output
-    from rtamt.ros.watch import Record
+    from rtamt.ros.group import Record
     from rtamt.signals.domain_interface import TimeDomain
 
 
@@ -177,7 +177,7 @@ def reports_of(output: Output, domain: TimeDomain) -> Reports:
     return {EAGER: _Decided, EVERY: _Changes}.get(output.early, _AtStart)(output, domain)
 
 
-class _Reporting(Watch):
+class _Reporting(Group):
     """One output whose records come with samples."""
 
     def __init__(self, reports: Reports) -> None:
@@ -204,20 +204,20 @@ class _Reporting(Watch):
         self._reports.reset()
 
 
-class EarlyWatch(_Reporting, SampledWatch):
+class EarlyGroup(_Reporting, SampledGroup):
     """Samples one period apart."""
 
     def __init__(self, reports: Reports, topic_of: Mapping[str, str], domain: TimeDomain) -> None:
         assert domain.period is not None
-        SampledWatch.__init__(self, [reports.output], topic_of, domain.period)
+        SampledGroup.__init__(self, [reports.output], topic_of, domain.period)
         _Reporting.__init__(self, reports)
 
 
-class EarlyDenseWatch(_Reporting, MessageWatch):
+class EarlyDenseGroup(_Reporting, MessageGroup):
     """Samples at the times in the messages' headers, each topic on its own time base."""
 
     def __init__(self, reports: Reports, topic_of: Mapping[str, str]) -> None:
-        MessageWatch.__init__(self, [reports.output], topic_of)
+        MessageGroup.__init__(self, [reports.output], topic_of)
         _Reporting.__init__(self, reports)
 
     def take(

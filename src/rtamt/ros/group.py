@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from fractions import Fraction
 
     from rtamt.ros.binding import Output
-    from rtamt.ros.early_watch import Bounds, EarlyStanding
+    from rtamt.ros.early_group import Bounds, EarlyStanding
     from rtamt.ros.output_group import Standing
 
 
@@ -45,7 +45,7 @@ HELD = 1000
 Record: TypeAlias = "Robustness | Verdict | Bounds"
 
 
-class Watch(ABC):
+class Group(ABC):
     """Outputs that read the same numbers, in either time domain.
 
     ``outputs``: as grouped by :func:`group_outputs`. ``topic_of``: from the name of a number to its topic.
@@ -90,7 +90,7 @@ class Watch(ABC):
         """Forget all samples."""
 
 
-class MessageWatch(Watch):
+class MessageGroup(Group):
     """Every message is a sample at the time in its header, each topic on its own time base."""
 
     def __init__(self, outputs: Sequence[Output], topic_of: Mapping[str, str]) -> None:
@@ -113,7 +113,7 @@ class MessageWatch(Watch):
         self.reset()
 
 
-class SampledWatch(Watch):
+class SampledGroup(Group):
     """Samples one period apart, each with the latest message of every topic at its instant.
 
     The first sample is at the first message of the topic that starts last; ``due`` is the instant of the
