@@ -61,6 +61,9 @@ class Listed(Sequence[T], Generic[T]):
     def __repr__(self) -> str:
         return repr(tuple(self))
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        return tuple, (tuple(self),)  # a copy needs no recording
+
 
 @dataclass(frozen=True, slots=True)
 class Reading:

@@ -1,5 +1,7 @@
 """Instants for a share of many windows: enough for each, and none to spare."""
 
+import pickle
+
 import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
@@ -62,3 +64,13 @@ def test_causes_are_made_when_they_are_read():
     assert hash(listed) == hash(tuple(range(1000)))
     assert listed[:2] == (0, 1)
     assert listed != tuple(range(999))
+
+
+def test_an_explanation_can_be_pickled():
+    explanation = rtamt.parse("always(maximum[0:2](x) > 3)").evaluate({"x": [5, 1, 1, 1]}).explain()
+    twin = pickle.loads(pickle.dumps(explanation))  # noqa: S301 - our own
+    assert (twin.implicant, twin.critical, str(twin)) == (
+        explanation.implicant,
+        explanation.critical,
+        str(explanation),
+    )
