@@ -93,12 +93,8 @@ def _recursive(formula: Formula) -> bool:
 
 
 def _operands(graph: Graph, formula: Formula) -> tuple[Formula, ...]:
-    """Return the parts that a part is made of, none of a predicate.
-
-    In dense time variables become known at different ticks, so that predicates do which are one atom of the graph.
-    """
-    whole = graph.is_atom(formula) and not graph.domain.continuous
-    return () if whole or not connects(formula) else children(formula)
+    """Return the parts that a part is made of, none of a predicate."""
+    return () if graph.is_atom(formula) or not connects(formula) else children(formula)
 
 
 def _part(graph: Graph, parts: list[Cause], refs: dict[Formula, int], formula: Formula) -> int:

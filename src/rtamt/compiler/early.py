@@ -10,9 +10,10 @@ from typing import TYPE_CHECKING
 
 from rtamt.compiler.graph import ITEMS, LATTICE, Graph, Item, interval_in_steps, last_before, over
 from rtamt.compiler.program import NO_OPERAND
-from rtamt.language.formula import Apply, Const, Formula, Var, postorder
+from rtamt.language.formula import Apply, Const, Formula, Var, children, postorder
 from rtamt.language.operators import Pointwise, Until, Window
 from rtamt.rewrite.check import reads_unbounded_future
+from rtamt.rewrite.early import connects
 from rtamt.rewrite.horizon import horizons
 from rtamt.signals.discrete import Discrete
 
@@ -30,15 +31,19 @@ def compile_graph(
     domain: type[TimeDomain] = Discrete,
     *,
     start: bool = False,
+    apart: bool = False,
 ) -> Graph:
     """Compile core formulas (see ``desugar``); bounds are whole numbers of periods.
 
     ``start``: also what the first formula needs for its value at the start of the trace alone; it is then no
-    output if its future is unbounded. Raises :class:`UsageError` for operators that run code of their own.
+    output if its future is unbounded. ``apart``: each predicate is a node of its own. Raises :class:`UsageError` for
+    operators that run code of their own.
     """
     graph = Graph(period, inputs, domain)
     for position, formula in enumerate(formulas):
         graph.depths.update(horizons(formula, period))
+        if apart:
+            graph.apart |= _above_predicates(formula)
         _lower(graph, formula, only_start=start and position == 0)
         if start and position == 0:
             _at_start(graph, formula, {}, negated=False)
@@ -77,8 +82,18 @@ def _lower(graph: Graph, formula: Formula, *, only_start: bool) -> None:
             )
     above = _above(graph, formula) if only_start else set()
     for node in postorder(formula):
-        if isinstance(node, Apply) and not graph.local[node] and id(node) not in above:
+        if isinstance(node, Apply) and not graph.is_atom(node) and id(node) not in above:
             graph.ref(node)
+
+
+def _above_predicates(formula: Formula) -> set[Formula]:
+    """Return the parts of a formula that only take minima, maxima and negations of predicates, or of such parts."""
+    parts, found = {formula}, set()
+    for node in reversed(list(postorder(formula))):
+        if node in parts and connects(node):
+            found.add(node)
+            parts.update(children(node))
+    return found
 
 
 # ---- the start of the trace ------------------------------------------------------------------------------

@@ -95,6 +95,8 @@ class Graph:
     _index: dict[tuple[Node, tuple[tuple[int, str], ...]], int] = field(default_factory=dict)
     _refs: dict[Formula, int] = field(default_factory=dict)
     local: dict[Formula, bool] = field(default_factory=dict)
+    #: Local parts that are nodes above others nevertheless.
+    apart: set[Formula] = field(default_factory=set)
     depths: dict[int, Fraction | None] = field(default_factory=dict)
 
     def ref(self, formula: Formula) -> int:
@@ -102,8 +104,8 @@ class Graph:
         return _ref(self, formula)
 
     def is_atom(self, formula: Formula) -> bool:
-        """Return whether a part reads inputs at one instant alone."""
-        return self.local[formula]
+        """Return whether a part is one node that reads inputs at one instant alone."""
+        return self.local[formula] and formula not in self.apart
 
     def recursion(self, formula: Apply) -> int:
         """Return the reference of an until or since without its bounds."""
@@ -150,7 +152,7 @@ def _ref(graph: Graph, formula: Formula) -> int:
 
 
 def _node(graph: Graph, formula: Formula) -> int:
-    if graph.local[formula]:
+    if graph.is_atom(formula):
         return _atom(graph, formula)
     assert isinstance(formula, Apply)
     kernel = formula.op.kernel

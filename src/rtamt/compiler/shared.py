@@ -91,11 +91,12 @@ class Shape:
         domain: type[TimeDomain] = Discrete,
         *,
         start: bool = False,
+        apart: bool = False,
     ) -> Graph:
         """Compile the formulas for early verdicts, without their ``values``; arguments as for :func:`compile_graph`."""
         if not self.values:
-            return compile_graph(self.expanded(), period, inputs, domain, start=start)
-        return _graph(self.formulas, period, inputs, domain, start).copied()
+            return compile_graph(self.expanded(), period, inputs, domain, start=start, apart=apart)
+        return _graph(self.formulas, period, inputs, domain, start, apart).copied()
 
 
 def _expanded(formulas: tuple[Formula, ...]) -> tuple[Formula, ...]:
@@ -130,5 +131,6 @@ def _graph(
     inputs: tuple[str, ...],
     domain: type[TimeDomain],
     start: bool,
+    apart: bool,
 ) -> Graph:
-    return compile_graph(_kept(formulas), period, inputs, domain, start=start)
+    return compile_graph(_kept(formulas), period, inputs, domain, start=start, apart=apart)

@@ -42,6 +42,8 @@ class DenseCausationMonitor(DenseEarlyMonitor, EarlyMonitorBase):
 
     _remembered: ClassVar[tuple[str, ...]] = ("_finished", "_scale")
     _verdict = None
+    # Variables become known at different instants, and with them the predicates that read them.
+    _apart = True
 
     def __init__(self, formula: Formula, domain: TimeDomain, **settings: Any) -> None:
         check_causation(formula, settings.get("text"), settings.get("watch", ()))

@@ -111,7 +111,7 @@ class EarlyMonitor(OnlineMonitor):
         # A formula that is asked for at the start alone is no output.
         self._hidden = 0 if every else 1
         shape = Shape.of(self._formulas)
-        graph = shape.graph(step, self._inputs, type(domain), start=start)
+        graph = shape.graph(step, self._inputs, type(domain), start=start, apart=self._apart)
         self._extend(graph, shape.expanded()[self._hidden :])
         self._graph = graph.with_parameters(shape.values)
         self._outputs = self._graph.outputs[self._hidden :]
@@ -124,6 +124,8 @@ class EarlyMonitor(OnlineMonitor):
     def _extend(self, graph: Graph, outputs: Sequence[Formula]) -> None:
         """Add what a monitor needs besides the core formulas of its outputs."""
 
+    #: Whether each predicate is a node of the graph.
+    _apart = False
     #: By how many steps at most a sample may be late; None where all come in order.
     _late: int | None = None
     #: Whether samples may correct earlier ones.

@@ -118,8 +118,15 @@ def test_requirements_start_with_their_own_variables(backend):
     assert monitor.causation(4) == Causation(2, 1)
 
 
-def test_many_samples_keep_little_memory_and_the_identity():
-    formula = "(x >= 0 until[0:5] y >= 3) or historically[0:4](x <= 5)"
+@pytest.mark.parametrize(
+    "formula",
+    [
+        "(x >= 0 until[0:5] y >= 3) or historically[0:4](x <= 5)",
+        "not (x >= 0 and y >= 3)",  # at one instant, whose parts are pruned like all others
+        "always[0:3](x >= 0 -> y >= 3)",
+    ],
+)
+def test_many_samples_keep_little_memory_and_the_identity(formula):
     monitor, bounds = (
         rtamt.parse(formula).monitor(verdict=verdict, time=SECONDS) for verdict in ("causation", "interval")
     )
