@@ -139,6 +139,14 @@ EarlyRunner::EarlyRunner(Program program, double period, EarlyGraph graph)
                                     "the trace are four outputs of discrete time.");
     }
     outputs_.resize(outputs);
+    limit();
+}
+
+void EarlyRunner::limit() {
+    std::vector<Tick> last(engine_.size(), -1);
+    robustness_.limit(last);
+    truth_.limit(last);
+    engine_.limit(last);
 }
 
 void EarlyRunner::take(const double* row) {
@@ -228,6 +236,7 @@ void EarlyRunner::reset() {
     robustness_ = early::Origin(graph_.robustness, engine);
     truth_ = early::Origin(graph_.truth, engine);
     engine_ = std::move(engine);
+    limit();
     bounds_ = robustness_.value();
     samples_ = 0;
     decided_ = -1;

@@ -74,6 +74,7 @@ class EarlyRunner final : public SampledRunner {
     double verdict_ = 0.0;
     bool finished_ = false;
 
+    void limit();
     void take(const double* row);
     void decide(const Bounds& truth) noexcept;
     void settle();

@@ -69,6 +69,7 @@ class Decisions {
             decision.l = last + 1;
             if (decision.l > decision.r) ++done;
         }
+        if (done == 0) return;
         waiting_.erase(waiting_.begin(), waiting_.begin() + static_cast<std::ptrdiff_t>(done));
     }
 

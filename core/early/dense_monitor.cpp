@@ -36,6 +36,12 @@ DenseMonitor::DenseMonitor(Graph graph, DenseSettings settings)
     }
     if (settings.causes) {
         causes_.emplace(std::move(*settings.causes), engine_, origin_.value(), true);
+    } else { // causes are of every value, needed or not
+        std::vector<Tick> last(engine_.size(), -1);
+        for (const std::uint32_t output : outputs_)
+            last[output / 2] = forever;
+        if (origin_) origin_->limit(last);
+        engine_.limit(last);
     }
     for (std::size_t i = 0; i < outputs_.size() && decides_; ++i)
         decisions_[i].begin(engine_, outputs_[i]);

@@ -19,6 +19,7 @@ Engine::Engine(Graph graph, std::vector<Bounds> ranges, bool late)
     for (std::uint32_t i = 0; i < graph_.nodes.size(); ++i) {
         steps = std::max(steps, node(i).steps.size());
         totals_.emplace_back(plus(node(i).high, plus(-node(i).low, 1)));
+        if (node(i).kind == Kind::atom) atoms_.push_back(i);
         for (const Step& step : node(i).steps) {
             partial_ = partial_ || info(step.opcode).partial;
             if (node(i).kind != Kind::atom || step.opcode != Opcode::input) continue;
@@ -92,8 +93,7 @@ std::optional<Engine::Failure> Engine::take(Tick t, std::span<const Value> value
             return std::span(bounds_);
         }
     }();
-    for (std::uint32_t i = 0; i < nodes_.size(); ++i) {
-        if (node(i).kind != Kind::atom) continue;
+    for (const std::uint32_t i : atoms_) {
         const auto& steps = node(i).steps;
         const std::uint32_t wrong = run<Value>(steps, values, scratch);
         if (wrong != none) return Failure{i, wrong, t};
@@ -104,8 +104,7 @@ std::optional<Engine::Failure> Engine::take(Tick t, std::span<const Value> value
         }
     }
     journaling_ = partial_;
-    for (std::uint32_t i = 0; i < nodes_.size(); ++i) {
-        if (node(i).kind != Kind::atom) continue;
+    for (const std::uint32_t i : atoms_) {
         lift(nodes_[i], 0, t, t, results_[i].lower);
         lift(nodes_[i], 1, t, t, -results_[i].upper);
     }
@@ -153,8 +152,7 @@ std::optional<Engine::Failure> Engine::suppose(std::span<const Supposition> supp
     begin(seen_);
     journaling_ = true;
     for (const Supposition& supposed : suppositions) {
-        for (std::uint32_t i = 0; i < nodes_.size(); ++i) {
-            if (node(i).kind != Kind::atom) continue;
+        for (const std::uint32_t i : atoms_) {
             if (run<Bounds>(node(i).steps, supposed.row, bounds_) != none) continue; // not known
             const Bounds result = bounds_[node(i).steps.size() - 1];
             lift(nodes_[i], 0, supposed.l, supposed.r, result.lower);
@@ -176,9 +174,9 @@ std::optional<Engine::Failure> Engine::suppose(std::span<const Lesson> lessons) 
 }
 
 std::optional<Engine::Failure> Engine::wrong_constant() {
-    for (std::uint32_t i = 0; i < nodes_.size(); ++i) {
+    for (const std::uint32_t i : atoms_) {
         const auto reads = [](const Step& step) { return step.opcode == Opcode::input; };
-        if (node(i).kind != Kind::atom || std::ranges::any_of(node(i).steps, reads)) continue;
+        if (std::ranges::any_of(node(i).steps, reads)) continue;
         const std::uint32_t wrong = run<Bounds>(node(i).steps, row_, bounds_);
         if (wrong != none) return Failure{i, wrong, 0};
     }
@@ -288,7 +286,26 @@ std::optional<Engine::Failure> Engine::propagate(bool first) {
     return std::nullopt;
 }
 
-// ---- what is not needed any more ----------------------------------------------------------------
+// ---- what is not needed, or not any more
+// ----------------------------------------------------------------
+
+// Operations on what is not followed would not fail, so that with any of them all is.
+void Engine::limit(std::span<const Tick> last) {
+    const auto fails = [](const Node& node) {
+        return node.kind == Kind::map || node.kind == Kind::sum;
+    };
+    if (std::ranges::any_of(graph_.nodes, fails)) return;
+    std::vector<Tick> to(last.begin(), last.end());
+    for (std::size_t i = nodes_.size(); i-- > 0;) {
+        const Node& own = node(i);
+        if (own.kind == Kind::until && to[i] >= 0) to[i] = forever; // it reads its own next value
+        nodes_[i].to = to[i];
+        if (own.kind == Kind::atom || to[i] < 0) continue;
+        const Tick read = std::max<Tick>(0, plus(to[i], own.high));
+        for (const std::uint32_t ref : {own.a, own.b})
+            if (ref != none) to[ref / 2] = std::max(to[ref / 2], read);
+    }
+}
 
 void Engine::settle(Tick closed, std::span<const Tick> wanted) {
     std::vector<Tick> need(wanted.begin(), wanted.end());

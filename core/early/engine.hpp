@@ -6,6 +6,11 @@
 // old and one new value, and only these are looked at: knowledge may come in any order.
 //
 // Cost: proportional to the pieces, whatever the bounds. Memory: the runs of what is still wanted.
+//
+// To compute all open ticks anew after each sample would be faster for short windows: one window is
+// as fast either way at 50 ticks, two nested ones of 30 to 50 ticks each; at 10 ticks this
+// engine takes 3 times as long (benchmarks/zone_bench.cpp). One engine serves all the same: it also
+// takes what comes late.
 #pragma once
 
 #include "graph.hpp"
@@ -48,6 +53,10 @@ class Engine {
     // What fails changes nothing.
     [[nodiscard]] std::optional<Failure> row(Tick t, std::span<const double> values);
     [[nodiscard]] std::optional<Failure> row(Tick t, std::span<const Bounds> values);
+
+    // `last`: by node, the last tick that others than nodes will ever ask for, -1 for none. What
+    // nobody asks for is not followed.
+    void limit(std::span<const Tick> last);
 
     // Up to which tick each input is known as well as it will ever be, from the next change on;
     // where only learn() is called.
@@ -120,8 +129,9 @@ class Engine {
     struct State {
         Registers own;
         std::array<std::vector<Piece>, 2> out;
-        Tick from = 0; // the first tick that may still change and is wanted
-        Tick keep = 0; // the first tick that anybody reads
+        Tick from = 0;     // the first tick that may still change and is wanted
+        Tick keep = 0;     // the first tick that anybody reads
+        Tick to = forever; // the last tick that anybody will read
     };
     struct Undo {
         Runs* runs;
@@ -135,6 +145,7 @@ class Engine {
     bool late_;
     bool partial_ = false; // an operation may have no value
     std::vector<State> nodes_;
+    std::vector<std::uint32_t> atoms_;
     std::vector<Registers> inputs_;                   // where knowledge may be late
     std::vector<Tick> settled_;                       // by input
     std::vector<std::vector<std::uint32_t>> readers_; // the atoms that read an input
@@ -172,6 +183,7 @@ class Engine {
     [[nodiscard]] std::optional<Failure> add_all(std::uint32_t index, Tick t);
 
     // kernels.cpp: all other nodes, a register at a time
+    void change(State& state, int reg, Runs::Place place, Run run, double now);
     void change(State& state, int reg, Run run, double now);
     void lift(State& state, int reg, Tick l, Tick r, double now);
     void pass(std::uint32_t index, int reg);

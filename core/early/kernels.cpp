@@ -6,18 +6,29 @@
 
 namespace rtamt::early {
 
-void Engine::change(State& state, int reg, Run run, double now) {
+void Engine::change(State& state, int reg, Runs::Place place, Run run, double now) {
     Runs& own = state.own[static_cast<std::size_t>(reg)];
     if (journaling_) journal_.push_back({&own, run.begin, run.end, run.value});
-    own.set(run.begin, run.end, now);
+    own.set(place, run.begin, run.end, now);
     state.out[static_cast<std::size_t>(reg)].push_back({run.begin, run.end, run.value, now});
+}
+
+void Engine::change(State& state, int reg, Run run, double now) {
+    change(state, reg, state.own[static_cast<std::size_t>(reg)].find(run.begin), run, now);
 }
 
 // Raises what is below.
 void Engine::lift(State& state, int reg, Tick l, Tick r, double now) {
     l = std::max(l, state.from);
-    if (l >= forever) return; // nobody wants it
+    r = std::min(r, state.to);
+    if (l > r || l >= forever || now == -infinity) return; // nobody wants it, or it is no rise
     const Runs& own = state.own[static_cast<std::size_t>(reg)];
+    const Runs::Place place = own.find(l);
+    const Run here = own.run(place);
+    if (here.end >= r) { // nearly always
+        if (here.value < now) change(state, reg, place, {l, r, here.value}, now);
+        return;
+    }
     while (const auto run = own.first<Below>(l, r, now)) {
         change(state, reg, *run, now);
         if (run->end >= forever) return;
@@ -29,6 +40,7 @@ void Engine::pass(std::uint32_t index, int reg) {
     const Node& own = node(index);
     State& state = nodes_[index];
     if (state.from >= forever) return; // nobody wants it
+    if (news(own.a, reg).empty() && (own.b == none || news(own.b, reg).empty())) return;
     const bool greatest =
         own.kind != Kind::both && own.kind != Kind::least && own.kind != Kind::rank_least;
     const bool up = greatest == (reg == 0); // whether the register takes the greatest
@@ -84,13 +96,23 @@ void Engine::combine(std::uint32_t index, int reg, bool up) {
             }
             // The smaller can rise only where it was this operand.
             Tick t = std::max(piece.l, state.from);
+            const Tick last = std::min(piece.r, state.to);
             const Runs& mine = state.own[static_cast<std::size_t>(reg)];
-            while (const auto run = mine.first<AtLeast>(t, piece.r, piece.old)) {
-                const Run first = a.at(run->begin);
-                const Run second = b.at(run->begin);
+            while (t <= last) {
+                const Runs::Place place = mine.find(t);
+                const Run run = mine.run(place);
+                if (run.value < piece.old) {
+                    if (run.end >= last) break;
+                    const auto found = mine.first<AtLeast>(run.end + 1, last, piece.old);
+                    if (!found) break;
+                    t = found->begin;
+                    continue;
+                }
+                const Run first = a.at(t);
+                const Run second = b.at(t);
                 const double now = Real::meet(first.value, second.value);
-                const Tick end = std::min({run->end, first.end, second.end});
-                if (now > run->value) change(state, reg, {run->begin, end, run->value}, now);
+                const Tick end = std::min({last, run.end, first.end, second.end});
+                if (now > run.value) change(state, reg, place, {t, end, run.value}, now);
                 if (end >= forever) break;
                 t = end + 1;
             }
@@ -115,24 +137,42 @@ void Engine::slide(std::uint32_t index, int reg, bool up) {
     }
 }
 
-// The least value of a window can rise only where it was that of the piece; the new one holds for
-// as long as it stays in the window and nothing smaller comes in.
+// The least value of a window can rise only where it was that of the piece and no other value in
+// the window is as small; the new one holds for as long as it stays in the window and nothing
+// smaller comes in.
 void Engine::slide_least(State& state, int reg, const Node& node, const Runs& operand,
                          Piece piece) {
     const Runs& own = state.own[static_cast<std::size_t>(reg)];
-    const Tick last = plus(piece.r, -node.low);
     Tick t = std::max(state.from, plus(piece.l, -node.high));
+    Tick last = std::min(state.to, plus(piece.r, -node.low));
+    if (piece.r < plus(last, node.high)) {
+        const Run next = operand.at(piece.r + 1); // nearly always what nobody has seen
+        if (next.value <= piece.old) {
+            last = std::min(last, piece.r - node.high);
+        } else if (const auto after =
+                       operand.first<AtMost>(plus(next.end, 1), plus(last, node.high), piece.old)) {
+            last = std::min(last, after->begin - 1 - node.high);
+        }
+    }
+    if (last < t) return;
+    if (piece.l > std::max<Tick>(0, plus(t, node.low)) &&
+        operand.at(piece.l - 1).value <= piece.old) {
+        t = std::max(t, piece.l - node.low);
+    }
     while (const auto run = own.first<AtLeast>(t, last, piece.old)) {
         t = run->begin;
         const Tick begin = std::max<Tick>(0, plus(t, node.low));
         const Tick end = plus(t, node.high);
-        const double now = operand.least(begin, end);
-        // The last run in the window that is as small, and until when it stays there.
-        const auto holder = operand.last<AtMost>(begin, end, now);
-        const Tick stays = holder ? plus(operand.at(holder->end).end, -node.low) : t;
-        Tick until = std::min(run->end, stays);
+        const double now = operand.least(begin, end, piece.old);
+        Tick until = run->end;
+        if (until > t) {
+            // The last run in the window that is as small, and until when it stays there.
+            const auto holder = operand.last<AtMost>(begin, end, now);
+            const Tick stays = holder ? plus(operand.at(holder->end).end, -node.low) : t;
+            until = std::min(until, stays);
+        }
         if (now > run->value) {
-            if (end < forever) {
+            if (until > t && end < forever) {
                 const auto next = operand.first<Below>(end + 1, plus(until, node.high), now);
                 if (next) until = std::min(until, next->begin - 1 - node.high);
             }
@@ -147,7 +187,7 @@ void Engine::slide_least(State& state, int reg, const Node& node, const Runs& op
 void Engine::run_least(State& state, int reg, const Node& node, const Runs& operand, Piece piece) {
     const Runs& own = state.own[static_cast<std::size_t>(reg)];
     Tick t = std::max(state.from, plus(piece.l, -node.high));
-    while (const auto run = own.first<AtLeast>(t, forever, piece.old)) {
+    while (const auto run = own.first<AtLeast>(t, state.to, piece.old)) {
         t = run->begin;
         const bool first = t + node.high <= 0; // the first operand in the window
         const Run entering = operand.at(t + node.high);

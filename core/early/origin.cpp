@@ -51,6 +51,14 @@ Bounds Origin::bounds_of(std::size_t item) const noexcept {
     return items_[item].negated ? Interval::neg(bounds) : bounds;
 }
 
+void Origin::limit(std::span<Tick> last) const noexcept {
+    for (const Item& item : items_) {
+        if (item.kind == Item::Kind::both || item.kind == Item::Kind::either) continue;
+        Tick& of_node = last[item.a / 2];
+        of_node = std::max(of_node, item.kind == Item::Kind::value ? item.tick : forever);
+    }
+}
+
 void Origin::look(const Engine& engine) {
     for (std::size_t i = 0; i < items_.size(); ++i)
         look_at(engine, i);

@@ -34,6 +34,9 @@ class Origin {
     // The last item is that of the formula. `follows`: whether items go on when they are decided.
     Origin(std::vector<Item> items, const Engine& engine, bool follows = false);
 
+    // The last tick of each node that is looked at, where it is later.
+    void limit(std::span<Tick> last) const noexcept;
+
     // Looks at what the engine knows now.
     void look(const Engine& engine);
 

@@ -19,6 +19,7 @@ Runs::Runs(const Runs& other) {
         directory_.push_back({entry.first, entry.least, entry.most, entry.summed,
                               std::make_unique<Chunk>(*entry.chunk)});
     }
+    moved(0);
 }
 
 Runs& Runs::operator=(const Runs& other) {
@@ -40,12 +41,23 @@ std::optional<Runs::Place> Runs::after(Place p) const noexcept {
 
 // ---- changes ------------------------------------------------------------------------------------
 
-void Runs::set(Tick l, Tick r, double value) {
-    const Place p = find(l);
+// What the values of a chunk are, or which chunks there are from an index on, is not what it was.
+void Runs::changed(std::size_t chunk) noexcept {
+    directory_[chunk].summed = false;
+    if (chunk / grouped < groups_.size()) groups_[chunk / grouped].summed = false;
+}
+
+void Runs::moved(std::size_t chunk) {
+    groups_.resize(directory_.size() / grouped);
+    for (std::size_t g = chunk / grouped; g < groups_.size(); ++g)
+        groups_[g].summed = false;
+}
+
+void Runs::set(Place p, Tick l, Tick r, double value) {
     Entry& entry = directory_[p.chunk];
     const double old = entry.chunk->value[p.index];
     if (old == value) return;
-    entry.summed = false;
+    changed(p.chunk);
     const bool from_begin = l <= entry.chunk->start[p.index];
     const bool to_end = r >= end_of(p);
     const auto left = from_begin ? before(p) : std::nullopt;
@@ -86,7 +98,7 @@ void Runs::move_start(Place p, Tick start) noexcept {
 void Runs::erase(Place p) noexcept {
     Entry& entry = directory_[p.chunk];
     Chunk& chunk = *entry.chunk;
-    entry.summed = false;
+    changed(p.chunk);
     if (p.index == chunk.begin) {
         ++chunk.begin;
         if (chunk.begin < chunk.end) entry.first = chunk.start[chunk.begin];
@@ -97,6 +109,7 @@ void Runs::erase(Place p) noexcept {
     }
     if (chunk.begin == chunk.end) {
         directory_.erase(directory_.begin() + static_cast<std::ptrdiff_t>(p.chunk));
+        moved(p.chunk);
     }
 }
 
@@ -108,7 +121,7 @@ void Runs::append(Tick start, double value) {
     if (chunk.begin == chunk.end) entry.first = start;
     chunk.start[chunk.end] = start;
     chunk.value[chunk.end++] = value;
-    entry.summed = false;
+    changed(directory_.size() - 1);
 }
 
 Runs::Place Runs::insert_after(Place p, Tick start, double value) {
@@ -134,6 +147,7 @@ Runs::Place Runs::insert_after(Place p, Tick start, double value) {
             directory_[p.chunk].summed = false;
             directory_.insert(directory_.begin() + static_cast<std::ptrdiff_t>(p.chunk) + 1,
                               std::move(upper));
+            moved(p.chunk);
             if (grows) {
                 append(start, value);
                 return {p.chunk + 1, 0};
@@ -149,7 +163,7 @@ Runs::Place Runs::insert_after(Place p, Tick start, double value) {
     chunk.start[place] = start;
     chunk.value[place] = value;
     ++chunk.end;
-    entry.summed = false;
+    changed(p.chunk);
     return {p.chunk, place};
 }
 
@@ -157,14 +171,18 @@ void Runs::drop_before(Tick t) noexcept {
     std::size_t whole = 0; // chunks
     while (whole + 1 < directory_.size() && directory_[whole + 1].first <= t)
         ++whole;
-    directory_.erase(directory_.begin(), directory_.begin() + static_cast<std::ptrdiff_t>(whole));
+    if (whole > 0) {
+        directory_.erase(directory_.begin(),
+                         directory_.begin() + static_cast<std::ptrdiff_t>(whole));
+        moved(0);
+    }
     Entry& entry = directory_.front();
     Chunk& chunk = *entry.chunk;
     const int begin = chunk.begin;
     while (chunk.begin + 1 < chunk.end && chunk.start[chunk.begin + 1] <= t)
         ++chunk.begin;
     entry.first = chunk.start[chunk.begin];
-    if (chunk.begin != begin) entry.summed = false;
+    if (chunk.begin != begin) changed(0);
 }
 
 // ---- extremes -----------------------------------------------------------------------------------
@@ -182,40 +200,64 @@ void Runs::sum(const Entry& entry) const noexcept {
     entry.summed = true;
 }
 
-template <bool greatest>
-double Runs::extreme(Tick l, Tick r) const noexcept {
-    const auto better = [](double a, double b) noexcept {
-        return greatest ? Real::join(a, b) : Real::meet(a, b);
-    };
-    double result = greatest ? -infinity : infinity;
-    const Place from = find(l);
-    const Place to = find(r);
-    const auto within = [&](const Chunk& chunk, int begin, int end) noexcept {
-        for (int i = begin; i < end; ++i)
-            result = better(result, chunk.value[i]);
-    };
-    const Chunk& first = *directory_[from.chunk].chunk;
-    if (from.chunk == to.chunk) {
-        within(first, from.index, to.index + 1);
-        return result;
-    }
-    within(first, from.index, first.end);
-    for (std::size_t c = from.chunk + 1; c < to.chunk; ++c) {
+const Runs::Group& Runs::group_from(std::size_t chunk) const noexcept {
+    Group& group = groups_[chunk / grouped];
+    if (group.summed) return group;
+    group = {infinity, -infinity, true};
+    for (std::size_t c = chunk; c < chunk + grouped; ++c) {
         const Entry& entry = directory_[c];
         if (!entry.summed) sum(entry);
-        result = better(result, greatest ? entry.most : entry.least);
+        group.least = Real::meet(group.least, entry.least);
+        group.most = Real::join(group.most, entry.most);
     }
+    return group;
+}
+
+// From the end on, where most searches soon find what is enough.
+template <bool greatest>
+double Runs::extreme(Tick l, Tick r, double enough) const noexcept {
+    double result = greatest ? -infinity : infinity;
+    const auto take = [&](double value) noexcept { // whether it is enough
+        result = greatest ? Real::join(result, value) : Real::meet(result, value);
+        return greatest ? result >= enough : result <= enough;
+    };
+    const auto within = [&](const Chunk& chunk, int begin, int end) noexcept {
+        double extreme = greatest ? -infinity : infinity;
+        for (int i = begin; i < end; ++i)
+            extreme = greatest ? Real::join(extreme, chunk.value[i])
+                               : Real::meet(extreme, chunk.value[i]);
+        return take(extreme);
+    };
+    const Place to = find(r);
     const Chunk& last = *directory_[to.chunk].chunk;
-    within(last, last.begin, to.index + 1);
+    if (directory_[to.chunk].first <= l || to.chunk == 0) {
+        (void)within(last, find(l).index, to.index + 1);
+        return result;
+    }
+    if (within(last, last.begin, to.index + 1)) return result;
+    const Place from = find(l);
+    for (std::size_t c = to.chunk - 1; c > from.chunk;) {
+        if (c % grouped == grouped - 1 && c > from.chunk + grouped - 1) {
+            const Group& group = group_from(c + 1 - grouped);
+            if (take(greatest ? group.most : group.least)) return result;
+            c -= grouped;
+            continue;
+        }
+        const Entry& entry = directory_[c--];
+        if (!entry.summed) sum(entry);
+        if (take(greatest ? entry.most : entry.least)) return result;
+    }
+    const Chunk& first = *directory_[from.chunk].chunk;
+    (void)within(first, from.index, first.end);
     return result;
 }
 
-double Runs::least(Tick l, Tick r) const noexcept {
-    return extreme<false>(l, r);
+double Runs::least(Tick l, Tick r, double floor) const noexcept {
+    return extreme<false>(l, r, floor);
 }
 
 double Runs::most(Tick l, Tick r) const noexcept {
-    return extreme<true>(l, r);
+    return extreme<true>(l, r, infinity);
 }
 
 // ---- state --------------------------------------------------------------------------------------
@@ -243,6 +285,7 @@ void Runs::transfer(Snapshot& snapshot) {
         if (i % capacity == 0) directory_.emplace_back();
         append(starts[i], values[i]);
     }
+    moved(0);
 }
 
 } // namespace rtamt::early

@@ -2,8 +2,8 @@
 // holds.
 //
 // Runs lie in chunks; a directory keeps the first tick and the least and the greatest value of each
-// chunk, so that a search passes over chunks it need not look into. The last run goes on for ever;
-// runs that nobody needs any more are dropped at the front.
+// chunk, and those of groups of chunks, so that a search passes over what it need not look into.
+// The last run goes on for ever; runs that nobody needs any more are dropped at the front.
 //
 // Cost: a search in the directory and one in a chunk for each access; a chunk is moved in part when
 // a border is added or removed. Memory: two words a run.
@@ -78,11 +78,20 @@ class Runs {
     Runs& operator=(Runs&&) noexcept = default;
     ~Runs() = default;
 
+    // Where a run lies, until the next change.
+    struct Place {
+        std::size_t chunk;
+        int index;
+    };
+
     // The run in which a tick lies; the first one for ticks that were dropped.
+    [[nodiscard]] Place find(Tick t) const noexcept;
+    [[nodiscard]] Run run(Place p) const noexcept;
     [[nodiscard]] Run at(Tick t) const noexcept { return run(find(t)); }
 
     // Gives a new value to [l, r], which lies in one run.
-    void set(Tick l, Tick r, double value);
+    void set(Tick l, Tick r, double value) { set(find(l), l, r, value); }
+    void set(Place p, Tick l, Tick r, double value);
 
     // The first or the last run, cut to [l, r], whose value compares so with a value.
     template <class Search>
@@ -90,8 +99,9 @@ class Runs {
     template <class Search>
     [[nodiscard]] std::optional<Run> last(Tick l, Tick r, double value) const noexcept;
 
-    // The least and the greatest value in [l, r].
-    [[nodiscard]] double least(Tick l, Tick r) const noexcept;
+    // The least and the greatest value in [l, r]; or any there that is not above `floor`.
+    [[nodiscard]] double
+    least(Tick l, Tick r, double floor = -std::numeric_limits<double>::infinity()) const noexcept;
     [[nodiscard]] double most(Tick l, Tick r) const noexcept;
 
     // Drops the runs that end before a tick.
@@ -120,15 +130,16 @@ class Runs {
         mutable bool summed = false; // whether least and most are those of the chunk
         std::unique_ptr<Chunk> chunk;
     };
-    struct Place {
-        std::size_t chunk;
-        int index;
+    struct Group {
+        double least = 0;
+        double most = 0;
+        bool summed = false;
     };
+    static constexpr std::size_t grouped = 32; // chunks
 
     std::vector<Entry> directory_; // never empty, and neither is a chunk in it
+    mutable std::vector<Group> groups_;
 
-    [[nodiscard]] Place find(Tick t) const noexcept;
-    [[nodiscard]] Run run(Place p) const noexcept;
     [[nodiscard]] Tick end_of(Place p) const noexcept;
     [[nodiscard]] std::optional<Place> before(Place p) const noexcept;
     [[nodiscard]] std::optional<Place> after(Place p) const noexcept;
@@ -136,12 +147,16 @@ class Runs {
         return directory_[p.chunk].chunk->value[p.index];
     }
     void sum(const Entry& entry) const noexcept;
+    // Of as many chunks as there are in a group, the first one's index a multiple of that.
+    [[nodiscard]] const Group& group_from(std::size_t chunk) const noexcept;
+    void changed(std::size_t chunk) noexcept;
+    void moved(std::size_t chunk);
     void move_start(Place p, Tick start) noexcept;
     void erase(Place p) noexcept;
     Place insert_after(Place p, Tick start, double value);
     void append(Tick start, double value);
     template <bool greatest>
-    [[nodiscard]] double extreme(Tick l, Tick r) const noexcept;
+    [[nodiscard]] double extreme(Tick l, Tick r, double enough) const noexcept;
 };
 
 // ---- searches -----------------------------------------------------------------------------------
@@ -208,6 +223,13 @@ std::optional<Run> Runs::first(Tick l, Tick r, double value) const noexcept {
         for (;;) { // to the next chunk that may hold one
             ++p.chunk;
             if (p.chunk == directory_.size() || directory_[p.chunk].first > r) return std::nullopt;
+            if (p.chunk % grouped == 0 && p.chunk + grouped < directory_.size()) {
+                const Group& group = group_from(p.chunk);
+                if (!Search::possible(group.least, group.most, value)) {
+                    p.chunk += grouped - 1;
+                    continue;
+                }
+            }
             const Entry& next = directory_[p.chunk];
             if (!next.summed) sum(next);
             if (Search::possible(next.least, next.most, value)) break;
@@ -233,6 +255,15 @@ std::optional<Run> Runs::last(Tick l, Tick r, double value) const noexcept {
         for (;;) {
             if (p.chunk == 0) return std::nullopt;
             --p.chunk;
+            if (p.chunk % grouped == grouped - 1) {
+                const std::size_t begin = p.chunk + 1 - grouped;
+                const Group& group = group_from(begin);
+                if (!Search::possible(group.least, group.most, value)) {
+                    if (directory_[begin].first <= l) return std::nullopt;
+                    p.chunk = begin;
+                    continue;
+                }
+            }
             const Entry& next = directory_[p.chunk];
             if (!next.summed) sum(next);
             if (Search::possible(next.least, next.most, value)) break;

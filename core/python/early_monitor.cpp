@@ -49,6 +49,13 @@ EarlyMonitor::EarlyMonitor(const early::Graph& graph, std::vector<std::uint32_t>
         causes_.emplace(causes_of(*causes), engine_, origin_.value(), false);
         causation_.emplace(causation_of(*causes));
     }
+    if (!causes) { // which are of every value, needed or not
+        std::vector<Tick> last(engine_.size(), -1);
+        for (const std::uint32_t output : outputs_)
+            last[output / 2] = forever;
+        if (origin_) origin_->limit(last);
+        engine_.limit(last);
+    }
     // What is known before any sample came, such as the truth of constants, waits for the first.
     for (std::size_t i = 0; i < outputs_.size(); ++i)
         decisions_[i].begin(engine_, outputs_[i]);

@@ -81,6 +81,29 @@ TEST_CASE("bounds after every row of samples are those of the definition") {
     }
 }
 
+TEST_CASE("what is asked for up to a tick alone has the bounds of the definition there") {
+    for (std::uint32_t seed = 0; seed < 300; ++seed) {
+        CAPTURE(seed);
+        Random random(seed);
+        const Graph graph = random_graph(random, 5, true);
+        Engine engine(graph, {}, false);
+        const auto root = static_cast<std::uint32_t>(graph.nodes.size() - 1);
+        std::vector<Tick> last(graph.nodes.size(), -1);
+        last[root] = random.between(0, 4);
+        engine.limit(last);
+        Knowledge known(2, {rtamt::bounds::anything});
+        for (Tick t = 0; t < end_of_test; ++t) {
+            const std::array<double, 2> row{random.number(0), random.number(0)};
+            for (std::size_t k = 0; k < 2; ++k)
+                known[k].insert(known[k].end() - 1, Interval::of(row[k]));
+            REQUIRE(!engine.row(t, std::span<const double>(row)));
+            const auto expected = bounds(graph, known, span_of_test + 6)[root];
+            for (Tick asked = 0; asked <= last[root]; ++asked)
+                REQUIRE(engine.at(2 * root, asked) == expected[static_cast<std::size_t>(asked)]);
+        }
+    }
+}
+
 TEST_CASE("knowledge in any order gives the bounds of the definition") {
     for (std::uint32_t seed = 0; seed < 400; ++seed) {
         CAPTURE(seed);

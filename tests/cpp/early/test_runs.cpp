@@ -9,10 +9,9 @@ using namespace rtamt::early;
 
 namespace {
 
-constexpr Tick ticks = 400; // behind them all is as at the start
-
 struct Model {
-    std::vector<double> values = std::vector<double>(ticks + 1, 0.0);
+    Tick ticks; // behind them all is as at the start
+    std::vector<double> values = std::vector<double>(static_cast<std::size_t>(ticks) + 1, 0.0);
 
     [[nodiscard]] double at(Tick t) const {
         return values[static_cast<std::size_t>(std::min(t, ticks))];
@@ -52,61 +51,75 @@ void check_search(const Runs& runs, const Model& model, Tick l, Tick r, double v
     check_equal(runs.last<Search>(l, r, value), last);
 }
 
+void check_changes(std::uint32_t seed, Tick ticks, int values, int steps) {
+    CAPTURE(seed);
+    Random random(seed);
+    Runs runs(0, 0.0);
+    Model model{ticks};
+    Tick front = 0;
+    for (Tick t = 0; t < ticks && values > 100; ++t) { // many chunks from the start
+        const auto value = static_cast<double>(random.between(0, values));
+        runs.set(t, t, value);
+        model.values[static_cast<std::size_t>(t)] = value;
+    }
+    for (int i = 0; i < steps; ++i) {
+        const Tick t = random.between(front, ticks - 1);
+        const Run run = model.run(t);
+        const Tick l = random.between(std::max(run.begin, front), t);
+        const Tick r = std::min<Tick>({run.end, ticks - 1, t + random.between(0, 4)});
+        const auto value = static_cast<double>(random.between(0, values));
+        runs.set(l, r, value);
+        for (Tick k = l; k <= r; ++k)
+            model.values[static_cast<std::size_t>(k)] = value;
+        if (random.chance(5)) {
+            const Tick drop =
+                random.between(front, std::min<Tick>(front + 9 * ticks / 400, ticks / 2));
+            runs.drop_before(drop);
+            front = std::max(front, drop);
+            REQUIRE(runs.front() <= drop);
+        }
+        if (random.chance(3)) {
+            rtamt::Snapshot written;
+            runs.transfer(written);
+            rtamt::Snapshot read(written.bytes());
+            Runs other;
+            other.transfer(read);
+            read.end();
+            runs = other;
+        }
+        const Tick from = random.between(front, ticks - 1);
+        const Tick to = random.between(from, ticks - 1);
+        const Run found = runs.at(from);
+        const Run expected = model.run(from);
+        REQUIRE(std::max(found.begin, front) == std::max(expected.begin, front));
+        REQUIRE(found.end == expected.end);
+        REQUIRE(found.value == expected.value);
+        double least = rtamt::infinity;
+        double most = -rtamt::infinity;
+        for (Tick k = from; k <= to; ++k) {
+            least = std::min(least, model.at(k));
+            most = std::max(most, model.at(k));
+        }
+        REQUIRE(runs.least(from, to) == least);
+        REQUIRE(runs.most(from, to) == most);
+        check_search<Below>(runs, model, from, to, value);
+        check_search<Above>(runs, model, from, to, value);
+        check_search<AtMost>(runs, model, from, to, value);
+        check_search<AtLeast>(runs, model, from, to, value);
+    }
+}
+
 } // namespace
 
 TEST_CASE("runs are those of an array, whatever is set, found and dropped") {
-    for (std::uint32_t seed = 0; seed < 40; ++seed) {
-        CAPTURE(seed);
-        Random random(seed);
-        const int values = seed % 2 == 0 ? 3 : 40; // few values join, many make chunks
-        Runs runs(0, 0.0);
-        Model model;
-        Tick front = 0;
-        for (int i = 0; i < 600; ++i) {
-            const Tick t = random.between(front, ticks - 1);
-            const Run run = model.run(t);
-            const Tick l = random.between(std::max(run.begin, front), t);
-            const Tick r = std::min<Tick>({run.end, ticks - 1, t + random.between(0, 4)});
-            const auto value = static_cast<double>(random.between(0, values));
-            runs.set(l, r, value);
-            for (Tick k = l; k <= r; ++k)
-                model.values[static_cast<std::size_t>(k)] = value;
-            if (random.chance(5)) {
-                const Tick drop = random.between(front, std::min<Tick>(front + 9, ticks / 2));
-                runs.drop_before(drop);
-                front = std::max(front, drop);
-                REQUIRE(runs.front() <= drop);
-            }
-            if (random.chance(3)) {
-                rtamt::Snapshot written;
-                runs.transfer(written);
-                rtamt::Snapshot read(written.bytes());
-                Runs other;
-                other.transfer(read);
-                read.end();
-                runs = other;
-            }
-            const Tick from = random.between(front, ticks - 1);
-            const Tick to = random.between(from, ticks - 1);
-            const Run found = runs.at(from);
-            const Run expected = model.run(from);
-            REQUIRE(std::max(found.begin, front) == std::max(expected.begin, front));
-            REQUIRE(found.end == expected.end);
-            REQUIRE(found.value == expected.value);
-            double least = rtamt::infinity;
-            double most = -rtamt::infinity;
-            for (Tick k = from; k <= to; ++k) {
-                least = std::min(least, model.at(k));
-                most = std::max(most, model.at(k));
-            }
-            REQUIRE(runs.least(from, to) == least);
-            REQUIRE(runs.most(from, to) == most);
-            check_search<Below>(runs, model, from, to, value);
-            check_search<Above>(runs, model, from, to, value);
-            check_search<AtMost>(runs, model, from, to, value);
-            check_search<AtLeast>(runs, model, from, to, value);
-        }
-    }
+    // Few values join, many make chunks.
+    for (std::uint32_t seed = 0; seed < 40; ++seed)
+        check_changes(seed, 400, seed % 2 == 0 ? 3 : 40, 600);
+}
+
+TEST_CASE("runs in groups of chunks are those of an array") {
+    for (std::uint32_t seed = 0; seed < 6; ++seed)
+        check_changes(seed, 9000, 1'000'000, 300);
 }
 
 TEST_CASE("forever stays what it is") {
