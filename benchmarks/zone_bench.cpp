@@ -1,0 +1,119 @@
+// Bounds of every open instant in discrete time, in nanoseconds a sample, two ways:
+//
+//     zone_bench
+//
+// Delta: the engine of core/early, which follows what a sample changes. Zone: as many later samples
+// as the horizon is long, of which nothing is known, run through the executor of bounds after each
+// sample. What is measured of that is a lower bound, without taking it back. Both compute
+// always[0,k](a >= -2), and the same below eventually[0,k].
+#include "discrete/executor.hpp"
+#include "early/engine.hpp"
+#include "programs.hpp"
+#include "values/interval.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <ctime>
+#include <random>
+#include <span>
+#include <vector>
+
+namespace {
+
+using programs::Builder;
+using rtamt::Bounds;
+using rtamt::Interval;
+using rtamt::Opcode;
+using rtamt::discrete::BasicExecutor;
+using rtamt::early::Engine;
+using rtamt::early::Graph;
+using rtamt::early::Kind;
+using rtamt::early::Node;
+using rtamt::early::none;
+using rtamt::early::Tick;
+
+constexpr int rounds = 3;
+
+Graph graph(Tick k, bool nested) {
+    Graph graph;
+    graph.inputs = 1;
+    Node atom;
+    atom.kind = Kind::atom;
+    atom.steps = {{Opcode::input, 0, none, 0.0},
+                  {Opcode::constant, none, none, -2.0},
+                  {Opcode::sub, 0, 1, 0.0}};
+    graph.nodes.push_back(atom);
+    graph.nodes.push_back({Kind::least, 0, none, 0, k, k, {}});
+    if (nested) graph.nodes.push_back({Kind::greatest, 2, none, 0, k, 2 * k, {}});
+    return graph;
+}
+
+rtamt::Program program(Tick k, bool nested) {
+    Builder builder;
+    const auto margin = builder.pointwise(Opcode::sub, builder.input(), builder.constant(-2));
+    const auto always = builder.unary(Opcode::slide_min, margin, k + 1, k);
+    builder.output(nested ? builder.unary(Opcode::slide_max, always, k + 1, 2 * k) : always);
+    return builder.program();
+}
+
+template <class Work>
+double best_of(std::size_t samples, Work&& work) {
+    double best = rtamt::infinity;
+    for (int round = 0; round < rounds; ++round) {
+        const std::clock_t start = std::clock(); // of this process, whatever else runs
+        work();
+        const double spent = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+        best = std::min(best, spent * 1e9 / static_cast<double>(samples));
+    }
+    return best;
+}
+
+double delta(Tick k, bool nested, std::span<const double> samples) {
+    return best_of(samples.size(), [&] {
+        Engine engine(graph(k, nested), {}, false);
+        std::vector<Tick> wanted(engine.size(), rtamt::early::forever);
+        const Tick horizon = nested ? 2 * k : k;
+        for (std::size_t i = 0; i < samples.size(); ++i) {
+            const auto t = static_cast<Tick>(i);
+            if (engine.row(t, samples.subspan(i, 1))) std::puts("undefined");
+            if (i % 64 != 0) continue;
+            wanted.back() = std::max<Tick>(0, t - horizon);
+            engine.settle(t, wanted);
+        }
+    });
+}
+
+double zone(Tick k, bool nested, std::size_t samples) {
+    const auto room = static_cast<std::size_t>(nested ? 2 * k : k) + 1;
+    const std::vector<Bounds> later(room, rtamt::bounds::anything);
+    std::vector<Bounds> result(room);
+    const std::vector<const Bounds*> columns{later.data()};
+    const std::vector<Bounds*> outputs{result.data()};
+    BasicExecutor<Interval> executor(program(k, nested));
+    executor.reserve(room);
+    return best_of(samples, [&] {
+        for (std::size_t i = 0; i < samples; ++i) {
+            if (executor.push(columns, room, outputs)) std::puts("undefined");
+        }
+    });
+}
+
+} // namespace
+
+int main() {
+    std::mt19937 random(1);
+    std::normal_distribution<double> normal;
+    std::vector<double> samples(100'000);
+    for (double& sample : samples)
+        sample = normal(random);
+    for (const bool nested : {false, true}) {
+        for (const Tick k : {1, 3, 10, 20, 30, 50, 100, 300, 1000}) {
+            const double changes = delta(k, nested, samples);
+            const double all = zone(k, nested, samples.size() / static_cast<std::size_t>(k + 9));
+            std::printf("%s k = %4lld: delta %6.0f ns, zone at least %6.0f ns, ratio %.2f\n",
+                        nested ? "two windows," : "one window, ", static_cast<long long>(k),
+                        changes, all, changes / all);
+        }
+    }
+    return 0;
+}
