@@ -83,8 +83,8 @@ Large files are read in chunks, in memory that does not grow with them, where th
 is bounded (but for always and eventually at its top). Many files are read on all cores.
 
 --early stops reading once the verdict and the first violation are decided: the verdict is that of the whole
-recording, the robustness lies in the bounds that are printed, and nothing later is looked at. It applies to
-formats that are read in chunks (CSV, Parquet, Arrow, SQL) and bags, these in discrete time with --period. In
+recording, the robustness lies in the bounds that are printed, and nothing later is looked at. Formats that cannot
+be read in part are read whole, and evaluated as far as the verdict needs. In
 discrete time, 'rtamt info' reports for which formulas the end of a recording may change an early verdict, and
 these are checked over the whole recording.
 

@@ -33,7 +33,7 @@ from rtamt.signals import members
 from rtamt.signals.arrays import TIME
 from rtamt.signals.episodes import Episodes
 from rtamt.signals.resampling import Sampler
-from rtamt.verdicts.early_check import holds_at_end
+from rtamt.verdicts.early_check import holds_at_end, in_parts
 from rtamt.verdicts.streaming import check_stream, check_streamable
 
 if TYPE_CHECKING:
@@ -228,22 +228,23 @@ def _early(requirement: Requirement, trace: str, reading: Reading) -> list[Outco
         return None
     resampled = is_resampled(requirement.spec, trace, reading)
     period = reading.resample or requirement.spec.period
-    if resampled and (
+    as_it_comes = not resampled or not (
         period is None or requirement.spec.domain.continuous or TIME in requirement.spec.input_names
-    ):
-        return None
+    )
     if resampled and requirement.rows:
         found = [_early(row, trace, reading) for row in requirement.rows]
         return None if None in found else [o for each in found if each is not None for o in each]
+    spec = requirement.spec
     try:
+        check: EarlyCheck = make(specs)
         with opened(trace, reading.sheet, reading.query, reading.recover) as source:
-            if not source.in_chunks:
-                return None
-            chunks = _Chunks(
-                requirement.spec, chunks_of(source, choice_for([requirement.spec], trace, reading))
-            )
-            check: EarlyCheck = make(specs)
-            taken = _sampled(chunks, specs[0], period, reading) if resampled else chunks
+            if as_it_comes and source.in_chunks:
+                chunks = _Chunks(spec, chunks_of(source, choice_for([spec], trace, reading)))
+                taken = _sampled(chunks, specs[0], period, reading) if resampled else chunks
+            else:
+                whole = spec.binding.applied(trace_of(source, choice_for([spec], trace, reading)))
+                parts = in_parts(on_clock(whole, spec, trace, reading))
+                taken = chunks = _Chunks(spec, parts, bound=True)
             if not any(map(check.take, taken)):
                 return None
     except StlError:  # the check of the whole recording reports what is wrong
@@ -404,8 +405,8 @@ def _outcome(requirement: Requirement, trace: str, result: Result, data: Trace, 
 class _Chunks:
     """Chunks, and what has to be known of them: whether their stamps are dates, how many samples there were."""
 
-    def __init__(self, spec: Specification, chunks: Iterator[Trace]) -> None:
-        self._chunks = map(spec.binding.applied, chunks)
+    def __init__(self, spec: Specification, chunks: Iterator[Trace], *, bound: bool = False) -> None:
+        self._chunks = chunks if bound else map(spec.binding.applied, chunks)
         self._counts: Counter[str] = Counter()
         self.last: Trace | None = None
         #: The first time of all.

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import sys
 from abc import ABC, abstractmethod
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from math import inf
 from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from rtamt.engine.online import Watched
 from rtamt.language.formula import Apply
@@ -17,7 +19,7 @@ from rtamt.rewrite.semantics import boolean
 from rtamt.signals import arrays
 from rtamt.signals.discrete import Discrete
 from rtamt.signals.outcomes import Interval
-from rtamt.signals.regular import TOLERANCE, check_increasing, check_regular, infer_period
+from rtamt.signals.regular import TOLERANCE, check_increasing, check_regular, infer_period, merged
 from rtamt.verdicts.decompose import conjuncts
 from rtamt.verdicts.discrete_interval import DiscreteIntervalMonitor
 from rtamt.verdicts.eager import EagerMonitor
@@ -28,6 +30,7 @@ if TYPE_CHECKING:
 
     from rtamt.language.formula import Formula
     from rtamt.signals.outcomes import Verdict
+    from rtamt.signals.trace import Trace
     from rtamt.specification import Specification
 
 
@@ -59,6 +62,30 @@ def holds_at_end(spec: Specification) -> bool:
     """
     (truth,) = spec.domain.online.ground(boolean(spec.formula))
     return spec.domain.continuous or ends_differently(truth, {}) is None
+
+
+def in_parts(trace: Trace, size: int = 4096) -> Iterator[Trace]:
+    """Yield a trace as traces that follow one another, each of about so many times.
+
+    >>> import rtamt
+    >>> [list(part["x"].values) for part in in_parts(rtamt.read({"time": [0, 1, 2], "x": [5, 6, 7]}), 2)]
+    [[5.0, 6.0], [7.0]]
+    """
+    channels = {name: trace.channel(name) for name in trace}
+    timed = [channel.times for channel in channels.values() if channel.times is not None]
+    times = merged(timed) if timed else None
+    longest = max((len(channel.values) for channel in channels.values()), default=0)
+    for begin in range(0, longest if times is None else len(times), size):
+        end = begin + size
+        part = {}
+        for name, channel in channels.items():
+            here = slice(begin, end)
+            if times is not None and channel.times is not None:
+                last = None if end >= len(times) else np.searchsorted(channel.times, times[end])
+                here = slice(np.searchsorted(channel.times, times[begin]), last)
+            stamps = None if channel.times is None else channel.times[here]
+            part[name] = replace(channel, times=stamps, values=channel.values[here])
+        yield trace.with_channels(part)
 
 
 class EarlyCheck(ABC):

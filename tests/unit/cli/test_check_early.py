@@ -63,7 +63,6 @@ def test_early_json_has_the_bounds_and_where_it_stopped(run, write):
         ("always(x >= 0)", ()),  # decided by the end alone
         ("eventually[1:2] once[0:5](x >= 3)", ()),  # the end may change what was decided
         ("always(x >= 0)", ("--time", "dense")),
-        ("always(x >= 3)", ("--time", "dense", "--resample", "1s")),
         ("always(y >= 3)", ()),  # an error
     ],
 )
@@ -112,3 +111,22 @@ def test_early_bounds_are_those_of_a_recording_that_may_end_at_once(run, write):
     answer = run("check", "eventually[5:10](abs(x) > 0) and y > 0", "a.csv", "--early", "--json")
     row = json.loads(answer.out)
     assert (row["satisfied"], row["lower"], row["upper"]) == (False, "-inf", 0.0)
+
+
+@pytest.mark.parametrize("more", [(), ("--time", "dense"), ("--time", "dense", "--resample", "1s")])
+def test_early_stops_in_a_format_that_cannot_be_read_in_part(run, tmp_path, monkeypatch, more):
+    from tests.unit.readers.test_formats import ulog
+
+    monkeypatch.chdir(tmp_path)
+    rows = [(1_000_000 * t, 1 if t == 70 else 5) for t in range(5000)]
+    ulog(tmp_path / "flight.ulg", [("battery", 0, "float x", rows)])
+    formula = "always(battery.x >= 3)"
+    early, whole = (
+        json.loads(run("check", formula, "flight.ulg", "--json", *more, *option).out)
+        for option in (("--early",), ())
+    )
+    assert (early["satisfied"], early["first_violation"]) == (False, 70)
+    assert (early["satisfied"], early["first_violation"]) == (whole["satisfied"], whole["first_violation"])
+    assert (early["decided_at"], early["samples"], whole["samples"]) == (70, 71, 5000)
+    assert early["lower"] == "-inf"
+    assert early["upper"] == whole["robustness"] == -2
