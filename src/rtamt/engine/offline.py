@@ -55,13 +55,18 @@ class Evaluators:
             formulas = tuple(map(tracked, formulas))
             recording = recording.with_presence({name: channel_of(name) for name in asked})
         step, inputs = recording.step, tuple(recording.columns)
-        if recording.bounds:
-            backend = engine_of(recording.domain).backends[self._backend]
-            return list(backend.bounds(recording.domain.ground(*formulas), step, inputs)(recording))
-        key = (type(recording), formulas, step.as_integer_ratio(), inputs)  # fractions are slow to hash
+        bounded = bool(recording.bounds)
+        key = (
+            type(recording),
+            bounded,
+            formulas,
+            step.as_integer_ratio(),
+            inputs,
+        )  # fractions are slow to hash
         evaluator = self._evaluators.get(key)
         if evaluator is None:
             backend = engine_of(recording.domain).backends[self._backend]
             grounded = recording.domain.ground(*formulas)
-            evaluator = self._evaluators[key] = backend.evaluator(grounded, step, inputs)
-        return recording.signals(evaluator(recording))
+            make = backend.bounds if bounded else backend.evaluator
+            evaluator = self._evaluators[key] = make(grounded, step, inputs)
+        return list(evaluator(recording)) if bounded else recording.signals(evaluator(recording))
