@@ -4,16 +4,18 @@ from __future__ import annotations
 
 import json
 import sys
+from math import inf
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from rtamt.cli.command import json_number, stamp_text
 from rtamt.cli.json_lines import STDIN
+from rtamt.cli.live_view import rounded
 from rtamt.cli.terminal import say
 from rtamt.errors import StlError, TraceError
 from rtamt.language.value_types import BOOLEAN, value_text
-from rtamt.signals.outcomes import VerdictRun
+from rtamt.signals.outcomes import Interval, VerdictRun
 from rtamt.verdicts.at_start import SAFE
 from rtamt.verdicts.discrete_early import DiscreteEarlyMonitor
 
@@ -22,7 +24,7 @@ if TYPE_CHECKING:
 
     from rtamt.cli.live_view import Live
     from rtamt.signals.coding import Types
-    from rtamt.signals.outcomes import Causation, Cause, Interval, Verdict
+    from rtamt.signals.outcomes import Causation, Cause, Verdict
     from rtamt.verdicts.at_start import StartMonitor
     from rtamt.verdicts.causation import CausationMonitor
     from rtamt.verdicts.dense_causation import DenseCausationMonitor
@@ -134,25 +136,33 @@ class StartFeed:
 
 
 class IntervalFeed:
-    """Prints the bounds of every instant whenever they change."""
+    """Prints the bounds of every instant whenever they change; what is drawn live is as for :class:`StartFeed`."""
 
-    def __init__(self, monitor: IntervalMonitor) -> None:
+    def __init__(self, monitor: IntervalMonitor, live: Live | None = None) -> None:
         self.monitor = monitor
+        self._live = live
+        #: What is known at the samples that are drawn, in the order in which they came.
+        self._known: dict[Any, Interval] = {}
 
     def take(self, stamp: Any, values: dict[str, float], line: int) -> str:
         """Take a sample and print what it changes; return what is wrong with it, if anything is."""
         try:
-            self.monitor.update(_time(self.monitor, stamp), **values)
+            time = _time(self.monitor, stamp)
+            self.monitor.update(time, **values)
         except StlError as error:
             return f"{STDIN}, line {line}: {error}"
-        self._print(self.monitor.changes())
+        self._print(self.monitor.changes(), time)
         return ""
 
     def finish(self) -> None:
         """End the trace; print what was still open."""
         self._print(self.monitor.finish())
 
-    def _print(self, changes: list[Change]) -> None:
+    def _print(self, changes: list[Change], now: Any = None) -> None:
+        if self._live is not None:
+            self._draw(self._live, changes, now)
+            if sys.stdout.isatty():
+                return
         for change in changes:
             until = f', "until": {_json(change.end)}' if change.end != change.begin else ""
             say(
@@ -160,6 +170,22 @@ class IntervalFeed:
                 f'"final": {json.dumps(change.final)}}}',
                 flush=True,
             )
+
+    def _draw(self, live: Live, changes: list[Change], now: Any) -> None:
+        """Draw the bounds at the latest samples, which become points as the trace goes on."""
+        if now is not None:
+            self._known[now] = Interval(-inf, inf)
+            if len(self._known) > live.MOST:
+                del self._known[next(iter(self._known))]
+        discrete = isinstance(self.monitor, DiscreteEarlyMonitor)
+        for change in changes:
+            for time in self._known:
+                if change.begin <= time < change.end or (discrete and time == change.end):
+                    self._known[time] = change.interval
+        if self._known:
+            time, last = next(reversed(self._known.items()))
+            satisfied = True if last.lower > 0 else False if last.upper < 0 else None
+            live.instants(list(self._known.values()), f"at {rounded(time)}", satisfied)
 
 
 class CausationFeed:

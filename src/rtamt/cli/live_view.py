@@ -29,8 +29,6 @@ _BLOCKS = "▁▂▃▄▅▆▇█"
 _SIGNS = {True: "✓", False: "✗"}
 #: The names of the two lines of bounds.
 _BAND = ("upper ", "lower ")
-#: Values that are kept: more columns than a terminal has.
-_MOST = 1000
 
 
 class Live:
@@ -42,6 +40,8 @@ class Live:
 
     #: Seconds between two updates.
     PAUSE = 0.05
+    #: Values that are kept: more columns than a terminal has.
+    MOST = 1000
 
     def __init__(
         self,
@@ -64,8 +64,8 @@ class Live:
         self.units = dict(units or {})
         self._types = types
         self._title = title
-        self._values: deque[float] = deque(maxlen=_MOST)
-        self._bounds: deque[Interval] = deque(maxlen=_MOST)
+        self._values: deque[float] = deque(maxlen=self.MOST)
+        self._bounds: deque[Interval] = deque(maxlen=self.MOST)
         self._status: tuple[str, bool | None] = ("", None)
         self._latest: dict[str, float] = {}
         self._known: Any = None
@@ -98,6 +98,11 @@ class Live:
     def bounds(self, known: Interval, status: str, satisfied: bool | None) -> None:
         """Take what is known of the robustness and the verdict at the start of the trace after a sample."""
         self._bounds.append(known)
+        self._status = (status, satisfied)
+
+    def instants(self, known: Sequence[Interval], status: str, satisfied: bool | None) -> None:
+        """Take what is known of the robustness at the latest instants, the newest last, and the verdict there."""
+        self._bounds = deque(known, maxlen=self.MOST)
         self._status = (status, satisfied)
 
     def __rich_console__(self, _: object, options: Any) -> Iterator[Any]:

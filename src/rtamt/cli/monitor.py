@@ -90,8 +90,8 @@ left out, and the exit code is 2 at the end. A sample that is left out leaves a 
 --tolerance inf allows: the next sample then takes its place.
 
 --live draws on the terminal (stderr) instead: verdict, robustness so far (of unbounded future its bounds at
-the start), lowest value, latest samples with their units; what is piped on stays as it is. It needs the package
-rich: pip install 'rtamt[cli]'.
+the start, with --verdict interval those at the latest samples), lowest value, latest samples with their units;
+what is piped on stays as it is. It needs the package rich: pip install 'rtamt[cli]'.
 
 examples:
   echo '{"time": 0, "x": 5}' | rtamt monitor "x >= 3"
@@ -212,14 +212,16 @@ def _early(spec: Specification, args: argparse.Namespace, live: Live | None) -> 
         return None
     if at_start:
         return StartFeed(StartMonitor(spec, tolerance=args.tolerance), live)
-    if args.live:
-        raise CommandError(f"--live draws the robustness; leave it out, or use --verdict {DELAYED}")
+    if args.live and verdict != "interval":
+        raise CommandError(
+            f"--live draws the robustness; leave it out, or use --verdict {DELAYED} or --verdict interval"
+        )
     settings: dict[str, Any] = {"explain": True} if args.explain else {}
     monitor = spec.monitor(verdict=verdict, tolerance=args.tolerance, **settings)
     if isinstance(monitor, CausationMonitor | DenseCausationMonitor):
         return CausationFeed(monitor)
     return (
-        IntervalFeed(monitor)
+        IntervalFeed(monitor, live)
         if isinstance(monitor, IntervalMonitor)
         else EagerFeed(monitor, spec.types, explain=args.explain)
     )

@@ -9,8 +9,11 @@ import sys
 from math import inf
 
 import numpy as np
+import pytest
 
+import rtamt
 from rtamt import Interval
+from rtamt.cli.early_feeds import IntervalFeed
 from rtamt.cli.live_view import Live, rounded
 
 LINES = "".join(f'{{"time": {t}, "x": {x}}}\n' for t, x in enumerate([5, 4, 1, 6]))
@@ -161,3 +164,24 @@ def test_unbounded_future_is_drawn_live():
     assert code == 0
     assert "violated since 2.0 s" in seen
     assert piped.decode().splitlines()[-1].endswith('"status": "violated since 2.0 s", "final": true}')
+
+
+@pytest.mark.parametrize("more", [(), ("--time", "dense")])
+def test_bounds_of_a_bounded_formula_are_drawn_at_the_latest_samples(more):
+    code, seen, piped = monitor("pipe", LINES, "--verdict", "interval", *more, formula="always[0:1s](x >= 3)")
+    assert code == 0
+    assert piped.decode().count('"upper": -2.0') >= 1
+    lines = seen.rpartition("\x1b[2K")[2].splitlines()
+    last = [re.sub(r"\x1b\[[\d;?]*[a-zA-Z]", "", line).strip() for line in lines]
+    assert last[1:4] == ["✓ at 3 s  (robustness from 3 to 3)", "upper ▅▁▁█", "lower ▅▁▁█"]
+
+
+def test_the_newest_instant_is_open_until_its_horizon():
+    monitor = rtamt.parse("always[0:1](x >= 3)").monitor(verdict="interval")
+    stream = Terminal()
+    live = Live("always[0:1](x >= 3)", stream)
+    feed = IntervalFeed(monitor, live)
+    for time, x in enumerate([5, 4]):
+        feed.take(float(time), {"x": x}, 1)
+    lines = picture(live, stream)
+    assert lines[1:4] == ["… at 1 s  (robustness from -inf to 1)", "upper ▁▁", "lower ▁↓"]
