@@ -289,16 +289,21 @@ std::optional<Engine::Failure> Engine::propagate(bool first) {
 // ---- what is not needed, or not any more
 // ----------------------------------------------------------------
 
-// Operations on what is not followed would not fail, so that with any of them all is.
+// An operation that may have no value is followed wherever it is, needed or not: whether a sample
+// is an error must not depend on what is already decided.
+bool Engine::may_fail(const Node& node) noexcept {
+    return (node.kind == Kind::map || node.kind == Kind::sum) &&
+           info(node.steps.front().opcode).partial;
+}
+
 void Engine::limit(std::span<const Tick> last) {
-    const auto fails = [](const Node& node) {
-        return node.kind == Kind::map || node.kind == Kind::sum;
-    };
-    if (std::ranges::any_of(graph_.nodes, fails)) return;
     std::vector<Tick> to(last.begin(), last.end());
     for (std::size_t i = nodes_.size(); i-- > 0;) {
         const Node& own = node(i);
-        if (own.kind == Kind::until && to[i] >= 0) to[i] = forever; // it reads its own next value
+        if (may_fail(own) ||
+            (own.kind == Kind::until && to[i] >= 0)) { // which reads its next value
+            to[i] = forever;
+        }
         nodes_[i].to = to[i];
         if (own.kind == Kind::atom || to[i] < 0) continue;
         const Tick read = std::max<Tick>(0, plus(to[i], own.high));
@@ -317,6 +322,7 @@ void Engine::settle(Tick closed, std::span<const Tick> wanted) {
             own.kind == Kind::since || own.kind == Kind::since_dense || own.low <= -forever;
         Tick open = std::max<Tick>(0, plus(plus(closed, 1), -own.horizon));
         if (own.kind == Kind::sum) open = std::min(open, seen_ + 1); // samples may be left out
+        if (may_fail(own)) need[i] = std::min(need[i], open);
         Tick from = recursive ? open : std::max(need[i], open);
         if (need[i] >= forever) from = forever;
         state.from = std::max(state.from, from);

@@ -160,6 +160,7 @@ class Engine {
     std::vector<Totals> totals_;               // by node, of sums
     std::vector<std::pair<Tick, Tick>> spans_; // where a sum may have changed
 
+    [[nodiscard]] static bool may_fail(const Node& node) noexcept;
     [[nodiscard]] const Node& node(std::size_t i) const noexcept { return graph_.nodes[i]; }
     void know(std::span<const Lesson> lessons);
     [[nodiscard]] std::optional<Failure> attempt(std::optional<Failure> failure);
