@@ -9,7 +9,7 @@ from math import inf
 import pytest
 
 import rtamt
-from rtamt import Interval
+from rtamt import EvaluationError, Interval
 
 SETTINGS = {"verdict": "interval", "ranges": {"x": (0, 10)}}
 
@@ -162,3 +162,18 @@ def test_bounds_of_every_sample_are_reported_when_old_ones_are_dropped():
         exact = Interval(t % 10 - 3, t % 10 - 3)
         assert monitor.interval(t) == exact
         assert [change[:3] for change in monitor.changes()] == [(t, t, exact)]
+
+
+@pytest.mark.parametrize("copied", [False, True])
+def test_a_value_that_does_not_exist_is_an_error_also_once_the_start_is_decided_and_the_monitor_copied(
+    copied,
+):
+    spec = rtamt.parse("delay[1](y) / sin(y) >= x", period=1)
+    monitor = spec.monitor(verdict="interval", at="start")
+    monitor.update(0, x=0, y=0.5)
+    monitor.update(1, x=0, y=0.5)
+    if copied:
+        monitor = copy.deepcopy(monitor)
+    monitor.update(2, x=0, y=0)
+    with pytest.raises(EvaluationError, match="has no value at sample 3"):
+        monitor.update(3, x=0, y=0)
