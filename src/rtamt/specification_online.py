@@ -11,6 +11,7 @@ from rtamt.engine.engine import engine_of
 from rtamt.engine.online import OnlineMonitor, Watched
 from rtamt.errors import UsageError
 from rtamt.language.groups import quantifiers
+from rtamt.language.records import Sort
 from rtamt.rewrite.member_streams import Splitting
 from rtamt.rewrite.presence import channel_of
 from rtamt.rewrite.semantics import apply_semantics
@@ -240,6 +241,12 @@ class OnlineSpecification(QuantifiedText):
             if role is not None:
                 roles[each.op.binder.variable] = roles[channel_of(each.op.binder.variable)] = role
         chosen = self._semantics(semantics)
+        numbers = any(each.op.result is Sort.NUMBER for each in quantifiers(*self._all_formulas))
+        if numbers and chosen not in ("standard", "boolean"):
+            raise UsageError(
+                "a monitor of 'count' has standard or boolean semantics, for what it counts may have several roles; "
+                "evaluate recordings"
+            )
         splitting = Splitting(
             domain.period or Fraction(1), lambda formula: apply_semantics(formula, chosen, roles), self.text
         )

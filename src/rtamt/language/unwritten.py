@@ -83,11 +83,11 @@ WHERE_PRESENT = Operator(
 )  # fmt: skip
 
 
-#: What the members of a group give together, under every semantics: a column that is no predicate, for it has a
-#: second operand that is a formula.
+#: What the members of a group give together, under the chosen semantics; the second operand is positive where the
+#: quantifier holds.
 COLUMN = Operator(
-    "column", ("column",), Fixity.FUNCTION, 200, (N, F), F, "The first operand.", "x", latex="{0}",
-    definition=lambda x, _true: x, expansion=lambda x, _true, _i: x,
+    "column", ("column",), Fixity.FUNCTION, 200, (N, N), F, "The first operand.", "x", latex="{0}",
+    definition=lambda x, _holds: x, expansion=lambda x, _holds, _i: x, truth=lambda _x, positive, _i: holds(positive),
 )  # fmt: skip
 
 #: By name, for unpickling.

@@ -22,6 +22,8 @@ from rtamt.rewrite.check import check_online
 from rtamt.rewrite.desugar import desugar
 from rtamt.rewrite.horizon import horizon
 from rtamt.rewrite.members import Members, Scope
+from rtamt.rewrite.semantics import boolean
+from rtamt.rewrite.truth import read_as_conditions
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -61,10 +63,17 @@ class Splitting:
         self.period = period
         self.applied = applied
         self.text = text
+        #: The identities of what conditions read as formulas.
+        self._conditions: set[int] = set()
         self._scope = _StreamScope(Members({}), splitting=self)
+
+    def reads_truth(self, quantifier: Formula) -> bool:
+        """Return whether some condition reads whether a quantifier holds."""
+        return id(quantifier) in self._conditions
 
     def outer(self, formulas: tuple[Formula, ...]) -> tuple[tuple[Formula, ...], tuple[Quantified, ...]]:
         """Return formulas over columns and their quantifiers, none of which is inside another one."""
+        self._conditions = read_as_conditions(*formulas)
         found = tuple(map(self._scope.resolved, formulas))
         quantified = self._scope.found
         if any(each.lag for each in quantified):  # columns are read after the end of the stream
@@ -92,16 +101,40 @@ class _StreamScope(Scope):
             self.splitting,
         )
         given = _of_one(node, inner.newest(binder), inner.resolved(body))
-        same = (each for each in self.found if (each.binder, each.kind) == (binder, node.op.name))
-        known = next((each for each in same if each.formula == self.splitting.applied(given)), None)
+        value = self._column(node, binder, self.splitting.applied(given), inner)
+        if node.op.result is Sort.NUMBER:
+            return value
+        holds = value
+        if self.splitting.reads_truth(node):
+            holds = self._column(node, binder, boolean(given), inner)
+        return COLUMN(value, holds)
+
+    def _column(self, node: Apply, binder: Binder, given: Formula, inner: _StreamScope) -> Formula:
+        """Return what reads the column of what members give."""
+        assert self.splitting is not None
+        period = self.splitting.period
+        known = next(
+            (
+                each
+                for each in self.found
+                if (each.binder, each.kind, each.formula) == (binder, node.op.name, given)
+            ),
+            None,
+        )
         if known is None:
-            known = self._quantified(node, binder, given, tuple(inner.found))
+            check_online(given, self.splitting.text)
+            lag = horizon(given, period)
+            assert lag is not None
+            none = 0.0 if node.op.result is Sort.NUMBER else inf if node.op.name == "forall" else -inf
+            name = f"{node.op.name} {binder.variable} #{len(self.found) + 1}"
+            keep = _past(desugar(given), period)
+            known = Quantified(binder, node.op.name, given, name, lag, keep, none, tuple(inner.found))
             self.found.append(known)
-        column = COLUMN(Var(known.column, node.span), STL["true"]())
+        column = Var(known.column, node.span)
         if not known.lag:
             return column
-        lag = Interval(known.lag, known.lag, "s", "s", implied=True)
-        return Apply(STL["ahead"], (column,), lag, node.span)
+        interval = Interval(known.lag, known.lag, "s", "s", implied=True)
+        return Apply(STL["ahead"], (column,), interval, node.span)
 
     def _with(self, variable: str) -> Formula:
         here = PRESENT(Var(f"valid({variable})", None, BOOLEAN))
@@ -114,28 +147,6 @@ class _StreamScope(Scope):
     def absent(self) -> set[str | None]:
         """Return the variables whose members may be absent; None: everything, after the end of the stream."""
         return set(self.bound) or {None}
-
-    def _quantified(
-        self, node: Apply, binder: Binder, given: Formula, inside: tuple[Quantified, ...]
-    ) -> Quantified:
-        assert self.splitting is not None
-        period = self.splitting.period
-        check_online(given, self.splitting.text)
-        lag = horizon(given, period)
-        assert lag is not None
-        none = 0.0 if node.op.result is Sort.NUMBER else inf if node.op.name == "forall" else -inf
-        name = f"{node.op.name} {binder.variable} #{len(self.found) + 1}"
-        keep = _past(desugar(given), period)
-        return Quantified(
-            binder,
-            node.op.name,
-            self.splitting.applied(given),
-            name,
-            lag,
-            keep,
-            none,
-            inside,
-        )
 
 
 def _of_one(node: Apply, present: Formula, body: Formula) -> Formula:

@@ -20,9 +20,10 @@ from types import MappingProxyType
 from typing import TypeAlias
 
 from rtamt.errors import EvaluationError, StlError, UsageError, did_you_mean, shown
-from rtamt.language.formula import Const, Formula, variables
+from rtamt.language.formula import Apply, Const, Formula, variables
 from rtamt.language.operators import STL
 from rtamt.language.printer import excerpt
+from rtamt.language.unwritten import COLUMN
 from rtamt.rewrite.desugar import spelled_out
 from rtamt.rewrite.truth import replaced, truth
 
@@ -121,7 +122,13 @@ def apply_semantics(formula: Formula, semantics: str | PredicateSemantics, roles
         return formula
     formula = spelled_out(formula)  # the expansion of a custom operator may contain predicates
     all_roles = MappingProxyType({name: role_of(name, roles) for name in variables(formula)})
-    return replaced(formula, lambda predicate: _apply_to_predicate(predicate, semantics, all_roles))
+
+    def apply(predicate: Formula) -> Formula:
+        if isinstance(predicate, Apply) and predicate.op is COLUMN:  # its members are under the semantics
+            return truth(predicate) if semantics is SEMANTICS["boolean"] else predicate
+        return _apply_to_predicate(predicate, semantics, all_roles)
+
+    return replaced(formula, apply)
 
 
 def boolean(formula: Formula) -> Formula:

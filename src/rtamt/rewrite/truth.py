@@ -67,6 +67,11 @@ def is_part_of_a_condition(part: Formula, formulas: Sequence[Formula]) -> bool:
     return part in _read_from(conditions)[1] and part not in _read_from(formulas)[1]
 
 
+def read_as_conditions(*formulas: Formula) -> set[int]:
+    """Return the identities of the parts of formulas that are read by their truth, other than inside predicates."""
+    return _read_from(_conditions(*formulas))[0]
+
+
 def _conditions(*formulas: Formula) -> list[Formula]:
     return [
         operand

@@ -114,6 +114,21 @@ def test_watched_formulas_and_parameters():
     assert monitor.update(0, ego=6.0, **{"car_1.x": 8.0}) == 5
 
 
+def test_watched_formulas_after_chunks_and_at_the_end_are_signals():
+    text = (
+        CARS + "require R1: forall v in cars: eventually[0:1](v.x > 0)\nrequire R2: eventually[0:2](ego > 0)"
+    )
+    parsed = rtamt.parse(text)
+    data = {"ego": [1.0, 2.0, 3.0, 2.0], "car_1.x": [None, 5.0, 4.0, None]}
+    monitor = parsed.monitor(watch=["R1", "R2"])
+    monitor.update_many(data)
+    known = {name: monitor[name].points() for name in ("R1", "R2")}
+    monitor.finish()
+    for name, points in known.items():
+        whole = parsed.requirements[name].evaluate(data).signal.points()
+        assert [*points, *monitor[name].points()] == whole
+
+
 def test_semantics_and_roles_hold_for_members():
     text = "input float ego input " + CARS + "forall v in cars: once(v.x >= 3) -> ego >= 2"
     data = {"car_1.x": [5, None, 1], "ego": [1, 1, 1]}
@@ -121,6 +136,13 @@ def test_semantics_and_roles_hold_for_members():
         parsed = rtamt.parse(text)
         expected = parsed.evaluate(data, semantics=semantics).signal.values.tolist()
         assert parsed.monitor(semantics=semantics).update_many(data).values.tolist() == expected
+
+
+def test_conditions_read_whether_a_quantifier_holds_and_not_its_robustness():
+    text = "forall v in cars: (if (exists w in cars: forall u in cars: u.x >= 3) then 2 else 1) > v.x - 3"
+    parsed = spec(text + " and (count t in cars: (forall s in cars: s.x >= 3)) >= 2")
+    data = {"car_1.x": [3, 4, 2], "car_2.x": [5, 3, None]}
+    assert parsed.monitor().update_many(data).values.tolist() == parsed.evaluate(data).signal.values.tolist()
 
 
 WRONG = [

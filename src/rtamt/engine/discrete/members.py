@@ -190,6 +190,36 @@ class _Plan:
         return all(names[one] != names[other] for one, other in self.apart)
 
 
+class _News:
+    """What several samples make known of each formula: of the result (None), and of those that are watched."""
+
+    def __init__(self, names: Sequence[Any]) -> None:
+        self._points: dict[Any, list[tuple[Any, float]]] = {name: [] for name in (None, *names)}
+
+    def note(self, robustness: float | None, outer: Monitor) -> None:
+        """Note what a sample made known."""
+        for (name, points), lag in zip(self._points.items(), outer._lags, strict=True):
+            value = robustness if name is None else outer[name]
+            if value is not None:
+                assert not isinstance(value, Signal)
+                points.append((outer._recent(lag + 1)[0], value))
+
+    def end(self, rest: Signal, outer: Monitor) -> None:
+        """Note what the end of the trace made known."""
+        for name, points in self._points.items():
+            signal = rest if name is None else outer[name]
+            assert isinstance(signal, Signal)
+            points.extend(signal.points())
+
+    def signals(self, last: Any = None) -> dict[Any, Signal]:
+        """Return a signal of each formula, as far as the ``last`` sample."""
+        found = {}
+        for name, points in self._points.items():
+            kept = points if last is None else [point for point in points if point[0] <= last]
+            found[name] = Signal(np.array([time for time, _ in kept]), np.array([value for _, value in kept]))
+        return found
+
+
 class MemberMonitor:
     """Monitors a formula with quantifiers on a stream of samples in discrete time.
 
@@ -225,6 +255,7 @@ class MemberMonitor:
         self._declared = frozenset(declared)
         self._factory = factory
         self._binding = Binding(tuple(names))
+        self._watched = tuple(each.name for each in watch)
         self._types = {**types_of(formula), **(types or {})}
         self._late = max((plan.lag for plan in self._plans), default=0)
         #: The variables beside the fields of members.
@@ -235,7 +266,8 @@ class MemberMonitor:
     def _begin(self) -> None:
         self._quantifiers = [_Quantifier(plan, {}) for plan in self._plans]
         self._finished = False
-        self._signals: list[Signal] | None = None
+        #: What the last chunk made known of each formula; of a sample, the outer monitor has it.
+        self._news: dict[Any, Signal] = {}
         self._remember()
 
     # ---- facts -----------------------------------------------------------------------------------
@@ -281,7 +313,9 @@ class MemberMonitor:
         data and :class:`EvaluationError` where an operation has no value; the monitor is then unchanged.
         """
         numbers, present = self._read(values, time)
-        return self._take(time, numbers, present)
+        robustness = self._take(time, numbers, present)
+        self._news = {}
+        return robustness
 
     @exclusive
     def update_many(self, data: Any) -> Signal:
@@ -300,35 +334,33 @@ class MemberMonitor:
         for name, column in columns.items():
             arrays.check_numbers(name, column, times, self.samples, self._types.get(name))
         before = self._state()
-        known, at = [], []
+        known = _News(self._watched)
         try:
             for i in range(n):
                 numbers = {name: float(columns[name][i]) for name in self.input_names}
-                robustness = self._take(float(times[i]), numbers, made.present(columns, i))
-                if robustness is not None:
-                    known.append(robustness)
-                    at.append(float(self._outer._recent(self._outer._lags[0] + 1)[0]))
+                known.note(self._take(float(times[i]), numbers, made.present(columns, i)), self._outer)
         except Exception:
             self._restore(before)
             raise
-        return Signal(np.array(at), np.array(known))
+        self._news = known.signals()
+        return self._news[None]
 
     @exclusive
     def finish(self) -> Signal:
         """End the trace and return the values that were still unknown."""
         if self._finished:
             return Signal(np.empty(0), np.empty(0))
-        samples, lag = self.samples, self._outer._lags[0]
-        times = self._outer._recent(min(lag, samples))
+        samples = self.samples
         numbers = dict.fromkeys(self.input_names, 1.0)
-        known: list[float] = []
+        known = _News(self._watched)
         nobody: dict[str, dict[str, _Sample]] = {name: {} for name in self._fields}
         for _ in range(self._late if samples else 0):
-            given = self._advance(self._next_time(), numbers, nobody, running=0.0)
-            known += [] if given is None else [given]
-        known += self._outer.finish().values.tolist()
+            known.note(self._advance(self._next_time(), numbers, nobody, running=0.0), self._outer)
+        last = self._outer._recent(self._late + 1)[0] if samples else None
+        known.end(self._outer.finish(), self._outer)
         self._finished = True
-        return Signal(times, np.array(known[: len(times)]))
+        self._news = known.signals(last)
+        return self._news[None]
 
     def _read(self, values: Mapping[str, Any], time: Any) -> tuple[_Sample, dict[str, dict[str, _Sample]]]:
         """Return the numbers of an update, and the members that are present."""
@@ -425,7 +457,7 @@ class MemberMonitor:
 
     def __getitem__(self, name: str | Formula) -> float | Signal | None:
         """Return what the last update made known of a formula that is watched; see ``Monitor``."""
-        return self._outer[name]
+        return self._news[name] if name in self._news else self._outer[name]
 
     @exclusive
     def reset(self, /, **parameters: float) -> None:
