@@ -133,13 +133,19 @@ def evaluate(requirements: Sequence[Requirement], trace: str, reading: Reading) 
     except StlError:  # the check reports what is wrong
         kept, unchecked, rest = list(requirements), [], None
     found = _checked(kept, trace, reading) if rest is None else rest
+    of = _together(found, unchecked)
+    return [of[row.label] for requirement in requirements for row in requirement.rows or (requirement,)]
+
+
+def _together(found: Sequence[Outcome], unchecked: Sequence[Outcome]) -> dict[str, Outcome]:
+    """Return the outcomes by requirement; of one that was checked in part, with what was not."""
     of = {outcome.requirement: outcome for outcome in unchecked}
     for outcome in found:
         lacking = of.get(outcome.requirement)
         of[outcome.requirement] = (
             outcome if lacking is None else replace(outcome, unchecked=lacking.unchecked)
         )
-    return [of[row.label] for requirement in requirements for row in requirement.rows or (requirement,)]
+    return of
 
 
 def _over_members(requirement: Requirement, trace: str, reading: Reading) -> list[Outcome]:
@@ -148,18 +154,22 @@ def _over_members(requirement: Requirement, trace: str, reading: Reading) -> lis
     spec = requirement.spec
     try:
         with opened(trace, reading.sheet, reading.query, reading.recover) as source:
+            kept, unchecked = _applicable([requirement], source.signals, trace)
+            if unchecked:
+                found = [outcome for each in kept for outcome in _over_members(each, trace, reading)]
+                return list(_together(found, unchecked).values())
             known = spec.over(members.members_of(spec.groups, sorted(source.signals)))
             # A cell that is empty ends the presence of a member.
             choice = replace(choice_for([known], trace, reading), gaps=True)
             whole = spec.binding.applied(trace_of(source, choice))
-        found = members.bound(whole, spec.groups, spec.input_names, own_clocks=True, source=shown(trace))
-        over = spec.over(found.members)
+        bound = members.bound(whole, spec.groups, spec.input_names, own_clocks=True, source=shown(trace))
+        over = spec.over(bound.members)
         rows = tuple(
             replace(row, spec=over.select(row.spec.document.requirements[0].name)) for row in requirement.rows
         )
     except StlError as error:
         return [failed(row, trace, str(error), begin) for row in requirement.rows or (requirement,)]
-    return _check(replace(requirement, spec=over, rows=rows), trace, found.data, reading)
+    return _check(replace(requirement, spec=over, rows=rows), trace, bound.data, reading)
 
 
 def _applicable(

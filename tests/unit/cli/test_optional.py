@@ -129,3 +129,17 @@ def test_the_robustness_of_what_was_checked_is_written_although_something_was_no
     done = run("check", write("a.stl", TEXT), write("a.csv", "time,z\n0,1\n1,3\n"), "-o", "out.csv")
     assert done.code == 0
     assert Path("out.csv").read_text() == "time,ALT\n0.0,49.0\n1.0,47.0\n"
+
+
+def test_a_requirement_over_a_group_is_checked_although_another_lacks_its_signal(run, write):
+    """The missing signal was an error of every requirement."""
+    text = 'group cars = "car_*"\noptional input float w\nrequire CARS: always(forall v in cars: v.speed <= 30)\n'
+    spec = write("a.stl", text + "require W: always(w > 1)\n")
+    trace = write("a.csv", "time,car_1.speed,car_2.speed\n0,10,20\n1,31,2\n")
+    done = run("check", spec, trace, "--json")
+    rows = {row["requirement"]: row for row in map(json.loads, done.out.splitlines())}
+    assert (done.code, rows["CARS"]["robustness"]) == (1, -1)
+    assert rows["W"]["unchecked"] == "not checked: no 'w'"
+    plotted = run("plot", spec, trace, "-o", "a.svg")
+    assert "violated, robustness -1" in plotted.out
+    assert "not checked: W: no 'w'" in plotted.err
