@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import time as clock
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from decimal import Decimal
 from fractions import Fraction
+from functools import reduce
 from math import inf
 from typing import TYPE_CHECKING, Any
 
@@ -13,12 +14,13 @@ import numpy as np
 
 from rtamt.cli.command import short, stamp_text
 from rtamt.cli.parser import ERROR, OK, VIOLATED, complain
+from rtamt.language.operators import STL
 from rtamt.readers.sql import shown
 from rtamt.signals.datetimes import nanoseconds_of
 from rtamt.signals.epoch import is_epoch, moment_text
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Collection, Sequence
 
     from rtamt.language.document import Requirement as Written
     from rtamt.results import Result
@@ -110,6 +112,43 @@ def failed(requirement: Requirement, trace: str, error: str, begin: float) -> Ou
 def skipped(requirement: Requirement, trace: str, reason: str) -> Outcome:
     """Return the outcome of a requirement that a recording does not have the signals for."""
     return Outcome(requirement.label, shown(trace), "unchecked", unchecked=f"not checked: {reason}")
+
+
+def applicable(
+    requirements: Sequence[Requirement], signals: Collection[str], trace: str
+) -> tuple[list[Requirement], list[Outcome]]:
+    """Return the requirements that a recording has the signals for, and outcomes of the others."""
+    kept: list[Requirement] = []
+    unchecked: list[Outcome] = []
+    for requirement in requirements:
+        rows = requirement.rows or (requirement,)
+        reasons = [row.spec.unchecked(signals) for row in rows]
+        if not any(reasons):
+            kept.append(requirement)
+            continue
+        rest = [
+            known.formula for known in requirement.spec.document.requirements if known.name not in reasons[0]
+        ]
+        if not requirement.rows and rest:  # their conjunction is evaluated as far as the signals are there
+            kept.append(replace(requirement, spec=requirement.spec.with_formula(reduce(STL["and"], rest))))
+        for row, reason in zip(rows, reasons, strict=True):
+            if reason:
+                names = "" if len(row.spec.document.requirements) == 1 else f"{', '.join(reason)}: "
+                unchecked.append(skipped(row, trace, names + "; ".join(dict.fromkeys(reason.values()))))
+            else:
+                kept.append(row)
+    return kept, unchecked
+
+
+def together(found: Sequence[Outcome], unchecked: Sequence[Outcome]) -> dict[str, Outcome]:
+    """Return the outcomes by requirement; of one that was checked in part, with what was not."""
+    of = {outcome.requirement: outcome for outcome in unchecked}
+    for outcome in found:
+        lacking = of.get(outcome.requirement)
+        of[outcome.requirement] = (
+            outcome if lacking is None else replace(outcome, unchecked=lacking.unchecked)
+        )
+    return of
 
 
 def exit_code(outcomes: Sequence[Outcome]) -> int:

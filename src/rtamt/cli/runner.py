@@ -7,14 +7,21 @@ import time
 from collections import Counter
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import replace
-from functools import reduce
 from itertools import islice
 from multiprocessing import get_context
 from typing import TYPE_CHECKING, Any
 
 from rtamt.batch import evaluate_requirements
 from rtamt.cli.command import NO_STAMPS
-from rtamt.cli.outcome import Outcome, episodes_of, failed, moment_of, plain_time, skipped
+from rtamt.cli.outcome import (
+    Outcome,
+    applicable,
+    episodes_of,
+    failed,
+    moment_of,
+    plain_time,
+    together,
+)
 from rtamt.cli.reading_options import (
     choice_for,
     how_to_mend,
@@ -24,7 +31,6 @@ from rtamt.cli.reading_options import (
     read_for,
 )
 from rtamt.errors import BoundError, StlError, TraceError
-from rtamt.language.operators import STL
 from rtamt.readers.assemble import chunks_of, trace_of
 from rtamt.readers.read import opened
 from rtamt.readers.sql import is_url, shown
@@ -37,7 +43,7 @@ from rtamt.verdicts.early_check import holds_at_end, in_parts
 from rtamt.verdicts.streaming import check_stream, check_streamable
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
     from fractions import Fraction
 
     from rtamt.cli.outcome import Requirement
@@ -121,7 +127,7 @@ def evaluate(requirements: Sequence[Requirement], trace: str, reading: Reading) 
         return _checked(requirements, trace, reading)
     try:
         with opened(trace, reading.sheet, reading.query, reading.recover) as source:
-            kept, unchecked = _applicable(requirements, source.signals, trace)
+            kept, unchecked = applicable(requirements, source.signals, trace)
             # A source that is read in chunks is opened quickly; any other is not opened a second time.
             if kept and not source.in_chunks:
                 whole = trace_of(
@@ -133,19 +139,8 @@ def evaluate(requirements: Sequence[Requirement], trace: str, reading: Reading) 
     except StlError:  # the check reports what is wrong
         kept, unchecked, rest = list(requirements), [], None
     found = _checked(kept, trace, reading) if rest is None else rest
-    of = _together(found, unchecked)
+    of = together(found, unchecked)
     return [of[row.label] for requirement in requirements for row in requirement.rows or (requirement,)]
-
-
-def _together(found: Sequence[Outcome], unchecked: Sequence[Outcome]) -> dict[str, Outcome]:
-    """Return the outcomes by requirement; of one that was checked in part, with what was not."""
-    of = {outcome.requirement: outcome for outcome in unchecked}
-    for outcome in found:
-        lacking = of.get(outcome.requirement)
-        of[outcome.requirement] = (
-            outcome if lacking is None else replace(outcome, unchecked=lacking.unchecked)
-        )
-    return of
 
 
 def _over_members(requirement: Requirement, trace: str, reading: Reading) -> list[Outcome]:
@@ -154,10 +149,10 @@ def _over_members(requirement: Requirement, trace: str, reading: Reading) -> lis
     spec = requirement.spec
     try:
         with opened(trace, reading.sheet, reading.query, reading.recover) as source:
-            kept, unchecked = _applicable([requirement], source.signals, trace)
+            kept, unchecked = applicable([requirement], source.signals, trace)
             if unchecked:
                 found = [outcome for each in kept for outcome in _over_members(each, trace, reading)]
-                return list(_together(found, unchecked).values())
+                return list(together(found, unchecked).values())
             known = spec.over(members.members_of(spec.groups, sorted(source.signals)))
             # A cell that is empty ends the presence of a member.
             choice = replace(choice_for([known], trace, reading), gaps=True)
@@ -170,32 +165,6 @@ def _over_members(requirement: Requirement, trace: str, reading: Reading) -> lis
     except StlError as error:
         return [failed(row, trace, str(error), begin) for row in requirement.rows or (requirement,)]
     return _check(replace(requirement, spec=over, rows=rows), trace, bound.data, reading)
-
-
-def _applicable(
-    requirements: Sequence[Requirement], signals: Collection[str], trace: str
-) -> tuple[list[Requirement], list[Outcome]]:
-    """Return the requirements that a recording has the signals for, and outcomes of the others."""
-    kept: list[Requirement] = []
-    unchecked: list[Outcome] = []
-    for requirement in requirements:
-        rows = requirement.rows or (requirement,)
-        reasons = [row.spec.unchecked(signals) for row in rows]
-        if not any(reasons):
-            kept.append(requirement)
-            continue
-        rest = [
-            known.formula for known in requirement.spec.document.requirements if known.name not in reasons[0]
-        ]
-        if not requirement.rows and rest:  # their conjunction is evaluated as far as the signals are there
-            kept.append(replace(requirement, spec=requirement.spec.with_formula(reduce(STL["and"], rest))))
-        for row, reason in zip(rows, reasons, strict=True):
-            if reason:
-                names = "" if len(row.spec.document.requirements) == 1 else f"{', '.join(reason)}: "
-                unchecked.append(skipped(row, trace, names + "; ".join(dict.fromkeys(reason.values()))))
-            else:
-                kept.append(row)
-    return kept, unchecked
 
 
 def _checked(requirements: Sequence[Requirement], trace: str, reading: Reading) -> list[Outcome]:
