@@ -79,15 +79,14 @@ def test_version(capsys):
 
 def test_operators_lists_the_whole_table(run):
     answer = run("operators")
-    rows = {line.split()[0]: line for line in answer.out.splitlines()[1:] if line}
+    rows = [line for line in answer.out.splitlines()[1:] if line]
+    names = [row.split()[0] for row in rows]
     for operator in STL:
-        row = rows[operator.name]
-        assert operator.doc in row
-        assert operator.example in row
-        assert " ".join(operator.spellings) in row
-    assert (
-        list(rows).index("mul") < list(rows).index("ge") < list(rows).index("until") < list(rows).index("or")
-    )
+        # A form that is no operator, such as count over a group, may have the name of one.
+        of_name = [row for row, name in zip(rows, names, strict=True) if name == operator.name]
+        texts = (operator.doc, operator.example, " ".join(operator.spellings))
+        assert [row for row in of_name if all(text in row for text in texts)], operator.name
+    assert names.index("mul") < names.index("ge") < names.index("until") < names.index("or")
 
 
 def test_operators_by_name_or_spelling(run):
