@@ -49,18 +49,18 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
         for name, summary in (
             ("check", "evaluate recordings: robustness and verdict"),
             ("explain", "report which instants of which signals decide the verdict"),
-            ("plot", "draw signals, robustness and what decides the verdict"),
+            ("plot", "plot signals, robustness and the cause of the verdict"),
             ("report", "write an interactive page: signals, robustness, explanations"),
-            ("monitor", "watch a stream: samples on stdin, robustness on stdout"),
-            ("ros2", "watch topics of ROS 2, publish robustness and verdicts"),
+            ("monitor", "monitor a stream: samples on stdin, robustness on stdout"),
+            ("ros2", "monitor ROS 2 topics, publish robustness and verdicts"),
             ("falsify", "search for inputs that make a plant violate its requirement"),
-            ("info", "horizon, pastified form, program and memory of a requirement"),
-            ("lint", "report what is wrong with specification files"),
-            ("compile", "requirement to a program that runs without Python"),
-            ("fmu", "requirement to a unit that simulators import"),
+            ("info", "show the horizon, pastified form, program and memory of a requirement"),
+            ("lint", "check specification files for errors and suspicious formulas"),
+            ("compile", "compile a requirement to a program that runs without Python"),
+            ("fmu", "export a requirement as an FMU"),
             ("packs", "list the packs of requirements, or print one"),
             ("operators", "list the operators of the language"),
-            ("completion", "print the completion for bash, zsh or fish"),
+            ("completion", "print the completion script for bash, zsh or fish"),
         )
     }
 )
@@ -72,8 +72,8 @@ examples:
   echo '{"time": 0, "x": 5}' | rtamt monitor "x >= 3"
 
 exit codes:
-  0 satisfied (or done), 1 violated, 2 something is wrong: one sentence on stderr says what
-  (nothing where nobody reads the output to its end), 130 interrupted"""
+  0 satisfied (or done), 1 violated, 2 error, with a one-sentence message on stderr
+  (no message if the reader of the output exits early), 130 interrupted"""
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -153,9 +153,9 @@ def overview() -> Parser:
         prog="rtamt",
         usage="rtamt COMMAND ...",
         description=(
-            "Runtime monitors for Signal Temporal Logic: a requirement and a recorded or live signal go in, "
-            "the robustness comes out.\n\n"
-            f"commands ('rtamt COMMAND --help' says more):\n{listing}"
+            "Runtime monitors for Signal Temporal Logic: compute the robustness of a requirement on recorded or "
+            "live signals.\n\n"
+            f"commands (details: 'rtamt COMMAND --help'):\n{listing}"
         ),
         epilog=_EXAMPLES,
         formatter_class=Help,

@@ -42,62 +42,61 @@ if TYPE_CHECKING:
     from rtamt.signals.signal import Signal
 
 _DESCRIPTION = """\
-Evaluate recordings against requirements, every requirement over every recording: the robustness at the
-first instant (how far the recording is from violating the requirement, or below 0 from satisfying it)
-and the verdict.
+Evaluate every requirement on every recording: the robustness at the first instant (how far the recording
+is from violating the requirement or, if negative, from satisfying it) and the verdict.
 
-Exit code: 0 all satisfied, 1 some violated, 2 some could not be evaluated. Requirements that a recording does
-not have the signals for are unchecked, and change nothing."""
+Exit code: 0 all satisfied, 1 some violated, 2 some could not be evaluated. Requirements whose optional signals
+a recording lacks are unchecked and do not affect the exit code."""
 
 _EPILOG = """\
 SPEC is a file (.stl), a pack of requirements ('rtamt packs' lists them) or a formula in quotes; more files
 and packs may follow. A trace is a CSV, Parquet, Arrow, Excel, PX4 ULog or MDF file, a ROS bag (.bag, .db3,
 .mcap, or the folder that ROS 2 records), or
 the rows of a query (--sql URL --query TEXT). Timestamps are in the column called time, t, timestamp,
-stamp or datetime; without one, samples are one period apart. They are dates (ISO 8601) or numbers:
-seconds, or the unit in the header ('t [ms]') or of --time-unit; numbers too large for seconds
-are an error. Columns that no formula reads may hold anything.
+stamp or datetime; without such a column, samples are one period apart. Timestamps are dates (ISO 8601) or
+numbers, in seconds, in the unit of the header ('t [ms]'), or in --time-unit. Numbers too large for seconds
+are an error. Columns that no formula reads may contain anything.
 'rtamt info TRACE' lists the signals of a file, and what was inferred.
 
-With --time dense a value holds until the next one, and timestamps may lie anywhere; a variable has
-no sample where its cell is empty. A NaN is an error, unless --skip-nan excludes it,
-either; --hold-for limits how long the value before then holds. With --time dense -o writes the robustness
-where it changes, and at the end.
+With --time dense, a value holds until the next sample, and samples may have any timestamps; an empty cell is a
+missing sample. NaN is an error in both time domains unless --skip-nan excludes it; --hold-for limits how long
+the previous value holds instead. With --time dense, -o writes the robustness at every change and at the end.
 
-In a bag the annotations of SPEC select the topics ('@ topic(req, rtamt/req)'). In discrete time
-it is sampled as a node would: the latest message, every --period, which may be left out where all of
-these topics have the same stamps one period apart: then each message is a sample. With -o out.mcap the bag
-is written again, with the topics of robustness and verdicts that SPEC names.
+In a bag, the annotations of SPEC select the topics ('@ topic(req, rtamt/req)'). In discrete time, a bag is
+sampled as in a node: the latest message of each topic, every --period. Without --period, all of these topics
+must have the same timestamps, one period apart; then each message is a sample. -o out.mcap copies the bag and
+adds the topics for robustness and verdicts that SPEC names.
 
-Each requirement has a row of its own: the formulas after 'require ID "text" severity WORD:' in SPEC, and
-without any of these the formulas that no other one uses.
+The table has one row per requirement: the formulas after 'require ID "text" severity WORD:' in SPEC or,
+without any 'require', the formulas that no other formula uses.
 
-A requirement is unchecked if it reads an optional variable ('optional input float v') that a trace does not
-have; its row shows what is missing. That does not change the exit code, unless nothing of a trace was
+A requirement is unchecked if it reads an optional variable ('optional input float v') that the trace does not
+have; its row shows what is missing. This does not affect the exit code unless nothing in a trace was
 checked: then it is 2.
 
-Legal but probably unintended formulas in SPEC cause a warning on stderr, with a code for --ignore; they do
-not change the exit code. 'rtamt lint' prints the same.
+Valid but probably unintended formulas in SPEC cause a warning on stderr, with a code for --ignore. Warnings do
+not affect the exit code. 'rtamt lint' prints the same warnings.
 
-Large files are read in chunks, in memory that does not grow with them, where the future of the formula
-is bounded (but for always and eventually at its top). Many files are read on all cores.
+Large files are read in chunks, with constant memory, if the future of the formula is bounded (except for
+always and eventually at its top). Many files are read on all cores.
 
---early stops reading once the verdict and the first violation are decided: the verdict is that of the whole
-recording, the robustness lies in the bounds that are printed, and nothing later is looked at. Formats that cannot
-be read in part are read whole, and evaluated as far as the verdict needs. In
-discrete time, 'rtamt info' reports for which formulas the end of a recording may change an early verdict, and
-these are checked over the whole recording.
+--early stops reading once the verdict and the first violation are decided. The verdict is that of the whole
+recording, the robustness lies within the printed bounds, and later samples are not checked. Formats that cannot
+be read in part are read completely, but evaluated only as far as the verdict needs. In discrete time, the end of
+a recording may change early verdicts of some formulas ('rtamt info' reports this); these are checked on the whole
+recording.
 
---json prints one object a line: {"requirement", "trace", "satisfied", "robustness", "first_violation",
-"samples", "period", "episodes"}, of what was written with 'require' also "description" and "severity", or
+--json prints one object per line: {"requirement", "trace", "satisfied", "robustness", "first_violation",
+"samples", "period", "episodes"}, with "description" and "severity" for formulas after 'require'; or
 {"requirement", "trace", "error"}, or {"requirement", "trace", "unchecked"} with the reason.
-"episodes" is an object {"count", "worst", "first"}: how many maximal runs of
-violation there are, the worst, and the first 100 as [{"begin", "end", "worst", "at"}]; of 'always f' those of f.
-It is left out where chunks, or --early, do not give them. The first violation of 'always f' is the first instant
-at which f does not hold, of a conjunction the first of its parts, of anything else the first instant of the trace:
-seconds, or a date where the trace has dates; null where there is none. The period of dense time is null. JSON has
-no infinities: they are the strings "inf" and "-inf". What --early decides also has "lower", "upper" and
-"decided_at"; "robustness" is null unless both are equal. The reports for --junit and --sarif have the same content.
+"episodes" is an object {"count", "worst", "first"}: the number of maximal runs of
+violation, the worst, and the first 100 as [{"begin", "end", "worst", "at"}]. For 'always f' they are the runs in
+which f is violated. The key is absent if chunks or --early do not determine the episodes. "first_violation" is
+the first instant at which f does not hold for 'always f', the earliest of the parts for a conjunction, and the
+first instant of the trace for all other formulas: in seconds, or a date if the trace has dates; null if there is
+none. In dense time, "period" is null. Infinities are the strings "inf" and "-inf", because JSON has none. With
+--early, decided requirements also have "lower", "upper" and "decided_at"; "robustness" is null unless both
+bounds are equal. The --junit and --sarif reports have the same content.
 
 examples:
   rtamt check examples/request_grant/spec.stl examples/request_grant/*.csv
@@ -122,7 +121,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.description = _DESCRIPTION
     parser.epilog = _EPILOG
     add_specification_options(parser)
-    parser.add_argument("traces", metavar="TRACE", nargs="*", help="a recording; before it more SPECs (.stl)")
+    parser.add_argument(
+        "traces", metavar="TRACE", nargs="*", help="a recording; more SPECs (.stl) may precede it"
+    )
     add_time_option(parser)
     add_reading_options(parser)
     group = options(parser, OUTPUT)
@@ -130,19 +131,24 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "-o",
         "--output",
         metavar="FILE",
-        help="write the robustness at every sample as CSV, or (.mcap) a bag with topics of it",
+        help="write the robustness at every sample: CSV, or (.mcap) a copy of the bag with additional topics",
     )
-    group.add_argument("--json", action="store_true", help="print JSON, one object a line")
+    group.add_argument("--json", action="store_true", help="print JSON, one object per line")
     for kind, (name, _) in REPORTS.items():
         group.add_argument(f"--{kind}", metavar="FILE", help=f"write a report as {name}")
     parser.add_argument(
         "--early",
         action="store_true",
-        help="stop reading a recording once its verdicts are decided, where its end cannot change them",
+        help="stop reading a recording once its verdicts are decided and its end cannot change them",
     )
-    parser.add_argument("--jobs", type=int, metavar="N", help="processes (default: one a core, if it pays)")
+    parser.add_argument(
+        "--jobs",
+        type=int,
+        metavar="N",
+        help="the number of processes (default: one per core, if faster)",
+    )
     add_ignore_option(parser)
-    group.add_argument("--quiet", action="store_true", help="print errors only: the exit code has it all")
+    group.add_argument("--quiet", action="store_true", help="print errors only")
     group.add_argument(
         "--color", default="auto", metavar="{auto,always,never}", help="colour (default: auto, on a terminal)"
     )

@@ -70,19 +70,19 @@ def add_specification_options(parser: argparse.ArgumentParser, nargs: str | None
         "--period", metavar="DURATION", help="the sampling period: seconds, or with a unit, such as 100ms"
     )
     units = ", ".join(UNITS)
-    group.add_argument("--unit", default="s", help=f"of bounds without a unit: {units} (default: s)")
+    group.add_argument("--unit", default="s", help=f"the unit of bounds without a unit: {units} (default: s)")
     group.add_argument(
         "--backend",
         default="cpp",
         metavar="{cpp,python}",
-        help="cpp: the compiled core (default); python: the definition itself, slow",
+        help="cpp: the compiled core (default); python: the executable definition, slow",
     )
     group.add_argument(
         "--semantics",
         default="standard",
         metavar="NAME",
-        help=f"the robustness of a predicate: {', '.join(SEMANTICS)} (default: standard, its robustness); "
-        f"which variables are inputs is declared in the specification",
+        help=f"the value of predicates: {', '.join(SEMANTICS)} (default: standard); "
+        f"the specification declares which variables are inputs",
     )
     add_set_option(group)
     add_language_option(group)
@@ -107,7 +107,7 @@ def add_ignore_option(parser: argparse.ArgumentParser) -> None:
         action="append",
         default=[],
         choices=CODES,
-        help=f"no warning of this kind: {', '.join(CODES)}; may be given again",
+        help=f"silence a warning: {', '.join(CODES)}; repeatable",
     )
 
 
@@ -130,7 +130,7 @@ def add_verdict_option(parser: argparse.ArgumentParser) -> None:
         choices=("delayed", "interval"),
         default="delayed",
         help="delayed: robustness and verdict of every sample, one horizon later; interval: bounds and verdict at the "
-        "start of the trace, whatever is still to come (default: delayed)",
+        "start of the trace, valid for every continuation (default: delayed)",
     )
 
 
@@ -142,7 +142,7 @@ def add_stamp_options(parser: argparse.ArgumentParser, what: str) -> None:
         "--time-unit",
         metavar="UNIT",
         choices=tuple(UNITS),
-        help=f"of timestamps that are numbers: {', '.join(UNITS)} (default: that of the header, else s)",
+        help=f"the unit of numeric timestamps: {', '.join(UNITS)} (default: the unit in the header, else s)",
     )
 
 

@@ -19,13 +19,13 @@ if TYPE_CHECKING:
     import argparse
 
 _DESCRIPTION = """\
-Compile a requirement to a program: a file that the C library of this package runs, and whoever links
-with it, without Python. Its outputs are the robustness and the verdict; the parameters and
+Compile a requirement to a program, which the C library of this package runs without Python.
+Its outputs are the robustness and the verdict; the parameters and
 named constants of the requirement are its parameters."""
 
 _EPILOG = """\
 docs/reference/program.md describes the format, and rtamt/runtime/rtamt.h the C functions that run it.
-'rtamt info FILE' lists what a program holds.
+'rtamt info FILE' lists the contents of a program.
 
 examples:
   rtamt compile "always[0:10]((req >= 3) -> eventually[0:500ms](gnt >= 3))" --period 100ms --dump

@@ -18,11 +18,11 @@ SHELLS = ("bash", "zsh", "fish")
 _FILES = ("SPEC", "TRACE", "FILE", "PROBLEM")
 
 _DESCRIPTION = """\
-Print the completion of 'rtamt' for a shell: commands, options, what an option may be, and files.
-It needs the package shtab: pip install 'rtamt[completion]'."""
+Print the completion script of 'rtamt' for a shell: commands, options, option values and files.
+It requires the package shtab: pip install 'rtamt[completion]'."""
 
 _EPILOG = """\
-To have it in every new shell:
+To enable it in every new shell:
   bash  rtamt completion bash > ~/.local/share/bash-completion/completions/rtamt
   zsh   rtamt completion zsh > ~/.zfunc/_rtamt
         and 'fpath+=~/.zfunc' before compinit in ~/.zshrc

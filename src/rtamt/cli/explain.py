@@ -22,17 +22,17 @@ Explain why a trace satisfies or violates a requirement: the first violation, th
 and the time whose value is, up to sign, the robustness), and a sufficient cause (intervals of predicates
 that force the verdict, independent of all other samples).
 
-Exit code: 0 satisfied, 1 violated, 2 it could not be explained."""
+Exit code: 0 satisfied, 1 violated, 2 error."""
 
 _EPILOG = """\
-SPEC and TRACE are as for 'rtamt check', and so is how a trace is read. A predicate is quoted with its
-robustness. Of a cause with many intervals those closest to the critical point are printed; --all prints all.
+SPEC and TRACE are the same as for 'rtamt check', and traces are read in the same way. The number after a predicate
+is its robustness. Of a cause with many intervals, those closest to the critical point are printed; --all prints all.
 
 --json prints one object: {"trace", "formula", "time", "satisfied", "robustness", "first_violation", "critical",
-"implicant"}. For SPEC with several requirements it prints one a line, with the key "requirement" before the
-others. An interval of the implicant that never ends has the end null; its end belongs to it if "closed". "reads"
-are the samples of signals that a predicate depends on.
-JSON has no infinities: they are the strings "inf" and "-inf".
+"implicant"}. If SPEC has several requirements, it prints one object per line, with "requirement" as the first
+key. "end" is null for an interval of the implicant that never ends; "closed" states whether an interval
+contains its end. "reads" lists the samples of signals that a predicate depends on.
+Infinities are the strings "inf" and "-inf", because JSON has none.
 
 examples:
   rtamt explain examples/request_grant/spec.stl examples/request_grant/c_violated.csv
@@ -45,7 +45,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.description = _DESCRIPTION
     parser.epilog = _EPILOG
     add_specification_options(parser)
-    parser.add_argument("traces", metavar="TRACE", nargs="*", help="a recording, one")
+    parser.add_argument("traces", metavar="TRACE", nargs="*", help="one recording")
     add_time_option(parser)
     add_instant_option(parser)
     add_reading_options(parser)

@@ -20,10 +20,10 @@ if TYPE_CHECKING:
     from rtamt.search.log import Evaluation
 
 _DESCRIPTION = """\
-Simulate a plant again and again with inputs chosen by an optimizer, until its requirement is
+Simulate a plant repeatedly with inputs chosen by an optimizer, until its requirement is
 violated or the budget is used up.
 
-Exit code: 0 no violation found, 1 violated, 2 something is wrong."""
+Exit code: 0 no violation found, 1 violated, 2 error."""
 
 _EPILOG = """\
 The problem is a TOML file:
@@ -40,7 +40,7 @@ The problem is a TOML file:
   budget = 300                    # optuna, sobol, random
   seed = 1
 
-With --record every simulation is kept; the same command goes on where it was interrupted.
+--record stores every simulation; the same command resumes an interrupted search.
 
 examples:
   rtamt falsify examples/cruise/problem.toml
@@ -53,16 +53,20 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.epilog = _EPILOG
     parser.add_argument("problem", metavar="PROBLEM", help="a TOML file")
     add_set_option(parser)
-    parser.add_argument("--optimizer", metavar="NAME", help="instead of the file's")
-    parser.add_argument("--budget", metavar="N", type=int, help="simulations at most, instead of the file's")
-    parser.add_argument("--seed", metavar="N", type=int, help="instead of the file's")
-    parser.add_argument("--workers", metavar="N", type=int, help="simulations at the same time")
-    parser.add_argument("--record", metavar="FILE", help="keep every simulation here, and go on from it")
+    parser.add_argument("--optimizer", metavar="NAME", help="the optimizer; replaces that of the file")
     parser.add_argument(
-        "--plot", metavar="FILE", help="draw the robustness over the simulations (png, svg, pdf)"
+        "--budget", metavar="N", type=int, help="the maximum number of simulations; replaces that of the file"
+    )
+    parser.add_argument("--seed", metavar="N", type=int, help="the random seed; replaces that of the file")
+    parser.add_argument("--workers", metavar="N", type=int, help="the number of parallel simulations")
+    parser.add_argument(
+        "--record", metavar="FILE", help="store every simulation in this file, and resume from it"
     )
     parser.add_argument(
-        "--json", action="store_true", help="print each simulation as JSON, one object a line"
+        "--plot", metavar="FILE", help="plot the robustness over the simulations (png, svg, pdf)"
+    )
+    parser.add_argument(
+        "--json", action="store_true", help="print each simulation as JSON, one object per line"
     )
     parser.add_argument(
         "--color", default="auto", metavar="{auto,always,never}", help="colour (default: auto, on a terminal)"

@@ -1,4 +1,4 @@
-"""``rtamt fmu``: a requirement to a unit that simulators import."""
+"""``rtamt fmu``: export a requirement as an FMU."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ if TYPE_CHECKING:
     import argparse
 
 _DESCRIPTION = """\
-Export a requirement's monitor as a Functional Mock-up Unit for co-simulation, which Simulink, Dymola,
-OpenModelica and fmpy import. The unit needs neither Python nor a compiler."""
+Export the monitor of a requirement as a Functional Mock-up Unit (FMU) for co-simulation, which Simulink, Dymola,
+OpenModelica and fmpy import. The FMU needs neither Python nor a compiler."""
 
 _EPILOG = """\
 The variables of the requirement are inputs; robustness, verdict, known and known_since are outputs;
@@ -38,14 +38,14 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add_specification_options(parser)
     add_time_option(parser)
     add_verdict_option(parser)
-    parser.add_argument("-o", "--output", metavar="FILE", required=True, help="the unit to write, FILE.fmu")
+    parser.add_argument("-o", "--output", metavar="FILE", required=True, help="the FMU to write, FILE.fmu")
     parser.add_argument(
         "--fmi", type=int, choices=(2, 3), default=2, help="the version: FMI 2.0 or 3.0 (default: 2)"
     )
 
 
 def run(args: argparse.Namespace) -> int:
-    """Write the unit."""
+    """Write the FMU."""
     fmi.export(read_specification(args, args.time), args.output, version=args.fmi, verdict=args.verdict)
     say(f"{args.output}: FMI {args.fmi}.0, co-simulation, {Path(args.output).stat().st_size / 1024:.0f} KiB")
     return OK

@@ -44,25 +44,25 @@ if TYPE_CHECKING:
     from rtamt.specification import Specification
 
 _DESCRIPTION = """\
-Show what a requirement reads, how far ahead it looks (its horizon), the same requirement with past
-operators only (its pastified form), and what an online monitor of it runs and keeps in memory. Of a
-recording (CSV, Parquet, Excel, ..., or --sql): which signals are in it, and what was guessed. Of a program that
-'rtamt compile' wrote: what it holds."""
+Show the variables of a requirement, how far it looks ahead (its horizon), the equivalent requirement with past
+operators only (its pastified form), and the program and the memory of its online monitor. For a recording (CSV,
+Parquet, Excel, ..., or --sql), list its signals, and what was inferred. For a program written by
+'rtamt compile', list its contents."""
 
 _EPILOG = """\
 Intervals (bounds of the robustness while samples are unknown) are tight if some trace attains them. Early verdicts
-hold at the end unless a window there loses instants that were decided before they had samples.
+remain valid at the end of the trace unless a window loses instants there that were decided before they had samples.
 
-In the listing of the program every line is an instruction: %0, %1, ... are results, n is a width in
-samples, and a lag is the number of samples after which a result is known. With --time dense both
-are counted in ticks of the resolution.
+Each line in the listing of the program is an instruction: %0, %1, ... are results, n is a width in
+samples, and the lag is the number of samples after which a result is known. With --time dense, both
+are in ticks of the resolution.
 
 --json prints one object: {"name", "formula", "requirements", "latex", "semantics", "variables", "period",
 "resolution", "horizon", "pastified", "program", "memory", "offline_only", "tight", "early_verdicts_hold"};
-what does not exist is null: dense time has no period, and its memory depends on the data. Durations are in
-seconds, memory in bytes. The program is that of the semantics, the pastified form serves each. Of several
-requirements all this is about their conjunction; each has its {"name", "description", "severity", "formula",
-"horizon"}.
+values that do not exist are null: dense time has no period, and its memory depends on the data. Durations are in
+seconds, memory in bytes. The program depends on the semantics, the pastified form does not. For several
+requirements, all values refer to their conjunction; each requirement has its own {"name", "description",
+"severity", "formula", "horizon"}.
 
 examples:
   rtamt info examples/request_grant/spec.stl
@@ -97,10 +97,10 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "signals",
         metavar="SIGNAL",
         nargs="*",
-        help="of a recording: only signals whose names contain one of these texts, such as battery",
+        help="for a recording: list only signals whose names contain one of these texts, such as battery",
     )
-    parser.add_argument("--latex", action="store_true", help="print the formula as LaTeX, and nothing else")
-    parser.add_argument("--json", action="store_true", help="print JSON: one object")
+    parser.add_argument("--latex", action="store_true", help="print only the formula, as LaTeX")
+    parser.add_argument("--json", action="store_true", help="print one JSON object")
 
 
 def run(args: argparse.Namespace) -> int:

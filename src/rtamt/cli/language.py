@@ -19,7 +19,7 @@ def add_language_option(parser: argparse._ActionsContainer) -> None:
     parser.add_argument(
         "--language",
         metavar="MODULE:NAME",
-        help="a language of your own: a Python module, also one in this directory, and the name in it",
+        help="a language with custom operators: a Python module (the current directory is searched) and a name in it",
     )
 
 

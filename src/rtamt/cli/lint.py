@@ -30,20 +30,20 @@ if TYPE_CHECKING:
     from rtamt.specification import Specification
 
 _DESCRIPTION = """\
-Check specification files and report each error: what, where (line, column and a caret) and how
-to fix it; and warn of legal but probably unintended formulas, such as a sum of a speed and a
-distance. Nothing is evaluated.
+Check specification files without evaluating them. Report each error: what is wrong, where (line, column and a
+caret) and how to fix it. Warn about valid but probably unintended formulas, such as a sum of a speed and a
+distance.
 
-Exit code: 0 all files are valid, 2 some have errors; with --strict 1 if there are only warnings.
---json prints one object a line: {"file", "severity", "code", "message", "line", "column", "end_line",
-"end_column"}; end_column is that of the first character after it, code is null where the text is
-no specification."""
+Exit code: 0 all files are valid, 2 some have errors; with --strict, 1 if there are only warnings.
+--json prints one object per line: {"file", "severity", "code", "message", "line", "column", "end_line",
+"end_column"}. "end_column" is the column after the last character; "code" is null if the text is not a
+specification."""
 
 _EPILOG = """\
-With --period the bounds must be whole numbers of it; with --online no operator may need the whole
-future, so that a monitor can run the requirement.
+With --period, bounds must be whole numbers of periods. With --online, formulas with unbounded future are
+errors, because no monitor can run them.
 
-Warnings, by the codes that --ignore takes: {warnings}.
+Warnings, with the codes for --ignore: {warnings}.
 
 examples:
   rtamt lint examples/request_grant/spec.stl
@@ -55,13 +55,13 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.description = _DESCRIPTION
     parser.epilog = _EPILOG.format(warnings=", ".join(f"{rule.code} ({rule.about})" for rule in RULES))
     add_specification_options(parser)
-    parser.add_argument("more", metavar="SPEC", nargs="*", help="more of them")
+    parser.add_argument("more", metavar="SPEC", nargs="*", help="more specifications")
     add_time_option(parser)
-    parser.add_argument("--online", action="store_true", help="refuse what a monitor cannot run")
+    parser.add_argument("--online", action="store_true", help="reject formulas that a monitor cannot run")
     add_ignore_option(parser)
-    parser.add_argument("--strict", action="store_true", help="exit with 1 where there are warnings")
+    parser.add_argument("--strict", action="store_true", help="exit with 1 if there are warnings")
     parser.add_argument("--quiet", action="store_true", help="print errors only")
-    parser.add_argument("--json", action="store_true", help="print JSON, one object a line")
+    parser.add_argument("--json", action="store_true", help="print JSON, one object per line")
 
 
 def run(args: argparse.Namespace) -> int:
@@ -69,7 +69,7 @@ def run(args: argparse.Namespace) -> int:
     files = [args.spec, *args.more]
     codes = [_lint(file, args) for file in files]
     if not args.quiet and not args.json and not any(codes):
-        say(f"{len(files)} {'file is' if len(files) == 1 else 'files are'} right")
+        say(f"{len(files)} {'file has' if len(files) == 1 else 'files have'} no errors or warnings")
     worst = max(codes)
     return OK if worst == VIOLATED and not args.strict else worst
 

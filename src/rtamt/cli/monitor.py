@@ -52,46 +52,45 @@ if TYPE_CHECKING:
 _BLUR = 5e-7
 
 _DESCRIPTION = """\
-Watch a stream of samples. Each line of input is one sample; each line of output is the robustness
-at one instant, printed as soon as the formula's horizon has passed (the rest
-follows at the end of input)."""
+Monitor a stream of samples. Each line of input is one sample; each line of output is the robustness
+at one instant, printed as soon as the formula's horizon has passed. The remaining lines
+follow at the end of the input."""
 
 _EPILOG = """\
-input: JSON objects, one a line, or CSV with a header row. What the formula does not read is left
-out of account. Timestamps are found and read as in files (see 'rtamt check --help'): in time, t, timestamp,
-stamp or datetime, perhaps with a unit ('t [ms]', 'time_ms'), else in the one column of dates. Without any,
-samples are one period apart. A stream does not show its period in time: --period sets it (default: 1 s,
-which stamps must then be apart). Fields: {"req": {"value": 3}} or {"req.value": 3}.
+input: JSON objects, one per line, or CSV with a header row. Variables that the formula does not read are
+ignored. Timestamps are found and read as in files (see 'rtamt check --help'): in time, t, timestamp,
+stamp or datetime, with an optional unit ('t [ms]', 'time_ms'), else in the only column of dates. Without
+timestamps, samples are one period apart. A stream does not reveal its period in advance: --period sets it
+(default: 1 s; timestamps must then be 1 s apart). Fields: {"req": {"value": 3}} or {"req.value": 3}.
 
-With --time dense signals change at any instant, each on its own clock: a JSON object may hold some of
-the variables, a cell of CSV may be empty, and a line of output is printed for every change and at the
+With --time dense, signals change at any instant, and each has its own time base: a JSON object may contain only
+some of the variables, a cell of CSV may be empty, and a line of output is printed for every change and for the
 last known instant.
 
-output: {"time": 0.0, "robustness": 3.0}; of several requirements also the robustness of each, by name:
-{"time": 0.0, "robustness": 3.0, "requirements": {"R1": 3.0, "R2": 4.5}}, in dense time of those that have
-started, each when all variables that it reads have. The time is seconds, or a
-date where the input has dates. JSON has no infinities: they are the strings "inf" and "-inf", here
-and in the input. With --semantics boolean a line has the verdict too: {"time": 0.0, "robustness": "inf",
-"satisfied": true}.
+output: {"time": 0.0, "robustness": 3.0}; with several requirements also the robustness of each, by name:
+{"time": 0.0, "robustness": 3.0, "requirements": {"R1": 3.0, "R2": 4.5}}. In dense time, a requirement appears
+once all variables that it reads have started. The time is in seconds, or a date if the input has dates.
+Infinities are the strings "inf" and "-inf", because JSON has none, also in the input. With --semantics boolean,
+a line also has the verdict: {"time": 0.0, "robustness": "inf", "satisfied": true}.
 
 --verdict eager prints {"time": 0.0, "satisfied": false, "decided_at": 2.0} as soon as no later sample can
-change whether the formula holds, with --explain also "causes": [{"variable": "x", "time": 2.0, "value": -1.0}], the
-samples that decide it alone. --verdict interval prints bounds of the robustness whenever they change:
-{"time": 0.0, "lower": -1.0, "upper": "inf", "final": false}. With "until" an object is about all samples up to that
-one, in dense time all instants before it. --verdict causation prints by how much each sample alone violates and
-satisfies the formula at the start of the trace: {"time": 0.0, "violation": -1.0, "satisfaction": "-inf"}, or
-"inf" and "-inf" if it has no part. In dense time a last line is about the end of the trace, with "final": true.
-A formula of unbounded future is watched at the start of the trace, also without --verdict: {"time": 12.3,
-"lower": "-inf", "upper": -1.0, "status": "violated since 12.3 s"}; other states are "open" and "can no longer
-be violated".
+change whether the formula holds, with --explain also "causes": [{"variable": "x", "time": 2.0, "value": -1.0}], a
+minimal set of samples that decides it. --verdict interval prints bounds of the robustness whenever they change:
+{"time": 0.0, "lower": -1.0, "upper": "inf", "final": false}. An object with "until" applies to all samples up to
+that one, in dense time to all instants before it. --verdict causation prints by how much each sample alone
+violates and satisfies the formula at the start of the trace: {"time": 0.0, "violation": -1.0, "satisfaction":
+"-inf"}, or "inf" and "-inf" if it does not contribute. In dense time, the last line describes the end of the trace,
+with "final": true. A formula with unbounded future is monitored at the start of the trace, even without --verdict:
+{"time": 12.3, "lower": "-inf", "upper": -1.0, "status": "violated since 12.3 s"}; the other states are "open" and
+"can no longer be violated".
 
-A line that is no sample ends the monitor with exit code 2. With --keep-going it is reported and
-left out, and the exit code is 2 at the end. A sample that is left out leaves a gap in time, which
---tolerance inf allows: the next sample then takes its place.
+An invalid line ends the monitor with exit code 2. With --keep-going it is reported and skipped, and the exit
+code at the end is 2. A skipped sample leaves a gap, which --tolerance inf allows: the next sample then takes its
+place.
 
---live draws on the terminal (stderr) instead: verdict, robustness so far (of unbounded future its bounds at
-the start, with --verdict interval those at the latest samples), lowest value, latest samples with their units;
-what is piped on stays as it is. It needs the package rich: pip install 'rtamt[cli]'.
+--live draws on the terminal (stderr): the verdict, the robustness so far (for unbounded future its bounds at
+the start, with --verdict interval those at the latest samples), the lowest value and the latest samples with
+their units. The output on stdout does not change. It requires the package rich: pip install 'rtamt[cli]'.
 
 examples:
   echo '{"time": 0, "x": 5}' | rtamt monitor "x >= 3"
@@ -111,8 +110,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--tolerance",
         type=float,
         metavar="FRACTION",
-        help=f"by how much of the period a gap between samples may miss it (default: {TOLERANCE} with --period, "
-        "else 0)",
+        help="the allowed deviation of the gap between samples, as a fraction of the period "
+        f"(default: {TOLERANCE} with --period, else 0)",
     )
     parser.add_argument(
         "--verdict",
@@ -122,12 +121,12 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--explain",
         action="store_true",
-        help="with --verdict eager, print which samples decided each verdict",
+        help="with --verdict eager, print the samples that decided each verdict",
     )
     parser.add_argument(
         "--live", action="store_true", help="draw verdict, robustness and values on the terminal"
     )
-    parser.add_argument("--keep-going", action="store_true", help="report a bad line and go on")
+    parser.add_argument("--keep-going", action="store_true", help="report invalid lines and continue")
 
 
 def run(args: argparse.Namespace) -> int:
@@ -164,9 +163,9 @@ def run(args: argparse.Namespace) -> int:
         skip_nan=held and rule is not None and rule.skip_nan,
     )
     if sys.stdin is None:
-        raise CommandError(f"{STDIN} is closed: give one JSON object a line, or CSV with a header row")
+        raise CommandError(f"{STDIN} is closed: give one JSON object per line, or CSV with a header row")
     if sys.stdin.isatty():
-        complain("reading samples from the terminal, one JSON object a line; Ctrl-D ends")
+        complain("reading samples from the terminal, one JSON object per line; Ctrl-D ends")
     with nullcontext() if live is None else live:
         return _follow(watched, samples, live, keep_going=args.keep_going)
 

@@ -20,12 +20,12 @@ if TYPE_CHECKING:
 
     from rtamt.language.operators import Language, Operator
 
-_DESCRIPTION = "List the operators of the language, those that bind tightest first."
+_DESCRIPTION = "List the operators of the language in order of decreasing precedence."
 
 _EPILOG = """\
 examples:
-  rtamt operators                 all of them
-  rtamt operators until since     two of them"""
+  rtamt operators                 all operators
+  rtamt operators until since     two operators"""
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -65,7 +65,7 @@ def _notes(language: Language) -> str:
     right = ", ".join(op.spellings[0] for op in language if op.fixity is Fixity.RIGHT)
     notes = (
         f"[a:b] is an interval, also written [a,b], with or without units ({', '.join(UNITS)}), as in "
-        f"always[0:500ms](x >= 3); [a:b]? may be left out: the window is then unbounded. Operators with "
+        f"always[0:500ms](x >= 3); [a:b]? is optional: without it, the window is unbounded. Operators with "
         f"two operands associate to the left, {right} to the right. A number used as a formula is its own "
         f"robustness."
     )

@@ -13,12 +13,12 @@ if TYPE_CHECKING:
     import argparse
 
 _DESCRIPTION = """\
-List the packs: requirements on recordings of well-known systems, which 'rtamt check PACK TRACE' checks as they are.
-With a name, print that pack: a specification file to read, or to change for your own system."""
+List the packs: requirements on recordings of well-known systems, ready for 'rtamt check PACK TRACE'.
+With a name, print that pack: a specification file to read, or to adapt to another system."""
 
 _EPILOG = """\
 A recording need not have all signals of a pack: a requirement whose signals are missing is reported as unchecked,
-with the missing names. Limits are parameters: --set sets them.
+with the missing names. Limits are parameters, which --set changes.
 
 examples:
   rtamt packs
@@ -29,7 +29,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     parser.description = _DESCRIPTION
     parser.epilog = _EPILOG
-    parser.add_argument("name", metavar="PACK", nargs="?", help="print the text of this one")
+    parser.add_argument("name", metavar="PACK", nargs="?", help="print the text of this pack")
 
 
 def run(args: argparse.Namespace) -> int:

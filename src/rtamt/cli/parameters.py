@@ -20,7 +20,7 @@ def add_set_option(group: _ActionsContainer) -> None:
         metavar="NAME=VALUE",
         action="append",
         default=[],
-        help="a value of a parameter that the specification declares; may be given again",
+        help="the value of a parameter that the specification declares; repeatable",
     )
 
 

@@ -22,15 +22,15 @@ if TYPE_CHECKING:
     from typing import Any
 
 _DESCRIPTION = """\
-Draw the signals of a recording, the robustness of a requirement and of its sub-formulas over time, and
-what decides the verdict: the critical point and the implicant, as 'rtamt explain' prints them. Needs
+Plot the signals of a recording, the robustness of a requirement and of its sub-formulas over time, and
+the cause of the verdict: the critical point and the implicant, as printed by 'rtamt explain'. Requires
 matplotlib: pip install 'rtamt[plot]'."""
 
 _EPILOG = """\
-Shaded: where a formula does not hold. Yellow: the implicant, the predicates on these intervals alone
-force the verdict. Diamond: the critical point. --bounds: a band from the lower to the upper bound of the
-robustness at the start, as known after each sample; it narrows to the robustness. Without -o the plot is
-shown in a window.
+Intervals in which a formula does not hold are shaded. The implicant is yellow: its predicates on these
+intervals alone force the verdict. The diamond is the critical point. --bounds draws a band between the lower
+and the upper bound of the robustness at the start, as known after each sample; it narrows to the robustness.
+Without -o, the plot is shown in a window.
 
 examples:
   rtamt plot examples/request_grant/spec.stl examples/request_grant/c_violated.csv -o build/c.png
@@ -45,21 +45,23 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.description = _DESCRIPTION
     parser.epilog = _EPILOG
     add_specification_options(parser)
-    parser.add_argument("traces", metavar="TRACE", nargs="*", help="a recording, one, as for 'rtamt check'")
+    parser.add_argument("traces", metavar="TRACE", nargs="*", help="one recording, as for 'rtamt check'")
     add_time_option(parser)
     add_instant_option(parser)
     add_reading_options(parser)
     parser.add_argument("-o", "--output", metavar="FILE", help="write the plot: .png, .svg, .pdf, ...")
-    parser.add_argument("--rows", type=int, default=6, metavar="N", help="formulas at most (default: 6)")
-    parser.add_argument("--from", dest="start", metavar="TIME", help="where the plot begins, as for --at")
-    parser.add_argument("--to", dest="end", metavar="TIME", help="where the plot ends, as for --at")
     parser.add_argument(
-        "--zoom", metavar="{violation}", help="show the first violation and what is around it"
+        "--rows", type=int, default=6, metavar="N", help="the maximum number of formulas (default: 6)"
     )
+    parser.add_argument(
+        "--from", dest="start", metavar="TIME", help="the start of the plot, in the format of --at"
+    )
+    parser.add_argument("--to", dest="end", metavar="TIME", help="the end of the plot, in the format of --at")
+    parser.add_argument("--zoom", metavar="{violation}", help="show the first violation and its surroundings")
     parser.add_argument(
         "--bounds",
         action="store_true",
-        help="draw what was known of the robustness at the start after each sample, and when the verdict was decided",
+        help="draw the bounds of the robustness at the start, as known after each sample, and the time of the verdict",
     )
     parser.add_argument("--tree", action="store_true", help="draw the formula as a tree with its values")
 

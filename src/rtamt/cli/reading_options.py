@@ -59,37 +59,36 @@ def add_reading_options(parser: argparse.ArgumentParser) -> None:
         metavar="NAME=COLUMN",
         action="append",
         default=[],
-        help="the column of a variable that is called otherwise, instead of its recorded name in SPEC; may be "
-        "given again",
+        help="the column of a variable if it has another name; replaces the recorded name in SPEC; repeatable",
     )
-    group.add_argument("--sheet", metavar="NAME", help="of an Excel workbook with several")
+    group.add_argument("--sheet", metavar="NAME", help="the sheet of an Excel workbook with several sheets")
     group.add_argument("--sql", metavar="URL", help="read a database, such as sqlite:///log.db")
-    group.add_argument("--query", metavar="TEXT", help="what to read of it: its rows are samples")
+    group.add_argument("--query", metavar="TEXT", help="the query for --sql; each row is a sample")
     group.add_argument(
         "--skip-nan",
         metavar="NAME",
         action="append",
         default=[],
-        help="leave out the samples of a variable that are NaN, an error otherwise; may be given again",
+        help="leave out NaN samples of a variable instead of reporting an error; repeatable",
     )
     group.add_argument(
         "--hold-for",
         metavar="DURATION",
-        help="how long a value takes the place of samples that are left out; longer gaps are errors",
+        help="the longest time for which a value replaces missing samples; longer gaps are errors",
     )
     group.add_argument(
-        "--resample", metavar="DURATION", help="put all signals on one time base, a sample every so often"
+        "--resample", metavar="DURATION", help="resample all signals to one time base with this period"
     )
     group.add_argument(
         "--how",
         default="hold",
         metavar="{hold,linear}",
-        help="between two samples the last one holds, or a line (default: hold)",
+        help="between two samples, hold the last value or interpolate (default: hold)",
     )
     group.add_argument(
         "--recover",
         action="store_true",
-        help="read an MCAP file that was cut off or is damaged as far as possible, an error otherwise",
+        help="read a truncated or damaged MCAP file up to the damage instead of reporting an error",
     )
 
 
@@ -98,8 +97,8 @@ def add_instant_option(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--at",
         metavar="TIME",
-        help="the instant that is explained (default: the first): seconds, or with a unit, such as 500ms, "
-        "or a date, where the recording has dates",
+        help="the instant to explain (default: the first): seconds, a time with a unit such as 500ms, or a date "
+        "if the recording has dates",
     )
 
 

@@ -22,18 +22,18 @@ if TYPE_CHECKING:
 _DESCRIPTION = """\
 Write one HTML file about every requirement on every trace: a matrix of verdicts, and for each cell the
 explanation, the signals, and the robustness of the formula and of its sub-formulas. The page needs no
-network and no server; verdicts and explanations are readable without scripts. Needs jinja2:
+network and no server; verdicts and explanations are readable without scripts. Requires jinja2:
 pip install 'rtamt[report]'. 'rtamt check --html' writes the same page.
 
 Exit code: 0 all satisfied, 1 some violated, 2 some could not be evaluated."""
 
 _EPILOG = """\
-SPEC and TRACE are as for 'rtamt check'. In the page: filter, sort and search the matrix, and open a cell.
-Drag over a chart to zoom time or values, double-click to see all; Ctrl and the wheel, or + - 0, zoom; arrow
-keys go from sample to sample. Click sets mark A, Shift and click mark B. Every zoom shows true samples: the
-page holds all of them, compressed, up to 96 MB; beyond that, of a long line only the range of the
-values in each 1/1500 of the time, drawn as boxes. Signals that no requirement reads can be added to any
-chart; they have 16 MB in addition, and 'About this report' states what did not fit.
+SPEC and TRACE are the same as for 'rtamt check'. In the page, filter, sort and search the matrix, and open a
+cell. Drag over a chart to zoom time or values, and double-click to reset; Ctrl and the wheel, or the keys
++ - 0, zoom as well; arrow keys step from sample to sample. Click to set mark A, Shift-click to set mark B. The
+page contains every sample, compressed, up to 96 MB; beyond that, long lines are stored as the range of their
+values in each 1/1500 of the time and drawn as boxes. Signals that no requirement reads can be added to any
+chart; they share another 16 MB, and 'About this report' states what did not fit.
 
 examples:
   rtamt report examples/request_grant/spec.stl examples/request_grant/*.csv -o build/report.html
@@ -45,7 +45,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.description = _DESCRIPTION
     parser.epilog = _EPILOG
     add_specification_options(parser)
-    parser.add_argument("traces", metavar="TRACE", nargs="*", help="a recording; before it more SPECs (.stl)")
+    parser.add_argument(
+        "traces", metavar="TRACE", nargs="*", help="a recording; more SPECs (.stl) may precede it"
+    )
     add_time_option(parser)
     add_instant_option(parser)
     add_reading_options(parser)

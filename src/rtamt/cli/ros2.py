@@ -12,13 +12,13 @@ if TYPE_CHECKING:
     import argparse
 
 _DESCRIPTION = """\
-Watch a specification over topics of ROS 2, and publish its robustness and verdicts: a node of its own, on
+Monitor a specification on ROS 2 topics, and publish its robustness and verdicts. The node runs on
 Cyclone DDS, without an installation of ROS. 'ros2 node list' and 'ros2 topic list' show it."""
 
 _EPILOG = """\
-SPEC declares the topics that are read and written, and their types (the paper's listing 8). Verdicts go to
-the topic of the robustness with '/verdict' after it, the condition of every output to /diagnostics.
-ROS_DOMAIN_ID chooses the domain, CYCLONEDDS_URI the network, ROS_DISTRO the distribution.
+SPEC declares the topics that are read and written, and their types (the paper's listing 8). Verdicts are published
+on the topic of the robustness with the suffix '/verdict', the state of every output on /diagnostics.
+ROS_DOMAIN_ID selects the domain, CYCLONEDDS_URI the network, ROS_DISTRO the distribution.
 
 examples:
   rtamt ros2 spec.stl --period 1 --unit s
@@ -37,25 +37,27 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--reliability",
         default="reliable",
         metavar="{reliable,best_effort}",
-        help="of what is read; best_effort hears every publisher (default: reliable); what is published is reliable",
+        help="of subscriptions; best_effort is compatible with every publisher (default: reliable)",
     )
     parser.add_argument(
         "--durability",
         default="volatile",
         metavar="{volatile,transient_local}",
-        help="transient_local also hears what was published before (default: volatile)",
+        help="transient_local also receives messages published earlier (default: volatile)",
     )
     parser.add_argument(
         "--depth", type=int, default=100, metavar="N", help="messages kept for a slow reader (default: 100)"
     )
-    parser.add_argument("--sim-time", action="store_true", help="the time is what is published on /clock")
-    parser.add_argument("--distro", metavar="NAME", help="of ROS 2, such as humble (default: jazzy)")
+    parser.add_argument("--sim-time", action="store_true", help="use the time published on /clock")
+    parser.add_argument(
+        "--distro", metavar="NAME", help="the ROS 2 distribution, such as humble (default: jazzy)"
+    )
     parser.add_argument(
         "--messages",
         action="append",
         default=[],
         metavar="FOLDER",
-        help="where packages with definitions of your own are; may be given again",
+        help="a folder with packages of custom message definitions; repeatable",
     )
 
 

@@ -96,7 +96,7 @@ def parser(prog: str) -> argparse.ArgumentParser:
     """Return a parser of the arguments of all nodes."""
     made = _Parser(
         prog=prog,
-        description="Watch a specification over topics, and publish its robustness and verdict.",
+        description="Monitor a specification on topics, and publish its robustness and verdict.",
         allow_abbrev=False,
     )
     add_options(made)
@@ -111,33 +111,34 @@ def add_options(made: argparse.ArgumentParser) -> None:
     made.add_argument(
         "--period",
         metavar="DURATION",
-        help="from sample to sample: a number, or with a unit: 100ms; required in discrete time, unless the "
-        "specification says it: sample 100ms hold",
+        help="the sampling period: a number, or with a unit: 100ms; required in discrete time, unless the "
+        "specification declares it: sample 100ms hold",
     )
     made.add_argument(
-        "--unit", help=f"of --period and --stale where they are numbers: {', '.join(UNITS)} (default: s)"
+        "--unit",
+        help=f"the unit of --period and --stale if they are numbers: {', '.join(UNITS)} (default: s)",
     )
     made.add_argument(
         "--time",
         metavar=f"{{{','.join(DOMAINS)}}}",
-        help=f"discrete: a sample every period; dense: every message is one, at its stamp (default: {DEFAULT})",
+        help=f"discrete: one sample per period; dense: every message is a sample at its timestamp (default: {DEFAULT})",
     )
     made.add_argument(
         "--stale",
         metavar="DURATION",
-        help="how long a topic may be silent; 0: for ever (default: ten periods, in dense time 5 s)",
+        help="the time after which a silent topic is stale; 0: never (default: ten periods, in dense time 5 s)",
     )
     made.add_argument(
         "--verdict",
         metavar=f"{{{','.join(VERDICTS)}}}",
         help="delayed: robustness and verdict of every sample, one horizon later; eager: the verdict of every "
         "instant, once no later sample can change it; interval: bounds and verdict at the start of the trace, "
-        "whatever is still to come (default: interval for unbounded future, else delayed)",
+        "valid for every continuation (default: interval for unbounded future, else delayed)",
     )
     made.add_argument(
         "--at",
         metavar=f"{{{','.join(INSTANTS)}}}",
-        help="with --verdict interval: bounds at the start of the trace, or of every instant whenever they change "
+        help="with --verdict interval: bounds at the start of the trace, or at every instant whenever they change "
         "(default: start)",
     )
     made.add_argument(

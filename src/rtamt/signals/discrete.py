@@ -47,7 +47,7 @@ class Discrete(TimeDomain):
     """
 
     name: ClassVar[str] = "discrete"
-    summary: ClassVar[str] = "every variable has a sample once a period"
+    summary: ClassVar[str] = "every variable has one sample per period"
     continuous: ClassVar[bool] = False
     unit = PERIODS
     setting: ClassVar[str] = "period"

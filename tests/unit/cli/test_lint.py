@@ -9,8 +9,8 @@ import sys
 def test_files_that_are_right(run, write):
     write("a.stl", "specification a\nalways(x >= 3)\n")
     write("b.stl", "eventually[0:100ms](y <= 1)\n")
-    assert run("lint", "a.stl", "b.stl") == (0, "2 files are right\n", "")
-    assert run("lint", "a.stl") == (0, "1 file is right\n", "")
+    assert run("lint", "a.stl", "b.stl") == (0, "2 files have no errors or warnings\n", "")
+    assert run("lint", "a.stl") == (0, "1 file has no errors or warnings\n", "")
     assert run("lint", "a.stl", "--quiet") == (0, "", "")
 
 
@@ -80,7 +80,7 @@ def test_warnings_have_codes_that_can_be_silenced(run, write):
     )
     assert run("lint", "gap.stl", "--strict").code == 1
     silent = run("lint", "gap.stl", "--strict", "--ignore", "RT101", "--ignore", "RT103")
-    assert silent == (0, "1 file is right\n", "")
+    assert silent == (0, "1 file has no errors or warnings\n", "")
     assert "invalid choice: 'RT999'" in run("lint", "gap.stl", "--ignore", "RT999").err
 
 

@@ -25,7 +25,7 @@ def test_help_names_every_command_and_the_exit_codes(capsys):
     for command in COMMANDS.values():
         assert f"  {command.name} " in text
         assert command.summary in text
-    assert "0 satisfied (or done), 1 violated, 2 something is wrong" in text
+    assert "0 satisfied (or done), 1 violated, 2 error" in text
 
 
 @pytest.mark.parametrize("command", COMMANDS)
@@ -40,7 +40,9 @@ def test_help_of_every_command_has_examples_and_fits_a_terminal(capsys, monkeypa
 
 def test_help_says_how_infinities_look_in_json(capsys):
     for command in ("check", "monitor"):
-        assert "JSON has no infinities: they are the strings" in " ".join(help_of(capsys, command).split())
+        assert 'Infinities are the strings "inf" and "-inf", because JSON has none' in " ".join(
+            help_of(capsys, command).split()
+        )
 
 
 #: Files that the examples name and nobody has here.
