@@ -83,6 +83,16 @@ void Causes::look(const Engine& engine, const Origin& origin, const News& news) 
     if (!items_.empty()) start_ = {items_.back()[0], -items_.back()[1]};
 }
 
+// Hold from an open tick on: the engine keeps it from there on plus low.
+void Causes::settle(const Engine& engine, Tick closed, std::span<Tick> wanted) const noexcept {
+    for (const Cause& cause : causes_) {
+        if (cause.kind != Cause::Kind::until) continue;
+        const Tick open = plus(closed + 1, -engine.horizon(cause.ref));
+        Tick& first = wanted[causes_[cause.a / 2].ref / 2];
+        first = std::min(first, std::max<Tick>(0, plus(open, -cause.shift)));
+    }
+}
+
 void Causes::compute(const Engine& engine, std::size_t index, int reg, const News& news) {
     const Cause& cause = causes_[index];
     Pieces& pieces = parts_[index][static_cast<std::size_t>(reg)];

@@ -63,6 +63,9 @@ class Causes {
     void look(const Engine& engine, const Origin& origin, Tick newest);
     void look(const Engine& engine, const Origin& origin, std::span<const Engine::Lesson> lessons);
 
+    // Asks for what is read of operands beside what the engine itself reads; `wanted`: by node.
+    void settle(const Engine& engine, Tick closed, std::span<Tick> wanted) const noexcept;
+
     // Violation is the upper end, satisfaction the lower.
     [[nodiscard]] Bounds at(std::size_t output, Tick t) const noexcept;
     [[nodiscard]] Bounds at_start() const noexcept { return start_; }

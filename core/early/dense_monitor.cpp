@@ -231,6 +231,7 @@ void DenseMonitor::settle() {
         wanted_[outputs_[i] / 2] = std::min(wanted_[outputs_[i] / 2], from);
     }
     if (origin_) origin_->settle(engine_, closed_, wanted_);
+    if (causes_) causes_->settle(engine_, closed_, wanted_);
     engine_.settle(closed_, wanted_);
 }
 

@@ -221,6 +221,7 @@ void EarlyMonitor::settle() {
         oldest = std::min(oldest, wanted);
     }
     if (origin_) origin_->settle(engine_, closed_, wanted_);
+    if (causes_) causes_->settle(engine_, closed_, wanted_);
     engine_.settle(closed_, wanted_);
     times_.drop_before(oldest);
 }

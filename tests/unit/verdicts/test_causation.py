@@ -119,6 +119,19 @@ def test_many_samples_keep_little_memory():
     assert monitor.memory <= before + 2**12
 
 
+@pytest.mark.parametrize("time", ["discrete", rtamt.Dense("1s")])
+def test_until_reads_hold_before_its_bound_after_many_samples(time):
+    spec = rtamt.parse("x >= 0 until[5:6] y >= 0")
+    monitor, bounds = (spec.monitor(verdict=verdict, time=time) for verdict in ("causation", "interval"))
+    for t in range(200):
+        row = {"x": (t * 7) % 11 - 2, "y": (t * 5) % 13 - 6}
+        monitor.update(t, **row)
+        bounds.update(t, **row)
+        for k in range(max(0, t - 5), t + 1):
+            assert monitor.causation(k).satisfaction <= bounds.interval(k).lower
+            assert monitor.causation(k).violation >= bounds.interval(k).upper
+
+
 def test_cost_under_until_follows_the_runs_of_the_result_and_not_the_bound():
     def cost(bound):
         monitor = rtamt.parse(f"eventually[0:{bound}](x > 9) until[0:{bound}] y > 9").monitor(
