@@ -210,3 +210,22 @@ def test_a_boolean_field_is_true_or_false_also_where_nothing_else_has_a_type():
         .robustness
         == inf
     )
+
+
+def test_missing_samples_of_any_container_end_presence():
+    pd, pa, pl = (pytest.importorskip(name) for name in ("pandas", "pyarrow", "polars"))
+    spec = rtamt.parse('group cars = "car_*"; forall v in cars: v.x > ego')
+    data = {"time": [0.0, 1.0, 2.0], "ego": [0.0, 0.0, 0.0], "car_1.x": [1.0, None, 3.0]}
+    frame = pd.DataFrame({**data, "car_1.x": pd.array(data["car_1.x"], dtype="Float64")})
+    masked = {**data, "car_1.x": np.ma.masked_array([1.0, 2.0, 3.0], [False, True, False])}
+    for given in (data, frame, pl.DataFrame(data), rtamt.read(pa.table(data)), masked):
+        assert spec.evaluate(given).signal.values.tolist() == [1, inf, 3]
+        assert list(spec.evaluate(given, time="dense").signal.points()) == [(0, 1), (1, inf), (2, 3)]
+    assert frame["car_1.x"].isna().tolist() == [False, True, False]
+
+
+def test_rtamts_classes_reject_groups():
+    spec = rtamt.StlDiscreteTimeSpecification()
+    spec.spec = 'group cars = "car_*"; out = forall v in cars: v.x > 3'
+    with pytest.raises(Exception, match="RTAMT's classes have no groups such as 'cars'"):
+        spec.parse()

@@ -12,7 +12,14 @@ from numbers import Real
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from rtamt.errors import NameInFormulaError, StlError, UsageError, did_you_mean, with_article
+from rtamt.errors import (
+    NameInFormulaError,
+    SpecificationError,
+    StlError,
+    UsageError,
+    did_you_mean,
+    with_article,
+)
 from rtamt.extras import message_class
 from rtamt.language.declarations import TYPES
 from rtamt.language.formula import Var, postorder, variables
@@ -276,7 +283,7 @@ class Declarations(ABC):
         return "\n".join([*parts, spec])
 
     def _read_as(self, text: str, language: Language) -> Document:
-        return parse_document(
+        document = parse_document(
             text,
             language=language,
             unit=self._unit,
@@ -284,6 +291,14 @@ class Declarations(ABC):
             variables=tuple(self._types) or None,
             truths=False,
         )
+        for group in document.groups.values():
+            raise SpecificationError(
+                f"RTAMT's classes have no groups such as '{group.name}'; use rtamt.parse, whose evaluate() and "
+                f"monitor() find the members",
+                text,
+                group.span,
+            )
+        return document
 
     def _read_formula(self, text: str) -> Formula:
         """Parse a formula with the names of the specification."""
