@@ -102,7 +102,7 @@ class TraceError(StlError):
 
 
 class EvaluationError(StlError):
-    """A sub-formula has no value at an instant; the message names both."""
+    """A sub-formula is undefined at an instant; the message names both."""
 
 
 class UsageError(StlError):

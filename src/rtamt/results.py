@@ -180,9 +180,9 @@ class Result:
     def episodes(self) -> list[Episode]:
         """Return the maximal runs of violation, with begin, end, and the worst robustness and its instant.
 
-        Of ``always φ`` they are those of φ in its window from the first instant on; of any other formula, the runs of
-        instants at which its robustness is below 0. Of several requirements call it for each:
-        ``result.requirements["R1"].episodes()``. A monitor has the same online: ``monitor(episodes=True)``.
+        For ``always φ``, these are the runs in which φ is violated, within its window from the first instant on; for
+        any other formula, the runs of instants at which its robustness is below 0. With several requirements, call it
+        for each: ``result.requirements["R1"].episodes()``. Online: ``monitor(episodes=True)``.
 
         >>> import rtamt
         >>> result = rtamt.parse("always(x >= 3)").evaluate({"time": [0, 1, 2, 3, 4], "x": [5, 2, 1, 3, 0]})
@@ -264,9 +264,9 @@ class Result:
         next to the top. Intervals in which a formula does not hold are shaded (Boolean semantics), the sufficient
         cause is yellow, and a diamond marks the critical point; infinities are drawn at the edge. ``at``: the
         instant to explain, as in :meth:`explain`. ``start`` and ``end``: the visible time range;
-        ``zoom="violation"``: the range around the first violation. ``bounds``: also draw what was known of the
-        robustness at the start after each sample, a band that narrows to it, and the sample that decided the
-        verdict. ``figure``: the matplotlib figure to draw into, by default a new one of pyplot.
+        ``zoom="violation"``: the range around the first violation. ``bounds``: also draw the bounds of the
+        robustness at the start, as known after each sample, a band that narrows to it, and the sample that decided
+        the verdict. ``figure``: the matplotlib figure to draw into, by default a new one of pyplot.
 
         >>> import rtamt
         >>> from matplotlib.figure import Figure

@@ -1,4 +1,4 @@
-"""The modern face: requirements that can be evaluated, monitored, printed and rewritten."""
+"""``Specification``: requirements that can be evaluated, monitored, printed and rewritten."""
 
 from __future__ import annotations
 
@@ -75,12 +75,12 @@ class Specification(OnlineSpecification):
 
         A sample may be missing: ``None``, a null of Arrow or polars, ``pandas.NA`` or a masked value (NaN is an
         error). Then, and with ``uncertainty``, the result has bounds: ``result.interval`` at the first instant,
-        ``result.intervals`` at each. Where both are equal, the robustness is that number. ``uncertainty``: for some
-        variables how far a sample may be off the value, in either direction. ``ranges``: for some
-        variables the lowest and the highest possible value, which bound missing samples.
+        ``result.intervals`` at each. Where both are equal, the robustness is that number. ``uncertainty``: from
+        a variable to the largest error of its samples, in either direction. ``ranges``: from a
+        variable to its lowest and highest possible value, which bound missing samples.
 
         Raises :class:`TraceError` if the data is invalid, :class:`BoundError` if an interval is
-        not a multiple of the period, :class:`EvaluationError` if an operation has no value.
+        not a multiple of the period, :class:`EvaluationError` if an operation is undefined.
 
         >>> import rtamt
         >>> result = rtamt.parse("always(x >= 3)").evaluate({"time": [0, 1, 2], "x": [5, 4, 6]})

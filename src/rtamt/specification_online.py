@@ -130,29 +130,29 @@ class OnlineSpecification(QuantifiedText):
     ) -> OnlineMonitor:
         """Return an online monitor; for dense time if selected here or in :func:`parse`.
 
-        ``period`` as in :meth:`evaluate`, by default 1 s. ``tolerance``: the fraction of the period
-        by which a gap between samples may miss it. ``semantics``: as for :func:`parse`; under
-        ``"boolean"`` the monitor gives verdicts, +inf where the formula holds and -inf where it does
-        not, also where the robustness is 0. ``watch``: names of sub-specifications, or formulas over
-        the same variables (text, or such as ``spec.formula``), whose values ``monitor[...]`` reports beside the
-        result; each is known at its own horizon. ``time_unit``: of times that are numbers, as in :meth:`evaluate`,
-        also of those that are reported. ``time`` as in :meth:`evaluate`. ``resolution`` as in :meth:`evaluate`.
+        ``period`` as in :meth:`evaluate`, by default 1 s. ``tolerance``: the allowed deviation of a gap between
+        samples, as a fraction of the period. ``semantics``: as for :func:`parse`; under
+        ``"boolean"`` the monitor reports verdicts, +inf where the formula holds and -inf where it does
+        not, even if the robustness is 0. ``watch``: names of sub-specifications, or formulas over
+        the same variables (text, or formulas such as ``spec.formula``), whose values ``monitor[...]`` reports in
+        addition to the result; each is known at its own horizon. ``time_unit``: the unit of numeric times, as in
+        :meth:`evaluate`, also of reported times. ``time`` and ``resolution`` as in :meth:`evaluate`.
 
         In dense time each of several requirements starts when all variables that it reads have started; the
         result is the minimum of those that have, known once all variables have started. Raises
         :class:`BoundError` for unbounded future.
 
-        ``verdict``: what the monitor reports of each sample: ``"delayed"``, the robustness one horizon later;
+        ``verdict``: what the monitor reports for each sample: ``"delayed"``, the robustness one horizon later;
         ``"eager"``, whether the formula holds, as soon as no later sample can change it; ``"interval"``, bounds
-        of the robustness from what is known by now; ``"causation"``, by how much the sample alone violates or
-        satisfies the formula. In dense time these three report runs of instants, with unbounded
-        future too. ``at``: of which instants ``"interval"`` reports: the ``"start"`` of the trace, as by default
-        for unbounded future, or ``"every"`` one. ``ranges``: from a variable to its least and greatest value
-        (``"eager"``, ``"interval"``). ``lateness``: by how much a sample may come late (``"interval"``); without it,
-        each variable of dense time has its samples in order. ``on_correction``: whether to ``"reject"`` or
+        of the robustness from the samples so far; ``"causation"``, by how much the sample alone violates or
+        satisfies the formula. The last three also accept unbounded future; in dense time they report runs of
+        instants. ``at``: the instants that ``"interval"`` reports: the ``"start"`` of the trace (the default
+        for unbounded future), or ``"every"`` one. ``ranges``: from a variable to its lowest and highest value
+        (``"eager"``, ``"interval"``). ``lateness``: how late a sample may arrive (``"interval"``); without it,
+        the samples of each variable must arrive in order in dense time. ``on_correction``: whether to ``"reject"`` or
         ``"replay"`` a sample that contradicts an earlier one (``"interval"``). ``episodes``: whether the monitor
-        remembers runs of violation, which ``monitor.episodes()`` returns (``"delayed"``). ``explain``: whether it
-        remembers samples, so that ``monitor.explain(verdict)`` returns those that decided a verdict (``"eager"``).
+        records runs of violation, which ``monitor.episodes()`` returns (``"delayed"``). ``explain``: whether it
+        keeps samples, so that ``monitor.explain(verdict)`` can return those that decided a verdict (``"eager"``).
 
         >>> import rtamt
         >>> monitor = rtamt.parse("always[0:200ms](x >= 3)").monitor(period="100ms")
@@ -283,11 +283,11 @@ class OnlineSpecification(QuantifiedText):
         """Compile the requirement to a standalone program, which the core runs without Python.
 
         Its outputs are ``robustness`` (ρ, or that of ``semantics``) and ``verdict`` (+inf where the
-        formula holds, -inf where it does not); of several requirements these are of all together, and each has
+        formula holds, -inf where it does not); for several requirements these refer to their conjunction, and each has
         its own, ``robustness.R1`` and ``verdict.R1``. The parameters and named constants of the specification are
         parameters of the program, except those that bound an interval. Settings and errors as for :meth:`monitor`.
 
-        With ``verdict="interval"`` its outputs are bounds at the start of the trace, whatever is still to come:
+        With ``verdict="interval"`` its outputs are bounds at the start of the trace, valid for every continuation:
         ``lower``, ``upper``, ``verdict``, and ``decided_since``, the seconds from the first sample to the one that
         decided the verdict. The future may then be unbounded; time is discrete.
 

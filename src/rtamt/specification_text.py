@@ -97,7 +97,7 @@ class SpecificationText:
 
     @cached_property
     def requirements(self) -> Mapping[str, Self]:
-        """Every requirement by name, in the order of the text, each as a specification of its own.
+        """Every requirement by name, in the order of the text, each as a separate specification.
 
         The requirements are the formulas after ``require``; in a text without any, the formulas (not
         numbers) that no other one uses. One that has no name is ``requirement_2``, if it is the second.
@@ -119,7 +119,7 @@ class SpecificationText:
 
     @cached_property
     def warnings(self) -> tuple[LintWarning, ...]:
-        """Warnings about legal but probably unintended text, each with a code, a message and a position.
+        """Warnings about valid but probably unintended text, each with a code, a message and a position.
 
         >>> import rtamt
         >>> print(*rtamt.parse("prev(x) - x <= 3").warnings)
@@ -140,11 +140,11 @@ class SpecificationText:
     def with_parameters(self, /, **values: Any) -> Self:
         """Return the specification with these values of its parameters; the others keep theirs.
 
-        Neither the text is parsed nor the formula compiled again, unless a value bounds an interval. Names that are no
-        words go in a mapping: ``with_parameters(**{"battery.low": 3.5})``. A Boolean is set to True or False, a
+        The text is not parsed and the formula is not compiled again, unless a value bounds an interval. Pass names that
+        are not words in a mapping: ``with_parameters(**{"battery.low": 3.5})``. A Boolean is set to True or False, a
         parameter of an enumeration to a member: its name, its code, or a member of a Python ``enum`` of that name.
-        Raises :class:`UsageError` for names that are no parameters and values that are none of the type,
-        :class:`BoundError` for a bound that cannot be.
+        Raises :class:`UsageError` for names that are not parameters and values that do not have the type,
+        :class:`BoundError` for an impossible bound.
 
         >>> import rtamt
         >>> spec = rtamt.parse("input float x  parameter float limit = 4  always(x <= limit)")
@@ -239,12 +239,12 @@ class SpecificationText:
 
     @cached_property
     def input_names(self) -> tuple[str, ...]:
-        """The variables that the formula reads, of several requirements those of all, in order of appearance."""
+        """The variables that the formula (or any of several requirements) reads, in order of appearance."""
         return variables(self.formula)
 
     @cached_property
     def types(self) -> Mapping[str, ValueType]:
-        """The types of the variables that the formula reads, as far as they are Booleans or of an enumeration."""
+        """The types of those variables of the formula that are Booleans or enumerations."""
         return MappingProxyType(types_of(self.formula))
 
     @property

@@ -66,8 +66,8 @@ def parse(
     variable to ``"input"`` or ``"output"``, overriding the declarations of the text; without a role, a
     variable is an output.
 
-    ``folder``: where files are that the text imports, ``import "patterns.stl"``; without it, only those that
-    are part of the package can be imported.
+    ``folder``: the folder of the files that the text imports; without it, only files of the package
+    can be imported, such as ``import "patterns.stl"``.
 
     >>> import rtamt
     >>> spec = rtamt.parse("always((req >= 3) -> eventually[0:5](gnt >= 3))", roles={"req": "input"})

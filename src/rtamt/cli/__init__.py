@@ -14,13 +14,13 @@ arguments        specifications and recordings on the command line
 reading_options  options for reading recordings
 parameters       the option ``--set``
 language         the option ``--language``
-outcome          what came of a requirement over a recording, as reports show it
+outcome          the outcome of a requirement on a recording, as reports show it
 runner           every requirement on every recording, on all cores
 bag              check a bag, and write a copy with the results
 stdin_reader     JSON or CSV lines to samples
 json_lines       a line of JSON to numbers and timestamps
 early_feeds      verdicts and bounds before the horizon, as ``rtamt monitor`` prints them
-held_feed        streams whose variables come at any time, sampled by ``sample ... hold``
+held_feed        streams whose variables arrive at any time, sampled by ``sample ... hold``
 live_view        the live view of ``rtamt monitor``
 terminal         output, colours, tables, progress
 compiled         ``rtamt info`` for compiled programs

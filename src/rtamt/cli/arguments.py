@@ -1,4 +1,4 @@
-"""What the commands about many requirements and recordings are given."""
+"""Specifications and recordings on the command line."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 
 def variables_of(requirements: list[Requirement]) -> set[str]:
-    """Return what any of the requirements reads."""
+    """Return the variables that any of the requirements reads."""
     return {name for requirement in requirements for name in requirement.spec.input_names}
 
 
@@ -105,7 +105,7 @@ def _rows(spec: Specification, text: str, label: str, taken: Counter[str]) -> Re
 
 
 def each_requirement(given: list[Requirement]) -> list[Requirement]:
-    """Return every requirement of every specification: what has a row of its own."""
+    """Return every requirement of every specification: each has its own row."""
     return [row for requirement in given for row in requirement.rows or (requirement,)]
 
 

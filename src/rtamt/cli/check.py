@@ -1,4 +1,4 @@
-"""``rtamt check``: does each recording satisfy each requirement? The exit code serves a CI job."""
+"""``rtamt check``: evaluate every requirement on every recording; the exit code fails a CI job."""
 
 from __future__ import annotations
 

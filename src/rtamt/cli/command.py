@@ -48,7 +48,7 @@ _LIKE_A_PATH = re.compile(r"[\w.~:\\/-]*[\\/][\w.~:\\/-]*")
 
 
 class CommandError(StlError):
-    """A command cannot go on; the sentence is complete, file name and all."""
+    """A command cannot continue; the message is complete, including the file name."""
 
 
 def options(parser: argparse.ArgumentParser, title: str) -> argparse._ArgumentGroup:
@@ -124,7 +124,7 @@ def warn(found: Iterable[LintWarning], given: str) -> None:
 
 
 def add_verdict_option(parser: argparse.ArgumentParser) -> None:
-    """Add what a compiled program reports."""
+    """Add the choice of what a compiled program reports."""
     parser.add_argument(
         "--verdict",
         choices=("delayed", "interval"),

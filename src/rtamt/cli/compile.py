@@ -1,4 +1,4 @@
-"""``rtamt compile``: a requirement to a program that runs without Python."""
+"""``rtamt compile``: compile a requirement to a program that runs without Python."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""``rtamt completion``: what a shell needs to complete our command line, made from the arguments' own definitions."""
+"""``rtamt completion``: the completion script of a shell, generated from the definitions of the arguments."""
 
 from __future__ import annotations
 

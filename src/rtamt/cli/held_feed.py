@@ -1,4 +1,4 @@
-"""A stream whose variables come at any time, sampled as ``sample 100ms hold`` in the specification says."""
+"""A stream whose variables arrive at any time, sampled by the rule ``sample 100ms hold`` of the specification."""
 
 from __future__ import annotations
 

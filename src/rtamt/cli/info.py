@@ -1,4 +1,4 @@
-"""``rtamt info``: what a requirement, or a program of one, reads, how far it looks, what it becomes and costs."""
+"""``rtamt info``: the variables, horizon, pastified form, program and memory of a requirement."""
 
 from __future__ import annotations
 

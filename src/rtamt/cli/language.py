@@ -1,4 +1,4 @@
-"""The option ``--language``: operators of the user's own, from a Python module."""
+"""The option ``--language``: custom operators from a Python module."""
 
 from __future__ import annotations
 

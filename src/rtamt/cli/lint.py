@@ -1,4 +1,4 @@
-"""``rtamt lint``: are these specification files all right? For editors, hooks and CI jobs, without a recording."""
+"""``rtamt lint``: check specification files without a recording, for editors, hooks and CI jobs."""
 
 from __future__ import annotations
 

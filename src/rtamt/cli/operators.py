@@ -1,4 +1,4 @@
-"""``rtamt operators``: the language, as the operator table has it."""
+"""``rtamt operators``: list the operator table."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Print the operators asked for."""
+    """Print the selected operators."""
     language = read_language(args.language)
     tightest_first = sorted((*language, *QUANTIFIERS.values()), key=lambda op: -op.power)
     chosen = (

@@ -1,4 +1,4 @@
-"""What came of a requirement over a recording, as reports show it."""
+"""The outcome of a requirement on a recording, as reports show it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""``rtamt packs``: the packs of requirements that are part of the package, and the text of one."""
+"""``rtamt packs``: list the packs of requirements in the package, or print one."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the command line is made of before any command: its parser, its commands and its exit codes.
+"""The argument parser, the interface of a command, and the exit codes.
 
 It imports neither the library nor numpy, so that ``rtamt --help`` is quick.
 """

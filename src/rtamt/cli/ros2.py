@@ -1,4 +1,4 @@
-"""``rtamt ros2``: a specification file in, live robustness topics of ROS 2 out; needs no ROS."""
+"""``rtamt ros2``: monitor a specification on ROS 2 topics, without a ROS installation."""
 
 from __future__ import annotations
 

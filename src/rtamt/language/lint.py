@@ -1,4 +1,4 @@
-"""Warnings about legal but probably unintended specifications: a table of rules, each with a code to silence it."""
+"""Warnings about valid but probably unintended specifications: a table of rules, each with a code to silence it."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ class Rule:
 
 @dataclass(frozen=True, slots=True)
 class LintWarning:
-    """A legal but probably unintended part of a specification; ``str()`` shows the line and a caret.
+    """A valid but probably unintended part of a specification; ``str()`` shows the line and a caret.
 
     ``severity``: "warning"; "error" for what is certainly a mistake, "note" for what is not checked.
     """

@@ -39,34 +39,32 @@ def read(
     hold_for: Duration | None = None,
     recover: bool = False,
 ) -> Trace:
-    r"""Read a recording; ``Specification.evaluate`` and ``update_many`` take what comes out.
+    r"""Read a recording as a trace, for ``Specification.evaluate`` and ``update_many``.
 
     ``source``: a file, whose extension selects the format (CSV, Parquet, Arrow, Excel, PX4 ULog, MDF, ROS bag); the
     address of a database (``sqlite:///log.db``, ``postgresql://user@host/name``), with a ``query`` whose
     rows are samples; a dict, a pandas, polars, xarray or arrow object, or a structured numpy array.
-    ``columns``: the signals that are wanted (default: all that are numbers). ``names``: for signals that
-    are to be called otherwise than their columns, from the name to the column:
-    ``{"v": "battery_status[1].voltage_v"}``. ``time``: the column of timestamps, ``""`` for none; by
-    default the one called time, t, timestamp, stamp or datetime, perhaps with a unit (``Time [ms]``,
-    ``time_ms``), else the one column of dates. ``time_unit``: of stamps that are numbers (``"s"``, ``"ms"``,
-    ``"us"``, ``"ns"``); by default that of their column, else seconds; numbers that are too large
-    for seconds are an error. ``units``: from column to unit, where the source does not have it.
-    ``sheet``: of an Excel workbook that
-    has several. ``recover``: read an MCAP file that was cut off or is damaged up to the damage, an
-    error otherwise; flight logs are always read that far.
+    ``columns``: the signals to read (default: all numeric ones). ``names``: other names for columns, as a mapping from
+    the name to the column: ``{"v": "battery_status[1].voltage_v"}``. ``time``: the column of timestamps, ``""`` for
+    none; by default the column called time, t, timestamp, stamp or datetime, with an optional unit (``Time [ms]``,
+    ``time_ms``), else the only column of dates. ``time_unit``: the unit of numeric timestamps (``"s"``, ``"ms"``,
+    ``"us"``, ``"ns"``); by default the unit of their column, else seconds; numbers that are too large
+    for seconds are an error. ``units``: from column to unit, if the source does not contain it.
+    ``sheet``: the sheet of an Excel workbook with several sheets. ``recover``: read a truncated or damaged MCAP file
+    up to the damage instead of raising an error; flight logs are always read that far.
 
-    A value that is missing (an empty cell, null, pandas' NaN) is no sample: the signal then has
-    its own time base. Any other NaN stays, and an evaluation that reads it is an error; for the signals
-    in ``skip_nan`` it is a missing value, too. ``types``: those of a specification (``spec.types``), so that text
-    columns, and the value tables of MDF and ROS, are read as the codes of its enumerations. ``hold_for``: how long,
-    in seconds or as text such as ``"500ms"``, the value before may take the place of samples that are missing; one
-    that is missing for longer is an error.
+    A missing value (an empty cell, null, pandas' NaN) is not a sample: the signal then has
+    its own time base. Any other NaN is kept, and an evaluation that reads it raises an error; for the signals
+    in ``skip_nan`` it counts as missing, too. ``types``: the types of a specification (``spec.types``); text
+    columns, and the value tables of MDF and ROS, are then read as the codes of its enumerations. ``hold_for``: how
+    long, in seconds or as text such as ``"500ms"``, the previous value may replace missing samples; a longer gap is
+    an error.
 
-    What was guessed or left out is in ``Trace.notes``, and printed with it; what a
-    verdict has to do without is in ``Trace.losses``, too.
+    ``Trace.notes`` lists what was inferred or left out, and is printed with the trace; ``Trace.losses`` lists
+    missing data.
 
-    Raises :class:`TraceError` where the data is wrong or columns are ambiguous, and
-    :class:`UsageError` where a library is missing: ``pip install 'rtamt[data]'``.
+    Raises :class:`TraceError` if the data is invalid or columns are ambiguous, and
+    :class:`UsageError` if a library is missing: ``pip install 'rtamt[data]'``.
 
     >>> import pathlib, tempfile
     >>> import rtamt
@@ -102,11 +100,11 @@ def scan(
     types: Types = NO_TYPES,
     hold_for: Duration | None = None,
 ) -> Iterator[Trace]:
-    r"""Read a recording in chunks, in memory that does not grow with its length; arguments as for :func:`read`.
+    r"""Read a recording in chunks, with memory use independent of its length; arguments as for :func:`read`.
 
     For :func:`rtamt.check_stream` and ``update_many``. CSV, Parquet, Arrow and Excel files and SQL queries
-    can be read in chunks; what is inferred from the timestamps of the first chunk holds for all. Give
-    ``columns=spec.input_names``, so that only what a formula reads is read.
+    can be read in chunks; what is inferred from the timestamps of the first chunk applies to all. Pass
+    ``columns=spec.input_names`` to read only the columns of a formula.
 
     >>> import pathlib, tempfile
     >>> import rtamt

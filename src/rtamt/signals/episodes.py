@@ -28,7 +28,7 @@ def plain_times(times: NDArray[Any]) -> list[Any]:
 class Episode:
     """A maximal run of violation: its ``begin`` and ``end``, and the ``worst`` robustness, first reached ``at``.
 
-    In discrete time ``end`` is the last sample of the run; in dense time the run extends up to, and without, ``end``,
+    In discrete time ``end`` is the last sample of the run; in dense time the run extends up to but excluding ``end``,
     unless the signal ends there.
 
     >>> from rtamt import Episode

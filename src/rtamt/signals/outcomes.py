@@ -47,7 +47,7 @@ class Verdict:
 
 @dataclass(frozen=True, slots=True)
 class VerdictRun:
-    """The verdict of dense time at every instant from ``begin`` up to, and without, ``end``.
+    """The verdict in dense time at every instant from ``begin`` up to but excluding ``end``.
 
     ``decided_at`` is the time of the earliest sample that decides all of the run. A sample decides the
     tick of its own time too, so that runs end one tick after the newest sample where later instants are open.
@@ -82,7 +82,8 @@ class Causation:
     """By how much the newest sample alone violates and satisfies a formula (CAV 2023).
 
     In dense time that is all that the last call made known. ``violation``: the robustness would be at most this because
-    of the sample; +inf if it has no part. ``satisfaction``: it would be at least this; -inf if it has no part.
+    of the sample; +inf if the sample does not contribute. ``satisfaction``: it would be at least this; -inf if the
+    sample does not contribute.
 
     >>> from rtamt import Causation
     >>> Causation(violation=-2.0, satisfaction=-2.0)
@@ -95,7 +96,7 @@ class Causation:
 
 @dataclass(frozen=True, slots=True)
 class CausationRun:
-    """Causation in dense time at every instant from ``begin`` up to, and without, ``end``; None: for ever.
+    """Causation in dense time at every instant from ``begin`` up to but excluding ``end``; None: unbounded.
 
     >>> from rtamt import CausationRun
     >>> CausationRun(0.0, 2.5, violation=-2.0, satisfaction=-2.0)

@@ -42,7 +42,7 @@ class Channel:
 
     ``times``: n strictly increasing timestamps, float64 seconds, or, where a double cannot hold them,
     timedelta64[ns], or datetime64[ns]; None where the source has none. ``values``: n numbers, float64.
-    ``unit``: of the values, as the source writes it. ``column``: what the source calls the signal.
+    ``unit``: the unit of the values, as the source writes it. ``column``: the name of the signal in the source.
     ``first_gap``: the first sample of the source at which the signal has no value, so that its times are fewer
     than those of its table; None where it has all.
     """
@@ -106,7 +106,7 @@ class Trace(Clocked):
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """What was guessed, left out or converted, one sentence each, including :attr:`remarks`."""
+        """What was inferred, left out or converted, one sentence each, including :attr:`remarks`."""
         return (*self._notes, *self.remarks)
 
     @property
@@ -194,7 +194,7 @@ class Trace(Clocked):
         return self.with_channels(renamed)
 
     def select(self, names: Collection[str]) -> Trace:
-        """Return the trace with some of its signals alone, in its own order.
+        """Return the trace with only some of its signals, in its own order.
 
         >>> import rtamt
         >>> rtamt.read({"x": [1, 2], "y": [3, 4]}).select(["y"]).names
@@ -305,7 +305,7 @@ class Trace(Clocked):
         ``how``: ``"hold"``, the last value before or at an instant (what dense time means; up to the
         latest last sample), or ``"linear"``, on the line between the two samples around it (up to the
         earliest last sample). ``period``: seconds, or text such as ``"10ms"``. Samples in between are
-        left out and listed in :attr:`losses`. ``hold_for``: how old a value that is held may be; an older one is an
+        left out and listed in :attr:`losses`. ``hold_for``: the maximum age of a held value; an older one is an
         error.
 
         >>> import rtamt

@@ -1,4 +1,4 @@
-"""Checking a recording that comes in chunks no further than its verdicts need, in dense time."""
+"""Check a recording in chunks, only as far as its verdicts need, in dense time."""
 
 from __future__ import annotations
 

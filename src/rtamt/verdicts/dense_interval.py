@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 
 class DenseIntervalMonitor(DenseEarlyMonitor, IntervalMonitor, EarlyMonitorBase):
-    """Bounds of the robustness in dense time, from whatever is known of the signals by now.
+    """Bounds of the robustness in dense time from the samples so far.
 
     Built by ``Specification.monitor(verdict="interval", time="dense")``. A sample holds up to the next one of its
     variable; without a ``lateness``, each variable has its samples in order.

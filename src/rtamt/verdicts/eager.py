@@ -55,7 +55,7 @@ class EagerMonitor(DiscreteEarlyMonitor, EarlyMonitorBase):
         return found
 
     def explain(self, verdict: Verdict) -> list[Cause]:
-        """Return the values that decide a verdict of the formula, and none that could be left out.
+        """Return a minimal set of values that decides a verdict of the formula.
 
         They decide it whatever all other values are, and the last of them came at ``verdict.decided_at``. For monitors
         made with ``explain=True``, which remember samples, and take each some microseconds slower. A verdict

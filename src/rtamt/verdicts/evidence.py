@@ -1,4 +1,4 @@
-"""Which samples decided a verdict: the smallest part of what came by then that decides it alone."""
+"""Which samples decided a verdict: a minimal set of the samples so far that decides it alone."""
 
 from __future__ import annotations
 

@@ -46,7 +46,7 @@ class Change(NamedTuple):
 
 
 class IntervalMonitor(EarlyMonitor):
-    """Bounds of the robustness, from whatever is known of the signals by now.
+    """Bounds of the robustness from the samples so far.
 
     Built by ``Specification.monitor(verdict="interval")``.
 
@@ -206,7 +206,7 @@ class IntervalMonitor(EarlyMonitor):
 
     @exclusive
     def watermark(self, time: Any) -> None:
-        """Declare that no sample at or before a time will come.
+        """Declare that no sample at or before a time will arrive.
 
         In discrete time what is missing up to it stays unknown; in dense time every variable holds its value.
         """
@@ -214,7 +214,7 @@ class IntervalMonitor(EarlyMonitor):
 
     @exclusive
     def advance(self, now: Any) -> None:
-        """Set the current time: samples older than the lateness will not come."""
+        """Set the current time: samples older than the lateness will not arrive."""
         self._mark_at(now, late=True)
 
     @abstractmethod

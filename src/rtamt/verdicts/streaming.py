@@ -1,4 +1,4 @@
-"""Checking a recording that comes in chunks, in memory that does not grow with its length."""
+"""Check a recording in chunks, with memory use independent of its length."""
 
 from __future__ import annotations
 
@@ -51,13 +51,13 @@ def check_stream(
     semantics: Semantics | None = None,
     time_unit: str | None = None,
 ) -> StreamResult:
-    """Check a recording that comes in chunks, in memory that does not grow with its length.
+    """Check a recording in chunks, with memory use independent of its length.
 
-    ``chunks``: what ``update_many`` takes, such as the traces of :func:`rtamt.scan`.
+    ``chunks``: the input of ``update_many``, such as the traces of :func:`rtamt.scan`.
 
-    Other arguments are as for ``Specification.evaluate``, which gives the same numbers; without a ``period``
-    it is taken from the stamps of the first chunk. The formula's future must be bounded, but for ``always``
-    and ``eventually`` at its top. Raises :class:`BoundError` where it is not, else as ``evaluate`` does.
+    The other arguments and the numbers are those of ``Specification.evaluate``; by default, the period is
+    inferred from the timestamps of the first chunk. The future of the formula must be bounded, except for ``always``
+    and ``eventually`` at its top. Raises :class:`BoundError` if it is not, and the errors of ``evaluate``.
 
     >>> import rtamt
     >>> chunks = ({"time": [t, t + 1], "x": [5, 4 - t]} for t in (0, 2, 4))
@@ -217,7 +217,7 @@ class DiscreteStream(Stream):
 
 
 class DenseStream(Stream):
-    """Chunks in which each variable has timestamps of its own."""
+    """Chunks in which each variable has its own timestamps."""
 
     def __init__(
         self, spec: Specification, semantics: Semantics | None, unit: str | None, domain: Dense

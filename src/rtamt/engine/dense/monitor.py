@@ -208,7 +208,7 @@ class DenseMonitor(DenseMonitorBase, OnlineMonitor):
             tracker.take(zip(ticks.tolist(), values.tolist(), strict=True))
 
     def episodes(self, name: str | Formula | None = None) -> list[Episode]:
-        """See :meth:`OnlineMonitor.episodes`; an episode extends up to, and without, its end."""
+        """See :meth:`OnlineMonitor.episodes`; the end of an episode is excluded."""
         found = super().episodes(name)
         if not found:
             return []
