@@ -19,7 +19,7 @@ NAMES = ("system", *COMPONENTS)
 class Monitors:
     """Takes the signals sample by sample; ``robustness`` holds a list for each specification.
 
-    Bounded future is pastified: the value at t speaks of the instant one horizon ago. None till then.
+    Bounded future is pastified: the value at t refers to the instant one horizon ago. None till then.
     """
 
     def __init__(self) -> None:

@@ -1,4 +1,4 @@
-"""What a specification reads of recordings: recorded names and units of its variables, and what may be missing."""
+"""The recorded names and units of the variables of a specification, and the variables that may be missing."""
 
 from __future__ import annotations
 

@@ -139,8 +139,8 @@ def test_messages(run, args, message):
 @pytest.mark.parametrize(
     ("stdin", "message"),
     [
-        ("", "stdin has no samples: give one JSON object a line, or CSV with a header row"),
-        ("time,x\n", "stdin has no samples: give one JSON object a line, or CSV with a header row"),
+        ("", "stdin has no samples: give one JSON object per line, or CSV with a header row"),
+        ("time,x\n", "stdin has no samples: give one JSON object per line, or CSV with a header row"),
         (
             '[1, 2]\n{"x": 1}\n',
             'stdin, line 1: expected a JSON object, such as {"time": 0, "x": 1}, '

@@ -152,7 +152,7 @@ class Audience(rospy.SubscribeListener):
 
 
 class Registration(threading.Thread):
-    """Tells a master that was restarted what this node subscribes and publishes: rospy itself does not."""
+    """Registers the topics of this node with a restarted master, which rospy itself does not."""
 
     def __init__(self):
         super().__init__(daemon=True)
@@ -170,7 +170,7 @@ class Registration(threading.Thread):
                     self.register(master)
 
     def known(self, master):
-        """Tell whether the master has this node."""
+        """Return whether the node is registered with the master."""
         try:
             return master.lookupNode(self.name_of_node) == self.uri
         except rosgraph.MasterError:

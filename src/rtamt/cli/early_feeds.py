@@ -136,7 +136,7 @@ class StartFeed:
 
 
 class IntervalFeed:
-    """Prints the bounds of every instant whenever they change; what is drawn live is as for :class:`StartFeed`."""
+    """Prints the bounds of every instant whenever they change; the live view is that of :class:`StartFeed`."""
 
     def __init__(self, monitor: IntervalMonitor, live: Live | None = None) -> None:
         self.monitor = monitor
@@ -189,7 +189,7 @@ class IntervalFeed:
 
 
 class CausationFeed:
-    """Prints what each sample alone makes of the formula at the start of the trace."""
+    """Prints the causation of each sample at the start of the trace."""
 
     def __init__(self, monitor: CausationMonitor | DenseCausationMonitor) -> None:
         self.monitor = monitor

@@ -192,7 +192,7 @@ def _follow(watched: Feed, samples: Samples, live: Live | None, *, keep_going: b
                 return code
     problem = watched.finish() if isinstance(watched, HeldFeed) else ""
     if not watched.monitor.samples and not problem:
-        raise CommandError(f"{STDIN} has no samples: give one JSON object a line, or CSV with a header row")
+        raise CommandError(f"{STDIN} has no samples: give one JSON object per line, or CSV with a header row")
     if problem:
         complain(problem)
         return ERROR
@@ -241,7 +241,7 @@ def _live(spec: Specification) -> Live:
 
 @dataclass(frozen=True, slots=True)
 class Output:
-    """Prints what became known, a JSON object a line; with ``verdicts`` whether the formula holds, too.
+    """Prints new results, one JSON object per line; with ``verdicts`` also whether the formula holds.
 
     What is drawn live replaces it on a terminal, and goes beside it into a pipe or a file.
     """

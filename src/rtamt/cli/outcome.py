@@ -35,7 +35,7 @@ CODES = {"satisfied": OK, "violated": VIOLATED, "unchecked": OK, "error": ERROR}
 
 @dataclass(frozen=True, slots=True)
 class Requirement:
-    """A specification, the file or text that it was given as, and what reports call it.
+    """A specification, its file or text on the command line, and its name in reports.
 
     ``rows``: where there are several requirements in it, each alone.
     """

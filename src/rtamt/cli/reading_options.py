@@ -1,4 +1,4 @@
-"""How commands read recordings: one set of options for all of them, and what is read for a requirement."""
+"""How commands read recordings: their common options, and the recording of a requirement."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ class Reading:
     resample: str | None = None
     how: str = "hold"
     recover: bool = False
-    #: Never in chunks: somebody wants the whole signal.
+    #: Never in chunks: the whole signal is needed.
     whole: bool = False
     #: No further than the verdicts need.
     early: bool = False

@@ -382,7 +382,7 @@ def _outcome(requirement: Requirement, trace: str, result: Result, data: Trace, 
 
 
 class _Chunks:
-    """Chunks, and what has to be known of them: whether their stamps are dates, how many samples there were."""
+    """Chunks, whether their timestamps are dates, and the number of samples so far."""
 
     def __init__(self, spec: Specification, chunks: Iterator[Trace], *, bound: bool = False) -> None:
         self._chunks = chunks if bound else map(spec.binding.applied, chunks)

@@ -1,4 +1,4 @@
-"""What the commands share about terminals: what they print, colour, aligned tables, a counter line for long work."""
+"""Output of commands on terminals: text, colour, aligned tables, and the progress of long operations."""
 
 from __future__ import annotations
 

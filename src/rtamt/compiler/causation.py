@@ -1,4 +1,4 @@
-"""What causation asks of a graph: which of its nodes are parts of the formula (``core/early/causation.hpp``).
+"""The nodes of a graph that are parts of the formula, for causation (``core/early/causation.hpp``).
 
 The nodes of bounded until and since, which take several in the graph, are one part here.
 """
@@ -47,7 +47,7 @@ class Start(NamedTuple):
 
 
 class Causes(NamedTuple):
-    """The parts of formulas, the references of the formulas, and what is read at the start of the trace."""
+    """The parts of formulas, the references of the formulas, and the nodes read at the start of the trace."""
 
     parts: list[Cause]
     outputs: list[int]

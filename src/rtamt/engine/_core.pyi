@@ -266,7 +266,7 @@ class EarlyMonitor:
     def state_bytes(self) -> int: ...
 
 class DenseEarlyMonitor:
-    """The same in dense time. Times are ticks, and runs reach from ``begin`` up to, and without, ``end``.
+    """The same in dense time. Times are ticks, and runs reach from ``begin`` up to but excluding ``end``.
 
     ``lateness``: by how many ticks a sample may come late after the newest one of any input; None where those of each
     input come in order. ``verdicts``: verdicts, not bounds. ``causes`` as for EarlyMonitor. What stands for no

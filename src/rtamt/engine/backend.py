@@ -1,4 +1,4 @@
-"""The interface of a back end: what evaluates and monitors formulas in one time domain."""
+"""The interface of a back end, which evaluates and monitors formulas in one time domain."""
 
 from __future__ import annotations
 
@@ -78,7 +78,7 @@ class Session(ABC):
     refused: type[Exception] = RefusedError
     #: What it raises where an operation has no value, for :meth:`culprit`. The definition raises the final error.
     undefined: tuple[type[Exception], ...] = ()
-    #: Whether its monitors check whatever an update gives them, so that nobody has to do it before.
+    #: Whether its monitors check all data of an update, so that callers need not.
     checks: bool = False
 
     @abstractmethod
@@ -118,7 +118,7 @@ D = TypeVar("D", bound=Backend)
 
 
 class Compiled(Backend):
-    """A back end that is the compiled core; ``definition`` serves what the core can only call."""
+    """The compiled core as a back end; ``definition`` evaluates what the core can only call."""
 
     compiled = True
 

@@ -99,7 +99,7 @@ class OnlineMonitor:
         self._factory = factory
         self._usage = UsageGuard()  # serialises operations of several steps
         self._finished = False
-        #: What collects the episodes of each formula; None where nobody asked for them.
+        #: The collectors of episodes of each formula; None if episodes are not recorded.
         self._episodes: list[EpisodeTracker] | None = None
 
     def bind(self, binding: Binding) -> None:

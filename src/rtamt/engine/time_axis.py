@@ -1,4 +1,4 @@
-"""A recording in cells: formulas over it and over stand-ins for predicates, and times back and forth."""
+"""A recording divided into cells: evaluates formulas on it, and converts times to cells and back."""
 
 from __future__ import annotations
 

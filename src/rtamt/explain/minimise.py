@@ -35,7 +35,7 @@ class Interval:
 
 
 class Forcing:
-    """Tells where the verdict falls when the predicates are known on some intervals only."""
+    """Finds where the verdict is lost if the predicates are known only on some intervals."""
 
     def __init__(
         self, structure: Structure, demands: Demands, axis: TimeAxis, fixed: Mapping[str, StepFunction]

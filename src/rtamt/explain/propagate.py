@@ -41,7 +41,7 @@ class Asked:
 
 
 class Demands:
-    """What a verdict asks of every place of a formula.
+    """The truth values that a verdict requires at every place of a formula.
 
     ``leaves``: of each predicate and sign. ``choices``: the places below which something was chosen,
     with the cells at which each of them must have its truth for there to be the verdict.

@@ -304,7 +304,7 @@ class _Parts:
 
 
 class _Condition:
-    """A condition, and what its truth needs."""
+    """A condition, and the samples that its truth requires."""
 
     def __init__(self, condition: Formula, axis: TimeAxis, *, dense: bool) -> None:
         self._structure = Structure.of(condition, axis.period if dense else None)

@@ -22,7 +22,7 @@ SHORT = 5
 
 
 class Listed(Sequence[T], Generic[T]):
-    """A tuple whose elements are made when they are read: a long explanation has many, and prints few.
+    """A tuple whose elements are created on access: a long explanation has many, but prints few.
 
     >>> squares = Listed(10**9, lambda k: k * k)
     >>> squares[3], squares[-1], squares[:2] == (0, 1)

@@ -103,8 +103,8 @@ def _kind(type_: ValueType, start: float) -> str:
 
 #: Of a program of bounds: names, types, start values, units and descriptions of its outputs.
 _BOUNDS = (
-    ("lower", "real", -inf, "", "the robustness at the start is at least that, whatever is still to come"),
-    ("upper", "real", inf, "", "the robustness at the start is at most that, whatever is still to come"),
+    ("lower", "real", -inf, "", "lower bound of the robustness at the start, valid for every continuation"),
+    ("upper", "real", inf, "", "upper bound of the robustness at the start, valid for every continuation"),
     ("verdict", "integer", 0.0, "", "1 satisfied, -1 violated at the start; 0 while that is open"),
     (
         "decided_since",

@@ -1,4 +1,4 @@
-"""Parse what stands before the formulas of a specification file: header, declarations, annotations."""
+"""Parse the part of a specification file before its formulas: header, declarations, annotations."""
 
 from __future__ import annotations
 

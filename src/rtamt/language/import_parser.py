@@ -1,4 +1,4 @@
-"""Parse the imports of a specification file: classes of messages, and other files with what they declare."""
+"""Parse the imports of a specification file: classes of messages, and the declarations of other files."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 
 class ImportParser(RequirementParser):
-    """The grammar productions of imports, in addition to those of a requirement, and what is declared so far."""
+    """The grammar productions of imports, in addition to those of a requirement, and the declarations so far."""
 
     def __init__(
         self,

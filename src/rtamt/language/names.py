@@ -1,4 +1,4 @@
-"""Names in a text of formulas: the tokens, a position in them, and what a name there stands for."""
+"""Names in a text of formulas: the tokens, a position in them, and the meaning of a name there."""
 
 from __future__ import annotations
 

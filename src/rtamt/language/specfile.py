@@ -192,7 +192,7 @@ class _DocumentParser(DeclarationParser):
         return tuple(found)
 
     def _check_imported(self, assertions: tuple[Assertion, ...], names: tuple[str, ...]) -> None:
-        """Reject what imported formulas read and nobody declares, where names must be declared."""
+        """Reject undeclared names in imported formulas, where names must be declared."""
         scope = Scope(variables=names)
         if not names or not self.origins:
             return

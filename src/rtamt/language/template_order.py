@@ -1,4 +1,4 @@
-"""Templates that a text defines further down, and cycles among them: errors of uses that come too early."""
+"""Errors of templates that are used before their definition, and of cycles among templates."""
 
 from __future__ import annotations
 

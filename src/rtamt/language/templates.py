@@ -41,7 +41,7 @@ _LEAST, _GREATEST = Fraction(0), Fraction(10) ** 9
 
 
 class Argument(NamedTuple):
-    """What a parameter stands for: a formula, or a duration of ``length`` units.
+    """The argument of a parameter: a formula, or a duration of ``length`` units.
 
     ``unknown``: while the template is defined, a parameter stands for any formula or duration.
     """
@@ -53,7 +53,7 @@ class Argument(NamedTuple):
 
 
 class Parameter(NamedTuple):
-    """A parameter of a template, and what it stands for where a use does not give it."""
+    """A parameter of a template, and its default."""
 
     name: str
     default: Argument | None
@@ -61,7 +61,7 @@ class Parameter(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Template:
-    """A template: its parameters, the tokens of its formula, and what other names in them mean."""
+    """A template: its parameters, the tokens of its formula, and the meaning of other names in them."""
 
     name: str
     parameters: tuple[Parameter, ...]

@@ -1,4 +1,4 @@
-"""What Booleans and enumerations may stand in, and what an operator makes of them.
+"""Where Booleans and enumerations are allowed, and the results of operators on them.
 
 Numbers and formulas have no type here (None): an operator takes one for the other, as its definition says.
 """

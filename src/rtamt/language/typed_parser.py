@@ -1,4 +1,4 @@
-"""Booleans and enumerations in formulas: their members by name, what operators make of them, ``x in {...}``."""
+"""Booleans and enumerations in formulas: members by name, operators on them, ``x in {...}``."""
 
 from __future__ import annotations
 

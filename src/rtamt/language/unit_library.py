@@ -1,4 +1,4 @@
-"""Physical units by pint, with exact factors: what a text means as a unit, and what a product of units amounts to.
+"""Physical units by pint, with exact factors: parse units, and compute products of units.
 
 Angles are base units here, as in pint: radians have no dimension, but one rpm is 6 deg/s and no number of hertz.
 """

@@ -46,7 +46,7 @@ def _apart(values: Sequence[float], distance: float) -> list[float]:
 
 
 class Edges:
-    """The vertical axis: finite values in the middle, infinities at the edges, where there are any."""
+    """The vertical axis: finite values in the middle, infinities at the edges, if there are any."""
 
     def __init__(self, axis: Any, finite: FloatArray, lines: Sequence[Line]) -> None:
         low, high = (float(finite.min()), float(finite.max())) if len(finite) else (0.0, 0.0)

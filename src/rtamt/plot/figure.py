@@ -349,7 +349,7 @@ class _Drawing:
         self._marks.setdefault("critical point", mark)
 
     def _visible(self, stretches: Sequence[tuple[float, float]]) -> list[tuple[float, float]]:
-        """Return stretches joined where nobody could see what is between them, and wide enough to be seen."""
+        """Return stretches wide enough to be visible, joined where the gap between them is not."""
         pixel = (self._limits[1] - self._limits[0]) / 1000
         low, high = self._limits
         found: list[tuple[float, float]] = []

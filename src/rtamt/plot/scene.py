@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 #: Sub-formulas that are shown at most; of a larger formula those next to its top.
 _MOST = 200
 
-#: Readings of a cause that are drawn one by one; of more, which the eye cannot tell apart, the interval of the cause.
+#: Readings of a cause that are drawn one by one; more would be indistinguishable, so their interval is drawn.
 _READINGS = 1000
 
 _PLACES = "φψχ"

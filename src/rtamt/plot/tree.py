@@ -20,7 +20,7 @@ _TOP = 0.95  # inches
 
 
 class _Box:
-    """A node where it stands in the tree: a shared sub-formula stands in several places."""
+    """A node at its position in the tree: a shared sub-formula has several positions."""
 
     def __init__(self, node: Node, scene: Scene) -> None:
         self.node = node

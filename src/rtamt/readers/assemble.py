@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Choice:
-    """What the caller asks for; see :func:`rtamt.read`."""
+    """The caller's selection; see :func:`rtamt.read`."""
 
     time: str | None = None
     columns: tuple[str, ...] | None = None
@@ -208,7 +208,7 @@ def _has_clock_called_otherwise(source: Source, choice: Choice) -> bool:
 
 
 class _Columns:
-    """Columns by what the source calls them, else by their names in formulas."""
+    """Columns by their names in the source, else by their names in formulas."""
 
     def __init__(self, source: Source, everything: Sequence[tuple[Table, Field]]) -> None:
         self._source = source

@@ -30,7 +30,7 @@ _PLAIN = b"0123456789+-.eE\r\n"
 
 
 class Block(NamedTuple):
-    """Rows of plain numbers: their columns, and where the file goes on behind them."""
+    """Rows of plain numbers: their columns, and the position in the file after them."""
 
     columns: list[FloatArray]
     lines: int

@@ -1,4 +1,4 @@
-"""CSV files as a source of signals; ``csv.py`` reads what is in them."""
+"""CSV files as a source of signals; ``csv.py`` reads their content."""
 
 from __future__ import annotations
 

@@ -32,7 +32,7 @@ _DAY = 24 * 60
 
 
 class DateError(ValueError):
-    """A value of a column of dates is none; ``index`` is its place, the message what is wrong with it."""
+    """A value in a column of dates is not a date; ``index`` is its position, the message the reason."""
 
     def __init__(self, index: int, problem: str) -> None:
         super().__init__(problem)

@@ -1,4 +1,4 @@
-"""THE LIST of file formats: a row for each kind of file, and what opens it."""
+"""THE LIST of file formats: a row for each kind of file, with the function that opens it."""
 
 from __future__ import annotations
 

@@ -41,7 +41,7 @@ def field_of(column: str, kind: str = "") -> Field:
 
 
 def kind_of(raw: Raw) -> str:
-    """Tell what a column holds; of objects and texts, whether the first that is not missing is a date."""
+    """Return the kind of a column; for objects and texts, whether the first that is not missing is a date."""
     if raw.dtype.kind in "OUS":
         first = next((value for value in raw if value is not None and value is not np.ma.masked), None)
         return "time" if is_date(first) else "" if raw.dtype.kind == "O" else "text"
@@ -101,7 +101,7 @@ def _dict(data: Mapping[Any, Any]) -> Source:
             columns = {TIME: _array(times, TIME), str(name): _array(values, str(name))}
             shared = table_of(columns, TIME)
             assert shared.clock is not None
-            # Each has a column of stamps of its own, which nobody asks for by its name.
+            # Each has its own column of timestamps, which no caller selects by name.
             tables.append(Table(shared.fields[1:], shared.load, clock=shared.clock))
         return Source("a dict", tuple(tables))
     return Source("a dict", (table_of({str(k): _array(v, str(k)) for k, v in data.items()}),))

@@ -28,7 +28,7 @@ _DENSEST = 1032
 #: Types of channels of MDF 4 that have no bytes in the records: virtual masters and data.
 _VIRTUAL = (3, 6)
 _VARIABLE_LENGTH = 1
-#: The flag of a channel of MDF 4 that has a bit of its own in each record, which marks invalid samples.
+#: The flag of an MDF 4 channel with a bit in each record that marks invalid samples.
 _HAS_FLAG = 2
 #: Types of data that are no numbers: texts, bytes, MIME, dates as bytes. Their lengths lie anywhere in the file.
 _NO_NUMBERS = range(6, 15)

@@ -1,4 +1,4 @@
-"""``rtamt.read``: one way to read a recording, whatever it is kept in."""
+"""``rtamt.read`` and ``rtamt.scan``: one interface for recordings in every format."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What every reader makes of its file, whatever the format.
+"""The interface of all readers, independent of the format.
 
 ::
 

@@ -1,4 +1,4 @@
-"""Which column holds the timestamps, in what unit, and what its values are as times.
+"""The column of timestamps: its name, its unit, and its values as times.
 
 Files, frames, queries, chunks and streams all come here. What does not follow from the name of the
 column follows from its first timestamp, which every one of them has.

@@ -47,7 +47,7 @@ class StepBounds(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class DenseKnowledge:
-    """What is known of signals: the samples of every variable that have come, each with bounds of its value.
+    """The known part of signals: the samples of every variable so far, each with bounds of its value.
 
     ``ranges`` are the declared ones, which hold where nothing else is known; without one a variable may be
     anything. ``finished``: no more samples will come. ``closed``: of variables the tick up to which, inclusive,

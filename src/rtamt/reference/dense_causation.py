@@ -1,4 +1,4 @@
-"""The definition of causation in dense time: by how much what came last alone violates or satisfies a formula.
+"""The definition of causation in dense time: by how much the newest samples alone violate or satisfy a formula.
 
 As in discrete time (``causation.py``), on step functions. An event is what comes at once: samples of some variables, a
 watermark or the end of the trace. A predicate has its bounds where the event has made a variable of it known; one

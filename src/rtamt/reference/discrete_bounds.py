@@ -40,7 +40,7 @@ ANYTHING: Range = (-inf, inf)
 
 @dataclass(frozen=True, slots=True)
 class Knowledge:
-    """What is known of a trace: bounds of every variable at each of the ``n`` samples that have come.
+    """The known part of a trace: bounds of every variable at each of the ``n`` samples so far.
 
     ``ranges`` are the declared ones, which hold for all later samples; without one, a variable may be
     anything. ``finished``: no more samples will come. ``closed``: how many samples, from the first on,

@@ -1,4 +1,4 @@
-"""The definition of early verdicts: after each sample, what the samples so far decide for good.
+"""The definition of early verdicts: after each sample, the verdicts that the samples so far decide.
 
 A formula is decided at an instant as soon as its lower bound is positive or its upper bound negative, with
 predicates that are +inf where they hold and -inf where they do not. It is decided for every

@@ -1,4 +1,4 @@
-"""A scene as what JSON can hold; its arrays go to the store of the page."""
+"""A scene as JSON data; its arrays go to the store of the page."""
 
 from __future__ import annotations
 

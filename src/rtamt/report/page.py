@@ -37,7 +37,7 @@ _SCRIPTS = ("lines.js", "times.js", "chart.js", "card.js", "controls.js", "matri
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """What came of one requirement over one trace, as text; ``error`` instead of numbers where it failed."""
+    """The outcome of one requirement on one trace, as text; ``error`` instead of numbers if it failed."""
 
     requirement: str
     trace: str
@@ -60,7 +60,7 @@ class Formula:
 
 @dataclass(frozen=True, slots=True)
 class File:
-    """Something that the page is about: ``what`` it is, its name, and its content or facts about it."""
+    """A file of the page: its kind (``what``), its name, and its content or facts about it."""
 
     what: str
     name: str
@@ -78,7 +78,7 @@ class Line:
 
 @dataclass(slots=True)
 class Card:
-    """One row in full; ``number`` counts the cards as they are given."""
+    """One row in full; ``number`` counts the cards in the order in which they are added."""
 
     row: Row
     number: int
@@ -101,7 +101,7 @@ def templates() -> Any:
 
 
 class Page:
-    """A page, made row by row, so that no trace has to stay in memory."""
+    """A page, built row by row, so that no trace has to stay in memory."""
 
     def __init__(self, command: str, formulas: Mapping[str, Formula]) -> None:
         self._jinja = templates()

@@ -35,7 +35,7 @@ class Store:
         self._budget = self._left = budget
 
     def within(self, budget: int) -> Store:
-        """Return a store that puts arrays into the same page within a budget of its own."""
+        """Return a store that puts arrays into the same page within a separate budget."""
         other = Store(budget)
         other.blobs, other._numbers = self.blobs, self._numbers
         return other

@@ -1,4 +1,4 @@
-"""Quantifiers over members that come and go: one formula for any member, and an outer one that reads what they give.
+"""Quantifiers over members that come and go: one formula for any member, and an outer one that reads the results.
 
 A stream does not say which members there will be, so each quantifier becomes a formula over one member, in which its
 variable is the name of the member (``v.x``, ``valid(v)``), and a column of the outer formula: what the members give

@@ -1,4 +1,4 @@
-"""``valid(x)`` where samples may be missing: a Boolean channel for each variable that is asked about.
+"""``valid(x)`` where samples may be missing: a Boolean channel for each variable in a ``valid``.
 
 On complete data ``valid(x)`` is true. Where samples may be missing, it is replaced by a variable called ``valid(x)``
 that is 1 where x has a sample and 0 where it has none; recordings and monitors of partial knowledge provide it.

@@ -1,4 +1,4 @@
-"""Formulas as conditions: +inf where a formula holds and -inf where it does not, whatever the semantics.
+"""Formulas as conditions: +inf where a formula holds and -inf where it does not, under every semantics.
 
 A predicate is a comparison, or a number used as a formula, which holds where it is positive. Everything inside
 a predicate belongs to it. ``true`` and ``false`` are not predicates.

@@ -38,12 +38,12 @@ uint8 VIOLATED=2
 
 std_msgs/Header header
 string name        # of the requirement in its specification, such as rob.value
-float64 lower      # bounds of the robustness, whatever is still to come
+float64 lower      # bounds of the robustness, valid for every continuation
 float64 upper
 uint8 verdict
 int64 decided_at   # nanoseconds, as header.stamp: the sample that decided the verdict; 0 while it is open
 int64 begin        # nanoseconds: the first instant; of the start of the trace, that alone
-int64 end          # nanoseconds: the last sample; in dense time up to, and without, this instant
+int64 end          # nanoseconds: the last sample; in dense time this instant is excluded
 """,
     }
 )

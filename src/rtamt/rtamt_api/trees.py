@@ -1,4 +1,4 @@
-"""RTAMT's syntax trees, pastifiers and interpreters, as far as programs use them: ``spec.ast`` and what takes one.
+"""RTAMT's syntax trees, pastifiers and interpreters, as far as programs use them: ``spec.ast`` and its users.
 
 A tree here is the canonical text of a formula; what visits RTAMT's nodes has no counterpart.
 """

@@ -23,7 +23,7 @@ class Enough(Exception):  # noqa: N818 - not an error: it ends the optimizer
 
 
 class Runs(AbstractContextManager["Runs"]):
-    """Runs a problem at a sequence of points; ``made`` holds the evaluations in order.
+    """Runs a problem at a sequence of points; ``made`` contains the evaluations in order.
 
     ``stop``: end at the first violation. ``whole``: run every simulation to its end.
     """

@@ -57,7 +57,7 @@ Number: TypeAlias = float | Range
 
 
 class Input(Protocol):
-    """A signal built from numbers; those given as a :class:`Range` are its parameters."""
+    """A signal built from numbers; each :class:`Range` among them is a parameter."""
 
     def parameters(self) -> dict[str, Range]:
         """Return the ranges of the parameters by name."""

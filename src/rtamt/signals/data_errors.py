@@ -30,7 +30,7 @@ def unknown_variable(name: str, names: Collection[str]) -> TraceError:
 def missing_sample(name: str, index: int, source: str | None) -> TraceError:
     """Return the error for a variable without a value at a sample of discrete time: every reader raises this one.
 
-    ``source``: where the samples are from; None for a stream, whose samples can be resampled by nobody.
+    ``source``: where the samples are from; None for a stream, whose samples cannot be resampled.
     """
     where = f"sample {index}" if source is None else f"sample {index} of {source}"
     mend = (

@@ -104,7 +104,7 @@ DENSE = Dense()
 
 @dataclass(frozen=True, slots=True, eq=False)
 class DenseTrace(DomainTrace):
-    """A finished recording in dense time: for each variable its ticks and values, none of them empty."""
+    """A finished recording in dense time: the ticks and values of each variable, which has at least one."""
 
     columns: Mapping[str, Samples]
     scale: TimeScale

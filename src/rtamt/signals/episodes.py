@@ -67,7 +67,7 @@ class Episodes:
 
 
 class EpisodeTracker:
-    """Collects episodes from the values of one formula, which come in order of time.
+    """Collects episodes from the values of one formula, which arrive in order of time.
 
     ``continuous``: whether a value holds up to the next one. A robustness below 0 is a violation. ``few``: to count
     all of them, and to remember the first and the worst ones.
@@ -128,7 +128,7 @@ class EpisodeTracker:
 
 
 class WindowTracker:
-    """Collects episodes from signals that come in chunks, within a window [begin, end] of positions.
+    """Collects episodes from signals in chunks, within a window [begin, end] of positions.
 
     ``end``: None: as far as the signal extends. ``positions`` count periods or ticks from the first instant.
     """

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Interval:
-    """Bounds of a number: the robustness of every trace that agrees with what is known of the signals.
+    """Bounds of a number: the robustness of every trace that is consistent with the known samples.
 
     >>> from rtamt import Interval
     >>> Interval(-2.0, 3.0)
@@ -110,7 +110,7 @@ class CausationRun:
 
 
 class BoundedSignal(Signal):
-    """A signal given by bounds: ``times``, ``lower`` and ``upper``, arrays of the same length.
+    """Bounds of a signal: ``times``, ``lower`` and ``upper``, arrays of the same length.
 
     ``values`` are defined if the signal is known exactly, and raise :class:`EvaluationError` otherwise.
     """

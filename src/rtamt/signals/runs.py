@@ -1,4 +1,4 @@
-"""Runs of ticks: tuples (begin, end, ...) in order, each from ``begin`` up to, and without, ``end``."""
+"""Runs of ticks: tuples (begin, end, ...) in order, each from ``begin`` up to but excluding ``end``."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Samples of discrete time from signals whose samples come at any time: each variable has its latest value.
+"""Sample signals with arbitrary timestamps in discrete time: each variable has its latest value.
 
 Of a whole recording with :func:`sampled`, of a stream with :class:`HeldSampler`: the same samples.
 """
@@ -106,7 +106,7 @@ def _channel(name: str, times: Any, values: Any) -> Channel:
 
 
 class HeldSampler:
-    """Samples a stream: each is known once a later time has come, since other values may come at the same time.
+    """Samples a stream: each sample is known once a later time arrives, since values may share a time.
 
     ``names``: the variables; ``period``: in seconds; ``rule``: as for :func:`sampled`.
     """

@@ -1,4 +1,4 @@
-"""Requirements over the chunks of a recording: the formulas that a monitor computes, and what came of them."""
+"""Requirements over the chunks of a recording: the formulas that a monitor computes, and their results."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a formula's value at the first instant is made of: windows that begin there, joined pointwise.
+"""Split the value of a formula at the first instant into windows that begin there, joined pointwise.
 
 ``always φ`` at the first instant is the smallest value of φ from there on: a running minimum, whatever
 the length of the trace. So a formula whose only unbounded windows are at its top can be checked in

@@ -1,4 +1,4 @@
-"""Online in dense time: by how much what came last alone violates or satisfies a formula."""
+"""Online in dense time: by how much the newest samples alone violate or satisfy a formula."""
 
 from __future__ import annotations
 

@@ -130,7 +130,7 @@ class EarlyMonitor(OnlineMonitor):
     _late: int | None = None
     #: Whether samples may correct earlier ones.
     _replays = False
-    #: The samples that may decide a verdict; None if nobody asks for them.
+    #: The samples that may decide a verdict; None if they are not needed.
     _evidence: Evidence | None = None
 
     def _read_ranges(self, ranges: Mapping[str, Any]) -> dict[str, tuple[float, float]]:

@@ -1,4 +1,4 @@
-"""Online: bounds of the robustness, from whatever is known of the signals by now, in all time domains.
+"""Online: bounds of the robustness from the samples so far, in all time domains.
 
 Late samples and corrections are dealt with here; ``discrete_interval`` and ``dense_interval`` do the rest.
 """
@@ -34,7 +34,7 @@ CORRECTIONS = ("reject", "replay")
 class Change(NamedTuple):
     """The bounds that samples from ``begin`` to ``end`` have now, which changed; ``final`` if they stay.
 
-    In dense time: instants from ``begin`` up to, and without, ``end``. ``retracted``: whether the bounds are
+    In dense time: instants from ``begin`` up to but excluding ``end``. ``retracted``: whether the bounds are
     outside what they were, after a correction.
     """
 

@@ -34,7 +34,7 @@ class Findings(NamedTuple):
     """What one requirement has over its trace.
 
     ``violations``: when it is first violated (see :func:`first_violation`), in the times of the trace; empty
-    where nobody asked, or where an operation of the truth has no value.
+    where it was not requested, or where an operation of the truth has no value.
     """
 
     trace: DomainTrace

@@ -98,7 +98,7 @@ CLOSED = b"rtamt: stdout is closed, so that nobody would see the output; use > /
         ("rtamt --help >&-", 2, CLOSED),
         (f"rtamt check {SPEC} {TRACES[0]} <&-", 0, b""),
         ("rtamt monitor 'x >= 0' <&-", 2,
-         b"rtamt: stdin is closed: give one JSON object a line, or CSV with a header row\n"),
+         b"rtamt: stdin is closed: give one JSON object per line, or CSV with a header row\n"),
         (f"rtamt check {SPEC} {TRACES[3]} 2>&-", 1, b""),
         (f"rtamt check {SPEC} {TRACES[0]} >&- 2>&- <&-", 2, b""),
         (f"rtamt check {SPEC} {TRACES[0]} > /dev/full", 2,

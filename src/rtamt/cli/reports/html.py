@@ -33,9 +33,9 @@ _SAMPLES = 8192
 
 
 class HtmlReport:
-    """A page that is made outcome by outcome, recording by recording.
+    """A page, built outcome by outcome, recording by recording.
 
-    ``given``: the specifications, ``requirements`` what has a row of its own; ``traces`` and ``reading``: the
+    ``given``: the specifications, ``requirements`` those with their own row; ``traces`` and ``reading``: the
     recordings and how they are read; ``at``: the time that is explained, by default the first of each trace. Raises
     :class:`UsageError` where jinja2 is not installed.
     """

@@ -90,7 +90,7 @@ def parts_of(
 
 
 class UndefinedInPartError(Exception):
-    """An operation of a part has no value; the cause is what its program raised."""
+    """An operation of a part is undefined; the cause is the error of its program."""
 
     def __init__(self, part: Part, error: Exception) -> None:
         super().__init__(*error.args)

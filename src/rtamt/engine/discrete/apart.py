@@ -6,7 +6,7 @@ from typing import Any
 
 
 class Apart:
-    """Passes everything on to a back end, but is none of the core's."""
+    """Delegates everything to a back end, but is not one of the core's."""
 
     def __init__(self, inner: Any) -> None:
         self.inner = inner

@@ -29,7 +29,7 @@ _AT_ONCE = 1000
 
 @dataclass(frozen=True, slots=True)
 class Quality:
-    """Quality of service of topics: what rclpy calls reliability, durability and depth."""
+    """Quality of service of topics: reliability, durability and depth, as in rclpy."""
 
     reliability: str = "reliable"
     durability: str = "volatile"
