@@ -114,7 +114,7 @@ def check_constants(constants: Mapping[str, float]) -> None:
 
 
 def assignments(texts: Iterable[str]) -> dict[str, float | str]:
-    """Return the values of parameters that are given as texts; what is no number is kept for :func:`parameter_value`.
+    """Return parameter values from texts; texts that are not numbers are kept for :func:`parameter_value`.
 
     >>> assignments(["limit=3", "battery.low = 3.5", "strict=true", "start=AUTO"])
     {'limit': 3.0, 'battery.low': 3.5, 'strict': True, 'start': 'AUTO'}
@@ -145,7 +145,7 @@ def require_parameters(names: Iterable[str], known: Collection[str]) -> None:
 
 
 def parameter_value(name: str, given: Any, type_: ValueType | None) -> float:
-    """Return the value of a parameter as a number; raise :class:`UsageError` for what is none of its type.
+    """Return the value of a parameter as a number; raise :class:`UsageError` for a value of another type.
 
     >>> mode = Enumeration("Mode", (("MANUAL", 0), ("AUTO", 4)))
     >>> parameter_value("start", "AUTO", mode), parameter_value("strict", True, BOOLEAN)

@@ -229,7 +229,7 @@ class SpecificationText:
 
     @property
     def text(self) -> str:
-        """The text as it was given."""
+        """The text from which the specification was parsed."""
         return self.document.text
 
     @property

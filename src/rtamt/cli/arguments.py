@@ -32,7 +32,7 @@ def variables_of(requirements: list[Requirement]) -> set[str]:
 
 
 def requirements_and_traces(args: Namespace, command: str) -> tuple[list[Requirement], list[str]]:
-    """Return the specifications and the traces; what ends in ``.stl`` after SPEC is a specification, too.
+    """Return the specifications and the traces; arguments after SPEC that end in ``.stl`` are specifications, too.
 
     A requirement is called by its ID (what stands after ``require``) where no other one has it.
     """
@@ -130,7 +130,7 @@ def _is_specification(text: str) -> bool:
 
 
 def result_of_one(args: Namespace, command: str) -> tuple[str, Result]:
-    """Evaluate one specification over one recording; return what the recording is called, and the result."""
+    """Evaluate one specification over one recording; return the name of the recording, and the result."""
     requirement, trace, reading = _one(args, command)
     ((_, result),) = _results([replace(requirement, rows=())], trace, reading).items()
     return shown(trace), result

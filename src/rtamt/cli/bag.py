@@ -27,7 +27,7 @@ TOPIC = "rtamt/robustness"
 def write_bag(
     requirement: Requirement, trace: str, reading: Reading, results: Mapping[str, Result], path: str
 ) -> None:
-    """Write a recording with what was found out about it; ``results``: of each checked requirement, by its label."""
+    """Write a recording with the results of a check; ``results``: one per requirement, by its label."""
     if not is_bag(trace):
         raise CommandError(
             f"'{trace}' is no bag, so that there are no topics to write to '{path}'; write .csv"

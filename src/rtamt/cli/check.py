@@ -155,7 +155,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Evaluate every requirement over every trace, print what came of it."""
+    """Evaluate every requirement on every trace, and print the outcomes."""
     color = use_color(args.color, sys.stdout)
     given, traces = requirements_and_traces(args, "check")
     for each in [] if args.quiet else given:

@@ -117,7 +117,7 @@ def warnings_of(spec: Specification, ignored: Sequence[str]) -> list[LintWarning
 
 
 def warn(found: Iterable[LintWarning], given: str) -> None:
-    """Print warnings about the specification that was given on stderr."""
+    """Print warnings about a specification of the command line on stderr."""
     place = f"{given}: " if os.path.isfile(given) else ""
     for warning in found:
         complain(f"{place}{warning.severity} {warning}")
@@ -135,7 +135,7 @@ def add_verdict_option(parser: argparse.ArgumentParser) -> None:
 
 
 def add_stamp_options(parser: argparse.ArgumentParser, what: str) -> None:
-    """Add where the timestamps are and in what unit; ``what`` they are: a column, a key."""
+    """Add the options for the column and unit of timestamps; ``what``: a column, or a key."""
     group = options(parser, READING)
     group.add_argument("--time-column", metavar="NAME", help=f"the {what} of timestamps; '' for none")
     group.add_argument(
@@ -165,7 +165,7 @@ def read_specification(args: argparse.Namespace, time: str) -> Specification:
 
 
 def read_specifications(args: argparse.Namespace, time: str, given: Sequence[str]) -> list[Specification]:
-    """Read several files or texts; what is set must be a parameter of one of them."""
+    """Read several files or texts; each name of ``--set`` must be a parameter of one of them."""
     specs = [_read(args, time, spec) for spec in given]
     for spec in specs:
         rule = spec.document.sampling
@@ -237,7 +237,7 @@ def pack_named(spec: str) -> str | None:
 
 
 def write_output(path: str, content: str | bytes) -> None:
-    """Write an output file, whole or not at all; what goes wrong is one sentence."""
+    """Write an output file completely or not at all; an error is one sentence."""
     try:
         if isinstance(content, str):
             write_text(path, content)

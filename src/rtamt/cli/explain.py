@@ -54,7 +54,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Evaluate the trace and explain what comes of it."""
+    """Evaluate the trace and explain the results."""
     with Progress() as progress:
         progress.show("evaluating")
         trace, results = results_of_one(args, "explain")

@@ -74,7 +74,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Search, and print what was found."""
+    """Search, and print the findings."""
     # Only this command needs them, and the others start faster without.
     from rtamt.search import falsify
     from rtamt.search.config import load_search

@@ -65,7 +65,7 @@ def _unique(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
 
 
 def flat(data: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
-    """Yield what an object holds; fields of nested objects under names with dots."""
+    """Yield the values of an object; fields of nested objects have names with dots."""
     stack = list(data.items())
     while stack:
         name, value = stack.pop(0)

@@ -24,7 +24,7 @@ def add_language_option(parser: argparse._ActionsContainer) -> None:
 
 
 def read_language(given: str | None) -> Language:
-    """Return the language of this name; STL where none was given."""
+    """Return the language of this name; STL for None."""
     if given is None:
         return STL
     module, _, name = given.partition(":")

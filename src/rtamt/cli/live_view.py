@@ -96,7 +96,7 @@ class Live:
             self._lowest = (robustness, stamp)
 
     def bounds(self, known: Interval, status: str, satisfied: bool | None) -> None:
-        """Take what is known of the robustness and the verdict at the start of the trace after a sample."""
+        """Take the bounds and the verdict at the start of the trace, as known after a sample."""
         self._bounds.append(known)
         self._status = (status, satisfied)
 
@@ -167,7 +167,7 @@ def _color(robustness: float) -> str:
 
 
 def blocks(values: Sequence[float]) -> str:
-    """Return values as blocks from the lowest to the highest; what is infinite as arrows.
+    """Return values as blocks from the lowest to the highest; infinities are arrows.
 
     >>> blocks([0, 3.5, 7, float("inf"), float("-inf")])
     '▁▅█↑↓'

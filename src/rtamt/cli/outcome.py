@@ -47,7 +47,7 @@ class Requirement:
 
     @property
     def written(self) -> Written:
-        """A single requirement as it stands in the specification: its name, its description, its severity."""
+        """The name, description and severity of a single requirement in the specification."""
         return self.spec.document.requirements[0]
 
 
@@ -93,7 +93,7 @@ class Outcome:
 
     @property
     def robustness_text(self) -> str:
-        """The robustness, or what is known of it."""
+        """The robustness, or its bounds."""
         low, high = (self.robustness,) * 2 if self.bounds is None else (self.bounds.lower, self.bounds.upper)
         if low == high or self.bounds is None:
             return short(self.robustness)
@@ -103,7 +103,7 @@ class Outcome:
 
 
 def failed(requirement: Requirement, trace: str, error: str, begin: float) -> Outcome:
-    """Return the outcome of what could not be evaluated."""
+    """Return the outcome of a requirement that could not be evaluated."""
     return Outcome(
         requirement.label, shown(trace), "error", error=error, seconds=clock.perf_counter() - begin
     )
@@ -141,7 +141,7 @@ def applicable(
 
 
 def together(found: Sequence[Outcome], unchecked: Sequence[Outcome]) -> dict[str, Outcome]:
-    """Return the outcomes by requirement; of one that was checked in part, with what was not."""
+    """Return the outcomes by requirement; those checked in part also have the unchecked rest."""
     of = {outcome.requirement: outcome for outcome in unchecked}
     for outcome in found:
         lacking = of.get(outcome.requirement)

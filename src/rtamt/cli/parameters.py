@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 def add_set_option(group: _ActionsContainer) -> None:
-    """Add what sets parameters."""
+    """Add the option that sets parameters."""
     group.add_argument(
         "--set",
         metavar="NAME=VALUE",
@@ -25,7 +25,7 @@ def add_set_option(group: _ActionsContainer) -> None:
 
 
 def assigned(specs: Sequence[Specification], given: Sequence[str]) -> list[Specification]:
-    """Return specifications with the values that are given; each must be of a parameter of one of them."""
+    """Return specifications with these values; each name must be a parameter of one of them."""
     values = assignments(given)
     known = dict.fromkeys(name for spec in specs for name in spec.parameters)
     require_parameters(values, known)

@@ -67,7 +67,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Evaluate the trace and draw what comes of it."""
+    """Evaluate the trace and plot the results."""
     if args.rows < 1:
         raise CommandError(f"--rows is {args.rows}; give a number of formulas, 1 or more")
     figure = _window() if args.output is None else _sheet(args.output)

@@ -156,7 +156,7 @@ def recording(args: argparse.Namespace, source: str) -> Trace:
 
 
 def read_for(specs: Sequence[Specification], trace: str, reading: Reading) -> Trace:
-    """Read what some requirements read of a recording."""
+    """Read the variables of some requirements from a recording."""
     with opened(trace, reading.sheet, reading.query, reading.recover) as source:
         return trace_of(source, choice_for(specs, trace, reading))
 
@@ -238,7 +238,7 @@ def oldest_held(spec: Specification, reading: Reading) -> Fraction | None:
 
 
 def on_clock(data: Trace, spec: Specification, trace: str, reading: Reading) -> Trace:
-    """Return what a requirement reads of a recording, on the clock that the options choose.
+    """Return the variables of a requirement in a recording, on the time base that the options select.
 
     Which other requirements were read with it makes no difference. Discrete time samples a bag as a node
     samples topics, the latest message every period; without a period only where the messages are samples.
@@ -265,7 +265,7 @@ def on_clock(data: Trace, spec: Specification, trace: str, reading: Reading) -> 
 
 
 def how_to_mend(error: Exception, data: Trace | None, before: int = 0) -> str:
-    """Return what to add to an error about a NaN in what was read: the option that leaves it out, else nothing.
+    """Return a suffix for an error about a NaN in a recording: the option that leaves it out, or nothing.
 
     ``before``: the number of samples that were read before ``data``.
     """

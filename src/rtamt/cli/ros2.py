@@ -62,7 +62,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Watch until the node is asked to end."""
+    """Monitor until the node is terminated."""
     from rtamt.ros.dds.node import Node
     from rtamt.ros.dds.participant import Participant, Quality
     from rtamt.ros.dds.types import Types

@@ -69,7 +69,7 @@ def outcomes(
     *,
     explain: bool = False,
 ) -> Iterator[Outcome]:
-    """Yield what comes of every requirement over every recording, recording by recording, in order.
+    """Yield the outcome of every requirement on every recording, recording by recording, in order.
 
     ``jobs``: processes; by default one for each core, where there is enough to do. ``explain``: violations.
     """

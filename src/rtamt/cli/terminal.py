@@ -43,7 +43,7 @@ def say(text: str = "", *, file: TextIO | None = None, color: bool = False, flus
 
 
 def use_color(mode: str, stream: TextIO) -> bool:
-    """Return whether to colour what goes to ``stream``; ``auto``: on a terminal, unless NO_COLOR is set."""
+    """Return whether output to ``stream`` is coloured; ``auto``: on a terminal, unless NO_COLOR is set."""
     if mode not in COLOR_MODES:
         raise UsageError(f"unknown colour mode '{mode}'{choices(mode, COLOR_MODES, 'modes')}")
     if mode != "auto":
@@ -162,7 +162,7 @@ class Progress:
         self._rich: Any = None
 
     def show(self, text: str) -> None:
-        """Show what is going on, at most a few times a second."""
+        """Show the progress, at most a few times per second."""
         self._show(text)
 
     def bar(self, done: int, total: int, text: str) -> None:

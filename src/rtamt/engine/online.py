@@ -41,7 +41,7 @@ class Watched:
 def grounded(
     domain: TimeDomain, formula: Formula, text: str | None, watch: Sequence[Watched]
 ) -> tuple[Formula, list[Watched]]:
-    """Return a formula and what is watched beside it as they are evaluated; raise what does not fit the domain."""
+    """Return a formula and the watched formulas as they are evaluated; raise errors of the time domain."""
     for watched in (Watched("", formula, text), *watch):
         domain.check(watched.formula, watched.text)
     formula, *others = domain.ground(formula, *(watched.formula for watched in watch))

@@ -70,7 +70,7 @@ class Forcing:
         return signals
 
     def support(self, intervals: Iterable[Interval]) -> dict[Place, Cells]:
-        """Return where each place has the truth that is asked of it, by the intervals alone."""
+        """Return where each place has its required truth, by the intervals alone."""
         polar = self._structure.polar
         order = tuple(dict.fromkeys(polar.values()))
         holds = truths(order, self._axis, self._signals(intervals))
@@ -93,7 +93,7 @@ class Forcing:
 
 
 def intervals_of(demands: Demands) -> list[Interval]:
-    """Return what is asked of the predicates as intervals, which force the verdict."""
+    """Return the required truth of the predicates as intervals, which force the verdict."""
     return [
         Interval(start, end, name, sign)
         for (name, sign), asked in demands.leaves.items()

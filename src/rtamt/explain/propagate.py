@@ -86,7 +86,7 @@ class Demands:
                     self.leaves[node.name, sign] = asked
 
     def truth(self, sign: int) -> bool:
-        """Return which truth is asked of places of a sign."""
+        """Return the required truth at places of a sign."""
         return self._satisfied == (sign > 0)
 
     def _add(self, node: Formula, sign: int, asked: Asked) -> None:

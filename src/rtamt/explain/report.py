@@ -197,7 +197,7 @@ class Explanation:
         return tuple(sorted(self.ranking[:causes]))
 
     def to_dict(self) -> dict[str, Any]:
-        """Return the explanation as what JSON can hold.
+        """Return the explanation as JSON data.
 
         Formulas are text, infinities the strings "inf" and "-inf", dates ISO 8601.
         """

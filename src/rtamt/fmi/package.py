@@ -91,7 +91,7 @@ def export(
 
 
 def platform(version: int) -> str:
-    """Return what a version of FMI calls the system that this Python runs on.
+    """Return the name of this platform in a version of FMI.
 
     >>> platform(3).count("-")
     1

@@ -87,7 +87,7 @@ PLAIN = Quantity(())
 
 
 def declared(unit: str) -> Quantity:
-    """Return the measure of what is declared in a unit."""
+    """Return the measure of a value declared in a unit."""
     return PLAIN if is_none(unit) else Quantity(((" ".join(unit.split()), Fraction(1)),))
 
 
@@ -95,7 +95,7 @@ def declared(unit: str) -> Quantity:
 
 
 def resolve(*quantities: Quantity) -> list[Resolved]:
-    """Return what units amount to; raise :class:`MisfitError` where that is unknown."""
+    """Return the dimension of units; raise :class:`MisfitError` if it is unknown."""
     try:
         library("pint", "comparing units", "units")
         return [resolved(each.powers) for each in quantities]

@@ -141,7 +141,7 @@ def sign(x: Array) -> Array:
 
 
 def mod(x: Array, y: Array) -> Array:
-    """``mod(x, y)``: what remains of x after whole multiples of y, with the sign of y; NaN for y = 0 or x = ±inf."""
+    """``mod(x, y)``: the remainder of x after whole multiples of y, with the sign of y; NaN for y = 0 or x = ±inf."""
     return _each(lambda a, b: nan if b == 0 or math.isinf(a) else a % b, x, y)
 
 

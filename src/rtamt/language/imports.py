@@ -52,7 +52,7 @@ class Library:
     open: list[str] = field(default_factory=list)
 
     def read(self, path: str) -> tuple[str, str]:
-        """Return what identifies the file that is imported as ``path``, and its text.
+        """Return the identity of the file that is imported as ``path``, and its text.
 
         Raises :class:`ImportedFileError`; its message never has contents of a file.
         """

@@ -30,7 +30,7 @@ class UnitFinding(NamedTuple):
 
 
 def unit_findings(document: Document) -> Iterator[UnitFinding]:
-    """Yield what is wrong with the units of a text; nothing where it declares none.
+    """Yield the findings about the units of a text; none if it declares no unit.
 
     A sub-formula that has a finding counts as unknown above it, so that a mistake is reported once.
 

@@ -99,7 +99,7 @@ def product(powers: Powers) -> Any:
 
 @lru_cache(maxsize=512)
 def resolved(powers: Powers) -> Resolved:
-    """Return what a product of units amounts to; raise :class:`UnknownUnitError` for a text that is no unit.
+    """Return the value of a product of units; raise :class:`UnknownUnitError` for a text that is not a unit.
 
     >>> kmh = resolved((("km/h", Fraction(1)), ("rad", Fraction(1))))
     >>> sorted(kmh.bases), round(kmh.scale, 6)

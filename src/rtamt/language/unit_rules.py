@@ -104,12 +104,12 @@ def by_seconds(measures: Sequence[Measure]) -> Measure:
 
 
 def seconds(_measures: Sequence[Measure]) -> Measure:
-    """Return the unit of what is a duration."""
+    """Return the unit of a duration."""
     return _SECOND
 
 
 def plain(_measures: Sequence[Measure]) -> Measure:
-    """Return the unit of what is a number of times."""
+    """Return the unit of a count."""
     return PLAIN
 
 

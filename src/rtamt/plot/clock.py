@@ -80,7 +80,7 @@ class Clock:
 
     @property
     def label(self) -> str:
-        """What stands at the axis."""
+        """The label of the axis."""
         if isinstance(self.origin, np.datetime64):
             return "time"
         return f"seconds after {self.origin:.15g} s" if self.origin else "time [s]"

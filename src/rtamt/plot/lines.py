@@ -59,7 +59,7 @@ class Line:
         return replace(self, positions=positions, values=values)
 
     def decimated(self, columns: int) -> Line:
-        """Return what can be seen of the line where there is room for some columns of points.
+        """Return the visible points of a line if there is room for some columns of points.
 
         Of the points in each column the first, the lowest, the highest and the last are kept, so that no
         peak is lost.

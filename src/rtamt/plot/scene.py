@@ -137,7 +137,7 @@ class Scene:
         return self.at if number == 0 or violation is None else self.clock.position(violation)
 
     def chosen(self, count: int) -> tuple[int, ...]:
-        """Return the numbers of the ``count`` nodes most worth seeing, in the order of the formula."""
+        """Return the numbers of the ``count`` most important nodes, in the order of the formula."""
         wanted = [0]
         wanted += [i for i, node in enumerate(self.nodes) if node.name]
         wanted += [] if self.critical is None else [self.critical[0]]
@@ -147,7 +147,7 @@ class Scene:
         return tuple(i for i in self.preorder() if i in best)
 
     def preorder(self) -> tuple[int, ...]:
-        """Return the numbers of the nodes as they stand in the formula, each once."""
+        """Return the numbers of the nodes in the order of the formula, each once."""
         found: dict[int, None] = {}
         stack = [0]
         while stack:
@@ -159,7 +159,7 @@ class Scene:
 
 
 def scene(result: Result, at: Any = None, *, bounds: bool = False) -> Scene:
-    """Return what there is to see of a result, explained at an instant (by default the first).
+    """Return the content of the plot of a result, explained at an instant (by default the first).
 
     ``bounds``: also what was known after each sample; see :func:`~rtamt.plot.band.band`.
     """

@@ -65,7 +65,7 @@ class Selection:
 
     @property
     def fields(self) -> tuple[Field, ...]:
-        """What to ask of the table: the stamps first."""
+        """The columns to read from the table: the timestamps first."""
         first = () if self.clock is None else (self.clock,)
         return first + tuple(field for _, field in self.signals)
 
@@ -94,7 +94,7 @@ def trace_of(source: Source, choice: Choice) -> Trace:
 
 
 def chunks_of(source: Source, choice: Choice) -> Iterator[Trace]:
-    """Read a source in chunks: traces that follow one another; what is noted in one is about all so far."""
+    """Read a source in chunks: consecutive traces; the notes of each refer to all so far."""
     selections = select(source, choice)
     clocks = [clock_of(source, selection, choice) for selection in selections]
     gaps = [_gaps(source, selection, choice) for selection in selections]
@@ -277,7 +277,7 @@ def _time_field(source: Source, table: Table, choice: Choice) -> tuple[Field | N
 
 
 def clock_of(source: Source, selection: Selection, choice: Choice) -> Clock | None:
-    """Return what makes times of the stamps of a table; None where it has none."""
+    """Return the conversion of a table's timestamps to times; None if it has none."""
     if selection.clock is None:
         return None
     unit = choice.units.get(selection.clock.column, choice.units.get(TIME))

@@ -34,7 +34,7 @@ class Format:
     recovers: str = ""
 
     def guard(self, path: str) -> AbstractContextManager[None]:
-        """Turn whatever the library raises at a file into one sentence."""
+        """Turn every error of the library into one sentence."""
         if self.recovers and path.lower().endswith(self.recovers):
             return opening(path, self.name, "read it as far as possible with recover=True (--recover)")
         return opening(path, self.name)

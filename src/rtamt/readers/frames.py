@@ -223,5 +223,5 @@ _OPENERS: dict[tuple[str, str], Callable[[Any], Source]] = {
 
 
 def known_kinds() -> Sequence[str]:
-    """Return what can be read from memory, for messages."""
+    """Return the kinds of objects that can be read, for messages."""
     return ["a dict", "a structured numpy array", *(f"{a}.{b}" for a, b in _OPENERS)]

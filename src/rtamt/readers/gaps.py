@@ -80,7 +80,7 @@ class Gaps:
         return values, missing
 
     def losses(self) -> list[str]:
-        """Return what has been left out and held so far, a sentence each."""
+        """Return the samples left out and held so far, one sentence each."""
         found = []
         for what, (count, first) in (("left out, NaN", self._nan), ("held", self._held)):
             if count:

@@ -33,7 +33,7 @@ _LENGTH = struct.Struct("<Q")
 
 
 def salvage(path: str, copy: str) -> str:
-    """Write what comes before the damage of a file to ``copy``; return what is lost as a sentence, "" if nothing is."""
+    """Write the part of a file before the damage to ``copy``; return the loss as a sentence, "" if there is none."""
     size = os.path.getsize(path)
     last: int | None = None
     with open(path, "rb") as file, open(copy, "wb") as out:

@@ -151,7 +151,7 @@ def choice(
 def opened(
     source: Any, sheet: str | None = None, query: str | None = None, recover: bool = False
 ) -> Iterator[Source]:
-    """Open whatever can be read, and close it at the end."""
+    """Open any source, and close it at the end."""
     found = _open(source, sheet, query, recover)
     try:
         yield found

@@ -63,7 +63,7 @@ def open_bag(path: str, recover: bool = False) -> Source:
 
 @contextmanager
 def open_reader(path: str, recover: bool = False) -> Iterator[tuple[Any, tuple[str, ...]]]:
-    """Open any bag; yield its reader, and what is lost of it. Raise :class:`TraceError` where it is none."""
+    """Open any bag; yield its reader, and what was lost. Raise :class:`TraceError` if it is not a bag."""
     with ExitStack() as stack:
         losses: tuple[str, ...] = ()
         if recover and path.lower().endswith(MCAP):
@@ -203,7 +203,7 @@ class _Rows:
         }
 
     def columns(self) -> list[Raw]:
-        """Return what came since the last call."""
+        """Return the messages since the last call."""
         table = self._topic.table
         table.losses[:] = [] if not self._others else [_repeated(self._topic.name, self._others)]
         assert table.clock is not None

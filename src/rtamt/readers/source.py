@@ -115,7 +115,7 @@ _SHOWN = 200
 
 @contextmanager
 def opening(path: str, what: str, remedy: str = "copy or export it again") -> Iterator[None]:
-    """Turn whatever a format library raises at a file into one sentence. ``what``: the format.
+    """Turn every error of a format library into one sentence. ``what``: the format.
 
     Our own errors pass, and so do our own bugs: they are no damage of the file.
     """
@@ -183,7 +183,7 @@ def raised_by_us(error: BaseException) -> bool:
 
 
 def reason(error: BaseException) -> str:
-    r"""Return what a library raised as part of a sentence: one line without control characters, never pages.
+    r"""Return the error of a library as part of a sentence: one short line without control characters.
 
     >>> reason(ValueError("bad\n\x1bblock.")), reason(KeyError(17)), reason(MemoryError())
     ('bad \\x1bblock', 'unexpected contents (KeyError: 17)', 'it needs more memory than there is')

@@ -112,7 +112,7 @@ def dense_verdicts(
 def after(
     updates: Sequence[Update], names: Sequence[str], ranges: Mapping[str, Range], *, finished: bool
 ) -> DenseKnowledge:
-    """Return what updates make known."""
+    """Return the verdicts that updates decide."""
     samples = {}
     for name in names:
         came = [(time, values[name]) for time, values in updates if name in values]

@@ -25,7 +25,7 @@ _EPOCH, _MILLISECOND = np.datetime64(0, "ms"), np.timedelta64(1, "ms")
 
 
 def data_of(scene: Scene, store: Store) -> dict[str, Any]:
-    """Return what the script of a page draws; positions are seconds after ``origin``.
+    """Return the data that the script of a page draws; positions are seconds after ``origin``.
 
     Of a line with many points the page always holds the range of the values in each part of the time, and all of
     the points as long as there is room; a violated requirement may use all of the room, a satisfied one half.

@@ -113,7 +113,7 @@ class Page:
         self._cards: list[Card] = []
 
     def add(self, row: Row, scene: Scene | None = None) -> None:
-        """Add what came of one requirement over one trace; ``scene``: None where nothing can be drawn."""
+        """Add the outcome of one requirement on one trace; ``scene``: None if nothing can be drawn."""
         formula, description = (
             self._formulas[row.requirement].text,
             self._formulas[row.requirement].description,
@@ -147,7 +147,7 @@ class Page:
         return signals.summary
 
     def text(self, sources: Iterable[File] = ()) -> str:
-        """Return the text of the page; ``sources``: what it is about."""
+        """Return the text of the page; ``sources``: its specifications and recordings."""
         ordered = sorted(self._cards, key=lambda card: _VERDICTS.index(card.row.verdict))
         if ordered:
             ordered[0].first = ordered[0].row.verdict != "satisfied" or len(ordered) == 1

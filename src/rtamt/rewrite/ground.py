@@ -38,7 +38,7 @@ def ground(formula: Formula, step: Fraction, *, continuous: bool = False) -> For
 
 
 def grounds(formulas: Sequence[Formula], step: Fraction, *, continuous: bool = False) -> tuple[Formula, ...]:
-    """Ground several formulas, which go on sharing what they share."""
+    """Ground several formulas, which keep their shared nodes."""
 
     def changed(node: Formula, args: tuple[Formula, ...]) -> Formula:
         if not isinstance(node, Apply):

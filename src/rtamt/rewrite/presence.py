@@ -23,7 +23,7 @@ def channel_of(name: str) -> str:
 
 
 def presences(*formulas: Formula) -> tuple[str, ...]:
-    """Return the variables whose presence formulas ask for.
+    """Return the variables whose presence formulas read.
 
     >>> from rtamt.language.parser import parse_formula
     >>> presences(parse_formula("x > 3 and valid(y) or valid(y)"))

@@ -188,7 +188,7 @@ class StlDenseTimeOnlineSpecification(OnlineSpecification, DenseTimeSpecificatio
     @raises_rtamt
     @exclusive
     def update(self, *dataset: Sequence[Any]) -> list[list[float]]:
-        """Take the next samples and return what became known, in the form of ``evaluate``.
+        """Take the next samples and return the new values, in the form of ``evaluate``.
 
         ``dataset``: as for ``evaluate``; a variable may have no samples (``[]``) or be left out. The
         robustness is known up to the earliest last time of the variables: a point for every change

@@ -293,7 +293,7 @@ def is_frame(data: Any) -> bool:
 
 
 def not_a_mapping(data: Any, to: str) -> TraceError:
-    """Return the error for data that is no mapping from variables ``to`` what is said; a file has to be read first."""
+    """Return the error for data that is not a mapping from variables to ``to``; a file must be read first."""
     if isinstance(data, str | PathLike):
         path = shown(fspath(data))
         return TraceError(f"expected data, got {path}; to read a file write rtamt.read({path})")

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 def listing(trace: Trace) -> str:
-    """Return what ``print(trace)`` shows."""
+    """Return the text of ``print(trace)``."""
     lines = [heading(trace), *(f"  {note}" for note in notes(trace))]
     rows = [row for topic, channels in topics(trace) for row in _rows(topic, channels)]
     width = max((len(label) for label, _ in rows), default=0)
@@ -26,7 +26,7 @@ def listing(trace: Trace) -> str:
 
 
 def html(trace: Trace) -> str:
-    """Return what Jupyter shows: the notes, and a table of the signals, topic by topic."""
+    """Return the representation in Jupyter: the notes, and a table of the signals, topic by topic."""
     from html import escape
 
     lines = [f"<p>{escape(line)}</p>" for line in (heading(trace), *notes(trace))]
@@ -48,7 +48,7 @@ def heading(trace: Trace) -> str:
 
 
 def notes(trace: Trace) -> list[str]:
-    """Return what was guessed or left out, and the date of time 0 where it is known."""
+    """Return the notes on what was inferred or left out, and the date of time 0 if it is known."""
     return [*([] if trace.origin is None else [f"time 0 is {trace.origin} UTC"]), *trace.notes]
 
 

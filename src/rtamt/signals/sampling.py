@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 def sampled(
     data: Any, names: Sequence[str], rule: Sampling, period: Fraction, unit: str | None = None
 ) -> Any:
-    """Return what a formula reads of a recording, a sample every ``period`` from when all variables have one.
+    """Return a recording sampled every ``period`` from the first instant at which all variables have a sample.
 
     ``rule``: how old values may be that are held, and whether NaN is left out. Data without times is returned as it
     is: its samples are one period apart. Raises :class:`TraceError` for wrong data and values that are too old.

@@ -300,7 +300,7 @@ def kind_of(times: Any) -> str:
 
 
 def kinds_of(times: Any) -> dict[str, int]:
-    """Return the kinds of times that there are, each with the index of its first; what is no time is a number."""
+    """Return the kinds of times, each with the index of its first; values that are not times count as numbers."""
     if isinstance(times, np.ndarray) and times.dtype.kind != "O":
         kind = _OF_DTYPE.get(times.dtype.kind, "seconds")
         if kind == "timedeltas" and not has_length(times):

@@ -65,7 +65,7 @@ def converted(values: FloatArray, name: str, recorded: str, declared: str) -> Fl
 
 
 def conversion_of(name: str, recorded: str, declared: str) -> Conversion | None:
-    """Return how values of a variable are converted, None where they stay what they are.
+    """Return the conversion of a variable's values; None if they are not converted.
 
     Raises :class:`TraceError` for units that are unknown or differ in more than factor and offset, and
     :class:`UsageError` where the library is missing.

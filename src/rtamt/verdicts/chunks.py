@@ -114,7 +114,7 @@ class Requirement:
     def result(
         self, time: Callable[[int], Any], last: int, samples: int, period: Fraction | None
     ) -> StreamResult:
-        """Return what came of all chunks.
+        """Return the results over all chunks.
 
         ``time``: from a position to a time in the caller's form; ``last``: the position of the end of the trace.
         """

@@ -304,7 +304,7 @@ class _Part:
         return self.certain > self._last
 
     def take(self, runs: Iterable[tuple[int, int, bool]]) -> None:
-        """Take what was decided: runs from a position up to another."""
+        """Take decided verdicts: runs from a position up to another."""
         for begin, end, holds in runs:
             first = max(begin, self.certain)
             if first >= end or first > self._last:

@@ -240,7 +240,7 @@ class IntervalMonitor(EarlyMonitor):
         """
 
     def changes(self) -> list[Change]:
-        """Return runs of samples up to the newest one whose bounds the last update changed, with what they are now."""
+        """Return the runs of samples up to the newest one whose bounds the last update changed, with the new bounds."""
         if self.at == "start":
             raise self._start_only()
         return self._changes(0)

@@ -120,7 +120,7 @@ class Stream(ABC):
         """End the recording; return the outcome of all chunks."""
 
     def result(self, found: Mapping[str, StreamResult], period: Fraction | None) -> StreamResult:
-        """Return what came of all chunks, from the results of the requirements."""
+        """Return the result over all chunks, from the results of the requirements."""
         results = tuple(found[name] for name in self.requirements)
         violations = [each.first_violation for each in results if not each.satisfied]
         minima = [each.minimum for each in results]

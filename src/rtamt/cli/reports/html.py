@@ -65,7 +65,7 @@ class HtmlReport:
         self._page = Page(command, texts)
 
     def add(self, outcome: Outcome) -> None:
-        """Add what came of one requirement over one trace, with charts where there is a result."""
+        """Add the outcome of one requirement on one trace, with charts if there is a result."""
         if outcome.trace != self._trace:
             self._end_trace()
             self._trace = outcome.trace

@@ -19,7 +19,7 @@ _FORBIDDEN = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\ufffe\uffff]")
 
 
 def as_junit(requirements: Sequence[Requirement], outcomes: Sequence[Outcome]) -> str:
-    """Return the report; a violation is a failure, what could not be evaluated an error.
+    """Return the report; a violation is a failure, a failed evaluation an error.
 
     What a recording does not have the signals for is skipped.
     """

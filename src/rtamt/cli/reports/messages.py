@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 def sentence(outcome: Outcome, requirement: Requirement) -> str:
-    """Return what came of one requirement over one recording, as a sentence."""
+    """Return the outcome of one requirement on one recording, as a sentence."""
     if outcome.error:
         return outcome.error
     if outcome.unchecked:

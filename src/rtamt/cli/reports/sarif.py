@@ -21,7 +21,7 @@ _SCHEMA = "https://json.schemastore.org/sarif-2.1.0.json"
 
 
 def as_sarif(requirements: Sequence[Requirement], outcomes: Sequence[Outcome]) -> str:
-    """Return the report: a violation is a failed result, what could not be evaluated a notification."""
+    """Return the report: a violation is a failed result, a failed evaluation a notification."""
     rules = [_rule(requirement) for requirement in requirements]
     numbers = {requirement.label: i for i, requirement in enumerate(requirements)}
     errors = [outcome for outcome in outcomes if outcome.error]

@@ -282,7 +282,7 @@ def finish_ticks(monitor: DenseMonitor) -> Samples:
 
 
 def known_ticks(monitor: DenseMonitor, name: str | Formula) -> Samples:
-    """Return what the last update made known of a formula that is watched, as ticks and values."""
+    """Return the new values of a watched formula after the last update, as ticks and values."""
     return monitor._known(name)
 
 

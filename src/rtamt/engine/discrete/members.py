@@ -296,7 +296,7 @@ class MemberMonitor:
 
     @property
     def members(self) -> tuple[str, ...]:
-        """The members that are monitored at present, also those that are gone and still matter."""
+        """The monitored members, including absent ones that can still affect the result."""
         return tuple(dict.fromkeys(member for each in self._quantifiers for member in each.running))
 
     def bind(self, binding: Binding) -> None:
