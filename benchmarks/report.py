@@ -62,14 +62,14 @@ def how(running: list[Tool], absent: list[tuple[str, str]]) -> str:
     missing = "\n".join(f"- {name}: {reason}" for name, reason in absent)
     return f"""## How this was measured
 
-Every tool runs in a process of its own, in an environment of its own. What is measured is the processor's time
-of that process, and the time on the clock only at start-up and for threads; a shared cache still shows, and
-ratios are more meaningful than times. In brackets stands how many times as long as ours a tool takes, the median of the
-rounds' ratios. Formulas are parsed and samples brought into the form that a tool takes (lists, dicts; for ours
-offline numpy arrays) before the clock runs. Under "parsing" stands the time of the tool's own reader, from a text
-in its language to what is ready to run. The bytecode of all that a tool imports is written before it starts. `this`
-online is `monitor.update(t, a=x)`, `this (step)` the positional `monitor.step(x)`, which hot loops call. Online,
-windows are full first. Every answer is the whole signal of robustness.
+Every tool runs in a separate process and a separate environment. Figures are processor times of that
+process, and wall-clock times only at start-up and for threads. The cache is shared with other processes, so
+ratios are more meaningful than times. The number in brackets is a tool's time divided by ours, the median of the
+ratios of all rounds. Formulas are parsed and samples are converted to the input format of the tool (lists, dicts;
+for ours, offline, numpy arrays) before the measurement. "Parsing" is the time of the tool's own parser, from a text
+in its language to an object that is ready to run. The bytecode of all imports is written before a tool starts. `this`
+online is `monitor.update(t, a=x)`, `this (step)` the positional `monitor.step(x)` for hot loops. Online,
+measurements begin when the windows are full. Every answer is the complete robustness signal.
 
 {tools}
 

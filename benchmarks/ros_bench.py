@@ -66,7 +66,7 @@ def main() -> None:
         lines = [
             f"# {args.monitors} monitors in one ROS 1 node on one core, {args.rate:g} messages a second",
             "",
-            f"Latency from the message's stamp to the robustness heard, `make bench-ros`, {args.seconds:g} s each; "
+            f"Latency from the timestamp of a message to the robustness at a subscriber, {args.seconds:g} s each; "
             f"load before it {os.getloadavg()[0]:.1f} on {os.cpu_count()} processors.",
             "",
             HEADER,

@@ -34,7 +34,7 @@ def study(side: str = "left", **faults: float) -> Sensitivity:
 
 
 def search(side: str = "left", *, seed: int = 1, **faults: float) -> Falsification:
-    """Look for commands that an elevator does not follow, also after the first one: the picture shows them all."""
+    """Look for commands that an elevator does not follow, also after the first one: the plot shows them all."""
     return falsify(problem(side, **faults), optimizer="cma", budget=60, seed=seed, stop=False)
 
 
@@ -47,7 +47,7 @@ def table(landscape: Sensitivity) -> str:
 
 
 def main(folder: Path) -> None:
-    """Draw both pictures, and print what they show."""
+    """Draw both plots, and print their data."""
     folder.mkdir(parents=True, exist_ok=True)
     figure, pair = plt.subplots(1, 2, figsize=(12, 4.8), layout="constrained")
     for axes, (what, faults) in zip(

@@ -31,7 +31,7 @@ Found = dict[str, dict[str, Any]]
 
 @dataclass(frozen=True)
 class Case:
-    """A case study: the paper's claim, the program that tells, and the pictures that it draws into ``folder``."""
+    """A case study: the paper's claim, the program that checks it, and the images that it draws into ``folder``."""
 
     title: str
     claim: str
@@ -49,7 +49,7 @@ CASES = (
         "a footprint of 450 mm in diameter, an omnidirectional drive and 0.22 m/s at most (the table of the paper), "
         "and so has the base that is simulated here",
         "examples/service_robot/run.py",
-        ("--fault", "planner", "--seed", "3", "--pictures", "{folder}"),
+        ("--fault", "planner", "--seed", "3", "--plots", "{folder}"),
         "robot",
         ("robustness.png", "scene.png"),
     ),
@@ -101,7 +101,7 @@ def report(found: Found) -> str:
             "![operators](operators.png)",
             figure_4(found),
             "![requests and grants](interface.png)",
-            table("Pastification: at how many instants the pastified formula tells, a horizon later, the same",
+            table("Pastification: at how many instants the pastified formula has the same value, one horizon later",
                   "pastification", found, "for every formula of bounded future, at every instant"),
             listing("Listing 1, dense time offline", "listing 1", found, "one robustness signal; no value is printed"),
             listing("Listing 2, dense time online in two chunks", "listing 2", found,
@@ -121,7 +121,7 @@ def report(found: Found) -> str:
                   "C++ back end is in none of its packages: its column is its back end in Python"),
             "![online](windows.png)",
             *(case(each) for each in CASES),
-            "## What is not run again\n\nDiagrams of RTAMT's own architecture, and pictures of the robot and of "
+            "## What is not run again\n\nDiagrams of RTAMT's own architecture, and photographs of the robot and of "
             "its simulator.",
         ]
     ) + "\n"  # fmt: skip

@@ -1,4 +1,4 @@
-"""The four monitors, made from the `.stl` files, and what they say: whose specification fell first."""
+"""The four monitors of the `.stl` files, and the component whose specification was violated first."""
 
 from __future__ import annotations
 
@@ -45,6 +45,6 @@ class Monitors:
         return next((time for time, value in told if value is not None and value < 0), None)
 
     def culprit(self) -> str | None:
-        """Return the component whose specification fell first; None if none did."""
+        """Return the component whose specification was violated first; None if none did."""
         fallen = {name: at for name in COMPONENTS if (at := self.fell(name)) is not None}
         return min(fallen, key=fallen.__getitem__, default=None)

@@ -211,7 +211,7 @@ class ControllerNode(Component):
 
 
 class PredicateSemantics:
-    """Says which specification has fallen, and names the component that fell first."""
+    """Logs violated specifications, and names the component whose specification was violated first."""
 
     def __init__(self) -> None:
         self.fallen: dict[str, float] = {}

@@ -1,4 +1,4 @@
-"""Pictures of a drive: the four robustness signals, healthy and faulty, and the scene, in stills and moving."""
+"""Plots of a drive: the four robustness signals, healthy and faulty, and the scene, in stills and moving."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ EVERY = 10  # moments, from picture to picture of the moving one
 
 
 def draw(healthy: Run, run: Run, folder: Path) -> list[Path]:
-    """Write the pictures of a drive, and of the healthy one beside it; return their files."""
+    """Write the plots of a drive, and of the healthy one beside it; return their files."""
     folder.mkdir(parents=True, exist_ok=True)
     with mpl.rc_context({"font.size": 9, "axes.spines.top": False, "axes.spines.right": False}):
         paths = [folder / "robustness.png", folder / "scene.png", folder / "scene.gif"]

@@ -77,7 +77,7 @@ def tell(run: Run) -> str:
             f"{name + ':':12} least robustness {least:6.3f}, "
             + ("satisfied" if fell is None else f"violated at {fell:.1f} s")
         )
-    lines.append(f"fell first: {monitors.culprit() or 'none'}")
+    lines.append(f"violated first: {monitors.culprit() or 'none'}")
     return "\n".join(lines)
 
 
@@ -114,18 +114,18 @@ def main() -> int:
     parser.add_argument("--seed", type=int, default=0, help="of everything random (default: 0)")
     parser.add_argument("--table", action="store_true", help="20 seeds, healthy and with each fault")
     parser.add_argument(
-        "--pictures", type=Path, metavar="FOLDER", help="draw robustness and scene; needs matplotlib"
+        "--plots", type=Path, metavar="FOLDER", help="draw robustness and scene; needs matplotlib"
     )
     arguments = parser.parse_args()
     if arguments.table:
         return 0 if table() else 1
     run = drive(arguments.fault, arguments.seed)
     print(tell(run))
-    if arguments.pictures:
+    if arguments.plots:
         import plot
 
         healthy = drive(None, arguments.seed)
-        for path in plot.draw(healthy, run, arguments.pictures):
+        for path in plot.draw(healthy, run, arguments.plots):
             print(path)
     return 0
 

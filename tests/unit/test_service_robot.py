@@ -29,13 +29,13 @@ def fell(told, name):
 
 def test_no_specification_of_a_healthy_robot_falls():
     told = drive("--seed", "3")
-    assert (told["fault"], told["fell first"]) == ("none", "none")
+    assert (told["fault"], told["violated first"]) == ("none", "none")
     assert all(told[name].endswith("satisfied") for name in NAMES)
 
 
 def test_a_tree_that_is_cut_off_leads_into_the_desk_and_the_planner_falls_seconds_before_the_system(tmp_path):
-    told = drive("--fault", "planner", "--seed", "3", "--pictures", str(tmp_path))
-    assert told["fell first"] == "planner"
+    told = drive("--fault", "planner", "--seed", "3", "--plots", str(tmp_path))
+    assert told["violated first"] == "planner"
     begun = float(told["fault"].split(" at ")[1].removesuffix(" s"))
     assert begun < fell(told, "planner") < fell(told, "system") - 2
     assert told["perception"].endswith("satisfied")
@@ -47,7 +47,7 @@ def test_a_tree_that_is_cut_off_leads_into_the_desk_and_the_planner_falls_second
 def test_a_fault_of_another_component_is_named(component, seed):
     told = drive("--fault", component, "--seed", seed)
     assert told["fault"].startswith(component)
-    assert told["fell first"] == component
+    assert told["violated first"] == component
 
 
 @pytest.mark.parametrize("name", NAMES)
