@@ -1,14 +1,14 @@
 """Run the conformance corpus through every peer, and write conformance/RESULTS.md.
 
-A peer is asked only what it claims (its adapter's table of operators and modes), and by its own declared
-conventions: where these differ, the expected answer is that of the formula which says in our language
-what the peer means by it. Where the literature leaves a choice nobody is judged: dense traces begin and
-end at the same instant for all signals, and only instants count whose windows end inside the trace.
+Each tool runs only the cases that it claims to support (the operators and modes of its adapter), with its own
+declared conventions: if these differ from ours, the expected answer is that of the equivalent formula in our
+language. Choices that the literature leaves open are not tested: dense traces begin and end at the same
+instant for all signals, and only instants count whose windows end inside the trace.
 
-Every value that a tool reports is checked, for all tools alike: one wrong value makes the answer disagree. An
-answer without a wrong value that does not cover all those instants (too late, too few, or none)
-is "right, but incomplete". How far an answer reaches is the last instant that the tool names; of one that
-names changes only and no end, the notes say so, the time of the last sample that it was given.
+Every value that a tool reports is checked, in the same way for all tools: one wrong value makes the answer
+disagree. An answer without a wrong value that does not cover all of these instants (late, short or empty) is
+"right, but incomplete". An answer extends to the last instant that the tool reports or, for tools that report
+only changes (see the notes), to the time of the last sample.
 """
 
 from __future__ import annotations
@@ -129,14 +129,14 @@ def report(rows: list[Row], absent: list[tuple[str, str]], examples: list[str], 
     """Return the page."""
     system = f"{platform.system()} {platform.machine()}, Python {platform.python_version()}"
     lines = [
-        "# Who agrees with the definition",
+        "# Agreement with the definition",
         "",
         f"Made by `make conformance` on {dt.datetime.now(tz=dt.timezone.utc):%Y-%m-%d}, {system}, from the "
         f"{cases_count} robustness cases of [the corpus](README.md).",
         "",
         (__doc__ or "").split("\n\n", 1)[1].strip(),
         "",
-        "| tool | mode | agrees | right, but incomplete | disagrees | error | crash | not asked |",
+        "| tool | mode | agrees | right, but incomplete | disagrees | error | crash | not run |",
         "|---|---|---:|---:|---:|---:|---:|---:|",
     ]
     kinds = ("agrees", "incomplete", "disagrees", "error", "crash", "unsupported")
@@ -145,7 +145,7 @@ def report(rows: list[Row], absent: list[tuple[str, str]], examples: list[str], 
         for row in rows
     ]
     lines += [f"| {name} | | not installed: {why} | | | | | |" for name, why in absent]
-    lines += ["", "What each was asked, and how:", ""]
+    lines += ["", "How each tool was run:", ""]
     lines += [
         f"- {talk.peer}: {talk.notes}"
         + "".join(f" ({key} is {value})" for key, value in talk.conventions.items())
@@ -155,9 +155,10 @@ def report(rows: list[Row], absent: list[tuple[str, str]], examples: list[str], 
         "",
         "## By operator",
         "",
-        "Agreed of asked: over plain predicates alone · in nested formulas, where another operator may be at fault.",
-        "An incomplete answer counts as asked, not as agreed. Operators that a tool has not, or was not asked "
-        "about, are left out.",
+        "Cases that agree, of those that were run: over plain predicates · in nested formulas, where another operator "
+        "may be at fault.",
+        "An incomplete answer does not count as agreement. Operators that a tool does not have, or that were not run, "
+        "are left out.",
     ]
     for talk in dict.fromkeys(row.talk for row in rows):
         own = [row for row in rows if row.talk is talk]
@@ -169,13 +170,13 @@ def report(rows: list[Row], absent: list[tuple[str, str]], examples: list[str], 
                 lines.append(f"| {op.name} | " + " | ".join(cells) + " |")
     lines += [
         "",
-        "## A smallest counterexample each",
+        "## Smallest counterexamples",
         "",
-        "Found by shrinking formula and trace as long as the same comes of it; an incomplete answer is shown only "
-        "where nothing worse was found. Traces in samples, or "
-        "[tick, value]; of the dense tools that are asked at ticks, the answer is what they said there.",
+        "Each is found by shrinking formula and trace while the outcome remains the same. An incomplete answer is "
+        "shown only if there is no worse one. Traces are samples, or [tick, value] pairs; answers of dense tools that "
+        "evaluate one tick at a time are values at ticks.",
         "",
-        "| tool | mode | operator | what came of it | formula | trace | definition | tool's answer |",
+        "| tool | mode | operator | outcome | formula | trace | definition | tool's answer |",
         "|---|---|---|---|---|---|---|---|",
         *examples,
         "",
